@@ -1,0 +1,22 @@
+#include "core/block_table.hpp"
+
+#include <utility>
+
+namespace fusebench {
+
+bool BlockTable::insert(const BlockIndex& index) {
+  if (2 * (size_ + 1) > entries_.size()) grow();
+  Entry& entry = entries_[probe(index)];
+  if (entry.slot >= 0) return false;
+  entry = {index.x(), index.y(), index.z(), static_cast<std::int32_t>(size_++)};
+  return true;
+}
+
+void BlockTable::grow() {
+  const std::vector<Entry> old = std::exchange(entries_, std::vector<Entry>(2 * entries_.size()));
+  for (const Entry& entry : old) {
+    if (entry.slot >= 0) entries_[probe({entry.x, entry.y, entry.z})] = entry;
+  }
+}
+
+}  // namespace fusebench

@@ -1,0 +1,23 @@
+// Which depth measurements are used, and how noisy they are.
+#pragma once
+
+#include "core/config.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// Standard deviation of a depth measurement: a + b (z - c)^2 (metres; Nguyen et al. 2012).
+[[nodiscard]] inline double depth_sigma_m(double depth_m, const DepthConfig& config) {
+  const double z = depth_m - config.noise_offset_m;
+  return config.noise_floor_m + config.noise_quadratic_per_m * z * z;
+}
+
+/// Depth without what cannot be trusted: values outside [min, max] and pixels at a depth edge become 0.
+[[nodiscard]] DepthImage gate_depth(const DepthImage& depth_m, const DepthConfig& config);
+
+/// Unit normal of the measured surface at a pixel, camera frame, towards the camera; zero where a neighbour
+/// is missing. Central differences over +-4 pixels, since neighbouring pixels of structured-light depth share
+/// their disparity step.
+[[nodiscard]] Vector3d measured_normal(const DepthImage& depth_m, const PinholeCamera& camera, int x, int y);
+
+}  // namespace fusebench

@@ -1,0 +1,58 @@
+// The iterated extended Kalman update (Eqs. 15-22 of the paper) as Gauss-Newton on the MAP cost
+//
+//   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
+//
+// (Bell & Cathey 1993). The paper's Eq. 20 drops the prior term after the first iteration; here it is in
+// every one. A measurement sees the pose only, so the optimum is x_prior (+) P_(:,pose) y for some y in R^6:
+// the update iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity
+// along by their correlations.
+#pragma once
+
+#include "core/config.hpp"
+#include "core/filter_state.hpp"
+
+namespace fusebench {
+
+/// Second-order model of a measurement's cost around a pose, in the tangent space of the pose there
+/// (right rotation in rad, then world position in m).
+struct PoseQuadratic {
+  Matrix6d information = Matrix6d::Zero();  ///< H^T R^-1 H
+  Vector6d gradient = Vector6d::Zero();     ///< H^T R^-1 r
+  double cost = 0;                          ///< robust cost of the residuals, at the pose
+};
+
+/// What an update needs of a measurement. Nuisance parameters (brightness of patches) are the measurement's
+/// own: it eliminates them in linearise() and moves them along in trial_cost() and accept().
+class PoseMeasurement {
+ public:
+  PoseMeasurement() = default;
+  PoseMeasurement(const PoseMeasurement&) = delete;
+  PoseMeasurement& operator=(const PoseMeasurement&) = delete;
+  virtual ~PoseMeasurement() = default;
+
+  /// Number of resolutions, coarse to fine; the last one is the measurement itself.
+  [[nodiscard]] virtual int stages() const { return 1; }
+  /// Fixes associations, visibility and robust weights at the pose. `gate`: reject what is inconsistent.
+  [[nodiscard]] virtual PoseQuadratic linearise(const SE3& T_world_imu, int stage, bool gate) = 0;
+  /// Cost at another pose with everything that the last linearise() fixed; `step` is the full tangent step
+  /// from there, of which `fraction` was taken.
+  [[nodiscard]] virtual double trial_cost(const SE3& T_world_imu, const Vector6d& step, double fraction) = 0;
+  /// The last trial becomes the current estimate.
+  virtual void accept() = 0;
+};
+
+struct IekfResult {
+  GaussianState posterior;
+  int iterations = 0;         ///< accepted steps over all stages
+  bool converged = false;     ///< the last step was below both thresholds
+  double map_cost_prior = 0;  ///< J at the prediction (last stage only)
+  double map_cost_posterior = 0;
+};
+
+/// Runs the update. The covariance is updated once, after the last iteration (Eq. 22 in its symmetric form),
+/// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the
+/// prediction).
+[[nodiscard]] IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
+                                     const IekfConfig& config, const Vector6d& start = Vector6d::Zero());
+
+}  // namespace fusebench

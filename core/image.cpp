@@ -1,0 +1,52 @@
+#include "core/image.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "core/error.hpp"
+
+namespace fusebench {
+
+IntensitySample sample_bilinear(const GreyImage& image, double x, double y) {
+  // The cell [x0, x0 + 1) x [y0, y0 + 1); the last row and column belong to the cell before them.
+  const int x0 = std::clamp(static_cast<int>(x), 0, image.width - 2);
+  const int y0 = std::clamp(static_cast<int>(y), 0, image.height - 2);
+  const double ax = x - x0;
+  const double ay = y - y0;
+  const std::uint8_t* top = &image.data[image.index(x0, y0)];
+  const std::uint8_t* bottom = top + image.width;
+  const double i00 = top[0];
+  const double i10 = top[1];
+  const double i01 = bottom[0];
+  const double i11 = bottom[1];
+  const double upper = i00 + ax * (i10 - i00);
+  const double lower = i01 + ax * (i11 - i01);
+  return {upper + ay * (lower - upper), (1.0 - ay) * (i10 - i00) + ay * (i11 - i01), lower - upper};
+}
+
+std::vector<GreyImage> build_pyramid(const GreyImage& image, int levels) {
+  check(levels >= 1 && !image.empty(), "a pyramid needs an image and at least one level");
+  std::vector<GreyImage> pyramid{image};
+  pyramid.reserve(static_cast<std::size_t>(levels));
+  for (int level = 1; level < levels; ++level) {
+    GreyImage& finer = pyramid.back();
+    GreyImage coarser((finer.width + 1) / 2, (finer.height + 1) / 2);
+    const cv::Mat source(finer.height, finer.width, CV_8UC1, finer.data.data());
+    cv::Mat target(coarser.height, coarser.width, CV_8UC1, coarser.data.data());
+    cv::pyrDown(source, target, target.size());
+    pyramid.push_back(std::move(coarser));
+  }
+  return pyramid;
+}
+
+GreyImage to_grey(const ColorImage& color) {
+  GreyImage grey(color.width, color.height);
+  // 14-bit fixed point, rounded to nearest; the weights add up to 2^14.
+  for (std::size_t i = 0; i < color.data.size(); ++i) {
+    const Rgb& c = color.data[i];
+    grey.data[i] = static_cast<std::uint8_t>((c[0] * 4899 + c[1] * 9617 + c[2] * 1868 + 8192) >> 14);
+  }
+  return grey;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,27 @@
+// The first state: world = first camera frame, gravity from the accelerometer, velocity zero with an honest
+// covariance.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/config.hpp"
+#include "core/error.hpp"
+#include "core/filter_state.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// Initial state from the inertial samples within `window_s` before and after the first frame. Samples of the
+/// window are turned into the IMU frame at the first frame by the gyroscope and averaged: the mean specific
+/// force points against gravity. At rest the gyroscope's mean is its bias and the covariances are tight; in
+/// motion the mean contains acceleration, and velocity and gravity start with wide covariances which the
+/// first frames then shrink. Error data_corrupt if the window is empty.
+[[nodiscard]] Result<GaussianState> initialise_with_imu(std::span<const ImuSample> samples,
+                                                        std::int64_t first_frame_ns, const SensorRig& rig,
+                                                        const InitialisationConfig& config);
+
+/// Initial state without an IMU: at rest with wide velocity covariances. The "IMU" frame is the camera's.
+[[nodiscard]] GaussianState initialise_without_imu(const InitialisationConfig& config);
+
+}  // namespace fusebench

@@ -1,0 +1,17 @@
+// What the estimator reports of each tracked pixel, and what the intensity metrics take.
+#pragma once
+
+#include <cstdint>
+
+namespace fusebench {
+
+/// |I_k - I_{k-1}| of one pixel of a tracked patch at level 0, before robust weighting and brightness
+/// correction.
+struct IntensityResidual {
+  std::uint32_t reference_pixel =
+      0;                      ///< v * width + u in frame k-1: the same pixel has the same key in all variants
+  float difference_grey = 0;  ///< absolute, grey levels
+  bool accepted = false;      ///< its patch also passed the chi-square gate
+};
+
+}  // namespace fusebench

@@ -1,0 +1,243 @@
+#include "core/marching_cubes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "core/marching_cubes_table.hpp"
+#include "core/tsdf_sampler.hpp"
+
+namespace fusebench {
+namespace {
+
+constexpr std::size_t kBlocksPerChunk = 16;
+constexpr std::size_t kBlockEdges =
+    3 * kBlockVoxels;  // each voxel owns the three edges that leave it upwards
+
+// An edge of the lattice: rank of the block of its lower end * kBlockEdges + offset of the lower end * 3 +
+// axis.
+using EdgeKey = std::uint64_t;
+using EdgeTriangle = std::array<EdgeKey, 3>;
+
+// The blocks by index (z, then y, then x), so that a mesh does not depend on the order of storage.
+struct SortedBlocks {
+  explicit SortedBlocks(const TsdfVolume& volume) : slots(volume.block_count()), ranks(volume.block_count()) {
+    const std::vector<BlockIndex>& indices = volume.block_indices();
+    std::iota(slots.begin(), slots.end(), std::size_t{0});
+    std::sort(slots.begin(), slots.end(), [&](std::size_t a, std::size_t b) {
+      const BlockIndex& p = indices[a];
+      const BlockIndex& q = indices[b];
+      return std::tuple(p.z(), p.y(), p.x()) < std::tuple(q.z(), q.y(), q.x());
+    });
+    for (std::size_t rank = 0; rank < slots.size(); ++rank) ranks[slots[rank]] = rank;
+  }
+  std::vector<std::size_t> slots;  // by rank
+  std::vector<std::size_t> ranks;  // by slot
+};
+
+// The used edges of one block, and the number of the vertex on each.
+struct BlockVertices {
+  static constexpr std::size_t kWords = kBlockEdges / 64;
+  std::array<std::uint64_t, kWords> used{};
+  std::array<std::uint32_t, kWords> before{};  // vertices on all earlier edges
+
+  void number(std::uint32_t& count) {
+    for (std::size_t word = 0; word < kWords; ++word) {
+      before[word] = count;
+      count += static_cast<std::uint32_t>(std::popcount(used[word]));
+    }
+  }
+  [[nodiscard]] std::uint32_t vertex(std::size_t edge) const {
+    const std::uint64_t earlier = used[edge / 64] & ((std::uint64_t{1} << edge % 64) - 1);
+    return before[edge / 64] + static_cast<std::uint32_t>(std::popcount(earlier));
+  }
+};
+
+// Triangles of the cells whose lower corner lies in one block.
+class BlockCells {
+ public:
+  BlockCells(const TsdfVolume& volume, const SortedBlocks& sorted, double min_weight)
+      : volume_(volume), sorted_(sorted), min_weight_(static_cast<float>(min_weight)), sampler_(volume) {}
+
+  void append(std::size_t rank, std::vector<EdgeTriangle>& triangles) {
+    load(volume_.block_indices()[sorted_.slots[rank]]);
+    for (int z = 0; z < kBlockSide; ++z) {
+      for (int y = 0; y < kBlockSide; ++y) {
+        for (int x = 0; x < kBlockSide; ++x) append_cell({x, y, z}, triangles);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kSide = kBlockSide + 1;  // the upper corners of the last cells lie in the next block
+  static constexpr std::uint8_t kObserved = 1;
+  static constexpr std::uint8_t kInside = 2;
+
+  static std::size_t at(const VoxelIndex& local) {
+    return static_cast<std::size_t>(local.x() + kSide * (local.y() + kSide * local.z()));
+  }
+  static std::size_t neighbour_of(const VoxelIndex& local) {
+    return static_cast<std::size_t>(local.x() >> 3 | (local.y() >> 3) << 1 | (local.z() >> 3) << 2);
+  }
+
+  void load(const BlockIndex& index) {
+    for (int n = 0; n < 8; ++n) {
+      const int slot = volume_.find_block(index + BlockIndex(n & 1, (n >> 1) & 1, n >> 2));
+      // Edges of a missing block are never used: its voxels are unobserved.
+      neighbour_rank_[static_cast<std::size_t>(n)] =
+          slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
+    }
+    const VoxelIndex corner = index * kBlockSide;
+    std::size_t i = 0;
+    for (int z = 0; z < kSide; ++z) {
+      for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x, ++i) {
+          const Voxel* voxel = sampler_.observed(corner + VoxelIndex(x, y, z));
+          const bool seen = voxel != nullptr && voxel->weight >= min_weight_;
+          sign_[i] = !seen ? std::uint8_t{0}
+                           : static_cast<std::uint8_t>(kObserved | (voxel->distance_m < 0.0F ? kInside : 0));
+        }
+      }
+    }
+  }
+
+  void append_cell(const VoxelIndex& base, std::vector<EdgeTriangle>& triangles) const {
+    constexpr std::size_t kRow = kSide;
+    constexpr std::size_t kSlice = kSide * kSide;
+    constexpr std::array<std::size_t, 8> kCorner = {0,      1,          kRow,          kRow + 1,
+                                                    kSlice, kSlice + 1, kSlice + kRow, kSlice + kRow + 1};
+    const std::size_t first = at(base);
+    std::uint8_t all = kObserved;
+    unsigned pattern = 0;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const std::uint8_t sign = sign_[first + kCorner[corner]];
+      all &= sign;
+      pattern |= static_cast<unsigned>(sign / kInside) << corner;
+    }
+    if (all == 0) return;
+    for (const CellTriangle& triangle : cell_triangles()[pattern]) {
+      triangles.push_back({key(base, triangle[0]), key(base, triangle[1]), key(base, triangle[2])});
+    }
+  }
+
+  [[nodiscard]] EdgeKey key(const VoxelIndex& base, std::uint8_t cell_edge) const {
+    const CellEdge& edge = cell_edges()[cell_edge];
+    const VoxelIndex local = base + VoxelIndex(edge.from & 1, (edge.from >> 1) & 1, edge.from >> 2);
+    return neighbour_rank_[neighbour_of(local)] * kBlockEdges + offset_in_block(local) * 3 + edge.axis;
+  }
+
+  const TsdfVolume& volume_;
+  const SortedBlocks& sorted_;
+  float min_weight_;
+  TsdfSampler sampler_;
+  std::array<std::size_t, 8> neighbour_rank_{};
+  std::array<std::uint8_t, kSide * kSide * kSide> sign_{};
+};
+
+// Colour between two voxels; a voxel without colour takes the other's. False if neither has one.
+bool blend(const Voxel& low, const Voxel& high, float share, Rgb& color) {
+  if (low.color_count == 0 && high.color_count == 0) return false;
+  const Eigen::Vector3f from = (low.color_count > 0 ? low : high).rgb();
+  const Eigen::Vector3f to = (high.color_count > 0 ? high : low).rgb();
+  const Eigen::Vector3f mixed = from + share * (to - from);
+  for (Eigen::Index channel = 0; channel < 3; ++channel) {
+    color[static_cast<std::size_t>(channel)] = static_cast<std::uint8_t>(mixed[channel] + 0.5F);
+  }
+  return true;
+}
+
+// Writes the vertex on an edge that leaves a voxel along an axis. True if it has a colour.
+bool write_vertex(const VoxelIndex& index, Eigen::Index axis, double voxel_m, TsdfSampler& sampler,
+                  std::size_t vertex, Mesh& mesh) {
+  const VoxelIndex next = index + VoxelIndex(VoxelIndex::Unit(axis));
+  const Voxel& low = *sampler.observed(index);
+  const Voxel& high = *sampler.observed(next);
+  const double low_m = low.distance_m;
+  const double share = low_m / (low_m - static_cast<double>(high.distance_m));
+  const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m;
+  Vector3d normal = (1.0 - share) * sampler.gradient(index) + share * sampler.gradient(next);
+  if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
+  mesh.vertices[vertex] = position.cast<float>();
+  mesh.normals[vertex] = normal.normalized().cast<float>();
+  return blend(low, high, static_cast<float>(share), mesh.colors[vertex]);
+}
+
+// Writes the vertices of one block. True if any has a colour.
+bool write_vertices(const TsdfVolume& volume, const BlockIndex& block, const BlockVertices& vertices,
+                    TsdfSampler& sampler, Mesh& mesh) {
+  bool colored = false;
+  for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
+    std::size_t vertex = vertices.before[word];
+    for (std::uint64_t bits = vertices.used[word]; bits != 0; bits &= bits - 1, ++vertex) {
+      const int edge = static_cast<int>(word) * 64 + std::countr_zero(bits);
+      const int offset = edge / 3;
+      const VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
+      colored |= write_vertex(block * kBlockSide + local, edge % 3, volume.voxel_m(), sampler, vertex, mesh);
+    }
+  }
+  return colored;
+}
+
+}  // namespace
+
+Mesh extract_mesh(const TsdfVolume& volume, double min_weight, const Workers& workers) {
+  const SortedBlocks sorted(volume);
+  const std::size_t blocks = sorted.slots.size();
+  const auto surfaces = workers.map_chunks<std::vector<EdgeTriangle>>(
+      blocks, kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
+        BlockCells cells(volume, sorted, min_weight);
+        std::vector<EdgeTriangle> triangles;
+        for (std::size_t rank = begin; rank < end; ++rank) cells.append(rank, triangles);
+        return triangles;
+      });
+
+  std::vector<BlockVertices> vertices(blocks);
+  std::vector<std::size_t> first_triangle(surfaces.size() + 1, 0);
+  for (std::size_t chunk = 0; chunk < surfaces.size(); ++chunk) {
+    first_triangle[chunk + 1] = first_triangle[chunk] + surfaces[chunk].size();
+    for (const EdgeTriangle& triangle : surfaces[chunk]) {
+      for (const EdgeKey key : triangle) {
+        const std::size_t edge = key % kBlockEdges;
+        vertices[key / kBlockEdges].used[edge / 64] |= std::uint64_t{1} << edge % 64;
+      }
+    }
+  }
+  std::uint32_t vertex_count = 0;
+  for (BlockVertices& block : vertices) block.number(vertex_count);
+
+  Mesh mesh;
+  mesh.vertices.resize(vertex_count);
+  mesh.normals.resize(vertex_count);
+  mesh.colors.resize(vertex_count);
+  mesh.triangles.resize(first_triangle.back());
+  const auto colored =
+      workers.map_chunks<char>(blocks, kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
+        TsdfSampler sampler(volume);
+        bool any = false;
+        for (std::size_t rank = begin; rank < end; ++rank) {
+          any |= write_vertices(volume, volume.block_indices()[sorted.slots[rank]], vertices[rank], sampler,
+                                mesh);
+        }
+        const std::size_t chunk = begin / kBlocksPerChunk;
+        std::transform(surfaces[chunk].begin(), surfaces[chunk].end(),
+                       mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first_triangle[chunk]),
+                       [&](const EdgeTriangle& triangle) {
+                         std::array<std::uint32_t, 3> corners{};
+                         for (std::size_t i = 0; i < 3; ++i) {
+                           corners[i] = vertices[triangle[i] / kBlockEdges].vertex(triangle[i] % kBlockEdges);
+                         }
+                         return corners;
+                       });
+        return static_cast<char>(any);
+      });
+  if (std::none_of(colored.begin(), colored.end(), [](char any) { return any != 0; })) mesh.colors.clear();
+  return mesh;
+}
+
+}  // namespace fusebench

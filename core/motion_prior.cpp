@@ -1,0 +1,102 @@
+#include "core/motion_prior.hpp"
+
+namespace fusebench {
+
+namespace {
+double square(double x) { return x * x; }
+
+/// Variance of a random walk of the given density after some time, on the diagonal of a block.
+void add_random_walk(StateMatrix& noise, int offset, int size, double density, double duration_s) {
+  noise.diagonal().segment(offset, size).array() += square(density) * duration_s;
+}
+}  // namespace
+
+Prediction predict_by_imu(const GaussianState& state, const PreintegratedImu& imu, const ImuNoise& noise,
+                          const MotionConfig& config) {
+  const FilterState& x = state.mean;
+  const double dt = imu.duration_s;
+  const Matrix3d R = x.T_world_imu.rotation_matrix();
+  const Vector3d gravity = kGravity_mps2 * x.gravity_direction_world;
+
+  Prediction result;
+  FilterState& y = result.state.mean;
+  y = x;
+  y.T_world_imu.rotation = (x.T_world_imu.rotation * imu.delta_rotation).normalized();
+  y.T_world_imu.translation += dt * x.velocity_world_mps + 0.5 * dt * dt * gravity + R * imu.delta_position_m;
+  y.velocity_world_mps += dt * gravity + R * imu.delta_velocity_mps;
+  y.angular_velocity_imu_radps = imu.angular_velocity_end_radps;
+
+  StateMatrix& F = result.transition;
+  const Eigen::Matrix<double, 3, 2> gravity_by_delta =
+      -kGravity_mps2 * hat(x.gravity_direction_world) * s2_basis(x.gravity_direction_world);
+  F.block<3, 3>(kRotation, kRotation) = imu.delta_rotation.toRotationMatrix().transpose();
+  F.block<3, 3>(kRotation, kGyroscopeBias) = imu.rotation_by_gyroscope_bias;
+  F.block<3, 3>(kVelocity, kRotation) = -R * hat(imu.delta_velocity_mps);
+  F.block<3, 3>(kVelocity, kGyroscopeBias) = R * imu.velocity_by_gyroscope_bias;
+  F.block<3, 3>(kVelocity, kAccelerometerBias) = R * imu.velocity_by_accelerometer_bias;
+  F.block<3, 2>(kVelocity, kGravity) = dt * gravity_by_delta;
+  F.block<3, 3>(kPosition, kRotation) = -R * hat(imu.delta_position_m);
+  F.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
+  F.block<3, 3>(kPosition, kGyroscopeBias) = R * imu.position_by_gyroscope_bias;
+  F.block<3, 3>(kPosition, kAccelerometerBias) = R * imu.position_by_accelerometer_bias;
+  F.block<3, 2>(kPosition, kGravity) = 0.5 * dt * dt * gravity_by_delta;
+  // The body rate is re-measured: it forgets its past and moves against the bias.
+  F.block<3, 3>(kAngularVelocity, kAngularVelocity).setZero();
+  F.block<3, 3>(kAngularVelocity, kGyroscopeBias) = -Matrix3d::Identity();
+  F.block<3, 1>(kRotation, kImuTimeOffset) = imu.rotation_by_time_offset;
+  F.block<3, 1>(kVelocity, kImuTimeOffset) = R * imu.velocity_by_time_offset;
+  F.block<3, 1>(kPosition, kImuTimeOffset) = R * imu.position_by_time_offset;
+  F.block<3, 1>(kAngularVelocity, kImuTimeOffset) = imu.angular_acceleration_end_radps2;
+
+  // Increments are in the old IMU frame; velocity and position errors are in the world.
+  Eigen::Matrix<double, kStateSize, 9> G = Eigen::Matrix<double, kStateSize, 9>::Zero();
+  G.block<3, 3>(kRotation, 0).setIdentity();
+  G.block<3, 3>(kVelocity, 3) = R;
+  G.block<3, 3>(kPosition, 6) = R;
+  const double factor = square(config.imu_noise_factor);
+  StateMatrix Q = factor * (G * imu.covariance * G.transpose());
+  add_random_walk(Q, kGyroscopeBias, 3, config.imu_noise_factor * noise.gyroscope_bias_radps2_sqrthz, dt);
+  add_random_walk(Q, kAccelerometerBias, 3, config.imu_noise_factor * noise.accelerometer_bias_mps3_sqrthz,
+                  dt);
+  add_random_walk(Q, kGravity, 2, config.gravity_noise_rad_sqrthz, dt);
+  Q.diagonal().segment<3>(kAngularVelocity).array() +=
+      factor * square(noise.gyroscope_radps_sqrthz) / imu.last_step_s;
+
+  result.state.covariance = symmetrised(F * state.covariance * F.transpose() + Q);
+  return result;
+}
+
+Prediction predict_by_constant_velocity(const GaussianState& state, double duration_s,
+                                        const MotionConfig& config) {
+  const FilterState& x = state.mean;
+  const double dt = duration_s;
+  const Vector3d turn = dt * x.angular_velocity_imu_radps;
+
+  Prediction result;
+  FilterState& y = result.state.mean;
+  y = x;
+  y.T_world_imu.rotation = (x.T_world_imu.rotation * so3_exp(turn)).normalized();
+  y.T_world_imu.translation += dt * x.velocity_world_mps;
+
+  StateMatrix& F = result.transition;
+  F.block<3, 3>(kRotation, kRotation) = so3_exp(turn).toRotationMatrix().transpose();
+  F.block<3, 3>(kRotation, kAngularVelocity) = dt * so3_right_jacobian(turn);
+  F.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
+
+  // White acceleration integrated once (rate) and twice (pose).
+  StateMatrix Q = StateMatrix::Zero();
+  const auto add_white_acceleration = [&](int pose, int rate, double density) {
+    const double q = square(density);
+    Q.block<3, 3>(pose, pose).diagonal().setConstant(q * dt * dt * dt / 3.0);
+    Q.block<3, 3>(pose, rate).diagonal().setConstant(q * dt * dt / 2.0);
+    Q.block<3, 3>(rate, pose).diagonal().setConstant(q * dt * dt / 2.0);
+    Q.block<3, 3>(rate, rate).diagonal().setConstant(q * dt);
+  };
+  add_white_acceleration(kRotation, kAngularVelocity, config.angular_acceleration_noise_radps2_sqrthz);
+  add_white_acceleration(kPosition, kVelocity, config.acceleration_noise_mps2_sqrthz);
+
+  result.state.covariance = symmetrised(F * state.covariance * F.transpose() + Q);
+  return result;
+}
+
+}  // namespace fusebench

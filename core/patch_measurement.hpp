@@ -1,0 +1,110 @@
+// The measurement of the filter: all patches against one frame. Stacks the photometric (Eq. 3) and
+// point-to-plane (Eq. 4) residuals of all pixels of all patches, whitened and robustly weighted, and reduces
+// them to a 6x6 information form.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/iekf.hpp"
+#include "core/intensity_residual.hpp"
+#include "core/parallel.hpp"
+#include "core/patch_deformation.hpp"
+#include "core/patches.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// The current frame as the measurement sees it.
+struct ObservedFrame {
+  std::span<const GreyImage> pyramid;
+  const DepthImage& depth_m;  ///< gated
+};
+
+/// What became of one patch at the last linearisation.
+struct PatchOutcome {
+  bool in_view = false;   ///< at least one pixel inside the image
+  bool tracked = false;   ///< enough usable pixels at level 0
+  bool accepted = false;  ///< tracked, and consistent (chi-square gate)
+  bool shrunk = false;    ///< lost pixels to occlusion
+  bool extended = false;
+  int usable_pixels = 0;  ///< visible, level 0
+  int photometric_residuals = 0;
+  int geometric_residuals = 0;
+  double chi2_photometric = 0;  ///< sum of squared whitened residuals
+  double chi2_geometric = 0;
+  double gain = 1;  ///< brightness of the frame against the patch's reference
+  double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
+  Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
+};
+
+class PatchMeasurement final : public PoseMeasurement {
+ public:
+  /// All references must outlive the measurement.
+  PatchMeasurement(const Config& config, const SensorRig& rig, const ObservedFrame& frame,
+                   std::span<const Patch> patches, const Workers& workers);
+
+  [[nodiscard]] int stages() const override { return config_.patches.levels; }
+  [[nodiscard]] PoseQuadratic linearise(const SE3& T_world_imu, int stage, bool gate) override;
+  [[nodiscard]] double trial_cost(const SE3& T_world_imu, const Vector6d& step, double fraction) override;
+  void accept() override;
+
+  /// One outcome a patch, from the last linearise() (which must have been of the last stage).
+  [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
+  /// Level-0 intensity differences of tracked patches there.
+  [[nodiscard]] std::vector<IntensityResidual> intensity_residuals() const;
+
+ private:
+  /// Gain and offset of a patch's brightness, eliminated from each step (Schur complement) and carried along.
+  struct Brightness {
+    Vector2d value{1.0, 0.0};
+    Vector2d trial{1.0, 0.0};
+    Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+    Vector2d gradient = Vector2d::Zero();
+    Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+  };
+  /// A measured point and the model plane it was associated with.
+  struct PlanePair {
+    Vector3d point_imu;
+    Vector3d plane_point_world;
+    Vector3d normal_world;
+    double sigma_m = 1;
+  };
+  /// A photometric residual of the last linearisation.
+  struct ActivePixel {
+    int level = 0;
+    const PatchPixel* pixel = nullptr;
+  };
+  /// Everything that the last linearisation fixed for one patch.
+  struct PatchState {
+    Brightness brightness;
+    std::vector<ActivePixel> active;
+    std::vector<PlanePair> pairs;
+    PoseQuadratic quadratic;
+  };
+  /// A pose hypothesis at all pyramid levels.
+  struct PosedLevels;
+
+  void warp_all(const PosedLevels& posed, int finest_level);
+  void judge_visibility(std::size_t patch, bool gate);
+  void associate_planes(std::size_t patch, const PosedLevels& posed, int finest_level);
+  void sum_photometric(std::size_t patch, const PosedLevels& posed, int finest_level);
+  void sum_geometric(std::size_t patch, const PosedLevels& posed);
+  void reduce_brightness(PatchState& state) const;
+  [[nodiscard]] double brightness_cost(const Vector2d& value) const;
+  [[nodiscard]] double patch_cost(const PatchState& state, const PosedLevels& posed) const;
+  [[nodiscard]] double photometric_cost(const PatchState& state, const PosedLevels& posed) const;
+  [[nodiscard]] bool is_consistent(const PatchOutcome& outcome) const;
+
+  const Config& config_;
+  const SensorRig& rig_;
+  const ObservedFrame& frame_;
+  std::span<const Patch> patches_;
+  const Workers& workers_;
+  std::vector<std::vector<std::vector<WarpedPixel>>> warped_;  ///< [level][patch][pixel]
+  std::vector<PatchState> states_;
+  std::vector<PatchOutcome> outcomes_;
+};
+
+}  // namespace fusebench

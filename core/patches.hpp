@@ -1,0 +1,62 @@
+// Patches: small squares of the last frame, with intensity, and depth and normals from the model
+// (Sec. 2.1.1, 2.3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/parallel.hpp"
+#include "core/tsdf_volume.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// One pixel of a patch, P_i = (p_i, I_i, d_i, n_i) of the paper, already in the world as L_i (Eq. 1).
+struct PatchPixel {
+  std::uint32_t reference_pixel =
+      0;                 ///< v * width + u of its place in the reference frame, level 0 coordinates
+  double intensity = 0;  ///< grey levels, at the patch level
+  Vector3d point_world = Vector3d::Zero();   ///< model surface behind the pixel, metres
+  Vector3d normal_world = Vector3d::Zero();  ///< unit, towards free space
+  /// What is projected to find the pixel in the next frame: the pixel lands at project(warp_point) +
+  /// warp_offset. This is all that the kinds of deformation differ in.
+  Vector3d warp_point_world = Vector3d::Zero();
+  Vector2d warp_offset_px = Vector2d::Zero();  ///< pixels of the patch level
+};
+
+/// The patch at one pyramid level: up to size x size pixels that have a model surface.
+struct PatchLevel {
+  std::vector<PatchPixel> pixels;
+};
+
+struct Patch {
+  Eigen::Vector2i centre_px = Eigen::Vector2i::Zero();  ///< in the reference frame, level 0; the square spans
+                                                        ///< [centre - size/2, centre + size/2)
+  int age = 0;                                          ///< frames since its corner was detected
+  std::vector<PatchLevel> levels;                       ///< fine to coarse
+};
+
+/// The frame that patches are cut from.
+struct ReferenceFrame {
+  std::span<const GreyImage> pyramid;
+  const DepthImage& depth_m;  ///< gated
+  const PinholeCamera& camera;
+  SE3 T_world_camera;
+};
+
+/// Where a patch of the last frame went in this one.
+struct TrackedCentre {
+  Vector2d pixel_px = Vector2d::Zero();
+  int age = 0;
+};
+
+/// Sec. 2.3: surviving patches are cut again as squares at their new places, and FAST corners with enough
+/// depth fill the image up to max_count, spread over a grid. Intensity comes from the frame, depth and
+/// normals from the model (raycast).
+[[nodiscard]] std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
+                                                 std::span<const TrackedCentre> survivors,
+                                                 const Config& config, const Workers& workers);
+
+}  // namespace fusebench

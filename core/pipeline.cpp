@@ -1,0 +1,235 @@
+#include "core/pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "core/depth_gates.hpp"
+#include "core/iekf.hpp"
+#include "core/initialisation.hpp"
+#include "core/motion_compensation.hpp"
+#include "core/motion_prior.hpp"
+#include "core/patch_measurement.hpp"
+#include "core/patches.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// The parts of a frame that are derived once: pyramid and trusted depth.
+struct PreparedFrame {
+  std::vector<GreyImage> pyramid;
+  RgbdFrame frame;  ///< depth gated
+};
+
+/// Adds the time since its construction to one stage.
+class StageClock {
+ public:
+  StageClock(FrameReport& report, Stage stage)
+      : slot_(report.stage_ms[static_cast<std::size_t>(stage)]), begin_(std::chrono::steady_clock::now()) {}
+  ~StageClock() {
+    slot_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count();
+  }
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+
+ private:
+  double& slot_;
+  std::chrono::steady_clock::time_point begin_;
+};
+
+}  // namespace
+
+std::string_view to_string(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::initialised:
+      return "initialised";
+    case FrameStatus::tracked:
+      return "tracked";
+    case FrameStatus::lost:
+      break;
+  }
+  return "lost";
+}
+
+struct Pipeline::State {
+  State(const Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
+        const Workers& workers_in)
+      : config(config_in), rig(rig_in), imu(imu_in), workers(workers_in), model(config_in.tsdf) {
+    // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
+    if (config.terms.prior == Prior::constant_velocity) rig.T_imu_camera = SE3{};
+  }
+
+  Result<FrameReport> process(const RgbdFrame& frame);
+  [[nodiscard]] CameraVelocity camera_velocity(const FilterState& motion) const;
+  [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
+  PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
+  Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
+  IekfResult update(const GaussianState& prior, PatchMeasurement& measurement, FrameReport& report) const;
+  bool track(const GaussianState& prior, const PreparedFrame& prepared, FrameReport& report);
+  Result<void> fuse(const PreparedFrame& prepared, FrameReport& report);
+  void refresh(const PreparedFrame& prepared, FrameReport& report);
+  void describe(const PatchMeasurement& measurement, const IekfResult& result, FrameReport& report) const;
+  [[nodiscard]] SE3 T_world_camera() const { return estimate->mean.T_world_imu * rig.T_imu_camera; }
+
+  Config config;
+  SensorRig rig;
+  std::span<const ImuSample> imu;
+  const Workers& workers;
+  TsdfVolume model;
+  std::optional<GaussianState> estimate;  ///< after the last frame
+  std::int64_t timestamp_ns = 0;          ///< instant of the last frame
+  std::vector<Patch> patches;             ///< cut from the last tracked frame
+  std::vector<TrackedCentre> survivors;   ///< where the good ones of them are in the current frame
+};
+
+/// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation, iterated update), 2.3
+/// (fusion, refresh).
+Result<FrameReport> Pipeline::State::process(const RgbdFrame& frame) {
+  FrameReport report;
+  report.timestamp_ns = frame.timestamp_ns;
+  check(!estimate || frame.capture_ns() > timestamp_ns, "frames come in the order of time");
+
+  const bool first = !estimate.has_value();
+  const Result<GaussianState> predicted = predict(frame.capture_ns(), report);  // Eqs. 8-14
+  if (!predicted) return tl::unexpected(predicted.error());
+  PreparedFrame prepared = prepare(frame, predicted->mean, report);
+
+  const bool tracked = first || track(*predicted, prepared, report);  // Eqs. 1-5 and 15-22
+  if (!tracked || first) estimate = *predicted;                       // a lost frame keeps the prediction
+  timestamp_ns = frame.capture_ns();
+  if (tracked && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
+  report.status = first ? FrameStatus::initialised : tracked ? FrameStatus::tracked : FrameStatus::lost;
+
+  if (tracked) {
+    const Result<void> fused = fuse(prepared, report);  // Sec. 2.3: M_k(X)
+    if (!fused) return tl::unexpected(fused.error());
+    refresh(prepared, report);  // Sec. 2.3: patch update
+  }
+  report.T_world_camera = T_world_camera();
+  report.velocity_world_mps = estimate->mean.velocity_world_mps;
+  report.angular_velocity_radps = estimate->mean.angular_velocity_imu_radps;
+  report.imu_time_offset_s = estimate->mean.imu_time_offset_s;
+  report.model_blocks = model.block_count();
+  return report;
+}
+
+CameraVelocity Pipeline::State::camera_velocity(const FilterState& motion) const {
+  const Matrix3d R_camera_imu = rig.T_imu_camera.rotation_matrix().transpose();
+  const Vector3d& rate_imu = motion.angular_velocity_imu_radps;
+  const Vector3d velocity_imu = motion.T_world_imu.rotation.conjugate() * motion.velocity_world_mps +
+                                rate_imu.cross(rig.T_imu_camera.translation);
+  return {R_camera_imu * rate_imu, R_camera_imu * velocity_imu};
+}
+
+/// True if the update changed the velocity so much that a frame compensated by the prediction is off by some
+/// tenths of a pixel: then the model and the next patches deserve a better one.
+bool Pipeline::State::moved_otherwise(const GaussianState& predicted) const {
+  constexpr double kTurnRadps = 0.05;  // x 13 ms (half a read-out) x 520 px: a third of a pixel
+  constexpr double kMoveMps = 0.05;
+  const FilterState& now = estimate->mean;
+  return (now.angular_velocity_imu_radps - predicted.mean.angular_velocity_imu_radps).norm() > kTurnRadps ||
+         (now.velocity_world_mps - predicted.mean.velocity_world_mps).norm() > kMoveMps;
+}
+
+PreparedFrame Pipeline::State::prepare(const RgbdFrame& frame, const FilterState& motion,
+                                       FrameReport& report) const {
+  const StageClock clock(report, Stage::preprocess);
+  PreparedFrame prepared;
+  const bool compensate = config.terms.motion_compensation && needs_compensation(frame, rig.timing);
+  prepared.frame =
+      compensate ? compensate_motion(frame, rig.camera, rig.timing, camera_velocity(motion), workers) : frame;
+  prepared.pyramid = build_pyramid(prepared.frame.grey, config.patches.levels);
+  prepared.frame.depth_m = gate_depth(prepared.frame.depth_m, config.depth);
+  return prepared;
+}
+
+Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport& report) const {
+  const StageClock clock(report, Stage::predict);
+  const bool inertial = config.terms.prior == Prior::imu;
+  if (!estimate) {
+    if (inertial) return initialise_with_imu(imu, now_ns, rig, config.initialisation);
+    return initialise_without_imu(config.initialisation);
+  }
+  if (!inertial) {
+    return predict_by_constant_velocity(*estimate, seconds_between(timestamp_ns, now_ns), config.motion)
+        .state;
+  }
+  const FilterState& x = estimate->mean;
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
+  const Result<PreintegratedImu> increments =
+      preintegrate(imu, timestamp_ns + offset_ns, now_ns + offset_ns, x.gyroscope_bias_radps,
+                   x.accelerometer_bias_mps2, rig.imu_noise);
+  if (!increments) return tl::unexpected(increments.error());
+  return predict_by_imu(*estimate, *increments, rig.imu_noise, config.motion).state;
+}
+
+bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& prepared, FrameReport& report) {
+  const StageClock clock(report, Stage::update);
+  const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
+  PatchMeasurement measurement(config, rig, observed, patches, workers);
+  const IekfResult result = iekf_update(prior, measurement, config.iekf);
+  describe(measurement, result, report);
+
+  if (report.patches_accepted < config.iekf.min_patches) {
+    report.reason = fmt::format("{} of {} patches were usable (iekf.min_patches = {})",
+                                report.patches_accepted, report.patches, config.iekf.min_patches);
+    return false;
+  }
+  estimate = result.posterior;
+  survivors.clear();
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const PatchOutcome& outcome = measurement.outcomes()[p];
+    if (outcome.accepted && outcome.mean_error_grey <= config.patches.max_mean_error) {
+      survivors.push_back({outcome.centre_px, patches[p].age + 1});
+    }
+  }
+  return true;
+}
+
+void Pipeline::State::describe(const PatchMeasurement& measurement, const IekfResult& result,
+                               FrameReport& report) const {
+  double chi2_photometric = 0;
+  double chi2_geometric = 0;
+  for (const PatchOutcome& outcome : measurement.outcomes()) {
+    report.patches += outcome.in_view ? 1 : 0;
+    report.patches_tracked += outcome.tracked ? 1 : 0;
+    report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
+    report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
+    if (!outcome.accepted) continue;
+    ++report.patches_accepted;
+    report.pixels_photometric += outcome.photometric_residuals;
+    report.pixels_geometric += outcome.geometric_residuals;
+    chi2_photometric += outcome.chi2_photometric;
+    chi2_geometric += outcome.chi2_geometric;
+  }
+  if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
+  if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
+  report.iterations = result.iterations;
+  report.converged = result.converged;
+  report.intensity = measurement.intensity_residuals();
+}
+
+Result<void> Pipeline::State::fuse(const PreparedFrame& prepared, FrameReport& report) {
+  const StageClock clock(report, Stage::fuse);
+  return model.integrate(prepared.frame, rig.camera, T_world_camera(), config.depth, workers);
+}
+
+void Pipeline::State::refresh(const PreparedFrame& prepared, FrameReport& report) {
+  const StageClock clock(report, Stage::refresh);
+  const ReferenceFrame reference{prepared.pyramid, prepared.frame.depth_m, rig.camera, T_world_camera()};
+  patches = refresh_patches(reference, model, survivors, config, workers);
+}
+
+Pipeline::Pipeline(const Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
+                   const Workers& workers)
+    : state_(std::make_unique<State>(config, rig, imu, workers)) {}
+Pipeline::~Pipeline() = default;
+
+Result<FrameReport> Pipeline::process(const RgbdFrame& frame) { return state_->process(frame); }
+
+const TsdfVolume& Pipeline::model() const { return state_->model; }
+
+}  // namespace fusebench

@@ -1,0 +1,140 @@
+#include "core/toml_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <tuple>
+
+#include <toml++/toml.h>
+
+namespace fusebench {
+
+namespace {
+
+struct Located {
+  toml::source_position position;
+  TomlEntry entry;
+};
+
+std::optional<OptionValue> plain_value(const toml::node& node) {
+  if (const auto* flag = node.as_boolean()) return OptionValue{flag->get()};
+  if (const auto* integer = node.as_integer()) return OptionValue{integer->get()};
+  if (const auto* number = node.as_floating_point()) return OptionValue{number->get()};
+  if (const auto* text = node.as_string()) return OptionValue{text->get()};
+  return std::nullopt;
+}
+
+/// Collects the leaves of a table; the parser keeps them sorted by key, the caller sorts them by position.
+class Collector {
+ public:
+  explicit Collector(const std::string& name) : name_(name) {}
+
+  Result<void> visit(const toml::table& table, const std::string& prefix) {
+    for (const auto& [name, node] : table) {
+      const std::string key =
+          prefix.empty() ? std::string(name.str()) : fmt::format("{}.{}", prefix, name.str());
+      if (const auto* nested = node.as_table()) {
+        tables_.emplace_back(nested->source().begin, TomlTable{key, place(*nested)});
+        if (auto visited = visit(*nested, key); !visited) return visited;
+      } else if (auto added = add(key, node); !added) {
+        return added;
+      }
+    }
+    return {};
+  }
+
+  TomlDocument finish() {
+    const auto earlier = [](const toml::source_position& a, const toml::source_position& b) {
+      return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    };
+    std::stable_sort(leaves_.begin(), leaves_.end(),
+                     [&](const Located& a, const Located& b) { return earlier(a.position, b.position); });
+    std::stable_sort(tables_.begin(), tables_.end(),
+                     [&](const auto& a, const auto& b) { return earlier(a.first, b.first); });
+    TomlDocument document;
+    for (Located& leaf : leaves_) document.entries.push_back(std::move(leaf.entry));
+    for (auto& table : tables_) document.tables.push_back(std::move(table.second));
+    return document;
+  }
+
+ private:
+  std::string place(const toml::node& node) const {
+    return fmt::format("{}:{}", name_, node.source().begin.line);
+  }
+
+  Result<void> add(const std::string& key, const toml::node& node) {
+    Located leaf{node.source().begin, {key, OptionValue{false}, place(node)}};
+    if (const auto value = plain_value(node)) {
+      leaf.entry.value = *value;
+    } else if (const auto* array = node.as_array()) {
+      TomlList list;
+      for (const toml::node& element : *array) {
+        const auto item = plain_value(element);
+        if (!item) return unsupported(key, element);
+        list.push_back(*item);
+      }
+      leaf.entry.value = std::move(list);
+    } else {
+      return unsupported(key, node);
+    }
+    leaves_.push_back(std::move(leaf));
+    return {};
+  }
+
+  Result<void> unsupported(const std::string& key, const toml::node& node) const {
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: {} must be a flag, a number, a text or a list of these", place(node), key));
+  }
+
+  const std::string& name_;
+  std::vector<Located> leaves_;
+  std::vector<std::pair<toml::source_position, TomlTable>> tables_;
+};
+
+}  // namespace
+
+Result<TomlDocument> parse_toml(std::string_view text, const std::string& name) {
+  try {
+    const toml::table root = toml::parse(text, name);
+    Collector collector(name);
+    if (auto visited = collector.visit(root, ""); !visited) return tl::unexpected(visited.error());
+    return collector.finish();
+  } catch (const toml::parse_error& error) {
+    return fail(ErrorCode::configuration, fmt::format("{}:{}: not valid TOML: {}", name,
+                                                      error.source().begin.line, error.description()));
+  }
+}
+
+Result<TomlDocument> read_toml(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file)) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (stream.bad()) return fail(ErrorCode::data_corrupt, fmt::format("{}: read error", file.string()));
+  return parse_toml(text.str(), file.string());
+}
+
+std::string to_toml(const OptionValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
+  if (const auto* number = std::get_if<double>(&value)) {
+    std::string text = fmt::format("{}", *number);
+    // "1" would read back as an integer.
+    if (std::isfinite(*number) && text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : std::get<std::string>(value)) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace fusebench

@@ -1,0 +1,47 @@
+// A TOML file as a flat list of dotted keys with their lines: the one place that knows the parser.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/options.hpp"
+
+namespace fusebench {
+
+/// A list of plain values, e.g. variants = ["full", "dm"].
+using TomlList = std::vector<OptionValue>;
+
+/// One assignment of the file.
+struct TomlEntry {
+  std::string key;  ///< dotted: [iekf] max_iterations = 8 has the key "iekf.max_iterations"
+  std::variant<OptionValue, TomlList> value;
+  std::string place;  ///< "file:line", for messages
+};
+
+/// One [table] header (or inline table), also when it is empty.
+struct TomlTable {
+  std::string key;
+  std::string place;
+};
+
+struct TomlDocument {
+  std::vector<TomlEntry> entries;  ///< in the order of the file
+  std::vector<TomlTable> tables;   ///< in the order of the file
+};
+
+/// Reads a TOML file. Errors: data_missing if it cannot be opened; configuration, with file:line, for bad
+/// syntax and for values that nothing here takes (dates, tables inside lists).
+[[nodiscard]] Result<TomlDocument> read_toml(const std::filesystem::path& file);
+
+/// The same for a text; `name` stands for the file in messages.
+[[nodiscard]] Result<TomlDocument> parse_toml(std::string_view text, const std::string& name);
+
+/// How a value is written in TOML: true, 8, 0.5, "text"; doubles with the shortest text that reads back the
+/// same.
+[[nodiscard]] std::string to_toml(const OptionValue& value);
+
+}  // namespace fusebench

@@ -1,0 +1,84 @@
+// Many lookups in the field, close to each other.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "core/tsdf_volume.hpp"
+
+namespace fusebench {
+
+/// Reads the field of a volume. Remembers the blocks it looked up last, so use one for a ray or a region, one
+/// a thread; the volume must not change meanwhile.
+class TsdfSampler {
+ public:
+  explicit TsdfSampler(const TsdfVolume& volume)
+      : volume_(volume), per_voxel_(1.0 / volume.voxel_m()), reach_m_(volume.reach_m()) {}
+
+  /// The block at these lattice coordinates, or nullptr.
+  [[nodiscard]] const VoxelBlock* block(const BlockIndex& index) {
+    // Neighbouring blocks differ in the parity of a coordinate, so those around a point never evict each
+    // other.
+    Remembered& entry =
+        remembered_[static_cast<std::size_t>((index.x() & 1) | (index.y() & 1) << 1 | (index.z() & 1) << 2)];
+    if (entry.index != index) {
+      const int slot = volume_.find_block(index);
+      entry = {index, slot < 0 ? nullptr : &volume_.block(static_cast<std::size_t>(slot))};
+    }
+    return entry.block;
+  }
+
+  /// As TsdfVolume::has_region.
+  [[nodiscard]] bool has_region(const Eigen::Vector3i& region) {
+    if (region != region_) {
+      region_ = region;
+      region_exists_ = volume_.has_region(region);
+    }
+    return region_exists_;
+  }
+
+  /// The voxel if it was observed, otherwise nullptr.
+  [[nodiscard]] const Voxel* observed(const VoxelIndex& index) {
+    const VoxelBlock* found = block(block_of(index));
+    if (found == nullptr) return nullptr;
+    const Voxel& voxel = (*found)[offset_in_block(index)];
+    return voxel.weight > 0.0F ? &voxel : nullptr;
+  }
+
+  /// Trilinear interpolation of the distance at a world point (metres); invalid unless all eight neighbours
+  /// were observed.
+  [[nodiscard]] TsdfSample sample(const Vector3d& point_world);
+
+  /// Gradient of the field at a voxel (metres of distance per metre) by central differences, one-sided next
+  /// to unobserved voxels, 0 along an axis where both neighbours are unobserved.
+  [[nodiscard]] Vector3d gradient(const VoxelIndex& index);
+
+  /// Gradient at a world point: trilinear interpolation of that at the eight neighbours, which is the central
+  /// difference of the trilinear field over one voxel to both sides. Zero where a neighbour was not observed.
+  [[nodiscard]] Vector3d gradient_at(const Vector3d& point_world);
+
+ private:
+  struct Remembered {
+    BlockIndex index =
+        BlockIndex::Constant(std::numeric_limits<int>::max());  // no block: nothing reaches that far
+    const VoxelBlock* block = nullptr;
+  };
+  struct Cell {
+    VoxelIndex base;                     // lower corner
+    Vector3d fraction;                   // position in the cell, in [0, 1)
+    std::array<const Voxel*, 8> corner;  // bit 0 of the number: x, bit 1: y, bit 2: z
+  };
+
+  /// False where a corner was not observed.
+  [[nodiscard]] bool find_cell(const Vector3d& point_world, Cell& cell);
+
+  const TsdfVolume& volume_;
+  double per_voxel_;
+  double reach_m_;
+  std::array<Remembered, 8> remembered_;
+  Eigen::Vector3i region_ = Eigen::Vector3i::Constant(std::numeric_limits<int>::max());
+  bool region_exists_ = false;
+};
+
+}  // namespace fusebench

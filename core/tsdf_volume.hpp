@@ -1,0 +1,110 @@
+// The model: a truncated signed distance field (Curless & Levoy 1996) with colour, in a hash of 8x8x8 blocks
+// (Niessner et al. 2013). Distances are positive in front of the surface (towards the camera).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "core/block_table.hpp"
+#include "core/config.hpp"
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+inline constexpr int kBlockSide = 8;   ///< voxels
+inline constexpr int kRegionSide = 4;  ///< blocks
+inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
+
+/// One sample of the field, at the lattice point (ix, iy, iz) * voxel_m of the world.
+///
+/// The distance is kept in metres, clamped to the truncation band of each measurement, because the band grows
+/// with depth: metres of a near and of a far view average to metres, shares of their bands would not. The
+/// band is at least two voxels, so the voxels next to the surface are never clamped, and the zero level is
+/// the same either way.
+struct Voxel {
+  float distance_m = 0.0F;               ///< signed distance; means nothing while weight is 0
+  float weight = 0.0F;                   ///< 0 = never observed
+  std::array<std::uint16_t, 3> color{};  ///< running mean of red, green, blue in 1/256 of a level (0-255)
+  std::uint16_t color_count = 0;         ///< observations in the mean (saturates); 0 = no colour
+
+  /// Red, green, blue, 0-255.
+  [[nodiscard]] Eigen::Vector3f rgb() const { return Eigen::Vector3f(color[0], color[1], color[2]) / 256.0F; }
+};
+
+using VoxelIndex = Eigen::Vector3i;                  ///< lattice coordinates of a voxel
+using VoxelBlock = std::array<Voxel, kBlockVoxels>;  ///< x fastest, then y, then z
+
+/// Interpolated field at a point.
+struct TsdfSample {
+  bool valid = false;     ///< all eight neighbours were observed
+  double distance_m = 0;  ///< signed distance, metres
+};
+
+class TsdfVolume {
+ public:
+  explicit TsdfVolume(const TsdfConfig& config) : config_(config) {}
+
+  /// Fuses one frame. Blocks are allocated along each measured ray within the truncation band; then every
+  /// voxel of these blocks takes the projective distance (depth at the nearest pixel minus its own z-depth,
+  /// clamped to the band) into its running mean; voxels further behind the surface than the band are left
+  /// alone. One measurement weighs v^2 / (v^2 + sigma(depth)^2), with v = voxel_m for the errors that no
+  /// averaging removes: about 1 near by, falling with the depth noise; behind the surface it also falls
+  /// linearly to 0 over the back half of the band (as in Bylow et al. 2013), since behind thin parts and
+  /// edges there is free space. Weights saturate at tsdf.max_weight. Colour goes where |distance| < band / 2.
+  ///
+  /// Depth outside [min_m, max_m] of `depth` (and NaN) is ignored, as is colour if the frame has none; depth
+  /// must have the camera's size. Storage order is that of the pixels, thus a function of the frames alone.
+  /// Error run_failed: tsdf.max_blocks is reached (the message names it), or the pose is not a place in the
+  /// lattice (NaN, astronomically far); the volume is then unchanged by this frame.
+  [[nodiscard]] Result<void> integrate(const RgbdFrame& frame, const PinholeCamera& camera,
+                                       const SE3& T_world_camera, const DepthConfig& depth,
+                                       const Workers& workers);
+
+  [[nodiscard]] double voxel_m() const { return config_.voxel_m; }
+  [[nodiscard]] std::size_t block_count() const { return blocks_.size(); }
+  [[nodiscard]] std::size_t memory_bytes() const;
+  [[nodiscard]] const std::vector<BlockIndex>& block_indices() const { return indices_; }
+  [[nodiscard]] const VoxelBlock& block(std::size_t slot) const { return blocks_[slot]; }
+
+  /// Slot of a block in storage order, or -1.
+  [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }
+  /// Whether any block of a region is allocated; regions are cubes of 4x4x4 blocks: floor(block / 4).
+  [[nodiscard]] bool has_region(const Eigen::Vector3i& region) const { return regions_.find(region) >= 0; }
+  /// The voxel at a lattice point, or nullptr where no block is allocated.
+  [[nodiscard]] const Voxel* find_voxel(const VoxelIndex& index) const;
+  /// Trilinear interpolation of the distance at a world point (metres). For many points see TsdfSampler.
+  [[nodiscard]] TsdfSample sample(const Vector3d& point_world) const;
+  /// Half width of the band (metres) of the voxels updated at this depth: tsdf.truncation_m, two voxels, or
+  /// tsdf.truncation_sigmas of the depth noise, whichever is most.
+  [[nodiscard]] double truncation_m(double depth_m, const DepthConfig& depth) const;
+  /// Points whose coordinates are all below this in magnitude (metres) have lattice coordinates.
+  [[nodiscard]] double reach_m() const { return config_.voxel_m * (1 << 30); }
+
+ private:
+  [[nodiscard]] Result<std::vector<int>> allocate(const std::vector<BlockIndex>& touched);
+
+  TsdfConfig config_;
+  BlockTable table_;                 // block -> slot
+  BlockTable regions_;               // those with a block, so that rays cross empty space in large steps
+  std::vector<BlockIndex> indices_;  // by slot
+  std::deque<VoxelBlock> blocks_;    // by slot; a deque never moves gigabytes when it grows
+};
+
+/// Lattice arithmetic. Right shifts of negative numbers round down in C++20, as floor() would.
+[[nodiscard]] inline BlockIndex block_of(const VoxelIndex& voxel) {
+  return {voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3};
+}
+[[nodiscard]] inline Eigen::Vector3i region_of(const BlockIndex& block) {
+  return {block.x() >> 2, block.y() >> 2, block.z() >> 2};
+}
+[[nodiscard]] inline std::size_t offset_in_block(const VoxelIndex& voxel) {
+  return static_cast<std::size_t>((voxel.x() & 7) +
+                                  kBlockSide * ((voxel.y() & 7) + kBlockSide * (voxel.z() & 7)));
+}
+
+}  // namespace fusebench

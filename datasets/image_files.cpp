@@ -1,0 +1,122 @@
+#include "datasets/image_files.hpp"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "datasets/png_check.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// Decoding runs inside of our own parallel loops, so the library must not start threads of its own.
+void use_one_thread_per_image() {
+  static const bool done = OIIO::attribute("threads", 1);
+  static_cast<void>(done);
+}
+
+/// The library's reason in one line.
+std::string library_reason(std::string reason) {
+  while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
+  for (char& c : reason) c = c == '\n' ? ' ' : c;
+  return reason.empty() ? "no reason given" : reason;
+}
+
+tl::unexpected<Error> corrupt(const std::filesystem::path& file, std::string_view what) {
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), what));
+}
+
+Result<std::unique_ptr<OIIO::ImageInput>> open_image(const std::filesystem::path& file) {
+  use_one_thread_per_image();
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: no such image", file.string()));
+  }
+  if (const std::string damage = png_damage(file); !damage.empty()) return corrupt(file, damage);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+  if (!input) return corrupt(file, fmt::format("unreadable image: {}", library_reason(OIIO::geterror())));
+  return input;
+}
+
+/// What the caller needs the file to hold.
+struct Layout {
+  int channels = 0;
+  OIIO::TypeDesc type;
+  std::string_view name;
+};
+
+template <class Pixel>
+Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout& layout,
+                                std::optional<ImageSize> expected) {
+  auto input = open_image(file);
+  if (!input) return tl::unexpected(input.error());
+  const OIIO::ImageSpec& spec = (*input)->spec();
+  if (spec.nchannels != layout.channels || spec.format != layout.type) {
+    return corrupt(file, fmt::format("expected {}, got {} channel(s) of {}", layout.name, spec.nchannels,
+                                     spec.format.c_str()));
+  }
+  if (expected && *expected != ImageSize{spec.width, spec.height}) {
+    return corrupt(file, fmt::format("expected {}x{} pixels, got {}x{}", expected->width_px,
+                                     expected->height_px, spec.width, spec.height));
+  }
+  Image<Pixel> image(spec.width, spec.height);
+  if (!(*input)->read_image(0, 0, 0, layout.channels, layout.type, image.data.data())) {
+    return corrupt(file, fmt::format("truncated or damaged image: {}", library_reason((*input)->geterror())));
+  }
+  return image;
+}
+
+template <class Pixel>
+Result<void> write_image(const std::filesystem::path& file, const Image<Pixel>& image, int channels,
+                         OIIO::TypeDesc type) {
+  use_one_thread_per_image();
+  const auto failed = [&](std::string reason) {
+    return fail(ErrorCode::io,
+                fmt::format("{}: cannot be written: {}", file.string(), library_reason(std::move(reason))));
+  };
+  // By format, not by the file's name, which need not end in ".png".
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
+  if (!output) return failed(OIIO::geterror());
+  const OIIO::ImageSpec spec(image.width, image.height, channels, type);
+  if (!output->open(file.string(), spec) || !output->write_image(type, image.data.data()) ||
+      !output->close()) {
+    return failed(output->geterror());
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ImageSize> read_image_size(const std::filesystem::path& file) {
+  const auto input = open_image(file);
+  if (!input) return tl::unexpected(input.error());
+  return ImageSize{(*input)->spec().width, (*input)->spec().height};
+}
+
+Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<ImageSize> expected) {
+  return read_image<Rgb>(file, {3, OIIO::TypeDesc::UINT8, "an RGB image with 8 bits a channel"}, expected);
+}
+
+Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
+                                          std::optional<ImageSize> expected) {
+  return read_image<std::uint16_t>(file, {1, OIIO::TypeDesc::UINT16, "a grey image with 16 bits"}, expected);
+}
+
+Result<void> write_png(const std::filesystem::path& file, const ColorImage& image) {
+  return write_image(file, image, 3, OIIO::TypeDesc::UINT8);
+}
+
+Result<void> write_png(const std::filesystem::path& file, const GreyImage& image) {
+  return write_image(file, image, 1, OIIO::TypeDesc::UINT8);
+}
+
+Result<void> write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image) {
+  return write_image(file, image, 1, OIIO::TypeDesc::UINT16);
+}
+
+}  // namespace fusebench

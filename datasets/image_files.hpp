@@ -1,0 +1,37 @@
+// Image files: 8-bit colour (PNG, JPEG) and 16-bit grey (PNG). The only place that knows the image library.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/image.hpp"
+
+namespace fusebench {
+
+struct ImageSize {
+  int width_px = 0;
+  int height_px = 0;
+  friend bool operator==(const ImageSize&, const ImageSize&) = default;
+};
+
+/// Size by the header alone. Errors as below.
+[[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
+
+/// Reads an image with three channels of 8 bits. expected: the size that it must have.
+/// Errors: data_missing (no such file); data_corrupt (unreadable, truncated, other channels, bit depth or
+/// size).
+[[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
+                                            std::optional<ImageSize> expected = std::nullopt);
+
+/// Reads an image with one channel of 16 bits, raw values. Errors as read_color().
+[[nodiscard]] Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
+                                                        std::optional<ImageSize> expected = std::nullopt);
+
+/// Writes a PNG: 8-bit colour, 8-bit grey, 16-bit grey. Errors: io.
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const ColorImage& image);
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const GreyImage& image);
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image);
+
+}  // namespace fusebench

@@ -1,0 +1,62 @@
+// The one interface of all recordings: metadata, lists, and a function that loads one frame.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// Where inertial samples come from; printed in every record and table.
+enum class ImuSource { none, recorded, synthetic };
+[[nodiscard]] std::string_view to_string(ImuSource source);  ///< "none", "recorded", "synthetic IMU"
+
+struct FrameEntry {
+  std::int64_t timestamp_ns = 0;        ///< colour image
+  std::int64_t depth_timestamp_ns = 0;  ///< associated depth image
+  std::int64_t capture_ns = 0;          ///< instant of the colour image: its stamp without jitter
+  std::int64_t depth_capture_ns =
+      0;  ///< instant of the depth image: without jitter, the sensor's delay applied
+  std::filesystem::path color_file;
+  std::filesystem::path depth_file;
+};
+
+/// A sample of an accelerometer that comes without a gyroscope, in its own axes.
+struct AccelerometerSample {
+  std::int64_t timestamp_ns = 0;
+  Vector3d specific_force_mps2 = Vector3d::Zero();
+};
+
+/// An opened recording. All lists are checked and sorted by time when it is opened; images are read on
+/// demand.
+struct Recording {
+  std::string name;         ///< folder name
+  std::string format;       ///< "tum"
+  std::string fingerprint;  ///< content hash of all lists and image files that are used (hex)
+  SensorRig rig;            ///< of the undistorted images
+  std::vector<FrameEntry> frames;
+  std::vector<ImuSample> imu;  ///< empty if imu_source is none
+  ImuSource imu_source = ImuSource::none;
+  std::string imu_note;  ///< for a synthetic IMU: how it was made (sensor, seed, fit residuals)
+  std::vector<AccelerometerSample>
+      accelerometer;  ///< TUM's Kinect; not an IMU (no gyroscope), no estimator uses it
+  std::vector<StampedPose>
+      ground_truth;  ///< T_groundtruth_camera: colour camera in the truth's own world; may be empty
+  std::vector<std::string> notes;     ///< what was done to the data on reading, for the run's log
+  std::vector<std::string> warnings;  ///< things a user should know (unmatched images, gaps)
+  /// Loads, checks, undistorts one frame. Safe to call from several threads. Errors: data_missing,
+  /// data_corrupt.
+  std::function<Result<RgbdFrame>(std::size_t frame)> load_frame;
+};
+
+/// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part
+/// of a recording gets its own fingerprint. Errors: usage (an empty range, or one that leaves the recording).
+[[nodiscard]] Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end);
+
+}  // namespace fusebench

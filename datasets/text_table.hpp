@@ -1,0 +1,65 @@
+// Strict reader of text tables: rows of columns separated by white space or commas.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace fusebench {
+
+/// Decimal seconds ("1305031229.528748", "1.5e-3") to integer nanoseconds in integer arithmetic, so that no
+/// digit is lost to a double. Digits beyond the ninth decimal round to nearest, halves away from zero. Error
+/// data_corrupt: not a decimal number, or beyond the range of int64 nanoseconds (about 292 years).
+[[nodiscard]] Result<std::int64_t> parse_time_ns(std::string_view seconds);
+
+/// A finite decimal number; the whole text must be one. Error data_corrupt: anything else, also "nan" and
+/// "inf".
+[[nodiscard]] Result<double> parse_number(std::string_view text);
+
+/// Splits at white space and commas: white space with at most one comma in it is one separator, so "1, 2" has
+/// two fields and "1,,2" three. White space at the ends does not count.
+void split_fields(std::string_view line, std::vector<std::string_view>& fields);
+
+/// Reads one table row by row; only one line is in memory. A byte order mark, carriage returns, blank lines
+/// and comments (first character '#') are skipped. Every row must have exactly the named columns.
+class TextTable {
+ public:
+  static constexpr std::size_t kLongestLine = 1 << 16;  ///< characters; a longer line is not a table
+
+  /// columns: names, separated by blanks ("timestamp filename"). Errors: data_missing.
+  [[nodiscard]] static Result<TextTable> open(const std::filesystem::path& file, std::string_view columns);
+
+  /// Moves to the next row; false at the end of the file. Errors: data_corrupt (number of columns, a line
+  /// that is too long, bytes that are not text).
+  [[nodiscard]] Result<bool> next();
+
+  /// Of the current row. Columns count from 0. Errors: data_corrupt.
+  [[nodiscard]] int line() const { return line_; }
+  [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[column]; }
+  [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column) const;
+  [[nodiscard]] Result<double> number(std::size_t column) const;
+
+  /// An error about the current row: "file:line: what".
+  [[nodiscard]] tl::unexpected<Error> fail_here(std::string_view what, std::string hint = {}) const;
+
+ private:
+  TextTable(std::filesystem::path file, std::string_view columns, std::ifstream stream);
+  [[nodiscard]] Result<bool> read_line();
+  [[nodiscard]] std::string expectation() const;
+
+  std::filesystem::path file_;
+  std::vector<std::string> columns_;
+  std::ifstream stream_;
+  std::string buffer_;
+  std::string_view text_;  ///< the current line within buffer_
+  std::vector<std::string_view> fields_;
+  int line_ = 0;
+};
+
+}  // namespace fusebench

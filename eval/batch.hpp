@@ -1,0 +1,66 @@
+// Runs a suite: every recording with every variant, one after the other, in a fixed order.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "eval/experiment.hpp"
+#include "eval/record.hpp"
+#include "eval/run.hpp"
+
+namespace fusebench {
+
+struct BatchOptions {
+  std::filesystem::path data;
+  std::filesystem::path out;
+  int threads = 1;
+  std::vector<std::string> sets;  ///< key=value, after the suite's own edits
+  /// "recording=TEXT" (name contains it) or "variant=NAME" (exactly); all must hold.
+  std::vector<std::string> only;
+  bool resume = false;  ///< leaves alone what has a record with status ok or lost and the same hash
+};
+
+/// One run of the suite.
+struct BatchJob {
+  std::filesystem::path recording;
+  std::string variant;
+  RunSpec spec;
+  bool optional = false;  ///< from `all = true`: skipped if its format or camera is unknown
+};
+
+/// The jobs in order: by recording, then by variant as the suite lists them. Errors: data_missing (a
+/// recording that is not there), configuration (--set), usage (--only that names no key or leaves nothing).
+[[nodiscard]] Result<std::vector<BatchJob>> plan_batch(const Suite& suite, const BatchOptions& options);
+
+/// How a job ended. One that did not even start has no folder, the status failed, and a record under
+/// <out>/<recording>/<variant>/not-started/, so that tables show it.
+struct BatchOutcome {
+  std::string recording;
+  std::string variant;
+  RunStatus status = RunStatus::failed;
+  std::string reason;
+  bool resumed = false;  ///< was there already
+  bool skipped = false;  ///< an optional job whose recording nothing here can open; not a failure, and no row
+  std::filesystem::path folder;
+  RunRecord record;
+};
+
+struct BatchControl {
+  std::function<void(const BatchJob& job, std::size_t index, std::size_t count)> started = {};
+  std::function<void(std::size_t frame, std::size_t total)> progress = {};
+  std::function<void(const BatchOutcome& outcome)> finished = {};
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// A run that fails or is lost is an outcome with its reason; the others go on. Error run_failed if it was
+/// stopped.
+[[nodiscard]] Result<std::vector<BatchOutcome>> run_batch(const std::vector<BatchJob>& jobs, bool resume,
+                                                          const BatchControl& control = {});
+
+}  // namespace fusebench

@@ -1,0 +1,17 @@
+// What this binary was built from and how; filled in by the build.
+#pragma once
+
+#include <string_view>
+
+namespace fusebench {
+
+struct BuildInfo {
+  std::string_view version;  ///< "0.1.0"
+  std::string_view git;  ///< `git describe --always --dirty` at build time; "unknown" outside a repository
+  std::string_view compiler;  ///< "GNU 12.2.0"
+  std::string_view flags;
+};
+
+[[nodiscard]] const BuildInfo& build_info();
+
+}  // namespace fusebench

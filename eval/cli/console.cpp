@@ -1,0 +1,73 @@
+#include "eval/cli/console.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+namespace fusebench {
+
+namespace {
+
+// A signal handler can reach nothing but static storage.
+std::atomic<bool>& stop_flag() {
+  static std::atomic<bool> flag = false;
+  static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+  return flag;
+}
+
+extern "C" void on_stop_signal(int signal) {
+  // The second one ends the process at once.
+  if (stop_flag().exchange(true)) std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void print_error(const Error& error) {
+  fmt::print(stderr, "error: {}\n", error.message);
+  if (!error.hint.empty()) fmt::print(stderr, "  hint: {}\n", error.hint);
+}
+
+void print_output(std::string_view text) { fmt::print(stdout, "{}", text); }
+
+void print_progress(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+
+const std::atomic<bool>& stop_requested() { return stop_flag(); }
+
+void install_stop_handler() {
+  stop_flag().store(false);  // also makes the static before a signal can need it
+  std::signal(SIGINT, on_stop_signal);
+  std::signal(SIGTERM, on_stop_signal);
+}
+
+ProgressBar::ProgressBar(std::string title)
+    : title_(std::move(title)), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void ProgressBar::show(std::size_t done, std::size_t total) {
+  if (!terminal_ || total == 0) return;
+  const std::size_t percent = 100 * done / total;
+  if (percent == last_percent_) return;
+  last_percent_ = percent;
+  constexpr std::size_t kWidth = 30;
+  const std::size_t filled = kWidth * done / total;
+  fmt::print(stderr, "\r\033[K{} [{}{}] {}/{}", title_, std::string(filled, '#'),
+             std::string(kWidth - filled, '.'), done, total);
+  std::fflush(stderr);
+}
+
+void ProgressBar::clear() {
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+std::string summary_line(const RunRecord& record) {
+  std::string line;
+  if (const auto& aie = record.metrics.aie.value) line += fmt::format("AIE {:.3f}, ", aie->all.aie_grey);
+  if (const auto& ate = record.metrics.ate.value)
+    line += fmt::format("ATE {:.2f} cm, ", 100 * ate->stats.rmse);
+  line +=
+      fmt::format("{}/{} frames, {:.1f} fps", record.frames.tracked, record.frames.total, record.timing.fps);
+  return line;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,42 @@
+// What the command line shows: errors and progress on standard error, results on standard output.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "core/error.hpp"
+#include "eval/record.hpp"
+
+namespace fusebench {
+
+inline constexpr int kExitRunFailed = 4;
+inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have it
+
+/// "error: <sentence>" and "  hint: ..." on standard error.
+void print_error(const Error& error);
+void print_output(std::string_view text);    ///< standard output
+void print_progress(std::string_view line);  ///< a line on standard error
+
+/// Set by Ctrl-C (and SIGTERM) once install_stop_handler() was called; runs check it at each frame.
+[[nodiscard]] const std::atomic<bool>& stop_requested();
+void install_stop_handler();
+
+/// A bar that redraws itself on a terminal, and is silent elsewhere.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string title);
+  void show(std::size_t done, std::size_t total);
+  void clear();
+
+ private:
+  std::string title_;
+  bool terminal_;
+  std::size_t last_percent_ = 101;
+};
+
+/// "AIE 8.123, ATE 2.31 cm, 240/240 frames, 31.2 fps"; what a run without these says instead.
+[[nodiscard]] std::string summary_line(const RunRecord& record);
+
+}  // namespace fusebench

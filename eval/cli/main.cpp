@@ -1,0 +1,84 @@
+// fusebench: the command line chooses and reports; all work is done elsewhere.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/nearest_name.hpp"
+#include "eval/build_info.hpp"
+#include "eval/cli/console.hpp"
+#include "eval/cli/verbs.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// The parser's own message for an unknown verb does not name the nearest one.
+Result<void> check_verb(const std::vector<Verb>& verbs, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  const std::string_view given = argv[1];
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
+  if (std::find(names.begin(), names.end(), given) != names.end()) return {};
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return fail(ErrorCode::usage,
+              fmt::format("unknown verb '{}' (nearest: {})", given, nearest_name(given, views)),
+              "`fusebench --help` lists the verbs");
+}
+
+int finish(const Error& error) {
+  print_error(error);
+  return stop_requested() ? kExitInterrupted : exit_code(error.code);
+}
+
+int run_verb(const std::vector<Verb>& verbs) {
+  for (const Verb& verb : verbs) {
+    if (!verb.app->parsed()) continue;
+    const auto done = verb.run();
+    return done ? *done : finish(done.error());
+  }
+  return finish({ErrorCode::usage, "no verb is given", "`fusebench --help` lists the verbs"});
+}
+
+int command_line(int argc, const char* const* argv) {
+  CLI::App app{"FuseBench: offline evaluation and benchmarking of RGB-D-inertial reconstruction",
+               "fusebench"};
+  const BuildInfo& build = build_info();
+  app.set_version_flag("--version",
+                       fmt::format("fusebench {} ({}, {})", build.version, build.git, build.compiler));
+  app.footer(
+      "Exit codes: 0 ok; 1 a regression or a failed gate; 2 usage or configuration; 3 data missing or "
+      "corrupt;\n"
+      "4 a run failed or was lost; 5 internal error; 130 interrupted.");
+  const std::vector<Verb> verbs = {add_run_verb(app), add_bench_verb(app), add_table_verb(app),
+                                   add_list_verb(app), add_config_verb(app)};
+  if (const auto known = check_verb(verbs, argc, argv); !known) return finish(known.error());
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return finish({ErrorCode::usage, error.what(),
+                   "`fusebench --help` and `fusebench VERB --help` say what is allowed"});
+  }
+  install_stop_handler();
+  return run_verb(verbs);
+}
+
+}  // namespace
+
+}  // namespace fusebench
+
+int main(int argc, char** argv) {
+  try {
+    return fusebench::command_line(argc, argv);
+  } catch (const std::exception& error) {
+    fusebench::print_error({fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
+    return fusebench::exit_code(fusebench::ErrorCode::internal);
+  }
+}

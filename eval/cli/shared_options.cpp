@@ -1,0 +1,75 @@
+#include "eval/cli/shared_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+namespace fusebench {
+
+void add_data_option(CLI::App& verb, std::filesystem::path& data) {
+  verb.add_option("--data", data, "Folder of recordings")->envname("FUSEBENCH_DATA")->type_name("DIR");
+}
+
+void add_threads_option(CLI::App& verb, int& threads) {
+  threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  // The default is not printed: it differs between machines, and results do not depend on it.
+  verb.add_option("--threads", threads,
+                  "Threads of a run; default: all of the machine. Results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+}
+
+void add_set_option(CLI::App& verb, std::vector<std::string>& sets) {
+  verb.add_option("--set", sets, "Sets one option, e.g. iekf.max_iterations=8; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_config_option(CLI::App& verb, std::filesystem::path& file) {
+  verb.add_option("--config", file, "TOML file of options, applied after the variant and before --set")
+      ->type_name("FILE");
+}
+
+void add_variant_option(CLI::App& verb, std::string& variant) {
+  verb.add_option("--variant", variant, "Variant of the estimator (`fusebench list variants`)")
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
+void add_json_flag(CLI::App& verb, bool& json) {
+  verb.add_flag("--json", json, "One JSON document on standard output, nothing else there");
+}
+
+Result<EffectiveConfig> effective_config(const std::string& variant, const std::filesystem::path& file,
+                                         const std::vector<std::string>& sets) {
+  const auto found = find_variant(variant);
+  if (!found) return tl::unexpected(found.error());
+  EffectiveConfig config = variant_config(*found);
+  if (!file.empty()) {
+    if (auto applied = apply_config_file(config, file); !applied) return tl::unexpected(applied.error());
+  }
+  for (const std::string& assignment : sets) {
+    if (auto set = config.set_assignment(assignment); !set) return tl::unexpected(set.error());
+  }
+  if (auto related = check_relations(config.values); !related) return tl::unexpected(related.error());
+  return config;
+}
+
+Result<std::optional<FrameWindow>> parse_frames(const std::string& text) {
+  if (text.empty()) return std::optional<FrameWindow>{};
+  FrameWindow window;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, window.begin);
+  const bool colon = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
+  const auto second = colon ? std::from_chars(first.ptr + 1, end, window.end) : first;
+  if (!colon || second.ec != std::errc{} || second.ptr != end || window.begin >= window.end) {
+    return fail(ErrorCode::usage, fmt::format("--frames {} (allowed: A:B with 0 <= A < B)", text),
+                "A:B takes frames A to B-1");
+  }
+  return std::optional<FrameWindow>(window);
+}
+
+}  // namespace fusebench

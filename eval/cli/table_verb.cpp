@@ -1,0 +1,42 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "eval/cli/console.hpp"
+#include "eval/cli/shared_options.hpp"
+#include "eval/cli/verbs.hpp"
+#include "eval/report/table.hpp"
+
+namespace fusebench {
+
+namespace {
+
+struct TableOptions {
+  std::filesystem::path runs;
+  std::string format = "markdown";
+  bool json = false;
+};
+
+Result<int> table(const TableOptions& options) {
+  const auto format = parse_table_format(options.json ? "json" : options.format);
+  if (!format) return tl::unexpected(format.error());
+  const auto collected = collect_table(options.runs);
+  if (!collected) return tl::unexpected(collected.error());
+  print_output(render_table(*collected, *format));
+  return 0;
+}
+
+}  // namespace
+
+Verb add_table_verb(CLI::App& app) {
+  auto options = std::make_shared<TableOptions>();
+  CLI::App* verb = app.add_subcommand("table", "Prints the table of a folder of runs");
+  verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
+  verb->add_option("--format", options->format, "markdown, csv, json or latex")
+      ->check(CLI::IsMember({"markdown", "csv", "json", "latex"}))
+      ->capture_default_str();
+  add_json_flag(*verb, options->json);
+  return {verb, [options] { return table(*options); }};
+}
+
+}  // namespace fusebench

@@ -1,0 +1,26 @@
+// The verbs of the command line. Each adds its options to the application and returns what to do when it was
+// chosen: an exit code, or an error that main() prints.
+#pragma once
+
+#include <functional>
+
+#include "core/error.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace fusebench {
+
+struct Verb {
+  CLI::App* app = nullptr;
+  std::function<Result<int>()> run;
+};
+
+[[nodiscard]] Verb add_run_verb(CLI::App& app);
+[[nodiscard]] Verb add_bench_verb(CLI::App& app);
+[[nodiscard]] Verb add_table_verb(CLI::App& app);
+[[nodiscard]] Verb add_list_verb(CLI::App& app);
+[[nodiscard]] Verb add_config_verb(CLI::App& app);
+
+}  // namespace fusebench

@@ -1,0 +1,31 @@
+#include "eval/frame_source.hpp"
+
+#include <utility>
+
+#include "eval/process_meter.hpp"
+
+namespace fusebench {
+
+FrameSource::FrameSource(const Recording& recording, bool read_ahead)
+    : recording_(recording), policy_(read_ahead ? std::launch::async : std::launch::deferred) {
+  start_next();
+}
+
+void FrameSource::start_next() {
+  if (following_ >= recording_.frames.size()) return;
+  pending_ = std::async(policy_, [this, frame = following_++]() -> Result<LoadedFrame> {
+    const Stopwatch stopwatch;
+    auto loaded = recording_.load_frame(frame);
+    if (!loaded) return tl::unexpected(loaded.error());
+    return LoadedFrame{std::move(*loaded), stopwatch.milliseconds()};
+  });
+}
+
+Result<LoadedFrame> FrameSource::next() {
+  check(pending_.valid(), "no frames are left");
+  Result<LoadedFrame> frame = pending_.get();
+  start_next();
+  return frame;
+}
+
+}  // namespace fusebench

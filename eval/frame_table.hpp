@@ -1,0 +1,23 @@
+// frames.csv: a row per frame.
+//
+// Columns: frame, timestamp, status, reason, patches (projected, tracked, accepted, shrunk, extended), pixels
+// (photometric, geometric), aie_grey and aie_pixels of the frame, iterations, converged, chi2 (photometric,
+// geometric), speed_mps, angular_speed_radps, blur_px (fx * angular speed * 10 ms: how far the image centre
+// moves during an exposure of 10 ms), model_blocks; then milliseconds per stage. All but the milliseconds are
+// the same when the run is repeated.
+#pragma once
+
+#include <string>
+
+#include "core/pipeline.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+[[nodiscard]] std::string frame_table_header();
+
+/// One line, with its line break. decode_ms: reading and undistorting the images.
+[[nodiscard]] std::string frame_table_row(std::size_t frame, const FrameReport& report,
+                                          const PinholeCamera& camera, double decode_ms);
+
+}  // namespace fusebench

@@ -1,0 +1,42 @@
+// What a stretch of work cost this process, and which machine it ran on.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace fusebench {
+
+struct ProcessCost {
+  double wall_s = 0;
+  double cpu_s = 0;                  ///< user and system, of all threads
+  std::uint64_t peak_rss_bytes = 0;  ///< largest resident memory since the meter started
+};
+
+/// Starts when it is made. The peak is reset where the kernel allows it (Linux); elsewhere it is that of the
+/// process.
+class ProcessMeter {
+ public:
+  ProcessMeter();
+  [[nodiscard]] ProcessCost cost() const;
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  double cpu_start_s_;
+};
+
+/// Milliseconds since it was made.
+class Stopwatch {
+ public:
+  [[nodiscard]] double milliseconds() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+[[nodiscard]] std::string cpu_model();  ///< "unknown" if the system does not tell
+[[nodiscard]] std::string host_name();
+
+}  // namespace fusebench

@@ -1,0 +1,122 @@
+// The record of one run: what was asked, what came out, and what made it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/options.hpp"
+#include "eval/intensity_metrics.hpp"
+#include "eval/trajectory_metrics.hpp"
+
+namespace fusebench {
+
+inline constexpr int kRecordSchema = 1;
+
+enum class RunStatus {
+  failed,  ///< ended by an error
+  lost,    ///< too many lost frames in a row
+  ok,
+};
+[[nodiscard]] std::string_view to_string(RunStatus status);
+
+/// A metric's result, or why there is none.
+template <class T>
+struct Outcome {
+  std::optional<T> value;
+  std::string reason = "not computed";
+
+  [[nodiscard]] static Outcome from(Result<T> result) {
+    if (result) return {std::move(*result), {}};
+    return {std::nullopt, result.error().message};
+  }
+};
+
+struct RecordedOption {
+  std::string key;
+  OptionValue value;
+  std::string origin;
+};
+
+struct RecordedRecording {
+  std::string name;
+  std::string format;
+  std::size_t frames = 0;  ///< that the run was asked to process
+  std::size_t first_frame = 0;
+  double duration_s = 0;  ///< first to last of these frames
+  std::string fingerprint;
+  std::string imu = "none";  ///< that the run used: "none", "recorded", "synthetic IMU"
+  std::string imu_note;
+};
+
+struct RecordedMetrics {
+  Outcome<AteResult> ate;
+  Outcome<RpeResult> rpe_frame;   ///< over one frame
+  Outcome<RpeResult> rpe_second;  ///< over one second
+  Outcome<IntensityResult> aie;
+};
+
+struct RecordedFrames {
+  std::size_t total = 0;    ///< that the run was asked to process
+  std::size_t tracked = 0;  ///< including the first
+  std::size_t lost = 0;     ///< processed and lost; total - tracked - lost were not reached
+};
+
+struct RecordedModel {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  std::size_t blocks = 0;
+};
+
+/// Never the same twice.
+struct RecordedTiming {
+  double wall_s = 0;
+  double cpu_s = 0;
+  std::uint64_t peak_rss_bytes = 0;
+  double fps = 0;                                         ///< processed frames / wall_s
+  std::vector<std::pair<std::string, double>> stages_ms;  ///< mean over frames
+};
+
+struct RecordedProvenance {
+  std::string version;
+  std::string git;
+  std::string compiler;
+  std::string flags;
+  std::string cpu;
+  int threads = 0;
+  std::string host;
+};
+
+/// Starts as a failed run; becomes good.
+struct RunRecord {
+  int schema = kRecordSchema;
+  RunStatus status = RunStatus::failed;
+  std::string reason = "not run";  ///< empty if ok
+  RecordedRecording recording;
+  std::string variant;
+  std::vector<RecordedOption> config;  ///< every option, in declaration order
+  std::string config_hash;
+  RecordedMetrics metrics;
+  RecordedFrames frames;
+  RecordedModel model;
+  RecordedTiming timing;
+  RecordedProvenance provenance;
+};
+
+/// JSON with two blanks of indentation. Everything outside `timing` and `provenance` depends on the inputs
+/// alone. Statistics are SI; numbers that do not exist are null, with a reason beside them.
+[[nodiscard]] std::string to_json(const RunRecord& record);
+
+/// Error data_corrupt with the name (a file, for messages) and what is missing or wrong.
+[[nodiscard]] Result<RunRecord> parse_record(std::string_view json, const std::string& name);
+
+/// Errors: data_missing, and those of parse_record.
+[[nodiscard]] Result<RunRecord> read_record(const std::filesystem::path& file);
+
+}  // namespace fusebench

@@ -1,0 +1,159 @@
+#include "eval/report/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "core/variants.hpp"
+#include "eval/intensity_file.hpp"
+#include "eval/intensity_metrics.hpp"
+#include "eval/report/common_pixels.hpp"
+
+namespace fusebench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct FoundRun {
+  fs::path folder;
+  RunRecord record;
+};
+
+std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::size_t variant_rank(const std::string& name) {
+  const auto variants = all_variants();
+  const auto found =
+      std::find_if(variants.begin(), variants.end(), [&](const Variant& v) { return v.name == name; });
+  return static_cast<std::size_t>(found - variants.begin());
+}
+
+Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
+  std::error_code error;
+  std::vector<FoundRun> found;
+  fs::recursive_directory_iterator entry(runs, error);
+  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') && entry->is_directory()) {
+      entry.disable_recursion_pending();
+    } else if (name == "record.json") {
+      auto record = read_record(entry->path());
+      if (!record) return tl::unexpected(record.error());
+      found.push_back({entry->path().parent_path(), std::move(*record)});
+    }
+  }
+  if (error) {
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
+  }
+  if (found.empty()) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", runs.string()),
+                "`fusebench run` and `fusebench bench` write them to their --out");
+  }
+  std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
+    const auto key = [](const FoundRun& run) {
+      return std::tuple(run.record.recording.name, variant_rank(run.record.variant), run.record.variant,
+                        run.folder.string());
+    };
+    return key(a) < key(b);
+  });
+  return found;
+}
+
+TableRow row_of(const FoundRun& run) {
+  const RunRecord& record = run.record;
+  TableRow row;
+  row.recording = record.recording.name;
+  row.imu = record.recording.imu;
+  row.variant = record.variant;
+  row.run = run.folder.filename().string();
+  row.status = record.status;
+  row.reason = record.reason;
+  if (record.metrics.aie.value) row.aie_grey = finite(record.metrics.aie.value->all.aie_grey);
+  if (record.metrics.ate.value) row.ate_rmse_m = finite(record.metrics.ate.value->stats.rmse);
+  if (record.metrics.rpe_second.value) {
+    row.rpe_second_m = finite(record.metrics.rpe_second.value->translation.rmse);
+    row.rpe_second_rad = finite(record.metrics.rpe_second.value->rotation.rmse);
+  }
+  row.tracked = record.frames.tracked;
+  row.total = record.frames.total;
+  row.vertices = record.model.vertices;
+  row.fps = record.timing.fps;
+  return row;
+}
+
+/// Fills the common-pixel column, one recording (by content) at a time.
+void add_common_pixels(const std::vector<FoundRun>& runs, ResultTable& table) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].record.status != RunStatus::ok) continue;
+    groups[{runs[i].record.recording.name, runs[i].record.recording.fingerprint}].push_back(i);
+  }
+  for (const auto& [recording, members] : groups) {
+    if (members.size() < 2) continue;
+    std::vector<fs::path> files;
+    for (const std::size_t member : members) files.push_back(runs[member].folder / "intensity.bin");
+    const auto common = common_pixel_error(files);
+    if (!common) {
+      table.notes.push_back(
+          fmt::format("{}: no AIE on common pixels: {}", recording.first, common.error().message));
+      continue;
+    }
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      table.rows[members[k]].aie_common_grey = finite((*common)[k].aie_grey);
+    }
+    const IntensitySummary& summary = common->front();
+    table.notes.push_back(fmt::format("{}: {} runs share {} pixels in {} frames ({} frames share none)",
+                                      recording.first, members.size(), summary.pixels, summary.frames,
+                                      summary.frames_excluded));
+  }
+}
+
+std::vector<std::string> footer_of(const ResultTable& table) {
+  std::vector<std::string> footer = {
+      "AIE: average intensity error of tracked patches in grey levels (0-255): mean over frames of the mean "
+      "over their "
+      "visible pixels, before any rejection.",
+      "AIE common: the same on the pixels that all ok runs of the recording share (a method cannot gain by "
+      "dropping "
+      "pixels).",
+      "ATE: rmse of positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM). Only "
+      "tracked frames "
+      "have a pose, so read it with the coverage.",
+      "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
+  const auto synthetic = [](const TableRow& row) { return row.imu == "synthetic IMU"; };
+  if (std::any_of(table.rows.begin(), table.rows.end(), synthetic)) {
+    footer.emplace_back(
+        "synthetic IMU: made from the ground truth with sensor noise, since the recording has no gyroscope. "
+        "Such rows "
+        "compare variants; they are no evidence of accuracy without ground truth.");
+  }
+  return footer;
+}
+
+}  // namespace
+
+Result<ResultTable> collect_table(const fs::path& runs) {
+  const auto found = find_runs(runs);
+  if (!found) return tl::unexpected(found.error());
+  ResultTable table;
+  for (const FoundRun& run : *found) {
+    table.rows.push_back(row_of(run));
+    if (run.record.status == RunStatus::ok) continue;
+    table.notes.push_back(fmt::format("{}, {}: {}: {}", run.record.recording.name, run.record.variant,
+                                      to_string(run.record.status), run.record.reason));
+  }
+  add_common_pixels(*found, table);
+  table.footer = footer_of(table);
+  return table;
+}
+
+}  // namespace fusebench

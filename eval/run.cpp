@@ -1,0 +1,264 @@
+#include "eval/run.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/fingerprint.hpp"
+#include "core/marching_cubes.hpp"
+#include "core/mesh_file.hpp"
+#include "core/pipeline.hpp"
+#include "core/variants.hpp"
+#include "datasets/synthetic_imu.hpp"
+#include "eval/build_info.hpp"
+#include "eval/frame_source.hpp"
+#include "eval/frame_table.hpp"
+#include "eval/intensity_file.hpp"
+#include "eval/process_meter.hpp"
+#include "eval/run_folder.hpp"
+#include "eval/trajectory_file.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// What the frames left behind; grows frame by frame.
+struct Progress {
+  RunStatus status = RunStatus::ok;
+  std::string reason;
+  RecordedFrames frames;
+  std::size_t lost_in_a_row = 0;
+  Trajectory trajectory;  ///< frames that were tracked; a predicted pose is no estimate
+  IntensityAccumulator intensity;
+  std::string frame_table = frame_table_header();
+  std::string log;
+  double decode_ms = 0;
+  std::array<double, kStageNames.size()> stage_ms{};
+
+  void end(RunStatus how, std::string why) {
+    status = how;
+    reason = std::move(why);
+    log += fmt::format("{}: {}\n", to_string(status), reason);
+  }
+};
+
+Result<void> provide_imu(Recording& recording, const RunSpec& spec) {
+  if (!needs_imu(spec.config.values)) {
+    recording.imu.clear();
+    recording.imu_source = ImuSource::none;
+    recording.imu_note.clear();
+    return {};
+  }
+  if (spec.imu == ImuChoice::synthetic) return add_synthetic_imu(recording);
+  if (recording.imu_source != ImuSource::none) return {};
+  return fail(
+      ErrorCode::usage,
+      fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
+      "--imu synthetic makes one from the ground truth (and says so in every table); --variant no-imu does "
+      "without");
+}
+
+std::string hash8(const RunSpec& spec, const Recording& recording) {
+  const PinholeCamera& camera = recording.rig.camera;
+  Fingerprint identity;
+  identity.add(config_hash(spec.config.values));
+  identity.add(recording.fingerprint);
+  identity.add(to_string(recording.imu_source));
+  identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
+                           camera.cx_px, camera.cy_px));
+  return identity.hex().substr(0, 8);
+}
+
+RunRecord record_of_question(const PreparedRun& run) {
+  const Recording& recording = run.recording;
+  RunRecord record;
+  record.recording = {.name = recording.name,
+                      .format = recording.format,
+                      .frames = recording.frames.size(),
+                      .first_frame = run.spec.frames ? run.spec.frames->begin : 0,
+                      .duration_s = seconds_between(recording.frames.front().timestamp_ns,
+                                                    recording.frames.back().timestamp_ns),
+                      .fingerprint = recording.fingerprint,
+                      .imu = std::string(to_string(recording.imu_source)),
+                      .imu_note = recording.imu_note};
+  record.variant = run.spec.variant;
+  for (const OptionRow& row : describe_options(run.spec.config.values)) {
+    record.config.push_back({row.key, parse_option_value(row.value), run.spec.config.origin(row.key)});
+  }
+  record.config_hash = config_hash(run.spec.config.values);
+  const BuildInfo& build = build_info();
+  record.provenance = {std::string(build.version),
+                       std::string(build.git),
+                       std::string(build.compiler),
+                       std::string(build.flags),
+                       cpu_model(),
+                       run.spec.threads,
+                       host_name()};
+  return record;
+}
+
+/// Takes one frame's report into the progress; ends the run when too many frames are lost in a row.
+void take_report(Progress& progress, std::size_t frame, const FrameReport& report, const PreparedRun& run,
+                 double decode_ms) {
+  progress.frame_table += frame_table_row(frame, report, run.recording.rig.camera, decode_ms);
+  progress.decode_ms += decode_ms;
+  for (std::size_t stage = 0; stage < report.stage_ms.size(); ++stage) {
+    progress.stage_ms[stage] += report.stage_ms[stage];
+  }
+  // The first frame has nothing to be compared with: it is no frame without tracked pixels.
+  if (report.status != FrameStatus::initialised) progress.intensity.add_frame(report.intensity);
+  if (report.status != FrameStatus::lost) {
+    progress.lost_in_a_row = 0;
+    ++progress.frames.tracked;
+    progress.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
+    return;
+  }
+  ++progress.frames.lost;
+  ++progress.lost_in_a_row;
+  progress.log += fmt::format("frame {}: lost: {}\n", frame, report.reason);
+  const int limit = run.spec.config.values.iekf.max_lost_frames;
+  if (progress.lost_in_a_row > static_cast<std::size_t>(limit)) {
+    progress.end(RunStatus::lost, fmt::format("lost at frame {}: {} (iekf.max_lost_frames = {})",
+                                              frame + 1 - progress.lost_in_a_row, report.reason, limit));
+  }
+}
+
+/// All frames through the pipeline. Errors: io and a stop; whatever else goes wrong ends the run and is in
+/// the progress.
+Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, const RunFolder& folder,
+                                const RunControl& control) {
+  Progress progress;
+  const Recording& recording = run.recording;
+  progress.frames.total = recording.frames.size();
+  for (const std::string& warning : recording.warnings) progress.log += fmt::format("warning: {}\n", warning);
+
+  const PinholeCamera& camera = recording.rig.camera;
+  auto intensity = IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
+  if (!intensity) return tl::unexpected(intensity.error());
+  FrameSource source(recording, run.spec.threads > 1);
+  for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == RunStatus::ok; ++frame) {
+    if (control.stop != nullptr && control.stop->load())
+      return fail(ErrorCode::run_failed, "stopped by the user");
+    const auto loaded = source.next();
+    if (!loaded) {
+      progress.end(RunStatus::failed, fmt::format("frame {}: {}", frame, loaded.error().message));
+      break;
+    }
+    const auto report = pipeline.process(loaded->frame);
+    if (!report) {
+      progress.end(RunStatus::failed, fmt::format("frame {}: {}", frame, report.error().message));
+      break;
+    }
+    take_report(progress, frame, *report, run, loaded->decode_ms);
+    if (auto written = intensity->write_frame(report->timestamp_ns, report->intensity); !written) {
+      return tl::unexpected(written.error());
+    }
+    if (control.progress) control.progress(frame + 1, recording.frames.size());
+  }
+  if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
+  return progress;
+}
+
+RecordedMetrics metrics_of(const Progress& progress, const Recording& recording) {
+  RecordedMetrics metrics;
+  metrics.aie = {progress.intensity.result(), {}};
+  if (metrics.aie.value->all.frames == 0) metrics.aie = {std::nullopt, "no frame has tracked pixels"};
+  if (recording.ground_truth.empty()) {
+    metrics.ate.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
+        "the recording has no ground truth";
+    return metrics;
+  }
+  std::vector<std::int64_t> expected;
+  for (const FrameEntry& frame : recording.frames) expected.push_back(frame.timestamp_ns);
+  AteOptions ate;
+  ate.expected_ns = expected;
+  metrics.ate =
+      Outcome<AteResult>::from(absolute_trajectory_error(recording.ground_truth, progress.trajectory, ate));
+  metrics.rpe_frame = Outcome<RpeResult>::from(relative_pose_error(
+      recording.ground_truth, progress.trajectory, {.delta = 1, .unit = DeltaUnit::frames}));
+  metrics.rpe_second = Outcome<RpeResult>::from(relative_pose_error(
+      recording.ground_truth, progress.trajectory, {.delta = 1, .unit = DeltaUnit::seconds}));
+  return metrics;
+}
+
+RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, double mesh_ms) {
+  RecordedTiming timing;
+  timing.wall_s = cost.wall_s;
+  timing.cpu_s = cost.cpu_s;
+  timing.peak_rss_bytes = cost.peak_rss_bytes;
+  const auto processed = static_cast<double>(progress.frames.tracked + progress.frames.lost);
+  const auto mean = [&](double sum_ms) { return processed > 0 ? sum_ms / processed : 0.0; };
+  timing.fps = cost.wall_s > 0 ? processed / cost.wall_s : 0.0;
+  timing.stages_ms.emplace_back("decode", mean(progress.decode_ms));
+  for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
+    timing.stages_ms.emplace_back(kStageNames[stage], mean(progress.stage_ms[stage]));
+  }
+  timing.stages_ms.emplace_back("mesh_once", mesh_ms);
+  return timing;
+}
+
+Result<RecordedModel> write_model(const TsdfVolume& model, double min_weight, const Workers& workers,
+                                  const RunFolder& folder) {
+  const Mesh mesh = extract_mesh(model, min_weight, workers);
+  if (auto written = write_ply(mesh, folder.file("mesh.ply")); !written)
+    return tl::unexpected(written.error());
+  return RecordedModel{mesh.vertices.size(), mesh.triangles.size(), model.block_count()};
+}
+
+}  // namespace
+
+Result<PreparedRun> prepare_run(RunSpec spec) {
+  if (auto related = check_relations(spec.config.values); !related) return tl::unexpected(related.error());
+  auto recording = open_recording(spec.recording, spec.open);
+  if (!recording) return tl::unexpected(recording.error());
+  if (spec.frames) {
+    if (auto cut = select_frames(*recording, spec.frames->begin, spec.frames->end); !cut) {
+      return tl::unexpected(cut.error());
+    }
+  }
+  if (recording->frames.empty()) {
+    return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
+  }
+  if (auto provided = provide_imu(*recording, spec); !provided) return tl::unexpected(provided.error());
+  const auto folder = spec.out / recording->name / spec.variant / hash8(spec, *recording);
+  return PreparedRun{std::move(spec), std::move(*recording), folder};
+}
+
+Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
+  const ProcessMeter meter;
+  auto folder = RunFolder::create(run.folder);
+  if (!folder) return tl::unexpected(folder.error());
+  RunRecord record = record_of_question(run);
+
+  const Config& config = run.spec.config.values;
+  const Workers workers(run.spec.threads);
+  Pipeline pipeline(config, run.recording.rig, run.recording.imu, workers);
+  auto progress = process_frames(run, pipeline, *folder, control);
+  if (!progress) return tl::unexpected(progress.error());
+  const Stopwatch mesh_time;
+  const auto model = write_model(pipeline.model(), config.tsdf.min_mesh_weight, workers, *folder);
+  if (!model) return tl::unexpected(model.error());
+  const double mesh_ms = mesh_time.milliseconds();
+  const ProcessCost cost = meter.cost();
+
+  record.status = progress->status;
+  record.reason = progress->reason;
+  record.frames = progress->frames;
+  record.model = *model;
+  record.metrics = metrics_of(*progress, run.recording);
+  record.timing = timing_of(*progress, cost, mesh_ms);
+  progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
+                               record.frames.tracked, record.frames.total);
+  const std::array<std::pair<std::string_view, std::string>, 4> texts = {
+      {{"trajectory.tum", tum_text(progress->trajectory)},
+       {"frames.csv", progress->frame_table},
+       {"log.txt", progress->log},
+       {"record.json", to_json(record)}}};
+  for (const auto& [name, text] : texts) {
+    if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
+  }
+  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
+  return record;
+}
+
+}  // namespace fusebench

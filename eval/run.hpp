@@ -1,0 +1,64 @@
+// One specification in, one record and one folder out. The only place that knows recordings, estimator and
+// metrics.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/config_access.hpp"
+#include "core/error.hpp"
+#include "datasets/open_recording.hpp"
+#include "eval/record.hpp"
+
+namespace fusebench {
+
+/// Which IMU a variant that needs one gets.
+enum class ImuChoice { recorded, synthetic };
+
+/// Frames begin to end - 1.
+struct FrameWindow {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+struct RunSpec {
+  std::filesystem::path recording;
+  OpenOptions open;
+  ImuChoice imu = ImuChoice::recorded;
+  std::string variant;
+  EffectiveConfig config;  ///< the variant's, with all edits
+  std::optional<FrameWindow> frames;
+  int threads = 1;
+  std::filesystem::path out;
+};
+
+/// An opened recording with its place among the results; nothing is written yet.
+struct PreparedRun {
+  RunSpec spec;
+  Recording recording;           ///< the window, with the IMU that the run will use
+  std::filesystem::path folder;  ///< <out>/<recording>/<variant>/<hash8>
+};
+
+/// Opens the recording, cuts the window and provides the IMU. hash8 identifies the values of the
+/// configuration, the content of the recording and its window, the camera and the IMU. Errors: those of
+/// open_recording, select_frames and add_synthetic_imu; configuration (relations between options); usage if
+/// the variant needs an IMU and there is none.
+[[nodiscard]] Result<PreparedRun> prepare_run(RunSpec spec);
+
+struct RunControl {
+  std::function<void(std::size_t frame, std::size_t total)> progress = {};  ///< after each frame
+  const std::atomic<bool>* stop =
+      nullptr;  ///< checked at each frame; true ends the run and leaves nothing behind
+};
+
+/// Runs it and puts its folder in place. A run that is lost or fails on the way is a record with that status
+/// and its reason, and its folder holds what there is. Errors: io if the folder cannot be written, run_failed
+/// if it was stopped; nothing is left behind then.
+[[nodiscard]] Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control = {});
+
+}  // namespace fusebench

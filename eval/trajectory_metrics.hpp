@@ -1,0 +1,119 @@
+// Absolute and relative trajectory error, as the scripts of the TUM RGB-D benchmark define them
+// (Sturm et al., IROS 2012). Ground truth is always found by time, never by position in the list.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "eval/statistics.hpp"
+
+namespace fusebench {
+
+/// One association between two lists of stamps.
+struct StampPair {
+  std::size_t reference = 0;
+  std::size_t estimate = 0;
+};
+
+/// TUM's association: among all pairs with |reference - (estimate + offset)| < max_difference (strictly), the
+/// closest is taken first and each stamp is used once; equal differences go to the earlier reference, then
+/// the earlier estimate. Both lists sorted. The result is sorted by time. O(n log n) for lists with a bounded
+/// number of stamps in the window.
+[[nodiscard]] std::vector<StampPair> associate(std::span<const std::int64_t> reference_ns,
+                                               std::span<const std::int64_t> estimate_ns,
+                                               std::int64_t max_difference_ns, std::int64_t offset_ns = 0);
+
+/// The stamps of a trajectory, in order.
+[[nodiscard]] std::vector<std::int64_t> stamps_of(const Trajectory& trajectory);
+
+/// How the estimate was moved before it was compared.
+struct Alignment {
+  std::string mode = "none";  ///< "none" or "se3"
+  SE3 T_reference_estimate;
+};
+
+/// Row-major 4x4 of a transform.
+[[nodiscard]] std::array<double, 16> matrix_of(const SE3& transform);
+
+struct AteOptions {
+  double max_difference_s = 0.02;  ///< of associated stamps
+  double offset_s = 0;             ///< added to the estimate's stamps
+  /// Stamps at which an estimate was asked for; those with ground truth are the possible pairs. Empty: the
+  /// estimate's.
+  std::span<const std::int64_t> expected_ns = {};
+};
+
+/// Absolute trajectory error: distance between associated positions after SE3 alignment of the estimate.
+struct AteResult {
+  std::string protocol = "tum";
+  std::string relation = "translation";
+  std::string unit = "m";
+  std::size_t pairs = 0;
+  std::size_t possible = 0;  ///< expected stamps with ground truth within the limit
+  double coverage = 0;       ///< pairs / possible
+  double max_difference_s = 0;
+  Alignment alignment;
+  std::vector<double> errors_m;  ///< in order of time
+  Statistics stats;
+};
+
+/// Errors data_corrupt: no matching stamps, or positions that cannot be aligned (see align_se3).
+[[nodiscard]] Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth,
+                                                          const Trajectory& estimate,
+                                                          const AteOptions& options = {});
+
+enum class DeltaUnit { frames, seconds };
+[[nodiscard]] std::string_view to_string(DeltaUnit unit);  ///< "f", "s"
+
+struct RpeOptions {
+  double delta = 1;  ///< a whole number for frames
+  DeltaUnit unit = DeltaUnit::seconds;
+  /// Ground truth further than this from an estimate's stamp is not used; TUM's own limit (twice the median
+  /// interval of the ground truth) holds beside it.
+  double max_difference_s = 0.02;
+  double offset_s = 0;  ///< added to the estimate's stamps
+  /// Not in the script, which chains over missing frames and, across a gap of the estimate longer than twice
+  /// delta, pairs a pose with itself (error 0). With frames, a pair that spans more than 1.5 times `delta`
+  /// median intervals of the estimate is skipped; with seconds, a pose is never its own partner. False: as in
+  /// the script.
+  bool skip_gaps = true;
+};
+
+/// Relative pose error over a fixed delta (evaluate_rpe.py --fixed_delta).
+///
+/// For each pose i of the estimate, j is the pose whose index (frames) or stamp (seconds) is nearest to i's
+/// plus delta; pairs that end at the last pose are dropped (so that the end is not counted over shorter
+/// deltas; with frames and delta 1 this costs one pair, and is as in the script). Both poses take the nearest
+/// ground truth. The error is E = (P_j^-1 P_i)^-1 (G_j^-1 G_i) for estimate P and truth G: |trans(E)| in
+/// metres and the angle of E in radians, for the whole delta (not divided by the time that really passed).
+/// Nothing is aligned: relative poses need none.
+struct RpeResult {
+  std::string protocol = "tum";
+  double delta = 0;
+  DeltaUnit unit = DeltaUnit::seconds;
+  std::size_t pairs = 0;
+  std::size_t possible = 0;  ///< pairs of the estimate, before ground truth was asked for
+  double coverage = 0;
+  double max_difference_s = 0;
+  Alignment alignment;  ///< none
+  std::vector<double> errors_m;
+  std::vector<double> errors_rad;
+  Statistics translation;  ///< metres
+  Statistics rotation;     ///< radians
+};
+
+/// Errors: configuration for a delta that makes no sense, data_corrupt for fewer than two poses on either
+/// side or fewer than two pairs.
+[[nodiscard]] Result<RpeResult> relative_pose_error(const Trajectory& ground_truth,
+                                                    const Trajectory& estimate,
+                                                    const RpeOptions& options = {});
+
+}  // namespace fusebench

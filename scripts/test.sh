@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# Every check and test: formatting, include directions, a warning-free build, generated pages, tests; clang-tidy on
+# request. Runs all of them even if one fails, and ends with the tests and a summary.
+# shellcheck disable=SC2317  # the checks are called through step
+set -euo pipefail
+
+usage() {
+  cat <<'TEXT'
+Usage: scripts/test.sh [--tidy]
+
+Installs missing packages, builds the preset ci (release with warnings as errors and tests) and runs every check.
+  --tidy    install clang-tidy-19 if it is missing, and run it over core, datasets and eval as well (slow)
+Tests on real recordings read the folder FUSEBENCH_DATA; where it is not set they are reported as skipped.
+Exit code: 0 when everything passed, 1 otherwise.
+TEXT
+}
+
+tidy=false
+for argument in "$@"; do
+  case "$argument" in
+    -h | --help) usage; exit 0 ;;
+    --tidy) tidy=true ;;
+    *) usage >&2; exit 2 ;;
+  esac
+done
+
+if [[ -n ${FUSEBENCH_DATA:-} ]]; then
+  # The tests run in other folders, so a relative path would be lost.
+  if [[ ! -d $FUSEBENCH_DATA ]]; then
+    printf 'test: FUSEBENCH_DATA=%s is not a folder\n' "$FUSEBENCH_DATA" >&2
+    exit 2
+  fi
+  FUSEBENCH_DATA=$(cd "$FUSEBENCH_DATA" && pwd)
+  export FUSEBENCH_DATA
+fi
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+started=$SECONDS
+failures=0
+summary=()
+
+# step NAME COMMAND...: runs the command, remembers how it went.
+step() {
+  local name=$1 result=passed before=$SECONDS
+  shift
+  printf '\n== %s\n' "$name"
+  if ! "$@"; then
+    result=FAILED
+    failures=$((failures + 1))
+  fi
+  summary+=("$(printf '%-20s %-7s %4d s' "$name" "$result" $((SECONDS - before)))")
+}
+
+# Prints the sources of the given folders, NUL-separated.
+sources() {
+  local pattern=$1
+  shift
+  find "$@" -type f -name "$pattern" -print0 | LC_ALL=C sort -z
+}
+
+check_scripts() {
+  local script status=0
+  for script in scripts/*.sh tests/scripts/*.sh .ci/run; do
+    bash -n "$script" || status=1
+  done
+  return "$status"
+}
+
+check_format() {
+  sources '*.[ch]pp' core datasets eval tests | xargs -0 -r clang-format --dry-run -Werror
+}
+
+# Version 19 because Debian's default, 14, cannot read the C++20 headers of g++ 12 (std::source_location).
+check_tidy() {
+  ./scripts/setup.sh clang-tidy-19 || return 1
+  sources '*.cpp' core datasets eval |
+    xargs -0 -r -n 1 -P "$(nproc)" clang-tidy-19 -p build/ci --quiet --warnings-as-errors='*'
+}
+
+finish() {
+  printf '\n== summary\n'
+  printf '%s\n' "${summary[@]}"
+  if ((failures > 0)); then
+    printf '%d of %d checks FAILED in %d s\n' "$failures" "${#summary[@]}" $((SECONDS - started))
+    exit 1
+  fi
+  printf 'all %d checks passed in %d s\n' "${#summary[@]}" $((SECONDS - started))
+  exit 0
+}
+
+step set-up ./scripts/setup.sh
+if ((failures > 0)); then finish; fi
+step scripts check_scripts
+step formatting check_format
+step includes ./scripts/check_includes.sh
+step build ./scripts/build.sh ci
+if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi
+step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
+if $tidy; then step clang-tidy check_tidy; fi
+step tests ctest --preset ci
+finish

@@ -1,0 +1,81 @@
+#include "core/corner_selection.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <utility>
+
+#include "core/depth_gates.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+namespace {
+
+RgbdFrame room_frame() { return testing::TexturedRoom{}.render(testing::small_camera(), SE3{}, 0); }
+
+TEST(CornerSelection, CornersAreSpreadApartInsideAndOnDepth) {
+  RgbdFrame frame = room_frame();
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 200; x < 320; ++x) frame.depth_m(x, y) = 0;  // a hole on the right
+  }
+  PatchConfig config;
+  const std::vector<Eigen::Vector2i> existing{{60, 60}, {150, 100}};
+  const auto corners = select_corners(frame.grey, frame.depth_m, existing, config);
+  ASSERT_GT(corners.size(), 20U);
+  EXPECT_LE(corners.size() + existing.size(), 100U);
+  std::vector<Eigen::Vector2i> all = existing;
+  for (const Eigen::Vector2i& corner : corners) {
+    EXPECT_LT(corner.x(), 200 + config.size_px / 2) << "at least half of the square needs depth";
+    EXPECT_TRUE(patch_fits(frame.grey, corner, config.size_px));
+    for (const Eigen::Vector2i& other : all) {
+      EXPECT_GE((corner - other).squaredNorm(), config.min_distance_px * config.min_distance_px);
+    }
+    all.push_back(corner);
+  }
+  // Spread: all quarters of the left part have some.
+  std::set<std::pair<int, int>> quarters;
+  for (const Eigen::Vector2i& corner : corners) quarters.insert({corner.x() / 100, corner.y() / 120});
+  EXPECT_GE(quarters.size(), 4U);
+}
+
+TEST(CornerSelection, HonoursTheLimitAndAPlainImage) {
+  const RgbdFrame frame = room_frame();
+  PatchConfig config;
+  config.max_count = 7;
+  EXPECT_LE(select_corners(frame.grey, frame.depth_m, {}, config).size(), 7U);
+  EXPECT_TRUE(select_corners(GreyImage(320, 240, 77), frame.depth_m, {}, config).empty());
+}
+
+TEST(DepthGates, RangeAndEdgesBecomeHolesAndPlanesStay) {
+  DepthImage depth(20, 20, 1.0F);
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 10; x < 20; ++x) depth(x, y) = 1.5F;
+  }
+  depth(3, 3) = 0.1F;
+  depth(16, 16) = 9.0F;
+  const DepthImage gated = gate_depth(depth, DepthConfig{});
+  EXPECT_EQ(gated(3, 3), 0.0F);
+  EXPECT_EQ(gated(16, 16), 0.0F);
+  EXPECT_EQ(gated(9, 10), 0.0F) << "near side of the edge";
+  EXPECT_EQ(gated(10, 10), 0.0F) << "far side of the edge";
+  EXPECT_EQ(gated(7, 10), 1.0F);
+  EXPECT_EQ(gated(13, 10), 1.5F);
+}
+
+TEST(DepthGates, NormalOfASlantedPlaneFacesTheCamera) {
+  const PinholeCamera camera = testing::small_camera();
+  const Vector3d normal = Vector3d(0.4, -0.2, -1.0).normalized();
+  DepthImage depth(320, 240);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      depth(x, y) = static_cast<float>(normal.z() * 2.0 / normal.dot(camera.back_project(x, y, 1.0)));
+    }
+  }
+  EXPECT_LT((measured_normal(depth, camera, 200, 90) - normal).norm(), 1e-4);
+  EXPECT_EQ(measured_normal(depth, camera, 2, 90).norm(), 0.0) << "no neighbours at the border";
+  depth(204, 90) = 0;
+  EXPECT_EQ(measured_normal(depth, camera, 200, 90).norm(), 0.0) << "a missing neighbour";
+}
+
+}  // namespace
+}  // namespace fusebench

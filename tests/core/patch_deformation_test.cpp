@@ -1,0 +1,168 @@
+#include "core/patch_deformation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+namespace {
+
+constexpr int kSize = 10;
+
+/// A patch of one level, cut by hand from a scene that gives the depth at each pixel of the reference camera
+/// (identity).
+template <class DepthAt>
+Patch cut(const Eigen::Vector2i& centre, const DepthAt& depth_at) {
+  const PinholeCamera camera = testing::small_camera();
+  Patch patch;
+  patch.centre_px = centre;
+  patch.levels.resize(1);
+  for (int y = centre.y() - kSize / 2; y < centre.y() + kSize / 2; ++y) {
+    for (int x = centre.x() - kSize / 2; x < centre.x() + kSize / 2; ++x) {
+      PatchPixel pixel;
+      pixel.reference_pixel = static_cast<std::uint32_t>(y * camera.width_px + x);
+      pixel.point_world = camera.back_project(x, y, depth_at(x, y));
+      pixel.normal_world = -Vector3d::UnitZ();
+      patch.levels[0].pixels.push_back(pixel);
+    }
+  }
+  return patch;
+}
+
+PosedCamera camera_at(const Vector3d& position_m, const Vector3d& phi_rad = Vector3d::Zero()) {
+  return PosedCamera(testing::small_camera(), SE3{so3_exp(phi_rad), position_m}, SE3{});
+}
+
+/// Two planes: a near one at 1 m left of column 160, a far one at 2 m from there on.
+double two_planes(int x, int) { return x < 160 ? 1.0 : 2.0; }
+/// A plane that leans away to the right.
+double slanted(int x, int y) {
+  const PinholeCamera camera = testing::small_camera();
+  const Vector3d ray = camera.back_project(x, y, 1.0);
+  const Vector3d normal = Vector3d(-0.5, 0.2, -1.0).normalized();
+  return normal.dot(Vector3d(0, 0, 1.5)) / normal.dot(ray);
+}
+
+std::vector<WarpedPixel> warp(const Patch& patch, const PosedCamera& posed) {
+  return warp_level(patch.levels[0], posed);
+}
+
+TEST(PatchDeformation, PixelwiseFollowsEachPixelsOwnDepth) {
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  const double shift_m = 0.05;
+  const auto warped = warp(patch, camera_at({shift_m, 0, 0}));
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    const int x = static_cast<int>(patch.levels[0].pixels[i].reference_pixel % 320);
+    // Moving right by b moves a point at depth z left by f b / z.
+    EXPECT_NEAR(warped[i].pixel_px.x(), x - 240.0 * shift_m / two_planes(x, 0), 1e-9);
+  }
+}
+
+TEST(PatchDeformation, ShrinkTestRemovesTheOccludedFarPlaneAndNothingElse) {
+  // The camera moves left: the near plane slides right over the far one by 12 - 6 = 6 pixels, so that the 5
+  // columns of the far plane vanish behind the near one as far as the patch covers them.
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  std::vector<std::vector<WarpedPixel>> all{warp(patch, camera_at({-0.05, 0, 0}))};
+  test_mutual_occlusion(all, 320, 240, DepthConfig{});
+  for (std::size_t i = 0; i < all[0].size(); ++i) {
+    const int x = static_cast<int>(patch.levels[0].pixels[i].reference_pixel % 320);
+    const double landed = x + 240.0 * 0.05 / two_planes(x, 0);
+    // Near columns 155..159 land on 167..171; far columns 160..164 on 166..170.
+    const bool hidden = x >= 160 && landed >= 167.0 - 1e-9 && landed <= 171.0 + 1e-9;
+    EXPECT_EQ(all[0][i].visible, !hidden) << "column " << x;
+    EXPECT_TRUE(all[0][i].in_image);
+  }
+}
+
+TEST(PatchDeformation, AnOccluderInAnotherPatchCounts) {
+  Patch near = cut({100, 120}, [](int, int) { return 1.0; });
+  Patch far = cut({106, 120}, [](int, int) { return 2.0; });
+  for (Patch* patch : {&near, &far})
+    set_deformation(*patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  const PosedCamera posed = camera_at({-0.05, 0, 0});  // near: +12 px, far: +6 px: the squares coincide
+  std::vector<std::vector<WarpedPixel>> all{warp(near, posed), warp(far, posed)};
+  test_mutual_occlusion(all, 320, 240, DepthConfig{});
+  for (const WarpedPixel& w : all[0]) EXPECT_TRUE(w.visible);
+  for (const WarpedPixel& w : all[1]) EXPECT_FALSE(w.visible);
+}
+
+TEST(PatchDeformation, BackingAwayFromOneSurfaceHidesNothing) {
+  // Pixels of a slanted plane collide when the camera backs off: that is no occlusion.
+  Patch patch = cut({160, 120}, slanted);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  std::vector<std::vector<WarpedPixel>> all{warp(patch, camera_at({0, 0, -1.5}))};
+  test_mutual_occlusion(all, 320, 240, DepthConfig{});
+  for (const WarpedPixel& w : all[0]) EXPECT_TRUE(w.visible);
+  EXPECT_FALSE(is_extended(all[0], kSize));
+}
+
+TEST(PatchDeformation, ExtendTestSeesTheOpeningGapAndTheApproach) {
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  EXPECT_FALSE(is_extended(warp(patch, camera_at({0, 0, 0})), kSize));
+  EXPECT_FALSE(is_extended(warp(patch, camera_at({0, 0, 0}, {0, 0.02, 0})), kSize)) << "pure rotation";
+  EXPECT_TRUE(is_extended(warp(patch, camera_at({0.05, 0, 0})), kSize)) << "near and far plane part";
+  EXPECT_TRUE(is_extended(warp(patch, camera_at({0, 0, 0.4})), kSize)) << "approach";
+}
+
+TEST(PatchDeformation, MeasuredDepthHidesWhatIsBehindOrGone) {
+  Patch patch = cut({160, 120}, [](int, int) { return 1.5; });
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  DepthImage depth(320, 240, 1.5F);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 158; ++x) depth(x, y) = 1.0F;    // a hand before the left part
+    for (int x = 162; x < 320; ++x) depth(x, y) = 0.0F;  // no measurement on the right
+  }
+  auto warped = warp(patch, camera_at({0, 0, 0}));
+  test_measured_occlusion(warped, depth, 1, 0.05, DepthConfig{});
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    EXPECT_EQ(warped[i].visible, patch.levels[0].pixels[i].reference_pixel % 320 >= 158);
+  }
+}
+
+TEST(PatchDeformation, AllKindsAgreeWhereTheyMustAndDifferWhereTheyMust) {
+  const PosedCamera sideways = camera_at({0.05, 0.02, 0}, {0.01, -0.02, 0.0});
+  const auto difference = [&](auto depth_at, Deformation a, Deformation b) {
+    Patch first = cut({160, 120}, depth_at);
+    Patch second = cut({160, 120}, depth_at);
+    set_deformation(first, testing::small_camera(), SE3{}, a);
+    set_deformation(second, testing::small_camera(), SE3{}, b);
+    const auto wa = warp(first, sideways);
+    const auto wb = warp(second, sideways);
+    double worst = 0;
+    for (std::size_t i = 0; i < wa.size(); ++i)
+      worst = std::max(worst, (wa[i].pixel_px - wb[i].pixel_px).norm());
+    return worst;
+  };
+  // On a plane, one plane a patch is exact; a rigid square is not; on two planes neither is.
+  EXPECT_LT(difference(slanted, Deformation::pixelwise, Deformation::planar), 1e-9);
+  EXPECT_GT(difference(slanted, Deformation::pixelwise, Deformation::rigid_square), 0.1);
+  EXPECT_GT(difference(two_planes, Deformation::pixelwise, Deformation::planar), 0.5);
+  EXPECT_GT(difference(two_planes, Deformation::pixelwise, Deformation::rigid_square), 5.0);
+}
+
+TEST(PatchDeformation, RigidSquareMovesByItsCentreAlone) {
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::rigid_square);
+  const auto warped = warp(patch, camera_at({0.05, 0, 0}));
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    const auto key = patch.levels[0].pixels[i].reference_pixel;
+    EXPECT_NEAR(warped[i].pixel_px.x(), key % 320 - 240.0 * 0.05 / 2.0,
+                1e-9);  // the centre lies on the far plane
+    EXPECT_NEAR(warped[i].pixel_px.y(), key / 320, 1e-9);
+  }
+}
+
+TEST(PatchDeformation, PixelsBehindTheCameraOrOutsideAreNotInTheImage) {
+  Patch patch = cut({160, 120}, [](int, int) { return 1.0; });
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  for (const PosedCamera& posed :
+       {camera_at({0, 0, 1.5}), camera_at({5, 0, 0}), camera_at({0, 0, 0}, {0, 3.1, 0})}) {
+    for (const WarpedPixel& w : warp(patch, posed)) EXPECT_FALSE(w.in_image);
+  }
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,174 @@
+#include "core/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "core/variants.hpp"
+#include "tests/support/simulated_run.hpp"
+
+namespace fusebench {
+namespace {
+
+using testing::simulate;
+using testing::SimulatedRun;
+using testing::track;
+using testing::worst_error_m;
+
+constexpr int kFrames = 12;
+
+const SimulatedRun& shared_run() {
+  static const SimulatedRun run = simulate(kFrames);
+  return run;
+}
+
+Config config_of(std::string_view variant) { return variant_config(*find_variant(variant)).values; }
+
+int tracked(const std::vector<FrameReport>& reports) {
+  return static_cast<int>(std::count_if(
+      reports.begin(), reports.end(), [](const FrameReport& r) { return r.status == FrameStatus::tracked; }));
+}
+
+/// Equal to the last bit, all poses.
+bool same_poses(const std::vector<FrameReport>& a, const std::vector<FrameReport>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (a[k].T_world_camera.translation != b[k].T_world_camera.translation) return false;
+    if (a[k].T_world_camera.rotation.coeffs() != b[k].T_world_camera.rotation.coeffs()) return false;
+  }
+  return true;
+}
+
+class EveryVariant : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(EveryVariant, TracksAnEasyRecording) {
+  const auto reports = track(shared_run(), config_of(GetParam()));
+  EXPECT_EQ(tracked(reports), kFrames - 1);
+  EXPECT_LT(worst_error_m(shared_run(), reports), 0.01);
+  // The camera moved by much more than that.
+  EXPECT_GT(shared_run().T_first_camera.back().translation.norm(), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
+                         ::testing::Values("full", "dm", "no-imu", "dm-no-imu", "planar", "photometric-only",
+                                           "geometric-only", "single-iteration"));
+
+TEST(Pipeline, EachVariantDiffersFromFull) {
+  const auto full = track(shared_run(), config_of("full"));
+  for (const Variant& variant : all_variants()) {
+    if (variant.name == "full") continue;
+    EXPECT_FALSE(same_poses(full, track(shared_run(), config_of(variant.name)))) << variant.name;
+  }
+}
+
+TEST(Pipeline, ATermThatIsOffEqualsTheTermAtWeightZero) {
+  // With no weight on a term, nothing of its own settings can matter.
+  Config geometric_only = config_of("geometric-only");
+  const auto reference = track(shared_run(), geometric_only);
+  geometric_only.photometric.noise_grey *= 3;
+  geometric_only.photometric.pixels_per_measurement *= 5;
+  geometric_only.photometric.gain_sigma = 0;
+  EXPECT_TRUE(same_poses(reference, track(shared_run(), geometric_only)));
+
+  Config photometric_only = config_of("photometric-only");
+  const auto other = track(shared_run(), photometric_only);
+  photometric_only.geometric.max_distance_m *= 3;
+  photometric_only.geometric.model_noise_m *= 3;
+  EXPECT_TRUE(same_poses(other, track(shared_run(), photometric_only)));
+}
+
+TEST(Pipeline, AVanishingWeightConvergesToTheTermBeingOff) {
+  Config faint = config_of("full");
+  faint.terms.photometric_weight = 1e-12;
+  const auto off = track(shared_run(), config_of("geometric-only"));
+  const auto nearly_off = track(shared_run(), faint);
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    EXPECT_LT((off[k].T_world_camera.translation - nearly_off[k].T_world_camera.translation).norm(), 1e-4);
+  }
+}
+
+TEST(Pipeline, WithoutImuIsUnmovedByNaNInTheImu) {
+  SimulatedRun poisoned = shared_run();
+  for (ImuSample& sample : poisoned.imu) {
+    sample.angular_velocity_radps.setConstant(std::numeric_limits<double>::quiet_NaN());
+    sample.specific_force_mps2.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  poisoned.rig.T_imu_camera.translation = {7, 8, 9};
+  EXPECT_TRUE(same_poses(track(shared_run(), config_of("no-imu")), track(poisoned, config_of("no-imu"))));
+}
+
+TEST(Pipeline, ThreadCountDoesNotShow) {
+  const auto one = track(shared_run(), config_of("full"), 1);
+  for (const int threads : {2, 8}) {
+    const auto many = track(shared_run(), config_of("full"), threads);
+    EXPECT_TRUE(same_poses(one, many)) << threads << " threads";
+    EXPECT_EQ(one.back().intensity.size(), many.back().intensity.size());
+    EXPECT_EQ(one.back().model_blocks, many.back().model_blocks);
+  }
+}
+
+TEST(Pipeline, BrightnessChangesAreAbsorbed) {
+  SimulatedRun darker = shared_run();
+  for (std::size_t k = 1; k < darker.frames.size(); ++k) {
+    const double gain = k % 2 == 1 ? 0.8 : 1.0;
+    for (std::uint8_t& grey : darker.frames[k].grey.data) {
+      grey = static_cast<std::uint8_t>(std::lround(gain * grey + (k % 2 == 1 ? 12 : 0)));
+    }
+  }
+  const auto reports = track(darker, config_of("photometric-only"));
+  EXPECT_EQ(tracked(reports), kFrames - 1);
+  EXPECT_LT(worst_error_m(darker, reports), 0.01);
+}
+
+TEST(Pipeline, ALostFrameKeepsThePredictionAndTrackingResumes) {
+  SimulatedRun interrupted = shared_run();
+  for (const std::size_t k : {5U, 6U}) {
+    std::fill(interrupted.frames[k].grey.data.begin(), interrupted.frames[k].grey.data.end(), 0);
+    std::fill(interrupted.frames[k].depth_m.data.begin(), interrupted.frames[k].depth_m.data.end(), 0.2F);
+  }
+  const auto reports = track(interrupted, config_of("full"));
+  ASSERT_EQ(reports.size(), static_cast<std::size_t>(kFrames));
+  for (const std::size_t k : {5U, 6U}) {
+    EXPECT_EQ(reports[k].status, FrameStatus::lost);
+    EXPECT_FALSE(reports[k].reason.empty());
+    EXPECT_EQ(reports[k].model_blocks, reports[4].model_blocks) << "a lost frame is not fused";
+  }
+  for (std::size_t k = 7; k < reports.size(); ++k) EXPECT_EQ(reports[k].status, FrameStatus::tracked);
+  EXPECT_LT(worst_error_m(interrupted, reports), 0.02);
+}
+
+TEST(Pipeline, MissingImuIsAnErrorThatSaysWhichTimes) {
+  SimulatedRun truncated = shared_run();
+  std::erase_if(truncated.imu,
+                [&](const ImuSample& s) { return s.timestamp_ns > truncated.frames[3].timestamp_ns; });
+  const Workers workers(1);
+  Pipeline pipeline(config_of("full"), truncated.rig, truncated.imu, workers);
+  Result<FrameReport> last = fail(ErrorCode::internal, "");
+  for (const RgbdFrame& frame : truncated.frames) {
+    last = pipeline.process(frame);
+    if (!last) break;
+  }
+  ASSERT_FALSE(last.has_value());
+  EXPECT_EQ(last.error().code, ErrorCode::data_corrupt);
+  EXPECT_NE(last.error().message.find("does not cover"), std::string::npos);
+}
+
+TEST(Variants, AreUniqueAndTheirEditsAreEffective) {
+  std::set<std::string> hashes;
+  for (const Variant& variant : all_variants()) {
+    EXPECT_TRUE(hashes.insert(config_hash(variant_config(variant).values)).second) << variant.name;
+    EXPECT_FALSE(variant.sentence.empty());
+  }
+}
+
+TEST(Variants, AnUnknownNameGetsTheNearestOne) {
+  const auto variant = find_variant("no_imu");
+  ASSERT_FALSE(variant.has_value());
+  EXPECT_NE(variant.error().message.find("nearest: no-imu"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,129 @@
+#include "core/residuals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/numeric_jacobian.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+namespace {
+
+using testing::numeric_jacobian;
+using testing::relative_difference;
+
+const SE3 kTImuCamera{so3_exp({0.02, -0.03, 1.5}), {0.09, 0.003, 0.002}};
+const SE3 kTWorldImu{so3_exp({0.1, 0.2, -1.4}), {0.05, -0.1, 0.02}};
+
+/// The pose tangent of the filter: right rotation, then world position.
+SE3 moved(const SE3& T_world_imu, const Eigen::VectorXd& e) {
+  return {T_world_imu.rotation * so3_exp(e.head<3>()), T_world_imu.translation + e.tail<3>()};
+}
+
+GreyImage smooth_image() {
+  GreyImage image(320, 240);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      image(x, y) = static_cast<std::uint8_t>(
+          std::lround(128 + 60 * std::sin(0.21 * x + 0.05 * y) + 50 * std::cos(0.17 * y - 0.03 * x)));
+    }
+  }
+  return image;
+}
+
+TEST(Residuals, PosedCameraComposesTheTransforms) {
+  const PosedCamera posed(testing::small_camera(), kTWorldImu, kTImuCamera);
+  const Vector3d point_world(0.4, -0.3, 2.0);
+  const Vector3d point_camera = (kTWorldImu * kTImuCamera).inverse() * point_world;
+  EXPECT_LT((posed.to_camera(point_world) - point_camera).norm(), 1e-14);
+  EXPECT_LT((posed.to_imu(point_camera) - kTWorldImu.inverse() * point_world).norm(), 1e-14);
+}
+
+TEST(Residuals, ProjectionJacobianEqualsNumericOne) {
+  const PinholeCamera camera = camera_at_level(testing::small_camera(), 1);
+  const Vector3d point_world(0.4, -0.3, 2.0);
+  const PosedCamera posed(camera, kTWorldImu, kTImuCamera);
+  const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
+    const PosedCamera p(camera, moved(kTWorldImu, e), kTImuCamera);
+    return p.camera.project(p.to_camera(point_world));
+  };
+  EXPECT_LT(relative_difference(project_with_jacobian(posed, posed.to_camera(point_world)).jacobian,
+                                numeric_jacobian(f, 6)),
+            1e-8);
+}
+
+TEST(Residuals, PhotometricJacobianEqualsNumericOneAtAllLevels) {
+  const std::vector<GreyImage> pyramid = build_pyramid(smooth_image(), 3);
+  for (int level = 0; level < 3; ++level) {
+    const PinholeCamera camera = camera_at_level(testing::small_camera(), level);
+    const GreyImage& image = pyramid[static_cast<std::size_t>(level)];
+    for (const Vector3d& point_world :
+         {Vector3d(0.4, -0.3, 2.0), Vector3d(-0.5, 0.2, 1.4), Vector3d(0.1, 0.35, 2.5)}) {
+      const auto residual = [&](const SE3& T_world_imu) {
+        const PosedCamera p(camera, T_world_imu, kTImuCamera);
+        const Projection projection = project_with_jacobian(p, p.to_camera(point_world));
+        return photometric_residual(sample_bilinear(image, projection.pixel_px.x(), projection.pixel_px.y()),
+                                    projection.jacobian, 120.0, 1.1, -3.0);
+      };
+      // Bilinear interpolation is piecewise: a step far below a pixel stays within the cell.
+      const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
+        return Eigen::VectorXd::Constant(1, residual(moved(kTWorldImu, e)).value_grey);
+      };
+      EXPECT_LT(relative_difference(residual(kTWorldImu).jacobian, numeric_jacobian(f, 6, 1e-7)), 1e-5)
+          << "level " << level;
+    }
+  }
+}
+
+TEST(Residuals, PlaneJacobianEqualsNumericOne) {
+  const Vector3d point_imu(0.2, 0.5, 1.8);
+  const Vector3d plane_point(0.3, 0.1, 2.0);
+  const Vector3d normal = Vector3d(0.3, -0.5, -0.8).normalized();
+  const auto residual = [&](const SE3& T_world_imu) {
+    return point_to_plane_residual(PosedCamera(testing::small_camera(), T_world_imu, kTImuCamera), point_imu,
+                                   plane_point, normal);
+  };
+  const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Constant(1, residual(moved(kTWorldImu, e)).value_m);
+  };
+  EXPECT_LT(relative_difference(residual(kTWorldImu).jacobian, numeric_jacobian(f, 6)), 1e-8);
+}
+
+TEST(Residuals, BilinearSampleIsExactOnAPlaneAndAtTheBorder) {
+  GreyImage image(8, 6);
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 8; ++x) image(x, y) = static_cast<std::uint8_t>(10 + 5 * x + 7 * y);
+  }
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {7.0, 5.0}, {3.25, 2.75}, {6.999, 0.001}}) {
+    const IntensitySample sample = sample_bilinear(image, x, y);
+    EXPECT_NEAR(sample.value, 10 + 5 * x + 7 * y, 1e-12);
+    EXPECT_NEAR(sample.dx, 5, 1e-12);
+    EXPECT_NEAR(sample.dy, 7, 1e-12);
+  }
+}
+
+TEST(Residuals, HuberIsSmoothAtItsKneeAndItsWeightIsTheDerivative) {
+  const double k = 1.345;
+  EXPECT_NEAR(huber(k - 1e-9, k).cost, huber(k + 1e-9, k).cost, 1e-8);
+  for (const double r : {-5.0, -1.0, 0.3, 1.3, 2.0, 40.0}) {
+    const double slope = (huber(r + 1e-6, k).cost - huber(r - 1e-6, k).cost) / 2e-6;
+    EXPECT_NEAR(huber(r, k).weight * r, slope, 1e-6) << r;
+  }
+}
+
+TEST(Residuals, LevelsShareTheirPixelGrid) {
+  // Pixel (x, y) of level l is (x, y) * 2^l of level 0, for odd sizes as well.
+  PinholeCamera camera = testing::small_camera();
+  camera.width_px = 321;
+  const PinholeCamera level2 = camera_at_level(camera, 2);
+  const Vector3d point(0.3, -0.2, 1.7);
+  EXPECT_LT((4.0 * level2.project(point) - camera.project(point)).norm(), 1e-12);
+  const auto pyramid = build_pyramid(GreyImage(321, 240, 9), 3);
+  EXPECT_EQ(pyramid[2].width, level2.width_px);
+  EXPECT_EQ(pyramid[2].height, level2.height_px);
+  EXPECT_EQ(pyramid[2](40, 30), 9);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,273 @@
+#include "datasets/tum_rgbd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "core/geometry.hpp"
+#include "datasets/camera_presets.hpp"
+#include "datasets/open_recording.hpp"
+#include "tests/datasets/tum_folder.hpp"
+
+namespace fusebench {
+namespace {
+
+using testing::golden_tum_folder;
+using testing::TumFolder;
+
+TumOptions small_camera() {
+  TumOptions options;
+  options.camera = CalibratedCamera{{0, 0, 10, 11, 3.5, 2.5}, {}, {}};
+  return options;
+}
+
+/// Message and hint of the expected error.
+std::string refusal(const TumFolder& folder, ErrorCode code, const TumOptions& options = small_camera()) {
+  const auto recording = open_tum_rgbd(folder.path(), options);
+  if (!recording) {
+    EXPECT_EQ(recording.error().code, code) << recording.error().message;
+    return recording.error().message + " | " + recording.error().hint;
+  }
+  return "was not refused";
+}
+
+void expect_contains(const std::string& text, std::string_view part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "expected: " << part << "\ngot: " << text;
+}
+
+TEST(TumRgbd, OpensAFolder) {
+  const TumFolder folder;
+  const auto recording = open_recording(folder.path(), {"", small_camera()});
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->format, "tum");
+  EXPECT_EQ(recording->name, folder.path().filename().string());
+  ASSERT_EQ(recording->frames.size(), 3U);
+  EXPECT_EQ(recording->frames[1].timestamp_ns, 10'100'000'000);
+  EXPECT_EQ(recording->frames[1].depth_timestamp_ns, 10'110'000'000);
+  EXPECT_EQ(recording->frames[2].depth_file.filename(), "2.png");
+  EXPECT_EQ(recording->ground_truth.size(), 9U);
+  EXPECT_EQ(recording->imu_source, ImuSource::none);
+  EXPECT_TRUE(recording->imu.empty() && recording->accelerometer.empty() && recording->warnings.empty());
+  EXPECT_EQ(recording->rig.camera.width_px, 8);
+  EXPECT_EQ(recording->rig.camera.fy_px, 11);
+  EXPECT_EQ(recording->fingerprint.size(), 32U);
+  const auto frame = recording->load_frame(2);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->timestamp_ns, 10'200'000'000);
+  EXPECT_EQ(frame->depth_m(3, 3), 1.0004F);
+  EXPECT_EQ(frame->color(3, 3), (Rgb{10, 20, 30}));
+  EXPECT_EQ(frame->grey(3, 3), 18);  // 0.299 * 10 + 0.587 * 20 + 0.114 * 30
+}
+
+TEST(TumRgbd, FolderNameWithTrailingSlash) {
+  const auto recording = open_recording(golden_tum_folder() / "");
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->name, "tum_freiburg1_rpy_5frames");
+}
+
+TEST(TumRgbd, DepthFactor) {
+  const TumFolder folder;
+  TumOptions options = small_camera();
+  options.depth_factor = 1000;
+  EXPECT_EQ(open_tum_rgbd(folder.path(), options)->load_frame(0)->depth_m(0, 0), 5.0F);
+  options.depth_factor = 0;
+  expect_contains(refusal(folder, ErrorCode::configuration, options), "depth_factor = 0");
+  options.depth_factor = 5000;
+  options.max_difference_s = -1;
+  expect_contains(refusal(folder, ErrorCode::configuration, options), "max_difference_s = -1");
+}
+
+TEST(TumRgbd, UnknownCameraListsTheChoices) {
+  const std::string message = refusal(TumFolder(), ErrorCode::configuration, {});
+  for (const char* part : {"--camera", "freiburg1", "freiburg2", "freiburg3", "default"})
+    expect_contains(message, part);
+}
+
+TEST(TumRgbd, UnmatchedImagesAreCounted) {
+  const TumFolder folder;
+  folder.write("depth.txt", "10.01 depth/0.png\n10.13 depth/1.png\n10.19 depth/2.png\n");
+  const auto recording = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->frames.size(), 2U);
+  ASSERT_EQ(recording->warnings.size(), 1U);
+  expect_contains(recording->warnings[0], "1 of 3 colour and 1 of 3 depth images");
+}
+
+TEST(TumRgbd, MissingLists) {
+  const TumFolder folder;
+  std::filesystem::remove(folder.path() / "depth.txt");
+  expect_contains(refusal(folder, ErrorCode::data_missing), "depth.txt: no such file");
+  const auto unrecognised = open_recording(folder.path());
+  ASSERT_FALSE(unrecognised);
+  EXPECT_EQ(unrecognised.error().code, ErrorCode::data_missing);
+  expect_contains(unrecognised.error().message, "looked for tum (files rgb.txt, depth.txt)");
+}
+
+TEST(TumRgbd, MissingFolderAndUnknownFormat) {
+  EXPECT_EQ(open_recording("/nonexistent").error().code, ErrorCode::data_missing);
+  const auto unknown = open_recording(golden_tum_folder(), {"tmu", {}});
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().code, ErrorCode::configuration);
+  expect_contains(unknown.error().message, "format = tmu (allowed tum)");
+}
+
+TEST(TumRgbd, TruthAndAccelerometerAreOptional) {
+  const TumFolder folder;
+  std::filesystem::remove(folder.path() / "groundtruth.txt");
+  folder.write("accelerometer.txt", "10.0 0.1 -9.8 0.2\n10.1 0 -9.8 0\n");
+  const auto recording = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(recording);
+  EXPECT_TRUE(recording->ground_truth.empty());
+  ASSERT_EQ(recording->accelerometer.size(), 2U);
+  EXPECT_EQ(recording->accelerometer[0].specific_force_mps2, Vector3d(0.1, -9.8, 0.2));
+}
+
+TEST(TumRgbd, RefusesBadRowsWithFileAndLine) {
+  const auto after_writing = [](const std::string& name, std::string_view content) {
+    const TumFolder folder;
+    folder.write(name, content);
+    return refusal(folder, ErrorCode::data_corrupt);
+  };
+  expect_contains(after_writing("rgb.txt", "# x\n10.0\n"),
+                  "rgb.txt:2: expected 2 columns: timestamp filename, got 1");
+  expect_contains(after_writing("rgb.txt", "# nothing\n"), "rgb.txt: has no rows");
+  expect_contains(after_writing("rgb.txt", "10.1 rgb/0.png\n10.0 rgb/1.png\n"),
+                  "rgb.txt:2: time runs backwards by 0.1 s (timestamp 10.0 after line 1)");
+  expect_contains(after_writing("depth.txt", "10.0 depth/0.png\n# x\n10.00 depth/1.png\n"),
+                  "depth.txt:3: timestamp 10.00 is the same as that of line 1");
+  expect_contains(after_writing("depth.txt", "20.0 depth/0.png\n"), "no colour image");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 1\n"),
+                  "groundtruth.txt:1: expected 8 columns: timestamp tx ty tz qx qy qz qw, got 7");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 nan 0 0 0 1\n"), "groundtruth.txt:1: tz: ");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 0 0\n"), "groundtruth.txt:1: quaternion");
+  expect_contains(after_writing("groundtruth.txt", "10 0 0 0 0 0 0 1\n9 0 0 0 0 0 0 1\n"),
+                  "groundtruth.txt:2: time runs backwards by 1 s");
+  expect_contains(after_writing("accelerometer.txt", "10 1 2\n"), "accelerometer.txt:1: expected 4 columns");
+}
+
+TEST(TumRgbd, RefusesTruthOfAnotherTime) {
+  const TumFolder folder;
+  folder.write("groundtruth.txt", "20.5 0 0 0 0 0 0 1\n21.5 0 0 0 0 0 0 1\n");
+  const std::string message = refusal(folder, ErrorCode::data_corrupt);
+  expect_contains(message, "times 20.500000 to 21.500000");
+  expect_contains(message, "times 10.000000 to 10.200000");
+}
+
+TEST(TumRgbd, PartlyCoveringTruthIsAWarning) {
+  const TumFolder folder;
+  folder.write("groundtruth.txt", "10.05 0 0 0 0 0 0 1\n10.12 0 0 0 0 0 0 1\n10.25 0 0 0 0 0 0 2\n");
+  const auto recording = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(recording);
+  ASSERT_EQ(recording->warnings.size(), 2U);
+  expect_contains(recording->warnings[0], "groundtruth.txt:3: 1 of 3 quaternions");
+  expect_contains(recording->warnings[1], "2 of 3 frames have no ground truth");
+  EXPECT_NEAR(recording->ground_truth[2].T_world_camera.rotation.norm(), 1, 1e-15);
+}
+
+TEST(TumRgbd, RefusesMissingImage) {
+  const TumFolder folder;
+  std::filesystem::remove(folder.path() / "depth/1.png");
+  const std::string message = refusal(folder, ErrorCode::data_missing);
+  expect_contains(message, "depth.txt:3: image ");
+  expect_contains(message, "depth/1.png does not exist");
+}
+
+TEST(TumRgbd, RefusesImagesThatDoNotFitTheCamera) {
+  TumOptions options;
+  options.camera = parse_camera("freiburg1").value();
+  expect_contains(refusal(TumFolder(), ErrorCode::data_corrupt, options),
+                  "0.png: image of 8x6 pixels, but the camera's calibration is for 640x480");
+}
+
+TEST(TumRgbd, BadImagesAreErrorsOfTheirFrame) {
+  const TumFolder folder;
+  folder.write_depth(1, Image<std::uint16_t>(4, 4, 1));
+  folder.write("rgb/2.png", testing::read_bytes(folder.path() / "rgb/0.png").substr(0, 50));
+  const auto recording = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording->load_frame(0));
+  const auto wrong_size = recording->load_frame(1);
+  ASSERT_FALSE(wrong_size);
+  EXPECT_EQ(wrong_size.error().code, ErrorCode::data_corrupt);
+  expect_contains(wrong_size.error().message, "depth/1.png: expected 8x6 pixels, got 4x4");
+  const auto truncated = recording->load_frame(2);
+  ASSERT_FALSE(truncated);
+  EXPECT_EQ(truncated.error().code, ErrorCode::data_corrupt);
+  expect_contains(truncated.error().message, "rgb/2.png: truncated PNG");
+}
+
+TEST(TumRgbd, FingerprintFollowsContentNotText) {
+  const TumFolder folder;
+  const auto fingerprint = [&] { return open_tum_rgbd(folder.path(), small_camera())->fingerprint; };
+  const std::string original = fingerprint();
+  EXPECT_EQ(fingerprint(), original);
+  folder.write("rgb.txt", "10.00,rgb/0.png\r\n10.10,rgb/1.png\r\n10.20,rgb/2.png\r\n");
+  EXPECT_EQ(fingerprint(), original) << "another spelling of the same list";
+  folder.write("groundtruth.txt", "10 1 2 3 0 0 0 1\n");
+  const std::string other_truth = fingerprint();
+  EXPECT_NE(other_truth, original);
+  folder.write_depth(1, Image<std::uint16_t>(8, 6, 77));
+  EXPECT_NE(fingerprint(), other_truth);
+}
+
+TEST(SelectFrames, RenumbersAndChangesTheFingerprint) {
+  const TumFolder folder;
+  auto recording = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(recording);
+  const std::string whole = recording->fingerprint;
+  ASSERT_TRUE(select_frames(*recording, 0, 3));
+  EXPECT_EQ(recording->fingerprint, whole);
+  ASSERT_TRUE(select_frames(*recording, 1, 3));
+  EXPECT_NE(recording->fingerprint, whole);
+  ASSERT_EQ(recording->frames.size(), 2U);
+  EXPECT_EQ(recording->load_frame(0)->timestamp_ns, recording->frames[0].timestamp_ns);
+  EXPECT_EQ(recording->load_frame(1)->timestamp_ns, 10'200'000'000);
+  ASSERT_TRUE(select_frames(*recording, 1, 2));
+  EXPECT_EQ(recording->load_frame(0)->timestamp_ns, 10'200'000'000);
+  const auto refused = select_frames(*recording, 0, 2);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::usage);
+}
+
+/// Expected values were read with another decoder, and undistorted in double precision by OpenCV's own map.
+TEST(GoldenTum, FramesHoldIndependentlyReadValues) {
+  const auto recording = open_recording(golden_tum_folder());
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording->warnings.empty());
+  ASSERT_EQ(recording->frames.size(), 5U);
+  EXPECT_EQ(recording->frames[0].timestamp_ns, 1305031229528748000);
+  EXPECT_EQ(recording->frames[4].depth_timestamp_ns, 1305031229664358000);
+  EXPECT_EQ(recording->ground_truth.size(), 60U);
+  EXPECT_EQ(recording->accelerometer.size(), 291U);
+
+  const auto raw = read_color(recording->frames[0].color_file);
+  ASSERT_TRUE(raw);
+  EXPECT_EQ((*raw)(0, 0), (Rgb{12, 9, 8}));
+  EXPECT_EQ((*raw)(639, 479), (Rgb{190, 178, 185}));
+  const auto raw_depth = read_depth16(recording->frames[0].depth_file);
+  ASSERT_TRUE(raw_depth);
+  EXPECT_EQ(std::accumulate(raw_depth->data.begin(), raw_depth->data.end(), std::int64_t{0}), 1482757129);
+  EXPECT_EQ(std::count(raw_depth->data.begin(), raw_depth->data.end(), 0), 89238);
+
+  const auto frame = recording->load_frame(0);
+  ASSERT_TRUE(frame);
+  const auto expect_color = [&](int x, int y, const std::array<double, 3>& rgb) {
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(frame->color(x, y)[c], rgb[c], 1.5) << x << " " << y;
+  };
+  expect_color(320, 240, {24.0, 16.0, 23.0});
+  expect_color(100, 400, {253.97, 254.0, 253.03});
+  expect_color(500, 300, {216.17, 201.67, 200.47});
+  expect_color(60, 60, {14.39, 6.36, 11.88});
+  EXPECT_EQ(frame->depth_m(320, 240), 6192 / 5000.0F);
+  EXPECT_EQ(frame->depth_m(100, 400), 4378 / 5000.0F);
+  EXPECT_EQ(frame->depth_m(500, 300), 9118 / 5000.0F);
+  EXPECT_EQ(frame->depth_m(60, 60), 0.0F);
+  EXPECT_NEAR(static_cast<double>(std::count(frame->depth_m.data.begin(), frame->depth_m.data.end(), 0.0F)),
+              99306, 50);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(recording->load_frame(i)) << i;
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,154 @@
+#include "eval/record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace fusebench {
+namespace {
+
+using nlohmann::json;
+
+/// A record in which every number is different and awkward.
+RunRecord sample_record() {
+  RunRecord record;
+  record.status = RunStatus::ok;
+  record.reason.clear();
+  record.recording = {"fr1 \"rpy\"", "tum", 240, 3, 7.9671, "00ff", "synthetic IMU", "seed 1"};
+  record.variant = "full";
+  record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},
+                   {"depth.max_m", 1.0, "default"},
+                   {"terms.prior", std::string("imu"), "default"},
+                   {"terms.visibility_test", false, "variant dm"}};
+  record.config_hash = "0123456789abcdef";
+  AteResult ate;
+  ate.pairs = 239;
+  ate.possible = 240;
+  ate.coverage = 239.0 / 240.0;
+  ate.max_difference_s = 0.02;
+  ate.alignment = {"se3", {so3_exp({0.1, 0.2, 0.3}), {1.0 / 3.0, 2.0, 3.0}}};
+  const std::vector<double> errors = {0.1, 0.2, 1.0 / 3.0};
+  ate.stats = statistics(errors);
+  record.metrics.ate = {ate, {}};
+  RpeResult rpe;
+  rpe.delta = 1;
+  rpe.unit = DeltaUnit::frames;
+  rpe.translation = rpe.rotation = statistics(errors);
+  record.metrics.rpe_frame = {rpe, {}};
+  record.metrics.rpe_second = {std::nullopt, "shorter than 1 s"};
+  IntensityAccumulator intensity;
+  intensity.add_frame(
+      std::vector<IntensityResidual>{{1, 2.5F, false}, {2, 3.75F, false}});  // nothing accepted
+  record.metrics.aie = {intensity.result(), {}};
+  record.frames = {240, 238, 2};
+  record.model = {1000, 2000, 30};
+  record.timing = {1.5, 2.5, 123456789, 160.0, {{"decode", 1.25}, {"update", 3.5}}};
+  record.provenance = {"0.1.0", "abc-dirty", "GNU 12.2.0", "-O3", "a cpu", 2, "a host"};
+  return record;
+}
+
+TEST(Record, ReadsBackWhatItWrote) {
+  const std::string text = to_json(sample_record());
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+  EXPECT_EQ(back->status, RunStatus::ok);
+  EXPECT_EQ(back->metrics.ate.value->stats.rmse, sample_record().metrics.ate.value->stats.rmse);
+  EXPECT_EQ(std::get<std::int64_t>(back->config[0].value), 8);
+  EXPECT_EQ(std::get<double>(back->config[1].value), 1.0);
+  EXPECT_FALSE(back->metrics.rpe_second.value.has_value());
+  EXPECT_EQ(back->metrics.rpe_second.reason, "shorter than 1 s");
+}
+
+TEST(Record, HasTheKeysThatReadersRelyOn) {
+  const json record = json::parse(to_json(sample_record()));
+  for (const char* const path : {"/schema",
+                                 "/status",
+                                 "/reason",
+                                 "/recording/name",
+                                 "/recording/format",
+                                 "/recording/frames",
+                                 "/recording/duration_s",
+                                 "/recording/fingerprint",
+                                 "/recording/imu",
+                                 "/variant",
+                                 "/config",
+                                 "/config_hash",
+                                 "/metrics/ate/protocol",
+                                 "/metrics/ate/pairs",
+                                 "/metrics/ate/coverage",
+                                 "/metrics/ate/alignment/matrix/15",
+                                 "/metrics/ate/stats/rmse",
+                                 "/metrics/ate/stats/mean",
+                                 "/metrics/ate/stats/median",
+                                 "/metrics/ate/stats/std",
+                                 "/metrics/ate/stats/min",
+                                 "/metrics/ate/stats/max",
+                                 "/metrics/rpe/frame/translation/stats/rmse",
+                                 "/metrics/rpe/frame/rotation/stats/rmse",
+                                 "/metrics/aie/protocol",
+                                 "/metrics/aie/stats/mean",
+                                 "/metrics/aie/pixels",
+                                 "/metrics/coverage/tracked",
+                                 "/frames/total",
+                                 "/frames/tracked",
+                                 "/frames/lost",
+                                 "/timing/wall_s",
+                                 "/timing/cpu_s",
+                                 "/timing/peak_rss_bytes",
+                                 "/timing/fps",
+                                 "/timing/stages_ms/update",
+                                 "/provenance/version",
+                                 "/provenance/git",
+                                 "/provenance/compiler",
+                                 "/provenance/flags",
+                                 "/provenance/cpu",
+                                 "/provenance/threads",
+                                 "/provenance/host"}) {
+    EXPECT_TRUE(record.contains(json::json_pointer(path))) << path;
+  }
+  EXPECT_EQ(record.at("/config/iekf.max_iterations/origin"_json_pointer), "--set");
+}
+
+TEST(Record, NumbersThatDoNotExistAreNull) {
+  const std::string text = to_json(sample_record());
+  const json record = json::parse(text);
+  EXPECT_TRUE(record.at("/metrics/aie/accepted/aie"_json_pointer).is_null());
+  EXPECT_TRUE(record.at("/metrics/rpe/second/stats"_json_pointer).is_null());
+  EXPECT_EQ(text.find(": nan"), std::string::npos);
+}
+
+TEST(Record, StartsAsAFailure) {
+  const json record = json::parse(to_json(RunRecord{}));
+  EXPECT_EQ(record.at("status"), "failed");
+  EXPECT_EQ(record.at("reason"), "not run");
+  EXPECT_TRUE(record.at("/metrics/ate/stats"_json_pointer).is_null());
+  EXPECT_TRUE(parse_record(to_json(RunRecord{}), "record.json").has_value());
+}
+
+TEST(Record, DamageIsNamed) {
+  const auto message_of = [](const std::string& text) {
+    const auto result = parse_record(text, "a/record.json");
+    EXPECT_FALSE(result.has_value());
+    EXPECT_EQ(result.error().code, ErrorCode::data_corrupt);
+    EXPECT_TRUE(result.error().message.starts_with("a/record.json: ")) << result.error().message;
+    return result.error().message;
+  };
+  json record = json::parse(to_json(sample_record()));
+  message_of("");
+  message_of("[]");
+  message_of(record.dump().substr(0, 500));
+  json without = record;
+  without.erase("status");
+  EXPECT_NE(message_of(without.dump()).find("status"), std::string::npos);
+  json other_type = record;
+  other_type["frames"]["total"] = "many";
+  message_of(other_type.dump());
+  json other_schema = record;
+  other_schema["schema"] = 99;
+  EXPECT_NE(message_of(other_schema.dump()).find("99"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fusebench

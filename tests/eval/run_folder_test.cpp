@@ -1,0 +1,67 @@
+#include "eval/run_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/eval/temporary_folder.hpp"
+
+namespace fusebench {
+namespace {
+
+using RunFolderTest = InTemporaryFolder;
+
+std::size_t entries(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  for (auto entry = std::filesystem::recursive_directory_iterator(folder);
+       entry != std::filesystem::recursive_directory_iterator(); ++entry) {
+    ++count;
+  }
+  return count;
+}
+
+TEST_F(RunFolderTest, NothingIsSeenBeforeTheCommit) {
+  const auto place = folder_ / "out" / "recording" / "full" / "0123";
+  {
+    auto run = RunFolder::create(place);
+    ASSERT_TRUE(run.has_value());
+    ASSERT_TRUE(run->write("record.json", "{}").has_value());
+    EXPECT_FALSE(std::filesystem::exists(place));
+    ASSERT_TRUE(run->commit().has_value());
+  }
+  EXPECT_EQ(text_of(place / "record.json"), "{}");
+  EXPECT_EQ(entries(folder_ / "out" / "recording" / "full"), 2U);
+}
+
+TEST_F(RunFolderTest, AnAbandonedRunLeavesNothing) {
+  {
+    auto run = RunFolder::create(folder_ / "out" / "recording" / "full" / "0123");
+    ASSERT_TRUE(run.has_value());
+    ASSERT_TRUE(run->write("record.json", "{}").has_value());
+  }
+  EXPECT_EQ(entries(folder_), 0U);
+}
+
+TEST_F(RunFolderTest, AnAbandonedRunKeepsWhatWasThere) {
+  write("out/recording/full/0123/record.json", "old");
+  { auto run = RunFolder::create(folder_ / "out" / "recording" / "full" / "0123"); }
+  EXPECT_EQ(text_of(folder_ / "out/recording/full/0123/record.json"), "old");
+}
+
+TEST_F(RunFolderTest, TheOldRunIsReplacedWhole) {
+  write("0123/record.json", "old");
+  write("0123/extra.txt", "old");
+  auto run = RunFolder::create(folder_ / "0123");
+  ASSERT_TRUE(run && run->write("record.json", "new") && run->commit());
+  EXPECT_EQ(text_of(folder_ / "0123/record.json"), "new");
+  EXPECT_EQ(entries(folder_), 2U);
+}
+
+TEST_F(RunFolderTest, APlaceThatCannotBeWrittenIsAnIoError) {
+  const auto file = write("file", "not a folder");
+  const auto run = RunFolder::create(file / "recording" / "0123");
+  ASSERT_FALSE(run.has_value());
+  EXPECT_EQ(run.error().code, ErrorCode::io);
+  EXPECT_EQ(entries(folder_), 1U);
+}
+
+}  // namespace
+}  // namespace fusebench

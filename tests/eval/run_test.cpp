@@ -1,0 +1,160 @@
+// Whole runs over the five golden frames.
+#include "eval/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/variants.hpp"
+#include "eval/batch.hpp"
+#include "eval/intensity_file.hpp"
+#include "eval/trajectory_file.hpp"
+#include "tests/datasets/tum_folder.hpp"
+#include "tests/eval/temporary_folder.hpp"
+
+namespace fusebench {
+namespace {
+
+const std::filesystem::path kGolden = testing::golden_tum_folder();
+
+class RunTest : public InTemporaryFolder {
+ protected:
+  [[nodiscard]] RunSpec spec(const std::string& variant, int threads = 1) const {
+    RunSpec result;
+    result.recording = kGolden;
+    result.variant = variant;
+    result.config = variant_config(*find_variant(variant));
+    result.threads = threads;
+    result.out = folder_ / ("out" + std::to_string(threads));
+    return result;
+  }
+};
+
+/// The part of a record before the timing.
+std::string reproducible_part(const std::string& record) {
+  return record.substr(0, record.find("\"timing\""));
+}
+
+TEST_F(RunTest, WritesAWholeFolder) {
+  const auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value()) << prepared.error().message;
+  std::size_t frames_seen = 0;
+  const auto record = execute_run(*prepared, {[&](std::size_t frame, std::size_t) { frames_seen = frame; }});
+  ASSERT_TRUE(record.has_value()) << record.error().message;
+  EXPECT_EQ(record->status, RunStatus::ok) << record->reason;
+  EXPECT_EQ(frames_seen, 5U);
+  EXPECT_EQ(record->frames.total, 5U);
+  for (const char* const name :
+       {"record.json", "trajectory.tum", "mesh.ply", "frames.csv", "intensity.bin", "log.txt"}) {
+    EXPECT_TRUE(std::filesystem::exists(prepared->folder / name)) << name;
+  }
+  EXPECT_EQ(text_of(prepared->folder / "record.json"), to_json(*record));
+  const auto trajectory = read_tum_trajectory(prepared->folder / "trajectory.tum");
+  ASSERT_TRUE(trajectory.has_value());
+  EXPECT_EQ(trajectory->size(), record->frames.tracked);
+  // World is the first camera frame.
+  EXPECT_EQ((*trajectory)[0].T_world_camera.translation, Vector3d(0, 0, 0));
+  EXPECT_EQ((*trajectory)[0].timestamp_ns, prepared->recording.frames[0].timestamp_ns);
+}
+
+TEST_F(RunTest, SameBytesWithAnyThreadCount) {
+  const auto one = prepare_run(spec("no-imu", 1));
+  const auto three = prepare_run(spec("no-imu", 3));
+  ASSERT_TRUE(one && three && execute_run(*one) && execute_run(*three));
+  EXPECT_EQ(one->folder.filename(), three->folder.filename());
+  for (const char* const name : {"trajectory.tum", "mesh.ply", "intensity.bin", "log.txt"}) {
+    EXPECT_EQ(text_of(one->folder / name), text_of(three->folder / name)) << name;
+  }
+  EXPECT_EQ(reproducible_part(text_of(one->folder / "record.json")),
+            reproducible_part(text_of(three->folder / "record.json")));
+}
+
+TEST_F(RunTest, AVariantThatNeedsAnImuSaysHowToGetOne) {
+  const auto prepared = prepare_run(spec("full"));
+  ASSERT_FALSE(prepared.has_value());
+  EXPECT_EQ(exit_code(prepared.error().code), 2);
+  EXPECT_NE(prepared.error().hint.find("--imu synthetic"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(RunTest, TheHashTellsConfigurationsAndWindowsApart) {
+  const auto base = prepare_run(spec("no-imu"));
+  RunSpec edited = spec("no-imu");
+  ASSERT_TRUE(edited.config.set("iekf.max_iterations", std::int64_t{3}, "--set").has_value());
+  const auto other_config = prepare_run(edited);
+  RunSpec window = spec("no-imu");
+  window.frames = FrameWindow{1, 4};
+  const auto other_window = prepare_run(window);
+  ASSERT_TRUE(base && other_config && other_window);
+  EXPECT_NE(base->folder, other_config->folder);
+  EXPECT_NE(base->folder, other_window->folder);
+  EXPECT_EQ(other_window->recording.frames.size(), 3U);
+  // A variant without IMU is the same run whatever IMU was offered.
+  RunSpec synthetic = spec("no-imu");
+  synthetic.imu = ImuChoice::synthetic;
+  EXPECT_EQ(prepare_run(synthetic)->folder, base->folder);
+}
+
+TEST_F(RunTest, AStoppedRunLeavesNothing) {
+  const auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  std::atomic<bool> stop = false;
+  const auto record =
+      execute_run(*prepared, {[&](std::size_t frame, std::size_t) { stop = frame >= 2; }, &stop});
+  EXPECT_FALSE(record.has_value());
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(RunTest, AFrameThatCannotBeReadEndsTheRunAsFailed) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  prepared->recording.load_frame =
+      [load = prepared->recording.load_frame](std::size_t frame) -> Result<RgbdFrame> {
+    if (frame == 3) return fail(ErrorCode::data_corrupt, "image.png: is cut off");
+    return load(frame);
+  };
+  const auto record = execute_run(*prepared);
+  ASSERT_TRUE(record.has_value());
+  EXPECT_EQ(record->status, RunStatus::failed);
+  EXPECT_EQ(record->reason, "frame 3: image.png: is cut off");
+  EXPECT_EQ(record->frames.tracked + record->frames.lost, 3U);
+  EXPECT_TRUE(std::filesystem::exists(prepared->folder / "trajectory.tum"));
+  EXPECT_EQ(read_record(prepared->folder / "record.json")->status, RunStatus::failed);
+}
+
+TEST_F(RunTest, BlackFramesAreLost) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  prepared->spec.config.values.iekf.max_lost_frames = 1;
+  prepared->recording.load_frame =
+      [load = prepared->recording.load_frame](std::size_t frame) -> Result<RgbdFrame> {
+    auto loaded = load(frame);
+    if (loaded && frame >= 2) {
+      std::fill(loaded->depth_m.data.begin(), loaded->depth_m.data.end(), 0.0F);
+      std::fill(loaded->grey.data.begin(), loaded->grey.data.end(), std::uint8_t{0});
+    }
+    return loaded;
+  };
+  const auto record = execute_run(*prepared);
+  ASSERT_TRUE(record.has_value());
+  EXPECT_EQ(record->status, RunStatus::lost);
+  EXPECT_TRUE(record->reason.starts_with("lost at frame ")) << record->reason;
+  EXPECT_EQ(record->frames.lost, 2U);  // one more than allowed
+  // A frame that was lost has a prediction, which is no estimate: it has no pose.
+  EXPECT_EQ(read_tum_trajectory(prepared->folder / "trajectory.tum")->size(), record->frames.tracked);
+  EXPECT_LT(record->frames.tracked, 5U);
+}
+
+TEST_F(RunTest, ResumeLeavesFinishedRunsAlone) {
+  RunSpec wanted = spec("no-imu");
+  const BatchJob job{kGolden, "no-imu", wanted};
+  const std::vector<BatchJob> jobs = {job};
+  ASSERT_FALSE(run_batch(jobs, true)->front().resumed);
+  const auto again = run_batch(jobs, true);
+  EXPECT_TRUE(again->front().resumed);
+  EXPECT_EQ(again->front().status, RunStatus::ok);
+  EXPECT_FALSE(run_batch(jobs, false)->front().resumed);
+}
+
+}  // namespace
+}  // namespace fusebench

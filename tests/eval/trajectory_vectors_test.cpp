@@ -1,0 +1,174 @@
+// Against numbers that the scripts of the TUM RGB-D benchmark computed. The inputs are read from beside the
+// recordings; where those are not, the tests say so.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "eval/trajectory_file.hpp"
+#include "eval/trajectory_metrics.hpp"
+
+namespace fusebench {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kRelative = 1e-9;
+constexpr double kAbsolute = 1e-12;
+
+std::optional<std::filesystem::path> vectors() {
+  const char* const data = std::getenv("FUSEBENCH_DATA");
+  if (data == nullptr) return std::nullopt;
+  const auto folder = std::filesystem::path(data) / ".." / "vectors" / "trajectory";
+  if (!std::filesystem::exists(folder / "tum_expected.json")) return std::nullopt;
+  return folder;
+}
+
+#define SKIP_WITHOUT_VECTORS(folder) \
+  if (!folder) GTEST_SKIP() << "FUSEBENCH_DATA is not set, or has no ../vectors/trajectory beside it"
+
+void expect_close(double value, const json& expected, const std::string& what, double absolute = kAbsolute) {
+  const double wanted = expected.get<double>();
+  EXPECT_NEAR(value, wanted, std::max(absolute, kRelative * std::abs(wanted))) << what;
+}
+
+void expect_statistics(const Statistics& stats, const json& expected, const std::string& what,
+                       double absolute = kAbsolute) {
+  expect_close(stats.rmse, expected.at("rmse"), what + " rmse", absolute);
+  expect_close(stats.mean, expected.at("mean"), what + " mean", absolute);
+  expect_close(stats.median, expected.at("median"), what + " median", absolute);
+  expect_close(stats.std, expected.at("std"), what + " std", absolute);
+  expect_close(stats.min, expected.at("min"), what + " min", absolute);
+  expect_close(stats.max, expected.at("max"), what + " max", absolute);
+}
+
+/// The scripts hold stamps as doubles (steps of 238 ns today), which decides between two stamps at the same
+/// distance.
+std::int64_t rounded_as_double(std::int64_t timestamp_ns) {
+  const double seconds = std::stod(stamp_text(timestamp_ns));
+  return std::llround(static_cast<long double>(seconds) * 1e9L);
+}
+
+Trajectory load(const std::filesystem::path& folder, const json& test, const char* side) {
+  auto trajectory =
+      read_tum_trajectory(folder / "inputs" / test.at(side).get<std::string>(), Duplicates::last);
+  EXPECT_TRUE(trajectory.has_value()) << trajectory.error().message;
+  const double scale = side == std::string("est") ? test.at("options").value("scale", 1.0) : 1.0;
+  for (StampedPose& pose : *trajectory) {
+    pose.timestamp_ns = rounded_as_double(pose.timestamp_ns);
+    pose.T_world_camera.translation *= scale;
+  }
+  return *trajectory;
+}
+
+json cases(const std::filesystem::path& folder, const char* file) {
+  return json::parse(std::ifstream(folder / file)).at("cases");
+}
+
+TEST(TumVectors, AbsoluteTrajectoryError) {
+  const auto folder = vectors();
+  SKIP_WITHOUT_VECTORS(folder);
+  int compared = 0;
+  for (const json& test : cases(*folder, "tum_expected.json")) {
+    if (test.at("tool") != "evaluate_ate.py") continue;
+    const std::string what = test.at("est").get<std::string>() + " " + test.at("options").dump();
+    AteOptions options;
+    options.max_difference_s = test.at("options").value("max_difference", 0.02);
+    options.offset_s = test.at("options").value("offset", 0.0);
+    const auto ate =
+        absolute_trajectory_error(load(*folder, test, "gt"), load(*folder, test, "est"), options);
+    ASSERT_TRUE(ate.has_value()) << what << ": " << ate.error().message;
+    EXPECT_EQ(ate->pairs, test.at("compared_pose_pairs").get<std::size_t>()) << what;
+    expect_statistics(ate->stats, test.at("absolute_translational_error"), what);
+    const Matrix3d rotation = ate->alignment.T_reference_estimate.rotation_matrix();
+    for (int k = 0; k < 9; ++k) {
+      EXPECT_NEAR(rotation(k / 3, k % 3), test.at("rot_row_major")[static_cast<std::size_t>(k)].get<double>(),
+                  1e-9)
+          << what;
+    }
+    ++compared;
+  }
+  EXPECT_GE(compared, 24);
+}
+
+TEST(TumVectors, RelativePoseErrorWithFixedDelta) {
+  const auto folder = vectors();
+  SKIP_WITHOUT_VECTORS(folder);
+  int compared = 0;
+  for (const json& test : cases(*folder, "tum_expected.json")) {
+    const json& given = test.at("options");
+    if (test.at("tool") != "evaluate_rpe.py" || !given.value("fixed_delta", false)) continue;
+    const std::string unit = given.at("delta_unit");
+    if (unit != "s" && unit != "f") continue;
+    const std::string what = test.at("est").get<std::string>() + " " + given.dump();
+    RpeOptions options;
+    options.delta = given.at("delta");
+    options.unit = unit == "s" ? DeltaUnit::seconds : DeltaUnit::frames;
+    options.offset_s = given.value("offset", 0.0);
+    options.max_difference_s = std::numeric_limits<double>::infinity();
+    options.skip_gaps = false;
+    const auto rpe = relative_pose_error(load(*folder, test, "gt"), load(*folder, test, "est"), options);
+    ASSERT_TRUE(rpe.has_value()) << what << ": " << rpe.error().message;
+    EXPECT_EQ(rpe->pairs, test.at("compared_pose_pairs").get<std::size_t>()) << what;
+    expect_statistics(rpe->translation, test.at("translational_error"), what);
+    // The script takes the angle from the cosine, which leaves it about 2e-8 rad near zero.
+    expect_statistics(rpe->rotation, test.at("rotational_error_rad"), what + " rotation", 3e-8);
+    ++compared;
+  }
+  EXPECT_GE(compared, 20);
+}
+
+TEST(TumVectors, Association) {
+  const auto folder = vectors();
+  SKIP_WITHOUT_VECTORS(folder);
+  const auto stamps = [](const json& list) {
+    std::vector<std::int64_t> result;
+    for (const json& stamp : list) result.push_back(std::llround(stamp.get<double>() * 1e9));
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  };
+  int compared = 0;
+  for (const json& test : cases(*folder, "association_cases.json")) {
+    const auto reference = stamps(test.at("ref"));
+    const auto estimate = stamps(test.at("est"));
+    const auto pairs = associate(reference, estimate, std::llround(test.at("max_diff").get<double>() * 1e9),
+                                 std::llround(test.at("offset").get<double>() * 1e9));
+    const json& expected = test.at("tum_stamp_pairs");
+    ASSERT_EQ(pairs.size(), expected.size()) << test.at("id");
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      EXPECT_NEAR(static_cast<double>(reference[pairs[i].reference]),
+                  1e9 * std::stod(expected[i][0].get<std::string>()), 500)
+          << test.at("id");
+      EXPECT_NEAR(static_cast<double>(estimate[pairs[i].estimate]),
+                  1e9 * std::stod(expected[i][1].get<std::string>()), 500)
+          << test.at("id");
+    }
+    ++compared;
+  }
+  EXPECT_GE(compared, 15);
+}
+
+TEST(TumVectors, DegenerateTrajectoriesAreRefused) {
+  const auto folder = vectors();
+  SKIP_WITHOUT_VECTORS(folder);
+  for (const std::string name : {"synL_collinear", "synL_collinear_oblique", "syn2_two_poses"}) {
+    const auto truth = read_tum_trajectory(*folder / "inputs" / (name + "_gt.txt"));
+    const auto estimate = read_tum_trajectory(*folder / "inputs" / (name + "_est.txt"));
+    ASSERT_TRUE(truth && estimate) << name;
+    const auto ate = absolute_trajectory_error(*truth, *estimate);
+    ASSERT_FALSE(ate.has_value()) << name;
+    EXPECT_EQ(ate.error().code, ErrorCode::data_corrupt) << name;
+  }
+  const auto planar_truth = read_tum_trajectory(*folder / "inputs" / "synP_planar_gt.txt");
+  const auto planar = read_tum_trajectory(*folder / "inputs" / "synP_planar_est.txt");
+  EXPECT_TRUE(absolute_trajectory_error(*planar_truth, *planar).has_value());
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,32 @@
+// Analytic scenes fused into a model: what the tests of the model, the raycaster and the mesh start from.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/tsdf_volume.hpp"
+#include "tests/support/analytic_scene.hpp"
+
+namespace fusebench {
+
+/// Fuses one rendered frame a pose; a failure fails the test that calls.
+inline TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera, const std::vector<SE3>& poses,
+                       const TsdfConfig& tsdf = {}, const DepthConfig& depth = {}, int threads = 2) {
+  const Workers workers(threads);
+  TsdfVolume volume(tsdf);
+  for (const SE3& T_world_camera : poses) {
+    const auto fused =
+        volume.integrate(scene.render(camera, T_world_camera), camera, T_world_camera, depth, workers);
+    EXPECT_TRUE(fused.has_value()) << fused.error().message;
+  }
+  return volume;
+}
+
+/// A ball of 0.3 m radius around a point that lies on no symmetry of the lattice.
+inline AnalyticScene ball_scene() {
+  return {{AnalyticSphere{{0.0137, -0.0211, 0.0073}, 0.3, {180, 90, 30}}}};
+}
+inline std::vector<SE3> poses_around_ball() { return poses_around({0.0137, -0.0211, 0.0073}, 1.0, 24); }
+
+}  // namespace fusebench
