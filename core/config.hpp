@@ -107,8 +107,8 @@ struct InitialisationConfig {
   double moving_velocity_sigma_mps = 1.0;
   double moving_gravity_sigma_rad = 0.15;
   double angular_velocity_sigma_radps = 1.5;
-  double gyroscope_bias_sigma_radps = 0.02;
-  double accelerometer_bias_sigma_mps2 = 0.1;
+  double gyroscope_bias_sigma_radps = 0.005;
+  double accelerometer_bias_sigma_mps2 = 0.3;
   double imu_time_offset_sigma_s = 0.01;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -126,9 +126,12 @@ struct InitialisationConfig {
              "gravity direction prior in motion, where the mean specific force contains acceleration");
     v.number("angular_velocity_sigma_radps", self.angular_velocity_sigma_radps, 1e-3, 100.0,
              "angular velocity prior without an IMU: zero with this standard deviation");
-    v.number("gyroscope_bias_sigma_radps", self.gyroscope_bias_sigma_radps, 0.0, 1.0, "gyroscope bias prior");
+    v.number("gyroscope_bias_sigma_radps", self.gyroscope_bias_sigma_radps, 0.0, 1.0,
+             "gyroscope bias prior (a ZR300's factory offsets are up to 0.004 rad/s); wider, slow drifts of "
+             "the images pass "
+             "for bias");
     v.number("accelerometer_bias_sigma_mps2", self.accelerometer_bias_sigma_mps2, 0.0, 5.0,
-             "accelerometer bias prior");
+             "accelerometer bias prior (the raw axes of a ZR300 are off by up to 0.3 m/s^2)");
     v.number(
         "imu_time_offset_sigma_s", self.imu_time_offset_sigma_s, 0.0, 0.5,
         "prior of the offset between the clocks of IMU and camera (7 ms is typical of a ZR300); 0 trusts the "
@@ -175,7 +178,7 @@ struct PatchConfig {
 struct PhotometricConfig {
   double noise_grey = 8.0;
   double huber_sigmas = 1.345;
-  double pixels_per_measurement = 8.0;
+  double pixels_per_measurement = 300.0;
   double gain_sigma = 0.1;
   double offset_sigma_grey = 10.0;
 
@@ -185,8 +188,10 @@ struct PhotometricConfig {
     v.number(
         "huber_sigmas", self.huber_sigmas, 0.1, 1e6,
         "residuals beyond this many standard deviations lose weight (Huber 1964; 1.345 = 95 % efficiency)");
-    v.number("pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
-             "errors of neighbouring pixels are correlated: this many count as one measurement");
+    v.number(
+        "pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
+        "this many residuals count as one measurement, since the pixels of a patch share their errors (blur, "
+        "calibration, interpolation); 300 are all pixels of a 10x10 patch on three levels");
     v.number("gain_sigma", self.gain_sigma, 0.0, 10.0,
              "prior of the brightness gain of a patch around 1; 0 fixes it");
     v.number("offset_sigma_grey", self.offset_sigma_grey, 0.0, 255.0,
@@ -196,27 +201,31 @@ struct PhotometricConfig {
 
 /// Point-to-plane residuals (Eq. 4).
 struct GeometricConfig {
-  double huber_sigmas = 1.345;
-  double pixels_per_measurement = 8.0;
+  double huber_sigmas = 0.7;
+  double pixels_per_measurement = 300.0;
   double model_noise_m = 0.002;
   double max_distance_m = 0.1;
-  double max_normal_angle_deg = 45.0;
+  double max_normal_angle_deg = 30.0;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("huber_sigmas", self.huber_sigmas, 0.1, 1e6,
-             "residuals beyond this many standard deviations lose weight");
+             "residuals beyond this many standard deviations lose weight; low, close to the L1 norm of Eq. "
+             "4, since "
+             "depth has structured outliers");
     v.number("pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
-             "depth errors of neighbouring pixels are correlated: this many count as one measurement");
+             "this many residuals count as one measurement, since depth errors of neighbouring pixels have "
+             "one cause; "
+             "as for photometric residuals");
     v.number("model_noise_m", self.model_noise_m, 0.0, 1.0,
              "noise of the model's surface, added to the depth's");
     v.number("max_distance_m", self.max_distance_m, 0.001, 2.0,
              "points further from their plane are not associated (KinectFusion's gate)");
     v.number("max_normal_angle_deg", self.max_normal_angle_deg, 1.0, 90.0,
-             "associations whose normals differ by more are dropped");
+             "associations whose normals differ by more are dropped (KinectFusion's gate is 30 degrees)");
   }
 };
 
-/// The iterated extended Kalman filter (Eqs. 15-22).
+/// The iterated extended Kalman filter (Eqs. 15-23).
 struct IekfConfig {
   int max_iterations = 10;
   int coarse_iterations = 2;

@@ -1,8 +1,8 @@
-// The iterated extended Kalman update (Eqs. 15-22 of the paper) as Gauss-Newton on the MAP cost
+// The iterated extended Kalman update (Eqs. 15-23 of the paper) as Gauss-Newton on the MAP cost
 //
 //   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
-// (Bell & Cathey 1993). The paper's Eq. 20 drops the prior term after the first iteration; here it is in
+// (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
 // every one. A measurement sees the pose only, so the optimum is x_prior (+) P_(:,pose) y for some y in R^6:
 // the update iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity
 // along by their correlations.
@@ -49,7 +49,7 @@ struct IekfResult {
   double map_cost_posterior = 0;
 };
 
-/// Runs the update. The covariance is updated once, after the last iteration (Eq. 22 in its symmetric form),
+/// Runs the update. The covariance is updated once, after the last iteration (Eq. 23 in its symmetric form),
 /// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the
 /// prediction).
 [[nodiscard]] IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,

@@ -75,7 +75,7 @@ Result<GaussianState> initialise_with_imu(std::span<const ImuSample> samples, st
   const WindowStatistics s = window_statistics(window, first_frame_ns);
   const bool at_rest = s.gyroscope_std_radps < config.rest_gyroscope_std_radps &&
                        s.accelerometer_std_mps2 < config.rest_accelerometer_std_mps2 &&
-                       s.mean_angular_velocity_radps.norm() < 5.0 * config.gyroscope_bias_sigma_radps;
+                       s.mean_angular_velocity_radps.norm() < 10.0 * config.gyroscope_bias_sigma_radps;
 
   GaussianState state;
   state.mean.T_world_imu = rig.T_imu_camera.inverse();  // world = first camera frame

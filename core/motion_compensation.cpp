@@ -9,6 +9,9 @@ namespace fusebench {
 namespace {
 
 constexpr std::size_t kRowsPerChunk = 16;
+/// Back-projection and projection round: without this a border pixel that did not move could count as
+/// outside.
+constexpr double kRounding_px = 1e-6;
 
 /// Camera motion between the instant of each row and that of the frame: X_frame = R X_row + t.
 struct RowMotion {
@@ -25,6 +28,11 @@ std::vector<RowMotion> row_motions(int rows, double delay_s, double readout_s,
                                             after_s * velocity.linear_mps};
   }
   return motions;
+}
+
+bool is_inside(const Vector2d& pixel_px, const PinholeCamera& camera) {
+  return pixel_px.x() >= -kRounding_px && pixel_px.x() <= camera.width_px - 1 + kRounding_px &&
+         pixel_px.y() >= -kRounding_px && pixel_px.y() <= camera.height_px - 1 + kRounding_px;
 }
 
 int nearest_index(double coordinate, int size) {
@@ -58,9 +66,7 @@ void compensate_depth_row(const DepthImage& source_m, const PinholeCamera& camer
       carried_m = measured_m > 0 ? carried.z() : 0.0;
       displacement += wanted - camera.project(carried);
     }
-    const Vector2d from = wanted + displacement;
-    const bool inside =
-        from.x() >= 0 && from.y() >= 0 && from.x() <= camera.width_px - 1 && from.y() <= camera.height_px - 1;
+    const bool inside = is_inside(wanted + displacement, camera);
     target_m(u, v) = inside ? static_cast<float>(carried_m) : 0.0F;
     if (!inside) displacement.setZero();
   }
@@ -107,7 +113,7 @@ void compensate_color_row(const RgbdFrame& source, const PinholeCamera& camera,
     const double y = std::clamp(from.y(), 0.0, camera.height_px - 1.0);
     target.grey(u, v) = static_cast<std::uint8_t>(std::lround(sample_bilinear(source.grey, x, y).value));
     target.color(u, v) = sample_color(source.color, x, y);
-    if (x != from.x() || y != from.y()) target.depth_m(u, v) = 0;  // no colour, no use
+    if (!is_inside(from, camera)) target.depth_m(u, v) = 0;  // no colour, no use
   }
 }
 

@@ -1,5 +1,6 @@
 #include "core/parallel.hpp"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -8,7 +9,11 @@
 namespace fusebench {
 
 struct Workers::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
+        arena(threads) {}
+  /// Without it the library takes no more threads than the machine has, and prints a warning.
+  tbb::global_control limit;
   tbb::task_arena arena;
 };
 

@@ -232,10 +232,12 @@ bool PatchMeasurement::is_consistent(const PatchOutcome& outcome) const {
   const double limit = config_.iekf.max_chi2_per_measurement;
   const bool photometric = config_.terms.photometric_weight <= 0 ||
                            outcome.chi2_photometric <= limit * outcome.photometric_residuals;
-  // Any image explains a patch that is dimmed to nothing: a gain far from 1 is no brightness change but another scene.
+  // Any image explains a patch that is dimmed to nothing: a gain far from 1 is no brightness change but
+  // another scene.
   constexpr double kMaxGain = 2.0;
   const bool plausible = outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
-  return photometric && plausible && outcome.chi2_geometric <= limit * std::max(1, outcome.geometric_residuals);
+  return photometric && plausible &&
+         outcome.chi2_geometric <= limit * std::max(1, outcome.geometric_residuals);
 }
 
 double PatchMeasurement::trial_cost(const SE3& T_world_imu, const Vector6d& step, double fraction) {

@@ -34,7 +34,7 @@ struct PatchOutcome {
   int geometric_residuals = 0;
   double chi2_photometric = 0;  ///< sum of squared whitened residuals
   double chi2_geometric = 0;
-  double gain = 1;  ///< brightness of the frame against the patch's reference
+  double gain = 1;             ///< brightness of the frame against the patch's reference
   double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
   Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
 };

@@ -63,6 +63,8 @@ struct Pipeline::State {
   }
 
   Result<FrameReport> process(const RgbdFrame& frame);
+  Result<FrameReport> process_once(const RgbdFrame& frame);
+  Result<FrameReport> restart_in_motion(const RgbdFrame& second);
   [[nodiscard]] CameraVelocity camera_velocity(const FilterState& motion) const;
   [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
   PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
@@ -81,13 +83,39 @@ struct Pipeline::State {
   TsdfVolume model;
   std::optional<GaussianState> estimate;  ///< after the last frame
   std::int64_t timestamp_ns = 0;          ///< instant of the last frame
-  std::vector<Patch> patches;             ///< cut from the last tracked frame
-  std::vector<TrackedCentre> survivors;   ///< where the good ones of them are in the current frame
+  std::optional<RgbdFrame> first_frame;   ///< until the second one has told how fast it was
+  std::optional<FilterState> initial_motion;
+  std::vector<Patch> patches;            ///< cut from the last tracked frame
+  std::vector<TrackedCentre> survivors;  ///< where the good ones of them are in the current frame
 };
+
+/// A recording that starts in motion starts with a velocity that nobody knows. The first two frames tell it,
+/// so they are processed again with it: the first frame is compensated properly, and the second one predicted
+/// well.
+Result<FrameReport> Pipeline::State::process(const RgbdFrame& frame) {
+  if (!estimate) {
+    first_frame = frame;
+    return process_once(frame);
+  }
+  Result<FrameReport> report = process_once(frame);
+  if (first_frame && report && report->status == FrameStatus::tracked) report = restart_in_motion(frame);
+  first_frame.reset();
+  return report;
+}
+
+Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second) {
+  initial_motion = estimate->mean;
+  estimate.reset();
+  model = TsdfVolume(config.tsdf);
+  survivors.clear();
+  const Result<FrameReport> first = process_once(*first_frame);
+  if (!first) return first;
+  return process_once(second);
+}
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation, iterated update), 2.3
 /// (fusion, refresh).
-Result<FrameReport> Pipeline::State::process(const RgbdFrame& frame) {
+Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   FrameReport report;
   report.timestamp_ns = frame.timestamp_ns;
   check(!estimate || frame.capture_ns() > timestamp_ns, "frames come in the order of time");
@@ -97,7 +125,7 @@ Result<FrameReport> Pipeline::State::process(const RgbdFrame& frame) {
   if (!predicted) return tl::unexpected(predicted.error());
   PreparedFrame prepared = prepare(frame, predicted->mean, report);
 
-  const bool tracked = first || track(*predicted, prepared, report);  // Eqs. 1-5 and 15-22
+  const bool tracked = first || track(*predicted, prepared, report);  // Eqs. 1-5 and 15-23
   if (!tracked || first) estimate = *predicted;                       // a lost frame keeps the prediction
   timestamp_ns = frame.capture_ns();
   if (tracked && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
@@ -150,8 +178,14 @@ Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport&
   const StageClock clock(report, Stage::predict);
   const bool inertial = config.terms.prior == Prior::imu;
   if (!estimate) {
-    if (inertial) return initialise_with_imu(imu, now_ns, rig, config.initialisation);
-    return initialise_without_imu(config.initialisation);
+    Result<GaussianState> initial = inertial ? initialise_with_imu(imu, now_ns, rig, config.initialisation)
+                                             : initialise_without_imu(config.initialisation);
+    // Only the means: the frames that told them are about to be used as measurements.
+    if (initial && initial_motion) {
+      initial->mean.velocity_world_mps = initial_motion->velocity_world_mps;
+      if (!inertial) initial->mean.angular_velocity_imu_radps = initial_motion->angular_velocity_imu_radps;
+    }
+    return initial;
   }
   if (!inertial) {
     return predict_by_constant_velocity(*estimate, seconds_between(timestamp_ns, now_ns), config.motion)

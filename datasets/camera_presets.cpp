@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/nearest_name.hpp"
-#include "datasets/text_table.hpp"
+#include "core/text_table.hpp"
 
 namespace fusebench {
 

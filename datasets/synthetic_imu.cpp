@@ -131,13 +131,11 @@ void add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, dou
   }
 }
 
-ImuNoise fit_noise(const SplineFit& fit, const SplineFitOptions& options) {
-  const double per_root_tau = std::sqrt(2.0 * options.cutoff_hz);
-  const double velocity_per_position = 2 * std::numbers::pi * options.cutoff_hz / std::sqrt(3.0);
+ImuNoise truth_noise(const SplineFit& fit, const SyntheticImuOptions& options) {
+  constexpr double kHorizonS = 1.0;
   ImuNoise noise;
-  noise.gyroscope_radps_sqrthz = std::numbers::sqrt2 * fit.rotation_residual_rad * per_root_tau;
-  noise.accelerometer_mps2_sqrthz =
-      std::numbers::sqrt2 * velocity_per_position * fit.position_residual_m * per_root_tau;
+  noise.gyroscope_radps_sqrthz = std::numbers::sqrt2 * fit.rotation_residual_rad / std::sqrt(kHorizonS);
+  noise.accelerometer_mps2_sqrthz = options.truth_acceleration_mps2_sqrthz;
   return noise;
 }
 
@@ -163,7 +161,7 @@ Result<void> add_synthetic_imu(Recording& recording, const SyntheticImuOptions& 
   recording.imu_source = ImuSource::synthetic;
   recording.imu_note = note(options, *fit);
   recording.rig.T_imu_camera = SE3{};
-  const ImuNoise uncertainty = fit_noise(*fit, options.fit);
+  const ImuNoise uncertainty = truth_noise(*fit, options);
   ImuNoise& noise = recording.rig.imu_noise;
   noise = options.sensor.noise;
   noise.gyroscope_radps_sqrthz = combine(noise.gyroscope_radps_sqrthz, uncertainty.gyroscope_radps_sqrthz);

@@ -32,6 +32,10 @@ struct SyntheticImuOptions {
   std::uint64_t seed = 1;
   Vector3d gravity_world_mps2{0, 0, -kGravity_mps2};  ///< TUM's motion-capture world has z up
   SplineFitOptions fit;
+  /// Density of the error of accelerations from the truth. On freiburg1_rpy the spline's specific force and
+  /// the Kinect's own accelerometer differ, below 5 Hz and about their means, by up to 0.5 m/s^2 rms per
+  /// axis: 0.5 / sqrt(2 * 5 Hz) = 0.16.
+  double truth_acceleration_mps2_sqrthz = 0.16;
 };
 
 /// Samples of an ideal IMU that moves with the spline's body: angular velocity, and specific force R^T (a -
@@ -44,18 +48,19 @@ struct SyntheticImuOptions {
 void add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, double rate_hz,
                    std::uint64_t seed);
 
-/// White-noise densities that are equivalent to the fit's uncertainty.
+/// White-noise densities that stand for the uncertainty of the truth that an IMU is made from.
 ///
-/// The residuals hold the truth's jitter and the motion that smoothing took away, and the data do not tell
-/// them apart. So the error of the spline is taken to have the residuals' whole rms r (per axis) and, as it
-/// cannot vary faster than the fit, a flat spectrum up to the cutoff B; it is then independent after tau = 1
-/// / (2 B). The orientation error of an interval is sqrt(2) r, that of a gyroscope of density n after tau is
-/// n sqrt(tau), hence
-///   n_gyroscope = sqrt(2) r_rotation / sqrt(tau).
-/// The velocity error has the rms r 2 pi B / sqrt(3), so in the same way
-///   n_accelerometer = sqrt(2) (2 pi B / sqrt(3)) r_position / sqrt(tau).
-/// Over longer times these exaggerate: the error of the fit stays bounded and does not walk.
-[[nodiscard]] ImuNoise fit_noise(const SplineFit& fit, const SplineFitOptions& options);
+/// Gyroscope: the orientation error of the fit has about the residuals' rms r per axis and stays bounded, so
+/// the turn over any interval is off by sqrt(2) r. White noise of density n is off by n sqrt(T) after T. The
+/// two agree at the horizon T = 1 s over which the filter has to rely on the prior (fast motion, blur); over
+/// shorter times white noise claims too much, over longer ones too little:
+///   n_gyroscope = sqrt(2) r / sqrt(1 s).
+/// Taking T as one correlation time of the fit instead (42 ms) makes the gyroscope five times noisier than it
+/// is over a second, and the filter then follows slow drifts of the images against a prior that knows better.
+///
+/// Accelerometer: options.truth_acceleration_mps2_sqrthz. The residuals of the positions (0.1 mm) say little
+/// about it, since the error is that of the truth's mounting on the camera rather than jitter.
+[[nodiscard]] ImuNoise truth_noise(const SplineFit& fit, const SyntheticImuOptions& options);
 
 /// Gives a recording an IMU that is made from its ground truth, in the colour camera's axes (T_imu_camera =
 /// identity), in place of any other. Sets imu, imu_source, imu_note, and in the rig T_imu_camera and

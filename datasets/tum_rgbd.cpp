@@ -9,9 +9,10 @@
 #include <span>
 #include <utility>
 
+#include "core/association.hpp"
 #include "core/fingerprint.hpp"
 #include "core/trajectory.hpp"
-#include "datasets/association.hpp"
+#include "core/trajectory_file.hpp"
 #include "datasets/camera_presets.hpp"
 #include "datasets/image_files.hpp"
 #include "datasets/regular_stamps.hpp"
@@ -117,7 +118,8 @@ Result<void> pair_images(const std::filesystem::path& folder, const TumOptions& 
 Result<void> read_ground_truth(const std::filesystem::path& folder, Recording& recording) {
   const std::filesystem::path file = folder / "groundtruth.txt";
   if (!std::filesystem::exists(file)) return {};
-  auto truth = read_tum_trajectory(file, recording.warnings);
+  // The published truth of freiburg2_desk repeats a stamp; TUM's own scripts keep the last of such rows.
+  auto truth = read_tum_trajectory(file, recording.warnings, Duplicates::last_in_order);
   if (!truth) return tl::unexpected(truth.error());
   const std::int64_t first_ns = recording.frames.front().timestamp_ns;
   const std::int64_t last_ns = recording.frames.back().timestamp_ns;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/trajectory_file.hpp"
 #include "eval/intensity_metrics.hpp"
-#include "eval/trajectory_file.hpp"
 
 namespace fusebench {
 

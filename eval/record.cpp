@@ -176,7 +176,8 @@ Json json_of(const RecordedRecording& recording) {
           {"duration_s", recording.duration_s},
           {"fingerprint", recording.fingerprint},
           {"imu", recording.imu},
-          {"imu_note", recording.imu_note}};
+          {"imu_note", recording.imu_note},
+          {"notes", recording.notes}};
 }
 
 void read(const Json& json, RecordedRecording& recording) {
@@ -188,6 +189,7 @@ void read(const Json& json, RecordedRecording& recording) {
   recording.fingerprint = json.at("fingerprint");
   recording.imu = json.at("imu");
   recording.imu_note = json.at("imu_note");
+  recording.notes = json.at("notes").get<std::vector<std::string>>();
 }
 
 Json json_of(const std::vector<RecordedOption>& config) {

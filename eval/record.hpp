@@ -53,6 +53,7 @@ struct RecordedRecording {
   std::string fingerprint;
   std::string imu = "none";  ///< that the run used: "none", "recorded", "synthetic IMU"
   std::string imu_note;
+  std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
 };
 
 struct RecordedMetrics {

@@ -8,6 +8,7 @@
 #include "core/marching_cubes.hpp"
 #include "core/mesh_file.hpp"
 #include "core/pipeline.hpp"
+#include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "datasets/synthetic_imu.hpp"
 #include "eval/build_info.hpp"
@@ -16,7 +17,6 @@
 #include "eval/intensity_file.hpp"
 #include "eval/process_meter.hpp"
 #include "eval/run_folder.hpp"
-#include "eval/trajectory_file.hpp"
 
 namespace fusebench {
 
@@ -58,15 +58,19 @@ Result<void> provide_imu(Recording& recording, const RunSpec& spec) {
       "without");
 }
 
-std::string hash8(const RunSpec& spec, const Recording& recording) {
-  const PinholeCamera& camera = recording.rig.camera;
-  Fingerprint identity;
-  identity.add(config_hash(spec.config.values));
-  identity.add(recording.fingerprint);
-  identity.add(to_string(recording.imu_source));
-  identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
-                           camera.cx_px, camera.cy_px));
-  return identity.hex().substr(0, 8);
+/// What was done to the data on reading, and what to beware of. Where a message begins with the recording's
+/// folder, its name stands for it, so that the same recording elsewhere gives the same record.
+std::vector<std::string> reading_notes(const Recording& recording, const std::filesystem::path& folder) {
+  std::string place = folder.string();
+  while (place.size() > 1 && place.ends_with('/')) place.pop_back();
+  const auto placed = [&](const std::string& text) {
+    if (!text.starts_with(place + "/") && !text.starts_with(place + ":")) return text;
+    return recording.name + text.substr(place.size());
+  };
+  std::vector<std::string> notes;
+  for (const std::string& note : recording.notes) notes.push_back(placed(note));
+  for (const std::string& warning : recording.warnings) notes.push_back("warning: " + placed(warning));
+  return notes;
 }
 
 RunRecord record_of_question(const PreparedRun& run) {
@@ -80,7 +84,8 @@ RunRecord record_of_question(const PreparedRun& run) {
                                                     recording.frames.back().timestamp_ns),
                       .fingerprint = recording.fingerprint,
                       .imu = std::string(to_string(recording.imu_source)),
-                      .imu_note = recording.imu_note};
+                      .imu_note = recording.imu_note,
+                      .notes = reading_notes(recording, run.spec.recording)};
   record.variant = run.spec.variant;
   for (const OptionRow& row : describe_options(run.spec.config.values)) {
     record.config.push_back({row.key, parse_option_value(row.value), run.spec.config.origin(row.key)});
@@ -123,14 +128,26 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
   }
 }
 
-/// All frames through the pipeline. Errors: io and a stop; whatever else goes wrong ends the run and is in
-/// the progress.
+bool is_bad_data(const Error& error) {
+  return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
+}
+
+/// The error of a frame ends the run and is in the progress, unless the caller wants it as an error.
+Result<void> end_at_frame(Progress& progress, std::size_t frame, Error error, const RunControl& control) {
+  error.message = fmt::format("frame {}: {}", frame, error.message);
+  if (is_bad_data(error) && !control.bad_data_is_recorded) return tl::unexpected(std::move(error));
+  progress.end(RunStatus::failed, std::move(error.message));
+  return {};
+}
+
+/// All frames through the pipeline. Errors: io, a stop, and bad data if it is not recorded; whatever else
+/// goes wrong ends the run and is in the progress.
 Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, const RunFolder& folder,
                                 const RunControl& control) {
   Progress progress;
   const Recording& recording = run.recording;
   progress.frames.total = recording.frames.size();
-  for (const std::string& warning : recording.warnings) progress.log += fmt::format("warning: {}\n", warning);
+  for (const std::string& note : reading_notes(recording, run.spec.recording)) progress.log += note + "\n";
 
   const PinholeCamera& camera = recording.rig.camera;
   auto intensity = IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
@@ -141,12 +158,14 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
       return fail(ErrorCode::run_failed, "stopped by the user");
     const auto loaded = source.next();
     if (!loaded) {
-      progress.end(RunStatus::failed, fmt::format("frame {}: {}", frame, loaded.error().message));
+      const auto ended = end_at_frame(progress, frame, loaded.error(), control);
+      if (!ended) return tl::unexpected(ended.error());
       break;
     }
     const auto report = pipeline.process(loaded->frame);
     if (!report) {
-      progress.end(RunStatus::failed, fmt::format("frame {}: {}", frame, report.error().message));
+      const auto ended = end_at_frame(progress, frame, report.error(), control);
+      if (!ended) return tl::unexpected(ended.error());
       break;
     }
     take_report(progress, frame, *report, run, loaded->decode_ms);
@@ -207,6 +226,18 @@ Result<RecordedModel> write_model(const TsdfVolume& model, double min_weight, co
 
 }  // namespace
 
+std::string run_hash(const Config& config, const Recording& recording) {
+  const PinholeCamera& camera = recording.rig.camera;
+  Fingerprint identity;
+  identity.add(config_hash(config));
+  identity.add(recording.fingerprint);
+  identity.add(to_string(recording.imu_source));
+  identity.add(recording.imu_note);
+  identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
+                           camera.cx_px, camera.cy_px));
+  return identity.hex().substr(0, 8);
+}
+
 Result<PreparedRun> prepare_run(RunSpec spec) {
   if (auto related = check_relations(spec.config.values); !related) return tl::unexpected(related.error());
   auto recording = open_recording(spec.recording, spec.open);
@@ -220,7 +251,7 @@ Result<PreparedRun> prepare_run(RunSpec spec) {
     return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
   }
   if (auto provided = provide_imu(*recording, spec); !provided) return tl::unexpected(provided.error());
-  const auto folder = spec.out / recording->name / spec.variant / hash8(spec, *recording);
+  const auto folder = spec.out / recording->name / spec.variant / run_hash(spec.config.values, *recording);
   return PreparedRun{std::move(spec), std::move(*recording), folder};
 }
 

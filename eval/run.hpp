@@ -44,21 +44,28 @@ struct PreparedRun {
   std::filesystem::path folder;  ///< <out>/<recording>/<variant>/<hash8>
 };
 
-/// Opens the recording, cuts the window and provides the IMU. hash8 identifies the values of the
-/// configuration, the content of the recording and its window, the camera and the IMU. Errors: those of
-/// open_recording, select_frames and add_synthetic_imu; configuration (relations between options); usage if
-/// the variant needs an IMU and there is none.
+/// hash8 of a run's folder, eight hex digits: identifies the values of the configuration, the content of the
+/// recording and its window, the camera, and the IMU with the way it was made (seed, sensor, fit).
+[[nodiscard]] std::string run_hash(const Config& config, const Recording& recording);
+
+/// Opens the recording, cuts the window and provides the IMU. Errors: those of open_recording, select_frames
+/// and add_synthetic_imu; configuration (relations between options); usage if the variant needs an IMU and
+/// there is none.
 [[nodiscard]] Result<PreparedRun> prepare_run(RunSpec spec);
 
 struct RunControl {
   std::function<void(std::size_t frame, std::size_t total)> progress = {};  ///< after each frame
   const std::atomic<bool>* stop =
       nullptr;  ///< checked at each frame; true ends the run and leaves nothing behind
+  /// Bad data met on the way (a damaged image) makes a record with status failed, as a suite needs it, which
+  /// goes on. Otherwise it is an error of the run like any bad data met on opening, and nothing is left
+  /// behind.
+  bool bad_data_is_recorded = true;
 };
 
 /// Runs it and puts its folder in place. A run that is lost or fails on the way is a record with that status
 /// and its reason, and its folder holds what there is. Errors: io if the folder cannot be written, run_failed
-/// if it was stopped; nothing is left behind then.
+/// if it was stopped, data_missing and data_corrupt if bad data is not recorded; nothing is left behind then.
 [[nodiscard]] Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control = {});
 
 }  // namespace fusebench

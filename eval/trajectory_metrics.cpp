@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <tuple>
 
+#include "core/association.hpp"
 #include "eval/alignment.hpp"
 
 namespace fusebench {
@@ -79,42 +79,6 @@ Result<void> check_rpe_input(const Trajectory& ground_truth, const Trajectory& e
 
 }  // namespace
 
-std::vector<StampPair> associate(std::span<const std::int64_t> reference_ns,
-                                 std::span<const std::int64_t> estimate_ns, std::int64_t max_difference_ns,
-                                 std::int64_t offset_ns) {
-  struct Candidate {
-    std::int64_t difference;
-    StampPair pair;
-  };
-  std::vector<Candidate> candidates;
-  std::size_t window_begin = 0;
-  for (std::size_t e = 0; e < estimate_ns.size(); ++e) {
-    const std::int64_t stamp = estimate_ns[e] + offset_ns;
-    while (window_begin < reference_ns.size() && reference_ns[window_begin] <= stamp - max_difference_ns)
-      ++window_begin;
-    for (std::size_t r = window_begin; r < reference_ns.size() && reference_ns[r] < stamp + max_difference_ns;
-         ++r) {
-      candidates.push_back({std::abs(reference_ns[r] - stamp), {r, e}});
-    }
-  }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return std::tie(a.difference, a.pair.reference, a.pair.estimate) <
-           std::tie(b.difference, b.pair.reference, b.pair.estimate);
-  });
-  std::vector<bool> reference_used(reference_ns.size(), false);
-  std::vector<bool> estimate_used(estimate_ns.size(), false);
-  std::vector<StampPair> pairs;
-  for (const Candidate& candidate : candidates) {
-    if (reference_used[candidate.pair.reference] || estimate_used[candidate.pair.estimate]) continue;
-    reference_used[candidate.pair.reference] = true;
-    estimate_used[candidate.pair.estimate] = true;
-    pairs.push_back(candidate.pair);
-  }
-  std::sort(pairs.begin(), pairs.end(),
-            [](const StampPair& a, const StampPair& b) { return a.reference < b.reference; });
-  return pairs;
-}
-
 std::vector<std::int64_t> stamps_of(const Trajectory& trajectory) {
   std::vector<std::int64_t> stamps;
   stamps.reserve(trajectory.size());
@@ -135,7 +99,7 @@ Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth, cons
   const std::vector<std::int64_t> estimate_ns = stamps_of(estimate);
   const std::int64_t limit = nanoseconds(options.max_difference_s);
   const std::int64_t offset = nanoseconds(options.offset_s);
-  const std::vector<StampPair> pairs = associate(truth_ns, estimate_ns, limit, offset);
+  const std::vector<AssociatedPair> pairs = associate(truth_ns, estimate_ns, limit, offset);
 
   AteResult result;
   result.max_difference_s = options.max_difference_s;
@@ -154,9 +118,9 @@ Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth, cons
 
   std::vector<Vector3d> truth_positions;
   std::vector<Vector3d> estimate_positions;
-  for (const StampPair& pair : pairs) {
-    truth_positions.push_back(ground_truth[pair.reference].T_world_camera.translation);
-    estimate_positions.push_back(estimate[pair.estimate].T_world_camera.translation);
+  for (const AssociatedPair& pair : pairs) {
+    truth_positions.push_back(ground_truth[pair.first].T_world_camera.translation);
+    estimate_positions.push_back(estimate[pair.second].T_world_camera.translation);
   }
   const auto aligned = align_se3(truth_positions, estimate_positions);
   if (!aligned) return tl::unexpected(aligned.error());

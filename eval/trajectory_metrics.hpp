@@ -17,20 +17,6 @@
 
 namespace fusebench {
 
-/// One association between two lists of stamps.
-struct StampPair {
-  std::size_t reference = 0;
-  std::size_t estimate = 0;
-};
-
-/// TUM's association: among all pairs with |reference - (estimate + offset)| < max_difference (strictly), the
-/// closest is taken first and each stamp is used once; equal differences go to the earlier reference, then
-/// the earlier estimate. Both lists sorted. The result is sorted by time. O(n log n) for lists with a bounded
-/// number of stamps in the window.
-[[nodiscard]] std::vector<StampPair> associate(std::span<const std::int64_t> reference_ns,
-                                               std::span<const std::int64_t> estimate_ns,
-                                               std::int64_t max_difference_ns, std::int64_t offset_ns = 0);
-
 /// The stamps of a trajectory, in order.
 [[nodiscard]] std::vector<std::int64_t> stamps_of(const Trajectory& trajectory);
 

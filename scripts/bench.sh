@@ -8,7 +8,7 @@ Usage: scripts/bench.sh [DATA] [--data DATA] [ARGUMENT...]
 
 Installs missing packages, builds the release preset, runs configs/suites/quickstart.toml over the recordings in DATA
 (default: the environment variable FUSEBENCH_DATA) into results/runs/quickstart, and prints the table.
-Further arguments go to `fusebench bench`, for example: --resume, -j 2, --only variant=full, --out DIR.
+Further arguments go to `fusebench bench`, for example: --resume, --only variant=full, --out DIR.
 
 Exit codes are those of `fusebench bench`: 0 ok, 2 usage, 3 data missing or corrupt, 4 a run failed or was lost.
 TEXT

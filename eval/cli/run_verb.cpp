@@ -65,8 +65,11 @@ Result<int> run(const RunOptions& options) {
 
   const std::string title = fmt::format("{} {}", prepared->recording.name, options.variant);
   ProgressBar bar(title);
-  const auto record = execute_run(
-      *prepared, {[&](std::size_t frame, std::size_t total) { bar.show(frame, total); }, &stop_requested()});
+  const RunControl control = {
+      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
+      .stop = &stop_requested(),
+      .bad_data_is_recorded = false};
+  const auto record = execute_run(*prepared, control);
   bar.clear();
   if (!record) return tl::unexpected(record.error());
 

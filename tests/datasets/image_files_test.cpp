@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "tests/datasets/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "datasets/image_files.hpp"
-#include "tests/datasets/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench::testing {
 

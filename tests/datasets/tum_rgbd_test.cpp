@@ -1,8 +1,10 @@
 #include "datasets/tum_rgbd.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 #include <string>
 
@@ -83,6 +85,84 @@ TEST(TumRgbd, UnknownCameraListsTheChoices) {
   const std::string message = refusal(TumFolder(), ErrorCode::configuration, {});
   for (const char* part : {"--camera", "freiburg1", "freiburg2", "freiburg3", "default"})
     expect_contains(message, part);
+}
+
+/// Twelve frames at 30 Hz whose colour and depth stamps jitter by 3 ms, in another rhythm each; depth arrives
+/// 10 ms after colour. The camera's depth is taken 18 ms before its stamps.
+class JitteringStamps {
+ public:
+  static constexpr std::int64_t kPeriod_ns = 33'000'000;
+  static constexpr std::int64_t kDepthLater_ns = 10'000'000;
+  static constexpr std::int64_t kDepthDelay_ns = -18'000'000;
+  static constexpr std::size_t kFrames = 12;
+
+  JitteringStamps() {
+    std::string color;
+    std::string depth;
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      const std::int64_t exposed_us = 10'000'000 + static_cast<std::int64_t>(i) * kPeriod_ns / 1000;
+      color += row(exposed_us + (i % 2 == 0 ? 3000 : -3000), "rgb/0.png");
+      depth += row(exposed_us + kDepthLater_ns / 1000 + (i % 4 < 2 ? 3000 : -3000), "depth/0.png");
+    }
+    folder_.write("rgb.txt", color);
+    folder_.write("depth.txt", depth);
+  }
+
+  [[nodiscard]] Result<Recording> open(bool regular) const {
+    TumOptions options = small_camera();
+    options.camera->timing = parse_camera("freiburg1").value().timing;
+    options.regular_stamps = regular;
+    return open_tum_rgbd(folder_.path(), options);
+  }
+
+ private:
+  static std::string row(std::int64_t stamp_us, const std::string& image) {
+    return fmt::format("{}.{:06} {}\n", stamp_us / 1'000'000, stamp_us % 1'000'000, image);
+  }
+  TumFolder folder_;
+};
+
+TEST(TumRgbd, CaptureTimesAreRegularAndDepthIsDelayed) {
+  const JitteringStamps folder;
+  const auto recording = folder.open(true);
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->frames.size(), JitteringStamps::kFrames);
+  for (std::size_t i = 0; i < recording->frames.size(); ++i) {
+    const FrameEntry& entry = recording->frames[i];
+    const std::int64_t exposed_ns =
+        10'000'000'000 + static_cast<std::int64_t>(i) * JitteringStamps::kPeriod_ns;
+    EXPECT_EQ(std::abs(entry.timestamp_ns - exposed_ns), 3'000'000) << "stamps stay what they were";
+    // One line through all twelve stamps: alternating jitter cancels but for 3 / 12 at an end of it, jitter
+    // in pairs but for twice that.
+    EXPECT_NEAR(static_cast<double>(entry.capture_ns - exposed_ns), 0, 1e6);
+    EXPECT_NEAR(static_cast<double>(entry.depth_capture_ns - exposed_ns),
+                JitteringStamps::kDepthLater_ns + JitteringStamps::kDepthDelay_ns, 2e6);
+    const auto frame = recording->load_frame(i);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->timestamp_ns, entry.timestamp_ns);
+    EXPECT_EQ(frame->capture_offset_ns, entry.capture_ns - entry.timestamp_ns);
+    EXPECT_EQ(frame->depth_offset_ns, entry.depth_capture_ns - entry.capture_ns);
+    if (i == 0) continue;
+    const FrameEntry& before = recording->frames[i - 1];
+    EXPECT_NEAR(static_cast<double>(entry.capture_ns - before.capture_ns), JitteringStamps::kPeriod_ns, 2e5);
+  }
+  ASSERT_EQ(recording->notes.size(), 2U);
+  expect_contains(recording->notes[0], "rgb.txt: stamps jitter by ");
+  expect_contains(recording->notes[1], "depth.txt: stamps jitter by ");
+}
+
+TEST(TumRgbd, RegularStampsCanBeSwitchedOff) {
+  const JitteringStamps folder;
+  const auto recording = folder.open(false);
+  ASSERT_TRUE(recording) << recording.error().message;
+  for (std::size_t i = 0; i < recording->frames.size(); ++i) {
+    const FrameEntry& entry = recording->frames[i];
+    EXPECT_EQ(entry.capture_ns, entry.timestamp_ns);
+    EXPECT_EQ(entry.depth_capture_ns, entry.depth_timestamp_ns + JitteringStamps::kDepthDelay_ns);
+    EXPECT_EQ(recording->load_frame(i)->capture_offset_ns, 0);
+  }
+  EXPECT_TRUE(recording->notes.empty());
+  EXPECT_NE(recording->fingerprint, folder.open(true)->fingerprint);
 }
 
 TEST(TumRgbd, UnmatchedImagesAreCounted) {

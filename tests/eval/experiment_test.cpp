@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "eval/batch.hpp"
-#include "tests/eval/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 namespace {
 
-class SuiteTest : public InTemporaryFolder {
+class SuiteTest : public testing::InTemporaryFolder {
  protected:
   Result<Suite> read(const std::string& text) { return read_suite(write("suite.toml", text)); }
   void expect_error(const std::string& text, const std::string& place, const std::string& part) {

@@ -15,7 +15,15 @@ RunRecord sample_record() {
   RunRecord record;
   record.status = RunStatus::ok;
   record.reason.clear();
-  record.recording = {"fr1 \"rpy\"", "tum", 240, 3, 7.9671, "00ff", "synthetic IMU", "seed 1"};
+  record.recording = {"fr1 \"rpy\"",
+                      "tum",
+                      240,
+                      3,
+                      7.9671,
+                      "00ff",
+                      "synthetic IMU",
+                      "seed 1",
+                      {"stamps made \"regular\"", "warning: a gap"}};
   record.variant = "full";
   record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},
                    {"depth.max_m", 1.0, "default"},
@@ -58,6 +66,7 @@ TEST(Record, ReadsBackWhatItWrote) {
   EXPECT_EQ(std::get<std::int64_t>(back->config[0].value), 8);
   EXPECT_EQ(std::get<double>(back->config[1].value), 1.0);
   EXPECT_FALSE(back->metrics.rpe_second.value.has_value());
+  EXPECT_EQ(back->recording.notes, sample_record().recording.notes);
   EXPECT_EQ(back->metrics.rpe_second.reason, "shorter than 1 s");
 }
 
@@ -72,6 +81,8 @@ TEST(Record, HasTheKeysThatReadersRelyOn) {
                                  "/recording/duration_s",
                                  "/recording/fingerprint",
                                  "/recording/imu",
+                                 "/recording/imu_note",
+                                 "/recording/notes/1",
                                  "/variant",
                                  "/config",
                                  "/config_hash",

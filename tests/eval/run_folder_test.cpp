@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/eval/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 namespace {
 
-using RunFolderTest = InTemporaryFolder;
+using RunFolderTest = testing::InTemporaryFolder;
 
 std::size_t entries(const std::filesystem::path& folder) {
   std::size_t count = 0;
@@ -27,7 +27,7 @@ TEST_F(RunFolderTest, NothingIsSeenBeforeTheCommit) {
     EXPECT_FALSE(std::filesystem::exists(place));
     ASSERT_TRUE(run->commit().has_value());
   }
-  EXPECT_EQ(text_of(place / "record.json"), "{}");
+  EXPECT_EQ(testing::read_bytes(place / "record.json"), "{}");
   EXPECT_EQ(entries(folder_ / "out" / "recording" / "full"), 2U);
 }
 
@@ -43,7 +43,7 @@ TEST_F(RunFolderTest, AnAbandonedRunLeavesNothing) {
 TEST_F(RunFolderTest, AnAbandonedRunKeepsWhatWasThere) {
   write("out/recording/full/0123/record.json", "old");
   { auto run = RunFolder::create(folder_ / "out" / "recording" / "full" / "0123"); }
-  EXPECT_EQ(text_of(folder_ / "out/recording/full/0123/record.json"), "old");
+  EXPECT_EQ(testing::read_bytes(folder_ / "out/recording/full/0123/record.json"), "old");
 }
 
 TEST_F(RunFolderTest, TheOldRunIsReplacedWhole) {
@@ -51,7 +51,7 @@ TEST_F(RunFolderTest, TheOldRunIsReplacedWhole) {
   write("0123/extra.txt", "old");
   auto run = RunFolder::create(folder_ / "0123");
   ASSERT_TRUE(run && run->write("record.json", "new") && run->commit());
-  EXPECT_EQ(text_of(folder_ / "0123/record.json"), "new");
+  EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), "new");
   EXPECT_EQ(entries(folder_), 2U);
 }
 

@@ -5,19 +5,19 @@
 
 #include <algorithm>
 
+#include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "eval/batch.hpp"
 #include "eval/intensity_file.hpp"
-#include "eval/trajectory_file.hpp"
 #include "tests/datasets/tum_folder.hpp"
-#include "tests/eval/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 namespace {
 
 const std::filesystem::path kGolden = testing::golden_tum_folder();
 
-class RunTest : public InTemporaryFolder {
+class RunTest : public testing::InTemporaryFolder {
  protected:
   [[nodiscard]] RunSpec spec(const std::string& variant, int threads = 1) const {
     RunSpec result;
@@ -48,9 +48,11 @@ TEST_F(RunTest, WritesAWholeFolder) {
        {"record.json", "trajectory.tum", "mesh.ply", "frames.csv", "intensity.bin", "log.txt"}) {
     EXPECT_TRUE(std::filesystem::exists(prepared->folder / name)) << name;
   }
-  EXPECT_EQ(text_of(prepared->folder / "record.json"), to_json(*record));
-  const auto trajectory = read_tum_trajectory(prepared->folder / "trajectory.tum");
+  EXPECT_EQ(testing::read_bytes(prepared->folder / "record.json"), to_json(*record));
+  std::vector<std::string> warnings;
+  const auto trajectory = read_tum_trajectory(prepared->folder / "trajectory.tum", warnings);
   ASSERT_TRUE(trajectory.has_value());
+  EXPECT_TRUE(warnings.empty());
   EXPECT_EQ(trajectory->size(), record->frames.tracked);
   // World is the first camera frame.
   EXPECT_EQ((*trajectory)[0].T_world_camera.translation, Vector3d(0, 0, 0));
@@ -63,10 +65,10 @@ TEST_F(RunTest, SameBytesWithAnyThreadCount) {
   ASSERT_TRUE(one && three && execute_run(*one) && execute_run(*three));
   EXPECT_EQ(one->folder.filename(), three->folder.filename());
   for (const char* const name : {"trajectory.tum", "mesh.ply", "intensity.bin", "log.txt"}) {
-    EXPECT_EQ(text_of(one->folder / name), text_of(three->folder / name)) << name;
+    EXPECT_EQ(testing::read_bytes(one->folder / name), testing::read_bytes(three->folder / name)) << name;
   }
-  EXPECT_EQ(reproducible_part(text_of(one->folder / "record.json")),
-            reproducible_part(text_of(three->folder / "record.json")));
+  EXPECT_EQ(reproducible_part(testing::read_bytes(one->folder / "record.json")),
+            reproducible_part(testing::read_bytes(three->folder / "record.json")));
 }
 
 TEST_F(RunTest, AVariantThatNeedsAnImuSaysHowToGetOne) {
@@ -95,6 +97,41 @@ TEST_F(RunTest, TheHashTellsConfigurationsAndWindowsApart) {
   EXPECT_EQ(prepare_run(synthetic)->folder, base->folder);
 }
 
+TEST_F(RunTest, TheHashTellsSyntheticImusApart) {
+  const auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  const auto hash = [&](const std::string& imu_note) {
+    Recording recording = prepared->recording;
+    recording.imu_note = imu_note;
+    return run_hash(prepared->spec.config.values, recording);
+  };
+  EXPECT_EQ(prepared->folder.filename().string(), hash(prepared->recording.imu_note));
+  EXPECT_EQ(hash("seed 1").size(), 8U);
+  EXPECT_EQ(hash("seed 1"), hash("seed 1"));
+  EXPECT_NE(hash("seed 1"), hash("seed 2"));
+}
+
+TEST_F(RunTest, NotesOfTheRecordingAreInRecordAndLog) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  const std::string folder = prepared->spec.recording.string();
+  prepared->recording.notes = {"rgb.txt: stamps were made regular"};
+  prepared->recording.warnings = {folder + "/groundtruth.txt:3: one row", folder + ": no partner", "a gap"};
+  const auto record = execute_run(*prepared);
+  ASSERT_TRUE(record.has_value()) << record.error().message;
+  const std::string& name = prepared->recording.name;
+  // The place of the recording on this disk is not part of its record.
+  EXPECT_EQ(record->recording.notes,
+            (std::vector<std::string>{"rgb.txt: stamps were made regular",
+                                      "warning: " + name + "/groundtruth.txt:3: one row",
+                                      "warning: " + name + ": no partner", "warning: a gap"}));
+  EXPECT_EQ(read_record(prepared->folder / "record.json")->recording.notes, record->recording.notes);
+  const std::string log = testing::read_bytes(prepared->folder / "log.txt");
+  for (const std::string& note : record->recording.notes) {
+    EXPECT_NE(log.find(note + "\n"), std::string::npos) << note;
+  }
+}
+
 TEST_F(RunTest, AStoppedRunLeavesNothing) {
   const auto prepared = prepare_run(spec("no-imu"));
   ASSERT_TRUE(prepared.has_value());
@@ -120,6 +157,15 @@ TEST_F(RunTest, AFrameThatCannotBeReadEndsTheRunAsFailed) {
   EXPECT_EQ(record->frames.tracked + record->frames.lost, 3U);
   EXPECT_TRUE(std::filesystem::exists(prepared->folder / "trajectory.tum"));
   EXPECT_EQ(read_record(prepared->folder / "record.json")->status, RunStatus::failed);
+
+  // Or it is an error with the code that tells bad data from a failed estimator, and changes nothing.
+  const auto error = execute_run(*prepared, {.bad_data_is_recorded = false});
+  ASSERT_FALSE(error.has_value());
+  EXPECT_EQ(error.error().code, ErrorCode::data_corrupt);
+  EXPECT_EQ(error.error().message, "frame 3: image.png: is cut off");
+  std::filesystem::remove_all(prepared->folder);
+  EXPECT_FALSE(execute_run(*prepared, {.bad_data_is_recorded = false}).has_value());
+  EXPECT_FALSE(std::filesystem::exists(prepared->folder));
 }
 
 TEST_F(RunTest, BlackFramesAreLost) {
@@ -141,7 +187,9 @@ TEST_F(RunTest, BlackFramesAreLost) {
   EXPECT_TRUE(record->reason.starts_with("lost at frame ")) << record->reason;
   EXPECT_EQ(record->frames.lost, 2U);  // one more than allowed
   // A frame that was lost has a prediction, which is no estimate: it has no pose.
-  EXPECT_EQ(read_tum_trajectory(prepared->folder / "trajectory.tum")->size(), record->frames.tracked);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(read_tum_trajectory(prepared->folder / "trajectory.tum", warnings)->size(),
+            record->frames.tracked);
   EXPECT_LT(record->frames.tracked, 5U);
 }
 

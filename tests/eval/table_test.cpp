@@ -7,12 +7,12 @@
 #include <sstream>
 
 #include "eval/intensity_file.hpp"
-#include "tests/eval/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 namespace {
 
-class TableTest : public InTemporaryFolder {
+class TableTest : public testing::InTemporaryFolder {
  protected:
   void add_run(const std::string& variant, RunStatus status, const std::string& reason, double ate_m,
                const std::vector<IntensityResidual>& pixels, const std::string& hash = "01234567") {

@@ -56,16 +56,25 @@ struct TexturedRoom {
     frame.depth_m = DepthImage(camera.width_px, camera.height_px);
     for (int y = 0; y < camera.height_px; ++y) {
       for (int x = 0; x < camera.width_px; ++x) {
-        const Vector3d ray = T_world_camera.rotation * camera.back_project(x, y, 1.0);  // z = 1: t is z-depth
-        const double depth_m = hit(T_world_camera.translation, ray);
-        const double grey = brightness(T_world_camera.translation + depth_m * ray);
-        const auto level = static_cast<std::uint8_t>(std::lround(grey));
-        frame.color(x, y) = {level, level, level};
-        frame.depth_m(x, y) = static_cast<float>(depth_m);
+        const Seen seen = look(camera, T_world_camera, x, y);
+        frame.color(x, y) = {seen.level, seen.level, seen.level};
+        frame.depth_m(x, y) = seen.depth_m;
       }
     }
     frame.grey = to_grey(frame.color);
     return frame;
+  }
+
+  /// What one pixel sees: z-depth and grey level.
+  struct Seen {
+    float depth_m = 0;
+    std::uint8_t level = 0;
+  };
+  [[nodiscard]] Seen look(const PinholeCamera& camera, const SE3& T_world_camera, int x, int y) const {
+    const Vector3d ray = T_world_camera.rotation * camera.back_project(x, y, 1.0);  // z = 1: t is z-depth
+    const double depth_m = hit(T_world_camera.translation, ray);
+    const double grey = brightness(T_world_camera.translation + depth_m * ray);
+    return {static_cast<float>(depth_m), static_cast<std::uint8_t>(std::lround(grey))};
   }
 
  private:

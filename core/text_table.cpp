@@ -1,4 +1,4 @@
-#include "datasets/text_table.hpp"
+#include "core/text_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -214,6 +214,15 @@ Result<double> TextTable::number(std::size_t column) const {
   if (!value)
     return fail_here(fmt::format("{}: {}", columns_[column], value.error().message), value.error().hint);
   return value;
+}
+
+Result<void> TextTable::numbers(std::size_t first_column, std::span<double> values) const {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Result<double> value = number(first_column + i);
+    if (!value) return tl::unexpected(value.error());
+    values[i] = *value;
+  }
+  return {};
 }
 
 }  // namespace fusebench

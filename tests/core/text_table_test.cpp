@@ -1,12 +1,13 @@
-#include "datasets/text_table.hpp"
+#include "core/text_table.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "tests/datasets/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 namespace {
@@ -106,6 +107,19 @@ TEST(TextTable, ValueErrorsNameFileLineAndColumn) {
   ASSERT_FALSE(number);
   EXPECT_NE(number.error().message.find("truth.txt:2: tx: expected a finite number, got 'nan'"),
             std::string::npos);
+}
+
+TEST(TextTable, NumbersOfNeighbouringColumns) {
+  const TemporaryFolder folder;
+  auto table = TextTable::open(folder.write("t.txt", "1 2 -3 4e1\n1 2 x 4\n"), "t a b c");
+  ASSERT_TRUE(table && table->next());
+  std::array<double, 3> values{};
+  ASSERT_TRUE(table->numbers(1, values));
+  EXPECT_EQ(values, (std::array<double, 3>{2, -3, 40}));
+  ASSERT_TRUE(table->next());
+  const auto refused = table->numbers(1, values);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("t.txt:2: b: expected a finite number"), std::string::npos);
 }
 
 TEST(ParseTime, IsExact) {

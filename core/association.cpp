@@ -1,4 +1,4 @@
-#include "datasets/association.hpp"
+#include "core/association.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,15 +15,15 @@ struct Candidate {
 }  // namespace
 
 std::vector<AssociatedPair> associate(std::span<const std::int64_t> first_ns,
-                                      std::span<const std::int64_t> second_ns,
-                                      std::int64_t max_difference_ns) {
+                                      std::span<const std::int64_t> second_ns, std::int64_t max_difference_ns,
+                                      std::int64_t offset_ns) {
   std::vector<Candidate> candidates;
   std::size_t window = 0;  // the first entry of second_ns that is not too early; only moves forward
   for (std::size_t a = 0; a < first_ns.size(); ++a) {
-    while (window < second_ns.size() && first_ns[a] - second_ns[window] >= max_difference_ns) ++window;
-    for (std::size_t b = window; b < second_ns.size() && second_ns[b] - first_ns[a] < max_difference_ns;
-         ++b) {
-      candidates.push_back({std::abs(first_ns[a] - second_ns[b]), a, b});
+    const std::int64_t wanted_ns = first_ns[a] - offset_ns;
+    while (window < second_ns.size() && wanted_ns - second_ns[window] >= max_difference_ns) ++window;
+    for (std::size_t b = window; b < second_ns.size() && second_ns[b] - wanted_ns < max_difference_ns; ++b) {
+      candidates.push_back({std::abs(wanted_ns - second_ns[b]), a, b});
     }
   }
   std::ranges::sort(candidates, {},

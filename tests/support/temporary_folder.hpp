@@ -1,6 +1,8 @@
 // A folder that lives as long as the test, and files to put into it.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -28,7 +30,7 @@ class TemporaryFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
   /// Writes a file (its folders are created) and returns its path.
-  std::filesystem::path write(const std::string& name, std::string_view content) const {
+  std::filesystem::path write(const std::filesystem::path& name, std::string_view content) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << content;
@@ -44,5 +46,19 @@ inline std::string read_bytes(const std::filesystem::path& file) {
   bytes << std::ifstream(file, std::ios::binary).rdbuf();
   return bytes.str();
 }
+
+/// A fixture with a folder of its own for each test.
+class InTemporaryFolder : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const std::filesystem::path& name, std::string_view content) const {
+    return temporary_.write(name, content);
+  }
+
+ private:
+  const TemporaryFolder temporary_;
+
+ protected:
+  const std::filesystem::path& folder_ = temporary_.path();
+};
 
 }  // namespace fusebench::testing

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ class TextTable {
   [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[column]; }
   [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column) const;
   [[nodiscard]] Result<double> number(std::size_t column) const;
+  /// Fills values from as many neighbouring columns.
+  [[nodiscard]] Result<void> numbers(std::size_t first_column, std::span<double> values) const;
 
   /// An error about the current row: "file:line: what".
   [[nodiscard]] tl::unexpected<Error> fail_here(std::string_view what, std::string hint = {}) const;

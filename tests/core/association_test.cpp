@@ -1,4 +1,4 @@
-#include "datasets/association.hpp"
+#include "core/association.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ namespace {
 using Stamps = std::vector<std::int64_t>;
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-Pairs associated(const Stamps& first, const Stamps& second, std::int64_t limit) {
+Pairs associated(const Stamps& first, const Stamps& second, std::int64_t limit, std::int64_t offset = 0) {
   Pairs pairs;
-  for (const AssociatedPair& pair : associate(first, second, limit))
+  for (const AssociatedPair& pair : associate(first, second, limit, offset))
     pairs.emplace_back(pair.first, pair.second);
   return pairs;
 }
@@ -63,6 +63,13 @@ TEST(Association, TheLimitItselfIsTooFar) {
   EXPECT_EQ(associated({20}, {0}, 20), Pairs{});
 }
 
+TEST(Association, TheOffsetMovesTheSecondList) {
+  EXPECT_EQ(associated({100}, {0}, 20, 81), (Pairs{{0, 0}}));
+  EXPECT_EQ(associated({100}, {0}, 20, 80), Pairs{});
+  EXPECT_EQ(associated({100}, {0}, 20, 119), (Pairs{{0, 0}}));
+  EXPECT_EQ(associated({100}, {0}, 20, 120), Pairs{});
+}
+
 TEST(Association, EmptyLists) {
   EXPECT_EQ(associated({}, {1}, 20), Pairs{});
   EXPECT_EQ(associated({1}, {}, 20), Pairs{});
@@ -88,6 +95,10 @@ TEST(Association, EqualsThePublishedRuleOnRandomLists) {
     const std::int64_t limit = 1 + static_cast<std::int64_t>(engine() % 40);
     const Pairs expected = brute_force(first, second, limit);
     ASSERT_EQ(associated(first, second, limit), expected) << "round " << round;
+    const std::int64_t offset = static_cast<std::int64_t>(engine() % 1000) - 500;
+    Stamps moved = second;
+    for (std::int64_t& stamp : moved) stamp -= offset;
+    ASSERT_EQ(associated(first, moved, limit, offset), expected) << "round " << round;
     pairs += expected.size();
   }
   EXPECT_GT(pairs, 1000U);

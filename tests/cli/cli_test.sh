@@ -1,0 +1,245 @@
+#!/usr/bin/env bash
+# The command line from outside: what bad input, Ctrl-C and an unwritable folder do, and that the same run gives the
+# same bytes. Runs one group of checks on copies of the golden recording, in a folder of its own.
+set -uo pipefail
+
+usage() {
+  cat <<'TEXT'
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|interrupt|determinism
+TEXT
+}
+
+if (($# != 3)); then
+  usage >&2
+  exit 2
+fi
+binary=$(realpath -- "$1")
+golden=$(realpath -- "$2")
+group=$3
+unset FUSEBENCH_DATA
+
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+cd "$work" || exit 2
+checks=0
+failures=0
+
+complain() {
+  failures=$((failures + 1))
+  printf 'FAILED: %s\n' "$1" >&2
+  if [[ -s stderr ]]; then sed 's/^/    stderr: /' stderr >&2; fi
+}
+
+# fresh_copy: the golden recording as ./copy (a name that tells the camera), writable.
+fresh_copy() {
+  rm -rf freiburg1_copy
+  cp -r "$golden" freiburg1_copy
+  chmod -R u+w freiburg1_copy
+}
+
+# refused NAME CODE PATTERN... -- ARGUMENT...: the program ends with CODE and exactly one error of one line that matches
+# every pattern (extended regular expressions; one that begins with "hint:" is for the hint), prints no result, and
+# leaves ./out as absent as it was.
+refused() {
+  local name=$1 code=$2 status pattern
+  local patterns=()
+  shift 2
+  while [[ $1 != -- ]]; do
+    patterns+=("$1")
+    shift
+  done
+  shift
+  checks=$((checks + 1))
+  rm -rf out
+  "$binary" "$@" >stdout 2>stderr
+  status=$?
+  if ((status != code)); then complain "$name: exit code $status instead of $code"; fi
+  if [[ $(grep -c '^error: ' stderr) != 1 ]]; then complain "$name: not exactly one error"; fi
+  if grep -qvE '^(error: .|  hint: .|warning: .)' stderr; then complain "$name: something else on standard error"; fi
+  if [[ -s stdout ]]; then complain "$name: a result on standard output"; fi
+  for pattern in "${patterns[@]}"; do
+    if [[ $pattern == hint:* ]]; then
+      grep -E '^  hint: ' stderr | grep -qE -- "${pattern#hint:}" || complain "$name: no hint matches '$pattern'"
+    else
+      grep -E '^error: ' stderr | grep -qE -- "$pattern" || complain "$name: no error matches '$pattern'"
+    fi
+  done
+  if [[ -e out ]]; then complain "$name: left $(find out | tr '\n' ' ')"; fi
+}
+
+# Arguments of the run that the checks vary.
+run=(run freiburg1_copy --variant no-imu --out out --threads 2)
+
+check_bad_data() {
+  refused "missing recording" 3 'nowhere' -- run nowhere --variant no-imu --out out
+
+  fresh_copy
+  rm freiburg1_copy/depth/1305031229.596617.png
+  refused "missing depth image" 3 'depth/1305031229.596617.png' -- "${run[@]}"
+
+  fresh_copy
+  sed -i '5s/.*/1305031229.564425 rgb extra column/' freiburg1_copy/rgb.txt
+  refused "columns of rgb.txt" 3 'rgb.txt:5' -- "${run[@]}"
+
+  fresh_copy
+  sed -i '7s/ [^ ]*$//' freiburg1_copy/groundtruth.txt
+  refused "columns of groundtruth.txt" 3 'groundtruth.txt:7' -- "${run[@]}"
+
+  fresh_copy
+  sed -i '9s/ [^ ]*$/ abc/' freiburg1_copy/groundtruth.txt
+  refused "a word for a number" 3 'groundtruth.txt:9.*abc' -- "${run[@]}"
+
+  fresh_copy
+  sed -i '9s/.*/1305031229.3633 nan 0 0 0 0 0 1/' freiburg1_copy/groundtruth.txt
+  refused "not a number" 3 'groundtruth.txt:9' -- "${run[@]}"
+
+  fresh_copy
+  sed -i '6s/^1305031229/1305031228/' freiburg1_copy/rgb.txt
+  refused "time running backwards" 3 'rgb.txt:6' -- "${run[@]}"
+
+  fresh_copy
+  sed -i 's/^1305031229/1305039229/; s/^1305031230/1305039230/' freiburg1_copy/groundtruth.txt
+  refused "truth of another time" 3 'groundtruth' -- "${run[@]}"
+
+  fresh_copy
+  tiny_depth_png >freiburg1_copy/depth/1305031229.564442.png
+  refused "depth of another size" 3 'depth/1305031229.564442.png' '640x480' -- "${run[@]}"
+
+  fresh_copy
+  truncate -s 60000 freiburg1_copy/rgb/1305031229.628753.png
+  refused "truncated image in the middle of a run" 3 'frame 3' 'rgb/1305031229.628753.png' 'truncated' -- "${run[@]}"
+  refused "truncated image with an IMU" 3 'rgb/1305031229.628753.png' -- \
+    run freiburg1_copy --variant full --imu synthetic --out out --threads 1
+
+  fresh_copy
+  printf 'no image' >freiburg1_copy/depth/1305031229.664358.png
+  refused "no image at all" 3 'depth/1305031229.664358.png' -- "${run[@]}"
+
+  # In a suite the same is a row of the table, and the rest goes on.
+  fresh_copy
+  truncate -s 60000 freiburg1_copy/rgb/1305031229.628753.png
+  mkdir -p data/freiburg1_good && cp -r "$golden"/. data/freiburg1_good && mv freiburg1_copy data/freiburg1_bad
+  printf 'name = "two"\nall = true\nvariants = ["no-imu"]\n' >two.toml
+  checks=$((checks + 1))
+  "$binary" bench two.toml --data data --out runs >stdout 2>stderr
+  if (($? != 4)); then complain "suite with bad data: not exit code 4"; fi
+  grep -q '1 of 2 runs ok' stderr || complain "suite with bad data: the good run is not counted"
+  "$binary" table runs >stdout 2>stderr || complain "table of a suite with bad data"
+  grep -q '1305031229.628753.png' stdout || complain "the table does not say why the run failed"
+}
+
+# A grey PNG of 1x1 pixels with 16 bits, byte by byte.
+tiny_depth_png() {
+  printf '\x89PNG\r\n\x1a\n'
+  printf '\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x10\x00\x00\x00\x00\x6a\xee\x47\x16'
+  printf '\x00\x00\x00\x0b\x49\x44\x41\x54\x78\x9c\x63\x10\x60\x00\x00\x00\x23\x00\x11\x31\x07\xfd\x77'
+  printf '\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82'
+}
+
+check_bad_usage() {
+  fresh_copy
+  refused "unknown verb" 2 'rnu' 'run' -- rnu
+  refused "unknown key" 2 'iekf.max_iteration' 'iekf.max_iterations' -- "${run[@]}" --set iekf.max_iteration=8
+  refused "out of range" 2 'iekf.max_iterations' '999' '1 \.\. 200' -- "${run[@]}" --set iekf.max_iterations=999
+  refused "wrong type" 2 'iekf.max_iterations' 'many' -- "${run[@]}" --set iekf.max_iterations=many
+  refused "no assignment" 2 'iekf.max_iterations' -- "${run[@]}" --set iekf.max_iterations
+  refused "NaN" 2 'tsdf.voxel_m' -- "${run[@]}" --set tsdf.voxel_m=nan
+
+  printf '# options\n[iekf]\nmax_iterations = 5\nmax_iteration = 8\n' >options.toml
+  refused "unknown key in a file" 2 'options.toml:4' 'max_iterations' -- "${run[@]}" --config options.toml
+  printf '[iekf]\nmax_iterations = 5000\n' >options.toml
+  refused "out of range in a file" 2 'options.toml:2' '5000' -- "${run[@]}" --config options.toml
+  printf '[iekf]\nmax_iterations = "five"\n' >options.toml
+  refused "wrong type in a file" 2 'options.toml:2' -- "${run[@]}" --config options.toml
+  printf '[iekf]\nmax_iterations = = 5\n' >options.toml
+  refused "no TOML" 2 'options.toml:2' -- "${run[@]}" --config options.toml
+  refused "no such file of options" 3 'absent.toml' -- "${run[@]}" --config absent.toml
+
+  refused "unknown variant" 2 'no_imu' 'no-imu' -- run freiburg1_copy --variant no_imu --out out
+  refused "IMU needed" 2 "'full'" 'hint:--imu synthetic' -- run freiburg1_copy --variant full --out out
+  refused "frames backwards" 2 '4:2' -- "${run[@]}" --frames 4:2
+  refused "frames beyond the end" 2 '3:9' -- "${run[@]}" --frames 3:9
+  refused "unknown camera" 2 'freiburg9' -- "${run[@]}" --camera freiburg9
+  refused "unknown option" 2 'frobnicate' -- "${run[@]}" --frobnicate
+  refused "no threads" 2 'threads' -- run freiburg1_copy --variant no-imu --out out --threads 0
+
+  printf 'name = "s"\nall = true\nvariant = ["full"]\n' >suite.toml
+  refused "unknown key of a suite" 2 'suite.toml:3' 'variants' -- bench suite.toml --data . --out out
+  printf 'name = "s"\nall = true\nvariants = ["fulll"]\n' >suite.toml
+  refused "unknown variant of a suite" 2 'suite.toml:3' 'nearest: full' -- bench suite.toml --data . --out out
+  printf 'name = "s"\nrecordings = ["absent"]\nvariants = ["no-imu"]\n' >suite.toml
+  refused "unknown recording of a suite" 3 'absent' -- bench suite.toml --data . --out out
+
+  # An unwritable place; a file in the way serves root as well, who may write everywhere.
+  printf 'in the way' >obstacle
+  refused "unwritable folder" 4 'obstacle' 'hint:--out' -- run freiburg1_copy --variant no-imu --out obstacle/out
+  [[ $(cat obstacle) == 'in the way' ]] || complain "unwritable folder: the file in the way was changed"
+}
+
+# Ctrl-C while frames are processed: nothing of the run is left, and what was there before still is.
+check_interrupt() {
+  fresh_copy
+  mkdir -p kept
+  printf 'mine' >kept/file
+  local signal status process attempt
+  for signal in INT TERM; do
+    checks=$((checks + 1))
+    "$binary" run freiburg1_copy --variant no-imu --out kept/out --threads 1 >stdout 2>stderr &
+    process=$!
+    # Once the hidden folder of the run is there, frames are being processed.
+    for ((attempt = 0; attempt < 500; ++attempt)); do
+      if [[ -n $(find kept/out -name '.*.tmp' 2>/dev/null) ]]; then break; fi
+      sleep 0.01
+    done
+    kill -s "$signal" "$process"
+    wait "$process"
+    status=$?
+    if ((status != 130)); then complain "SIG$signal: exit code $status instead of 130"; fi
+    if [[ -e kept/out ]]; then complain "SIG$signal: left $(find kept/out | tr '\n' ' ')"; fi
+    [[ $(cat kept/file) == mine ]] || complain "SIG$signal: touched what was there before"
+    [[ $(grep -c '^error: ' stderr) == 1 ]] || complain "SIG$signal: not exactly one message"
+  done
+}
+
+# The part of a record that repeats: all before the timing, and no thread count (the provenance comes after it).
+reproducible_part() { sed '/"timing"/,$d' "$1"; }
+
+check_determinism() {
+  fresh_copy
+  local threads reference folder name
+  for threads in 1 2 8 1; do
+    checks=$((checks + 1))
+    rm -rf out
+    if ! folder=$("$binary" run freiburg1_copy --variant full --imu synthetic --threads "$threads" --out out 2>stderr); then
+      complain "run with $threads threads"
+      continue
+    fi
+    [[ $(wc -l <stderr) == 1 ]] || complain "$threads threads: more than the summary on standard error"
+    if [[ -z ${reference:-} ]]; then
+      reference=reference
+      mv "$folder" "$reference"
+      first=$folder
+      continue
+    fi
+    [[ $folder == "$first" ]] || complain "$threads threads: folder $folder instead of $first"
+    for name in trajectory.tum mesh.ply intensity.bin log.txt; do
+      cmp -s "$reference/$name" "$folder/$name" || complain "$threads threads: $name differs"
+    done
+    cmp -s <(reproducible_part "$reference/record.json") <(reproducible_part "$folder/record.json") ||
+      complain "$threads threads: record.json differs before its timing"
+    [[ $(reproducible_part "$folder/record.json" | wc -l) -gt 50 ]] || complain "there is hardly a record to compare"
+  done
+}
+
+case "$group" in
+  bad-data) check_bad_data ;;
+  bad-usage) check_bad_usage ;;
+  interrupt) check_interrupt ;;
+  determinism) check_determinism ;;
+  *) usage >&2; exit 2 ;;
+esac
+if ((failures > 0 || checks == 0)); then
+  printf '%s: %d failures in %d checks\n' "$group" "$failures" "$checks" >&2
+  exit 1
+fi
+printf '%s: %d checks passed\n' "$group" "$checks"
