@@ -149,7 +149,7 @@ struct PatchConfig {
   int min_valid_px = 30;
   double min_valid_fraction = 0.5;
   double max_mean_error = 30.0;
-  double occlusion_distance_m = 0.05;
+  double occlusion_distance_m = 0.1;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_count", self.max_count, 1, 2000, "at most this many patches a frame (Sec. 3.1: 100)");
@@ -170,7 +170,9 @@ struct PatchConfig {
     v.number("occlusion_distance_m", self.occlusion_distance_m, 0.001, 1.0,
              "a pixel whose predicted depth differs from the measured one by more is occluded, or is the "
              "surface that "
-             "appeared behind it; twice as much while only coarse levels are in use");
+             "appeared behind it (twice as much while only coarse levels are in use); as wide as the "
+             "association gate, "
+             "since a tighter one drops every patch as soon as the pose has drifted by it");
   }
 };
 

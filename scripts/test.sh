@@ -60,7 +60,7 @@ sources() {
 
 check_scripts() {
   local script status=0
-  for script in scripts/*.sh tests/scripts/*.sh .ci/run; do
+  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh .ci/run; do
     bash -n "$script" || status=1
   done
   return "$status"

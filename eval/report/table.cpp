@@ -111,9 +111,9 @@ void add_common_pixels(const std::vector<FoundRun>& runs, ResultTable& table) {
       table.rows[members[k]].aie_common_grey = finite((*common)[k].aie_grey);
     }
     const IntensitySummary& summary = common->front();
-    table.notes.push_back(fmt::format("{}: {} runs share {} pixels in {} frames ({} frames share none)",
-                                      recording.first, members.size(), summary.pixels, summary.frames,
-                                      summary.frames_excluded));
+    table.notes.push_back(fmt::format(
+        "{}: {} runs share {} pixels in {} frames ({} frames have no pixel in common)", recording.first,
+        members.size(), summary.pixels, summary.frames, summary.frames_excluded));
   }
 }
 
@@ -127,7 +127,7 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "pixels).",
       "ATE: rmse of positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM). Only "
       "tracked frames "
-      "have a pose, so read it with the coverage.",
+      "have a pose, so read it with the column tracked.",
       "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
   const auto synthetic = [](const TableRow& row) { return row.imu == "synthetic IMU"; };
   if (std::any_of(table.rows.begin(), table.rows.end(), synthetic)) {

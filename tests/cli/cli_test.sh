@@ -176,29 +176,39 @@ check_bad_usage() {
   [[ $(cat obstacle) == 'in the way' ]] || complain "unwritable folder: the file in the way was changed"
 }
 
-# Ctrl-C while frames are processed: nothing of the run is left, and what was there before still is.
+# stopped SIGNAL ARGUMENT...: the signal arrives while frames are processed; nothing of the run is left, and what was
+# there before still is.
+stopped() {
+  local signal=$1 status process attempt
+  shift
+  checks=$((checks + 1))
+  "$binary" "$@" --out kept/out --threads 1 >stdout 2>stderr &
+  process=$!
+  # Once the hidden folder of the run is there, frames are being processed.
+  for ((attempt = 0; attempt < 1000; ++attempt)); do
+    if [[ -n $(find kept/out -name '.*.tmp' 2>/dev/null) ]]; then break; fi
+    sleep 0.01
+  done
+  if ((attempt == 1000)); then complain "$1, SIG$signal: the run did not begin"; fi
+  kill -s "$signal" "$process"
+  wait "$process"
+  status=$?
+  if ((status != 130)); then complain "$1, SIG$signal: exit code $status instead of 130"; fi
+  if [[ -e kept/out ]]; then complain "$1, SIG$signal: left $(find kept/out | tr '\n' ' ')"; fi
+  [[ $(cat kept/file) == mine ]] || complain "$1, SIG$signal: touched what was there before"
+  [[ $(grep -c '^error: ' stderr) == 1 ]] || complain "$1, SIG$signal: not exactly one message"
+  if [[ -s stdout ]]; then complain "$1, SIG$signal: a result on standard output"; fi
+}
+
 check_interrupt() {
   fresh_copy
-  mkdir -p kept
+  mkdir -p kept data
+  mv freiburg1_copy data
   printf 'mine' >kept/file
-  local signal status process attempt
-  for signal in INT TERM; do
-    checks=$((checks + 1))
-    "$binary" run freiburg1_copy --variant no-imu --out kept/out --threads 1 >stdout 2>stderr &
-    process=$!
-    # Once the hidden folder of the run is there, frames are being processed.
-    for ((attempt = 0; attempt < 500; ++attempt)); do
-      if [[ -n $(find kept/out -name '.*.tmp' 2>/dev/null) ]]; then break; fi
-      sleep 0.01
-    done
-    kill -s "$signal" "$process"
-    wait "$process"
-    status=$?
-    if ((status != 130)); then complain "SIG$signal: exit code $status instead of 130"; fi
-    if [[ -e kept/out ]]; then complain "SIG$signal: left $(find kept/out | tr '\n' ' ')"; fi
-    [[ $(cat kept/file) == mine ]] || complain "SIG$signal: touched what was there before"
-    [[ $(grep -c '^error: ' stderr) == 1 ]] || complain "SIG$signal: not exactly one message"
-  done
+  printf 'name = "s"\nall = true\nvariants = ["no-imu", "dm-no-imu"]\n' >suite.toml
+  stopped INT run data/freiburg1_copy --variant no-imu
+  stopped TERM run data/freiburg1_copy --variant no-imu
+  stopped INT bench suite.toml --data data
 }
 
 # The part of a record that repeats: all before the timing, and no thread count (the provenance comes after it).
@@ -206,7 +216,7 @@ reproducible_part() { sed '/"timing"/,$d' "$1"; }
 
 check_determinism() {
   fresh_copy
-  local threads reference folder name
+  local threads reference='' first='' folder name
   for threads in 1 2 8 1; do
     checks=$((checks + 1))
     rm -rf out
@@ -215,7 +225,7 @@ check_determinism() {
       continue
     fi
     [[ $(wc -l <stderr) == 1 ]] || complain "$threads threads: more than the summary on standard error"
-    if [[ -z ${reference:-} ]]; then
+    if [[ -z $reference ]]; then
       reference=reference
       mv "$folder" "$reference"
       first=$folder
