@@ -139,7 +139,6 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   report.T_world_camera = T_world_camera();
   report.velocity_world_mps = estimate->mean.velocity_world_mps;
   report.angular_velocity_radps = estimate->mean.angular_velocity_imu_radps;
-  report.imu_time_offset_s = estimate->mean.imu_time_offset_s;
   report.model_blocks = model.block_count();
   return report;
 }

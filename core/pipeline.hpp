@@ -38,7 +38,6 @@ struct FrameReport {
   SE3 T_world_camera;
   Vector3d velocity_world_mps = Vector3d::Zero();
   Vector3d angular_velocity_radps = Vector3d::Zero();  ///< body frame
-  double imu_time_offset_s = 0;                        ///< estimate of IMU clock minus camera clock
   int patches = 0;                                     ///< projected into this frame
   int patches_tracked = 0;                             ///< with enough usable pixels at the final pose
   int patches_accepted = 0;    ///< that also passed the chi-square gate: those the update used
