@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -17,6 +18,8 @@
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "core/printable.hpp"
 
 namespace fusebench {
 namespace {
@@ -130,7 +133,7 @@ class PlyReader {
         std::string format;
         words >> format;
         if (format != "ascii" && format != "binary_little_endian") {
-          return reject(fmt::format("format {} is not supported", format));
+          return reject(fmt::format("format {} is not supported", printable(format)));
         }
         binary = format != "ascii";
       } else if (keyword == "element") {
@@ -141,7 +144,7 @@ class PlyReader {
         ++line_;
         return binary ? accept_header(*binary) : reject("the header has no format line");
       } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-        return reject(fmt::format("unknown header keyword '{}'", keyword));
+        return reject(fmt::format("unknown header keyword '{}'", printable(keyword)));
       }
     }
     return reject("the header has no end_header line");
@@ -151,11 +154,15 @@ class PlyReader {
     Element element;
     words >> element.name >> element.count;
     if (!words) return reject("expected 'element NAME COUNT'");
+    const auto is_same = [&](const Element& other) { return other.name == element.name; };
+    if (std::ranges::any_of(elements_, is_same))
+      return reject(fmt::format("element {} is there twice", printable(element.name)));
     // Each row takes at least a byte: a count beyond that is corrupt, and not worth the memory.
-    if (element.count > bytes_.size()) {
-      return reject(fmt::format("element {} = {}, but the file has {} bytes", element.name, element.count,
-                                bytes_.size()));
+    if (element.count > bytes_.size() - rows_) {
+      return reject(fmt::format("element {} = {}, but the file has {} bytes", printable(element.name),
+                                element.count, bytes_.size()));
     }
+    rows_ += element.count;
     elements_.push_back(std::move(element));
     return true;
   }
@@ -168,12 +175,15 @@ class PlyReader {
       std::string count_type;
       words >> count_type >> type;
       property.count_type = scalar_of(count_type);
-      if (!property.count_type) return reject(fmt::format("unknown type '{}' of a list's count", count_type));
+      if (!property.count_type)
+        return reject(fmt::format("unknown type '{}' of a list's count", printable(count_type)));
     }
     words >> property.name;
     const std::optional<Scalar> scalar = scalar_of(type);
-    if (!words || !scalar) return reject(fmt::format("property {}: unknown type '{}'", property.name, type));
-    if (elements_.empty()) return reject(fmt::format("property {} before the first element", property.name));
+    if (!words || !scalar)
+      return reject(fmt::format("property {}: unknown type '{}'", printable(property.name), printable(type)));
+    if (elements_.empty())
+      return reject(fmt::format("property {} before the first element", printable(property.name)));
     property.type = *scalar;
     elements_.back().properties.push_back(std::move(property));
     return true;
@@ -183,6 +193,10 @@ class PlyReader {
     const auto vertex =
         std::find_if(elements_.begin(), elements_.end(), [](const Element& e) { return e.name == "vertex"; });
     if (vertex == elements_.end()) return reject("no element vertex");
+    for (const Element& element : elements_) {
+      if (element.properties.empty())
+        return reject(fmt::format("element {} has no properties", printable(element.name)));
+    }
     const auto has = [&](std::size_t first) {  // three properties in a row of kVertexNames
       return std::all_of(
           kVertexNames.begin() + first, kVertexNames.begin() + first + 3, [&](std::string_view name) {
@@ -210,8 +224,8 @@ class PlyReader {
       const auto role = static_cast<std::size_t>(name - kVertexNames.begin());
       double& value = values[role];
       if (!read_value(property.type, property.name, value)) return false;
-      if (role < 3 && !std::isfinite(value))
-        return reject(fmt::format("property {} is not finite", property.name));
+      if (role < 3 && !(std::abs(value) <= std::numeric_limits<float>::max()))
+        return reject(fmt::format("property {} is not finite as a float", property.name));
       if (role >= 6 && has_colors_ && !(value >= 0 && value <= 255 && value == std::floor(value))) {
         return reject(fmt::format("property {} = {} (expected an integer in 0-255)", property.name, value));
       }
@@ -273,7 +287,7 @@ class PlyReader {
     double value = 0;
     if (!read_value(*list.count_type, list.name, value)) return false;
     if (!(value >= 0 && value <= static_cast<double>(bytes_.size()) && value == std::floor(value))) {
-      return reject(fmt::format("property {}: a list of {} values", list.name, value));
+      return reject(fmt::format("property {}: a list of {} values", printable(list.name), value));
     }
     count = static_cast<std::size_t>(value);
     return true;
@@ -305,7 +319,7 @@ class PlyReader {
   template <class Value>
   bool read_bytes(const std::string& name, double& value) {
     if (bytes_.size() - position_ < sizeof(Value))
-      return reject(fmt::format("the file ends before property {}", name));
+      return reject(fmt::format("the file ends before property {}", printable(name)));
     Value stored{};
     std::memcpy(&stored, bytes_.data() + position_, sizeof(Value));
     position_ += sizeof(Value);
@@ -318,13 +332,14 @@ class PlyReader {
     for (; position_ < bytes_.size() && kSpace.find(bytes_[position_]) != kSpace.npos; ++position_) {
       if (bytes_[position_] == '\n') ++line_;
     }
-    if (position_ == bytes_.size()) return reject(fmt::format("the file ends before property {}", name));
+    if (position_ == bytes_.size())
+      return reject(fmt::format("the file ends before property {}", printable(name)));
     const std::size_t end = std::min(bytes_.find_first_of(kSpace, position_), bytes_.size());
     const char* last = bytes_.data() + end;
     const auto [stop, status] = std::from_chars(bytes_.data() + position_, last, value);
     if (status != std::errc{} || stop != last) {
-      return reject(
-          fmt::format("property {}: '{}' is not a number", name, bytes_.substr(position_, end - position_)));
+      return reject(fmt::format("property {}: '{}' is not a number", printable(name),
+                                printable(std::string_view(bytes_).substr(position_, end - position_))));
     }
     position_ = end;
     return true;
@@ -336,6 +351,7 @@ class PlyReader {
   std::size_t line_ = 1;      // of the header and of ascii data, from 1
   bool binary_ = false;       // the position is told as a byte
   std::vector<Element> elements_;
+  std::size_t rows_ = 0;  // of all elements
   std::size_t vertex_count_ = 0;
   bool has_normals_ = false;
   bool has_colors_ = false;

@@ -38,7 +38,7 @@ class Clock {
 }  // namespace
 
 Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
-                                  TimeOrder order, const StampedRow& row) {
+                                  TimeOrder order, const StampedRow& row, TimeUnit unit) {
   Result<TextTable> table = TextTable::open(file, columns);
   if (!table) return tl::unexpected(table.error());
   Clock clock(order);
@@ -48,7 +48,7 @@ Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string
     if (!got) return tl::unexpected(got.error());
     if (!*got) break;
     empty = false;
-    const Result<std::int64_t> time_ns = table->time_ns(0);
+    const Result<std::int64_t> time_ns = table->time_ns(0, unit);
     if (!time_ns) return tl::unexpected(time_ns.error());
     if (auto later = clock.take(*table, *time_ns); !later) return later;
     if (auto done = row(*table, *time_ns); !done) return done;

@@ -21,9 +21,10 @@ enum class TimeOrder {
 using StampedRow = std::function<Result<void>(const TextTable& table, std::int64_t time_ns)>;
 
 /// Calls row for every row of the table, in the order of the file, up to the first error. columns: names,
-/// separated by blanks, the first one the time in decimal seconds. Errors: data_missing; data_corrupt (those
+/// separated by blanks, the first one the time in the given unit. Errors: data_missing; data_corrupt (those
 /// of TextTable, the order in time, a table without rows); those of row.
 [[nodiscard]] Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
-                                                TimeOrder order, const StampedRow& row);
+                                                TimeOrder order, const StampedRow& row,
+                                                TimeUnit unit = TimeUnit::seconds);
 
 }  // namespace fusebench

@@ -9,6 +9,8 @@
 #include <limits>
 #include <system_error>
 
+#include "core/printable.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -23,9 +25,6 @@ std::string_view trim(std::string_view text) {
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
 }
-
-/// Fields of a broken file may be long; messages show their beginning.
-std::string_view excerpt(std::string_view text) { return text.substr(0, 40); }
 
 /// A decimal number taken apart: value = 0.d1 d2 d3 ... * 10^point.
 struct Decimal {
@@ -47,10 +46,12 @@ bool take_exponent(std::string_view& text, int& exponent) {
   exponent = 0;
   if (text.empty() || (text.front() != 'e' && text.front() != 'E')) return true;
   text.remove_prefix(1);
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const bool plus = !text.empty() && text.front() == '+';
+  if (plus) text.remove_prefix(1);
+  if (plus && text.starts_with('-')) return false;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return error == std::errc() && std::abs(exponent) <= 1000;
+  return error == std::errc() && exponent >= -1000 && exponent <= 1000;
 }
 
 bool take_decimal(std::string_view text, Decimal& decimal) {
@@ -71,38 +72,54 @@ bool take_decimal(std::string_view text, Decimal& decimal) {
   return true;
 }
 
-/// value = value * 10 + digit, false on overflow.
+/// Half of the range, so that the difference of any two times fits as well.
+constexpr std::int64_t kLatestTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
+
+/// value = value * 10 + digit, false beyond the latest time.
 bool append_digit(std::int64_t& value, int digit) {
-  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
-  if (value > (kMax - digit) / 10) return false;
+  if (value > (kLatestTime_ns - digit) / 10) return false;
   value = value * 10 + digit;
   return true;
 }
 
 }  // namespace
 
-Result<std::int64_t> parse_time_ns(std::string_view seconds) {
-  constexpr int kDecimals = 9;
+std::string_view to_string(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::nanoseconds:
+      return "nanoseconds";
+    case TimeUnit::microseconds:
+      return "microseconds";
+    case TimeUnit::milliseconds:
+      return "milliseconds";
+    case TimeUnit::seconds:
+      break;
+  }
+  return "seconds";
+}
+
+Result<std::int64_t> parse_time_ns(std::string_view text, TimeUnit unit) {
+  const int decimals = static_cast<int>(unit);
   Decimal decimal;
-  if (seconds.size() > 256 || !take_decimal(seconds, decimal)) {
+  if (text.size() > 256 || !take_decimal(text, decimal)) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("expected a time in decimal seconds, got '{}'", excerpt(seconds)));
+                fmt::format("expected a time in decimal {}, got '{}'", to_string(unit), printable(text)));
   }
   const auto digit = [&](int i) {
     return i >= 0 && i < static_cast<int>(decimal.digits.size())
                ? decimal.digits[static_cast<std::size_t>(i)] - '0'
                : 0;
   };
-  const int kept =
-      decimal.point + kDecimals;  // digits before the nanosecond's end; negative for tiny numbers
+  const int kept = decimal.point + decimals;  // digits before the nanosecond's end; negative for tiny numbers
   std::int64_t value = 0;
   bool fits = true;
   for (int i = 0; i < kept && fits; ++i) fits = append_digit(value, digit(i));
-  if (fits && digit(kept) >= 5) fits = value++ < std::numeric_limits<std::int64_t>::max() - 1;
+  if (fits && digit(kept) >= 5) fits = value++ < kLatestTime_ns;
   if (!fits) {
     return fail(ErrorCode::data_corrupt,
-                fmt::format("time '{}' s does not fit into 64-bit nanoseconds", excerpt(seconds)),
-                "times are seconds; are these nanoseconds?");
+                fmt::format("time '{}' in {} is beyond 146 years (half of what 64-bit nanoseconds hold)",
+                            printable(text), to_string(unit)),
+                fmt::format("times are {} here; is the file in another unit?", to_string(unit)));
   }
   return decimal.negative ? -value : value;
 }
@@ -115,7 +132,7 @@ Result<double> parse_number(std::string_view text) {
   const bool whole = end == unsigned_text.data() + unsigned_text.size();
   const bool two_signs = text.starts_with('+') && unsigned_text.starts_with('-');
   if (error != std::errc() || !whole || two_signs || !std::isfinite(value)) {
-    return fail(ErrorCode::data_corrupt, fmt::format("expected a finite number, got '{}'", excerpt(text)));
+    return fail(ErrorCode::data_corrupt, fmt::format("expected a finite number, got '{}'", printable(text)));
   }
   return value;
 }
@@ -142,7 +159,15 @@ TextTable::TextTable(std::filesystem::path file, std::string_view columns, std::
     : file_(std::move(file)), stream_(std::move(stream)) {
   std::vector<std::string_view> names;
   split_fields(columns, names);
-  columns_.assign(names.begin(), names.end());
+  needed_columns_ = names.size();
+  for (std::string_view name : names) {
+    if (name.starts_with('[')) {
+      needed_columns_ = columns_.size();
+      name.remove_prefix(1);
+    }
+    if (name.ends_with(']')) name.remove_suffix(1);
+    columns_.emplace_back(name);
+  }
 }
 
 Result<TextTable> TextTable::open(const std::filesystem::path& file, std::string_view columns) {
@@ -158,11 +183,14 @@ Result<TextTable> TextTable::open(const std::filesystem::path& file, std::string
 }
 
 tl::unexpected<Error> TextTable::fail_here(std::string_view what, std::string hint) const {
-  return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: {}", file_.string(), line_, what),
+  return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: {}", file_.string(), line_, printable(what, 500)),
               std::move(hint));
 }
 
 std::string TextTable::expectation() const {
+  if (needed_columns_ < columns_.size()) {
+    return fmt::format("{} or {} columns: {}", needed_columns_, columns_.size(), fmt::join(columns_, " "));
+  }
   return fmt::format("{} columns: {}", columns_.size(), fmt::join(columns_, " "));
 }
 
@@ -195,15 +223,16 @@ Result<bool> TextTable::next() {
     }
     if (text_.empty() || text_.front() == '#') continue;
     split_fields(text_, fields_);
-    if (fields_.size() != columns_.size()) {
-      return fail_here(fmt::format("expected {}, got {}", expectation(), fields_.size()));
+    if (fields_.size() != columns_.size() && fields_.size() != needed_columns_) {
+      return fail_here(fmt::format("expected {}, got {}", expectation(), fields_.size()),
+                       text_.find('\r') == text_.npos ? "" : "lines must end with a line feed");
     }
     return true;
   }
 }
 
-Result<std::int64_t> TextTable::time_ns(std::size_t column) const {
-  const Result<std::int64_t> value = parse_time_ns(text(column));
+Result<std::int64_t> TextTable::time_ns(std::size_t column, TimeUnit unit) const {
+  const Result<std::int64_t> value = parse_time_ns(text(column), unit);
   if (!value)
     return fail_here(fmt::format("{}: {}", columns_[column], value.error().message), value.error().hint);
   return value;

@@ -14,10 +14,15 @@
 
 namespace fusebench {
 
-/// Decimal seconds ("1305031229.528748", "1.5e-3") to integer nanoseconds in integer arithmetic, so that no
-/// digit is lost to a double. Digits beyond the ninth decimal round to nearest, halves away from zero. Error
-/// data_corrupt: not a decimal number, or beyond the range of int64 nanoseconds (about 292 years).
-[[nodiscard]] Result<std::int64_t> parse_time_ns(std::string_view seconds);
+/// In which unit a file counts time. The value is the number of decimals that a nanosecond takes.
+enum class TimeUnit { nanoseconds = 0, microseconds = 3, milliseconds = 6, seconds = 9 };
+[[nodiscard]] std::string_view to_string(TimeUnit unit);  ///< "microseconds"
+
+/// Decimal time ("1305031229.528748", "1.5e-3") to integer nanoseconds in integer arithmetic, so that no
+/// digit is lost to a double. Digits beyond the nanosecond round to nearest, halves away from zero. Error
+/// data_corrupt: not a decimal number, or beyond half the range of int64 nanoseconds (about 146 years), so
+/// that differences of times fit, too.
+[[nodiscard]] Result<std::int64_t> parse_time_ns(std::string_view text, TimeUnit unit = TimeUnit::seconds);
 
 /// A finite decimal number; the whole text must be one. Error data_corrupt: anything else, also "nan" and
 /// "inf".
@@ -28,7 +33,8 @@ namespace fusebench {
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 /// Reads one table row by row; only one line is in memory. A byte order mark, carriage returns, blank lines
-/// and comments (first character '#') are skipped. Every row must have exactly the named columns.
+/// and comments (first character '#') are skipped. Every row must have exactly the named columns; the last
+/// ones may stand in brackets ("timestamp gx gy gz [ax ay az]"), and a row may then do without all of these.
 class TextTable {
  public:
   static constexpr std::size_t kLongestLine = 1 << 16;  ///< characters; a longer line is not a table
@@ -43,12 +49,13 @@ class TextTable {
   /// Of the current row. Columns count from 0. Errors: data_corrupt.
   [[nodiscard]] int line() const { return line_; }
   [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[column]; }
-  [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column) const;
+  [[nodiscard]] bool has(std::size_t column) const { return column < fields_.size(); }
+  [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column, TimeUnit unit = TimeUnit::seconds) const;
   [[nodiscard]] Result<double> number(std::size_t column) const;
   /// Fills values from as many neighbouring columns.
   [[nodiscard]] Result<void> numbers(std::size_t first_column, std::span<double> values) const;
 
-  /// An error about the current row: "file:line: what".
+  /// An error about the current row: "file:line: what", where `what` may quote the row (see printable.hpp).
   [[nodiscard]] tl::unexpected<Error> fail_here(std::string_view what, std::string hint = {}) const;
 
  private:
@@ -58,6 +65,7 @@ class TextTable {
 
   std::filesystem::path file_;
   std::vector<std::string> columns_;
+  std::size_t needed_columns_ = 0;
   std::ifstream stream_;
   std::string buffer_;
   std::string_view text_;  ///< the current line within buffer_

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <tuple>
 
 #include <toml++/toml.h>
+
+#include "core/printable.hpp"
 
 namespace fusebench {
 
@@ -28,6 +30,35 @@ std::optional<OptionValue> plain_value(const toml::node& node) {
   return std::nullopt;
 }
 
+// Files that people write stay far below these. The parser follows every level of a key by a call of its own,
+// so that a longer key could exhaust the stack.
+constexpr std::size_t kLargestFile = 1 << 20;
+constexpr std::ptrdiff_t kMostDotsInLine = 500;
+constexpr std::size_t kLongestKey = 200;
+
+std::optional<Error> refuse_size(std::string_view text, const std::string& name) {
+  const auto refused = [](std::string message) {
+    return Error{ErrorCode::configuration, std::move(message), "is it the right file?"};
+  };
+  if (text.size() > kLargestFile) {
+    return refused(fmt::format("{}: more than {} bytes are too many for a TOML file", name, kLargestFile));
+  }
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t length = std::min(text.find('\n'), text.size() - 1) + 1;
+    if (std::ranges::count(text.substr(0, length), '.') > kMostDotsInLine)
+      return refused(fmt::format("{}:{}: more than {} dots in a line", name, line, kMostDotsInLine));
+    text.remove_prefix(length);
+  }
+  return std::nullopt;
+}
+
+/// Keys here are bare ones; quoted ones may hold anything, also dots.
+bool is_bare(std::string_view key) {
+  return !key.empty() && std::ranges::all_of(key, [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-';
+  });
+}
+
 /// Collects the leaves of a table; the parser keeps them sorted by key, the caller sorts them by position.
 class Collector {
  public:
@@ -37,6 +68,11 @@ class Collector {
     for (const auto& [name, node] : table) {
       const std::string key =
           prefix.empty() ? std::string(name.str()) : fmt::format("{}.{}", prefix, name.str());
+      if (!is_bare(name.str()) || key.size() > kLongestKey) {
+        return fail(ErrorCode::configuration,
+                    fmt::format("{}: the key '{}' is no name of letters, digits, _ and -, up to {} in all",
+                                place(node), printable(key), kLongestKey));
+      }
       if (const auto* nested = node.as_table()) {
         tables_.emplace_back(nested->source().begin, TomlTable{key, place(*nested)});
         if (auto visited = visit(*nested, key); !visited) return visited;
@@ -98,14 +134,16 @@ class Collector {
 }  // namespace
 
 Result<TomlDocument> parse_toml(std::string_view text, const std::string& name) {
+  if (auto refused = refuse_size(text, name)) return tl::unexpected(std::move(*refused));
   try {
     const toml::table root = toml::parse(text, name);
     Collector collector(name);
     if (auto visited = collector.visit(root, ""); !visited) return tl::unexpected(visited.error());
     return collector.finish();
   } catch (const toml::parse_error& error) {
-    return fail(ErrorCode::configuration, fmt::format("{}:{}: not valid TOML: {}", name,
-                                                      error.source().begin.line, error.description()));
+    return fail(ErrorCode::configuration,
+                fmt::format("{}:{}: not valid TOML: {}", name, error.source().begin.line,
+                            printable(error.description(), 300)));
   }
 }
 
@@ -114,10 +152,14 @@ Result<TomlDocument> read_toml(const std::filesystem::path& file) {
   if (!stream || std::filesystem::is_directory(file)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   }
-  std::ostringstream text;
-  text << stream.rdbuf();
+  std::string text;
+  std::array<char, 1 << 14> part{};
+  while (text.size() <= kLargestFile && stream) {  // parse_toml() refuses what is larger
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (stream.bad()) return fail(ErrorCode::data_corrupt, fmt::format("{}: read error", file.string()));
-  return parse_toml(text.str(), file.string());
+  return parse_toml(text, file.string());
 }
 
 std::string to_toml(const OptionValue& value) {
@@ -132,7 +174,11 @@ std::string to_toml(const OptionValue& value) {
   std::string quoted = "\"";
   for (const char c : std::get<std::string>(value)) {
     if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
+    if (c >= 0 && (c < ' ' || c == '\x7F')) {
+      quoted += fmt::format("\\u{:04X}", static_cast<int>(c));
+    } else {
+      quoted += c;
+    }
   }
   return quoted + '"';
 }

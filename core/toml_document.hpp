@@ -34,7 +34,8 @@ struct TomlDocument {
 };
 
 /// Reads a TOML file. Errors: data_missing if it cannot be opened; configuration, with file:line, for bad
-/// syntax and for values that nothing here takes (dates, tables inside lists).
+/// syntax, for what nothing here takes (dates, tables inside lists, quoted keys that are no plain names), and
+/// for more than 1 MiB.
 [[nodiscard]] Result<TomlDocument> read_toml(const std::filesystem::path& file);
 
 /// The same for a text; `name` stands for the file in messages.

@@ -59,16 +59,16 @@ std::string put_in_order(Trajectory& poses, Duplicates duplicates) {
   };
   const bool sorted = std::ranges::is_sorted(poses, earlier);
   if (!sorted) std::ranges::stable_sort(poses, earlier);
-  Trajectory kept;
-  for (const StampedPose& pose : poses) {
-    if (kept.empty() || kept.back().timestamp_ns != pose.timestamp_ns) {
-      kept.push_back(pose);
+  std::size_t kept = 0;  // in place: a second copy of a long trajectory would double the memory
+  for (std::size_t i = 0; i < read; ++i) {
+    if (kept == 0 || poses[kept - 1].timestamp_ns != poses[i].timestamp_ns) {
+      poses[kept++] = poses[i];
     } else if (duplicates != Duplicates::first) {
-      kept.back() = pose;
+      poses[kept - 1] = poses[i];
     }
   }
-  poses = std::move(kept);
-  const std::size_t dropped = read - poses.size();
+  poses.resize(kept);
+  const std::size_t dropped = read - kept;
   if (sorted && dropped == 0) return {};
   return fmt::format("{}{} of {} rows repeat a stamp (the {} one is kept)",
                      sorted ? "" : "rows are not in order of time (sorted); ", dropped, read,

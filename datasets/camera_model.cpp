@@ -104,13 +104,13 @@ ColorImage Undistortion::undistort_color(const ColorImage& distorted) const {
   return result;
 }
 
-Image<std::uint16_t> Undistortion::undistort_depth(const Image<std::uint16_t>& distorted) const {
-  check(distorted.width == camera_.width_px && distorted.height == camera_.height_px,
+DepthImage Undistortion::undistort_depth(const DepthImage& distorted_m) const {
+  check(distorted_m.width == camera_.width_px && distorted_m.height == camera_.height_px,
         "the image has the size of its camera");
-  if (identity_) return distorted;
-  Image<std::uint16_t> result(distorted.width, distorted.height);
+  if (identity_) return distorted_m;
+  DepthImage result(distorted_m.width, distorted_m.height);
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
-    if (nearest_[i] >= 0) result.data[i] = distorted.data[static_cast<std::size_t>(nearest_[i])];
+    if (nearest_[i] >= 0) result.data[i] = distorted_m.data[static_cast<std::size_t>(nearest_[i])];
   }
   return result;
 }

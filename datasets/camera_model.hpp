@@ -49,7 +49,7 @@ class Undistortion {
 
   /// Images must have the size of the camera (checked).
   [[nodiscard]] ColorImage undistort_color(const ColorImage& distorted) const;
-  [[nodiscard]] Image<std::uint16_t> undistort_depth(const Image<std::uint16_t>& distorted) const;
+  [[nodiscard]] DepthImage undistort_depth(const DepthImage& distorted_m) const;
 
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
 

@@ -1,5 +1,6 @@
 #include "datasets/image_files.hpp"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -31,6 +32,17 @@ tl::unexpected<Error> corrupt(const std::filesystem::path& file, std::string_vie
   return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), what));
 }
 
+/// A header may claim any size. PNG's compression makes at most 1032 bytes of one, and JPEG's less in
+/// practice, so that memory stays in proportion to the file.
+Result<void> check_claim(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+  constexpr std::uintmax_t kMostPerByte = 1032;
+  std::error_code ignored;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, ignored);
+  if (spec.image_bytes() / kMostPerByte <= bytes) return {};
+  return corrupt(file, fmt::format("damaged image (its header claims {}x{} pixels, too many for {} bytes)",
+                                   spec.width, spec.height, bytes));
+}
+
 Result<std::unique_ptr<OIIO::ImageInput>> open_image(const std::filesystem::path& file) {
   use_one_thread_per_image();
   std::error_code ignored;
@@ -40,6 +52,7 @@ Result<std::unique_ptr<OIIO::ImageInput>> open_image(const std::filesystem::path
   if (const std::string damage = png_damage(file); !damage.empty()) return corrupt(file, damage);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
   if (!input) return corrupt(file, fmt::format("unreadable image: {}", library_reason(OIIO::geterror())));
+  if (const auto sound = check_claim(file, input->spec()); !sound) return tl::unexpected(sound.error());
   return input;
 }
 
@@ -82,7 +95,11 @@ Result<void> write_image(const std::filesystem::path& file, const Image<Pixel>& 
   // By format, not by the file's name, which need not end in ".png".
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
   if (!output) return failed(OIIO::geterror());
-  const OIIO::ImageSpec spec(image.width, image.height, channels, type);
+  OIIO::ImageSpec spec(image.width, image.height, channels, type);
+  // A quarter of the default's time for a tenth more bytes: 18 ms instead of 75 for 640x480 colour.
+  constexpr int kSubFilter = 0x10;
+  spec.attribute("png:compressionLevel", 2);
+  spec.attribute("png:filter", kSubFilter);
   if (!output->open(file.string(), spec) || !output->write_image(type, image.data.data()) ||
       !output->close()) {
     return failed(output->geterror());
@@ -117,6 +134,24 @@ Result<void> write_png(const std::filesystem::path& file, const GreyImage& image
 
 Result<void> write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image) {
   return write_image(file, image, 1, OIIO::TypeDesc::UINT16);
+}
+
+Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality) {
+  use_one_thread_per_image();
+  const auto failed = [](std::string reason) {
+    return fail(ErrorCode::io, fmt::format("JPEG in memory: {}", library_reason(std::move(reason))));
+  };
+  std::vector<std::uint8_t> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
+  if (!output) return failed(OIIO::geterror());
+  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("CompressionQuality", quality);
+  if (!output->set_ioproxy(&memory) || !output->open("memory.jpg", spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, image.data.data()) || !output->close()) {
+    return failed(output->geterror());
+  }
+  return bytes;
 }
 
 }  // namespace fusebench

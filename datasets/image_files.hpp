@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/image.hpp"
@@ -28,6 +29,9 @@ struct ImageSize {
 /// Reads an image with one channel of 16 bits, raw values. Errors as read_color().
 [[nodiscard]] Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
                                                         std::optional<ImageSize> expected = std::nullopt);
+
+/// A JPEG file in memory. quality: 1 to 100. Errors: io.
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality);
 
 /// Writes a PNG: 8-bit colour, 8-bit grey, 16-bit grey. Errors: io.
 [[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const ColorImage& image);

@@ -4,36 +4,44 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "core/nearest_name.hpp"
+#include "datasets/eth3d_slam.hpp"
+#include "datasets/icl_nuim.hpp"
+#include "datasets/side_files.hpp"
+#include "datasets/tum_rgbd.hpp"
+#include "datasets/zr300.hpp"
 
 namespace fusebench {
 
 namespace {
 
-/// A row per format; the first whose files are all there is taken.
+/// A row per format; the first that fits a folder is taken. Formats whose folders may also hold TUM's lists
+/// come before TUM.
 struct RecordingFormat {
   std::string_view name;
   std::vector<std::string_view> files;  ///< that a folder of this format must hold
-  Result<Recording> (*open)(const std::filesystem::path& folder, const OpenOptions& options);
+  Result<Recording> (*open)(const std::filesystem::path& folder, const ReadOptions& options);
+  /// Replaces the list of files where names alone do not tell; the files are then for messages.
+  bool (*recognise)(const std::filesystem::path& folder) = nullptr;
 };
 
-const std::array<RecordingFormat, 1>& formats() {
-  static const std::array<RecordingFormat, 1> kFormats = {{
-      {"tum",
-       {"rgb.txt", "depth.txt"},
-       [](const std::filesystem::path& folder, const OpenOptions& options) {
-         return open_tum_rgbd(folder, options.tum);
-       }},
-  }};
+const std::vector<RecordingFormat>& formats() {
+  static const std::vector<RecordingFormat> kFormats = {
+      {"eth3d", {"associated.txt", "calibration.txt"}, open_eth3d_slam},
+      {"icl", {"associations.txt or scene_*.depth"}, open_icl_nuim, is_icl_nuim},
+      {"tum", {"rgb.txt", "depth.txt"}, open_tum_rgbd},
+      {"zr300", {"TIMESTAMP.txt"}, open_zr300},
+      {"zr300_raw", {"COLOR.txt", "DEPTH.txt"}, open_zr300_raw},
+  };
   return kFormats;
 }
 
 bool fits(const RecordingFormat& format, const std::filesystem::path& folder) {
+  if (format.recognise != nullptr) return format.recognise(folder);
   return std::ranges::all_of(format.files, [&](std::string_view file) {
     std::error_code ignored;
     return std::filesystem::exists(folder / file, ignored);
@@ -60,6 +68,13 @@ tl::unexpected<Error> unrecognised(const std::filesystem::path& folder) {
 
 }  // namespace
 
+std::optional<std::string_view> recognise_format(const std::filesystem::path& folder) {
+  for (const RecordingFormat& format : formats()) {
+    if (fits(format, folder)) return format.name;
+  }
+  return std::nullopt;
+}
+
 Result<Recording> open_recording(const std::filesystem::path& folder, const OpenOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
@@ -67,7 +82,9 @@ Result<Recording> open_recording(const std::filesystem::path& folder, const Open
   }
   for (const RecordingFormat& format : formats()) {
     if (options.format.empty() ? fits(format, folder) : format.name == options.format) {
-      return format.open(folder, options);
+      auto recording = format.open(folder, options.read);
+      if (recording) note_simulation(folder, *recording);
+      return recording;
     }
   }
   return options.format.empty() ? unrecognised(folder) : unknown_format(options.format);

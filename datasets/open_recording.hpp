@@ -2,18 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/error.hpp"
+#include "datasets/read_options.hpp"
 #include "datasets/recording.hpp"
-#include "datasets/tum_rgbd.hpp"
 
 namespace fusebench {
 
 struct OpenOptions {
-  std::string format;  ///< "tum"; empty: recognised by the files in the folder
-  TumOptions tum;
+  std::string format;  ///< "tum", "icl", ...; empty: recognised by the files in the folder
+  ReadOptions read;
 };
+
+/// The format whose files the folder holds; nothing if there is none.
+[[nodiscard]] std::optional<std::string_view> recognise_format(const std::filesystem::path& folder);
 
 /// Errors: data_missing (no such folder, or no format fits its files), configuration (unknown format), and
 /// those of the format's reader.

@@ -20,6 +20,14 @@ std::string_view to_string(ImuSource source) {
   return "unknown";
 }
 
+Recording named_recording(const std::filesystem::path& folder, std::string_view format) {
+  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
+  Recording recording;
+  recording.name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+  recording.format = format;
+  return recording;
+}
+
 Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end) {
   const std::size_t count = recording.frames.size();
   if (begin >= end || end > count) {

@@ -37,8 +37,9 @@ struct AccelerometerSample {
 /// demand.
 struct Recording {
   std::string name;         ///< folder name
-  std::string format;       ///< "tum"
+  std::string format;       ///< "tum", "icl", "zr300", "eth3d"
   std::string fingerprint;  ///< content hash of all lists and image files that are used (hex)
+  bool simulated = false;   ///< made by a simulator: its truth and IMU are, too
   SensorRig rig;            ///< of the undistorted images
   std::vector<FrameEntry> frames;
   std::vector<ImuSample> imu;  ///< empty if imu_source is none
@@ -54,6 +55,9 @@ struct Recording {
   /// data_corrupt.
   std::function<Result<RgbdFrame>(std::size_t frame)> load_frame;
 };
+
+/// A recording that knows its name (the folder's) and format, and nothing else yet.
+[[nodiscard]] Recording named_recording(const std::filesystem::path& folder, std::string_view format);
 
 /// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part
 /// of a recording gets its own fingerprint. Errors: usage (an empty range, or one that leaves the recording).

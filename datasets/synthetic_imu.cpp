@@ -114,21 +114,26 @@ std::vector<ImuSample> ideal_imu(const PoseSpline& spline, std::int64_t start_ns
   return samples;
 }
 
-void add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, double rate_hz,
-                   std::uint64_t seed) {
+std::vector<ImuBias> add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, double rate_hz,
+                                   std::uint64_t seed) {
   NormalNumbers normal(seed);
   const double per_sample = std::sqrt(rate_hz);      // a density times this is a sample's standard deviation
   const double per_step = 1.0 / std::sqrt(rate_hz);  // a walk's density times this is a step's
-  Vector3d gyroscope_bias = normal.vector(sensor.initial_gyroscope_bias_radps);
-  Vector3d accelerometer_bias = normal.vector(sensor.initial_accelerometer_bias_mps2);
+  ImuBias bias;
+  bias.gyroscope_radps = normal.vector(sensor.initial_gyroscope_bias_radps);
+  bias.accelerometer_mps2 = normal.vector(sensor.initial_accelerometer_bias_mps2);
+  std::vector<ImuBias> biases;
+  biases.reserve(samples.size());
   for (ImuSample& sample : samples) {
     sample.angular_velocity_radps +=
-        gyroscope_bias + normal.vector(sensor.noise.gyroscope_radps_sqrthz * per_sample);
+        bias.gyroscope_radps + normal.vector(sensor.noise.gyroscope_radps_sqrthz * per_sample);
     sample.specific_force_mps2 +=
-        accelerometer_bias + normal.vector(sensor.noise.accelerometer_mps2_sqrthz * per_sample);
-    gyroscope_bias += normal.vector(sensor.noise.gyroscope_bias_radps2_sqrthz * per_step);
-    accelerometer_bias += normal.vector(sensor.noise.accelerometer_bias_mps3_sqrthz * per_step);
+        bias.accelerometer_mps2 + normal.vector(sensor.noise.accelerometer_mps2_sqrthz * per_sample);
+    biases.push_back(bias);
+    bias.gyroscope_radps += normal.vector(sensor.noise.gyroscope_bias_radps2_sqrthz * per_step);
+    bias.accelerometer_mps2 += normal.vector(sensor.noise.accelerometer_bias_mps3_sqrthz * per_step);
   }
+  return biases;
 }
 
 ImuNoise truth_noise(const SplineFit& fit, const SyntheticImuOptions& options) {

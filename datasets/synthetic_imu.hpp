@@ -44,9 +44,16 @@ struct SyntheticImuOptions {
                                                std::int64_t end_ns, double rate_hz,
                                                const Vector3d& gravity_world_mps2);
 
+/// The biases of an IMU at one time, in its own axes.
+struct ImuBias {
+  Vector3d gyroscope_radps = Vector3d::Zero();
+  Vector3d accelerometer_mps2 = Vector3d::Zero();
+};
+
 /// Adds an initial bias, random walks of the biases and white noise. The same seed gives the same samples.
-void add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, double rate_hz,
-                   std::uint64_t seed);
+/// Returns the bias of each sample.
+std::vector<ImuBias> add_imu_noise(std::vector<ImuSample>& samples, const ImuSensor& sensor, double rate_hz,
+                                   std::uint64_t seed);
 
 /// White-noise densities that stand for the uncertainty of the truth that an IMU is made from.
 ///

@@ -4,6 +4,7 @@
 
 #include <system_error>
 
+#include "core/printable.hpp"
 #include "core/stamped_rows.hpp"
 
 namespace fusebench {
@@ -15,7 +16,8 @@ Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& li
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) {
       return fail(ErrorCode::data_missing,
-                  fmt::format("{}:{}: image {} does not exist", list.string(), table.line(), file.string()),
+                  fmt::format("{}:{}: image {} does not exist", list.string(), table.line(),
+                              printable(table.text(1), 200)),
                   "unpack the whole recording; names are relative to the list's folder");
     }
     images.push_back({time_ns, file});

@@ -43,7 +43,7 @@ Result<RunSpec> spec_of(const RunOptions& options) {
   if (!options.camera.empty()) {
     const auto camera = parse_camera(options.camera);
     if (!camera) return tl::unexpected(camera.error());
-    spec.open.tum.camera = *camera;
+    spec.open.read.camera = *camera;
   }
   spec.recording = *folder;
   spec.imu = *imu;

@@ -53,7 +53,7 @@ TEST(Undistortion, RestoresAPatternSeenThroughTheLens) {
   }
   const Undistortion undistortion(camera);
   const ColorImage restored = undistortion.undistort_color(seen);
-  const Image<std::uint16_t> inside = undistortion.undistort_depth(Image<std::uint16_t>(640, 480, 1));
+  const DepthImage inside = undistortion.undistort_depth(DepthImage(640, 480, 1.0F));
   int compared = 0;
   for (int y = 0; y < 480; ++y) {
     for (int x = 0; x < 640; ++x) {
@@ -72,29 +72,29 @@ TEST(Undistortion, RestoresAPatternSeenThroughTheLens) {
 
 TEST(Undistortion, PixelsWithoutSourceHaveNoDepthAndTheBordersColour) {
   const Undistortion undistortion(freiburg1());
-  const auto depth = undistortion.undistort_depth(Image<std::uint16_t>(640, 480, 5000));
+  const auto depth = undistortion.undistort_depth(DepthImage(640, 480, 5.0F));
   const ColorImage color = undistortion.undistort_color(ColorImage(640, 480, Rgb{200, 150, 100}));
   EXPECT_EQ(depth(0, 0), 0);  // its source is (-23.8, -21.4)
-  EXPECT_EQ(depth(320, 240), 5000);
-  EXPECT_NEAR(static_cast<double>(std::count(depth.data.begin(), depth.data.end(), 0)), 17318, 20);
+  EXPECT_EQ(depth(320, 240), 5.0F);
+  EXPECT_NEAR(static_cast<double>(std::count(depth.data.begin(), depth.data.end(), 0.0F)), 17318, 20);
   for (const Rgb& c : color.data) ASSERT_EQ(c, (Rgb{200, 150, 100}));
 }
 
 TEST(Undistortion, DepthKeepsMeasuredValues) {
-  Image<std::uint16_t> depth(640, 480, 1000);
+  DepthImage depth(640, 480, 1.0F);
   for (int y = 0; y < 480; ++y) {
-    for (int x = 320; x < 640; ++x) depth(x, y) = 3000;
+    for (int x = 320; x < 640; ++x) depth(x, y) = 3.0F;
   }
-  for (const std::uint16_t value : Undistortion(freiburg1()).undistort_depth(depth).data) {
-    ASSERT_TRUE(value == 0 || value == 1000 || value == 3000) << value;
+  for (const float value : Undistortion(freiburg1()).undistort_depth(depth).data) {
+    ASSERT_TRUE(value == 0.0F || value == 1.0F || value == 3.0F) << value;
   }
 }
 
 TEST(Undistortion, WithoutDistortionNothingChanges) {
   ColorImage color(640, 480);
-  Image<std::uint16_t> depth(640, 480);
+  DepthImage depth(640, 480);
   for (std::size_t i = 0; i < depth.data.size(); ++i) {
-    depth.data[i] = static_cast<std::uint16_t>(i * 31);
+    depth.data[i] = static_cast<float>(i % 1000);
     color.data[i] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 7};
   }
   const Undistortion none(parse_camera("freiburg3").value());

@@ -19,14 +19,14 @@ namespace {
 using testing::golden_tum_folder;
 using testing::TumFolder;
 
-TumOptions small_camera() {
-  TumOptions options;
+ReadOptions small_camera() {
+  ReadOptions options;
   options.camera = CalibratedCamera{{0, 0, 10, 11, 3.5, 2.5}, {}, {}};
   return options;
 }
 
 /// Message and hint of the expected error.
-std::string refusal(const TumFolder& folder, ErrorCode code, const TumOptions& options = small_camera()) {
+std::string refusal(const TumFolder& folder, ErrorCode code, const ReadOptions& options = small_camera()) {
   const auto recording = open_tum_rgbd(folder.path(), options);
   if (!recording) {
     EXPECT_EQ(recording.error().code, code) << recording.error().message;
@@ -71,12 +71,12 @@ TEST(TumRgbd, FolderNameWithTrailingSlash) {
 
 TEST(TumRgbd, DepthFactor) {
   const TumFolder folder;
-  TumOptions options = small_camera();
-  options.depth_factor = 1000;
+  ReadOptions options = small_camera();
+  options.depth_units_per_metre = 1000;
   EXPECT_EQ(open_tum_rgbd(folder.path(), options)->load_frame(0)->depth_m(0, 0), 5.0F);
-  options.depth_factor = 0;
-  expect_contains(refusal(folder, ErrorCode::configuration, options), "depth_factor = 0");
-  options.depth_factor = 5000;
+  options.depth_units_per_metre = 0;
+  expect_contains(refusal(folder, ErrorCode::configuration, options), "depth_units_per_metre = 0");
+  options.depth_units_per_metre = 5000;
   options.max_difference_s = -1;
   expect_contains(refusal(folder, ErrorCode::configuration, options), "max_difference_s = -1");
 }
@@ -109,7 +109,7 @@ class JitteringStamps {
   }
 
   [[nodiscard]] Result<Recording> open(bool regular) const {
-    TumOptions options = small_camera();
+    ReadOptions options = small_camera();
     options.camera->timing = parse_camera("freiburg1").value().timing;
     options.regular_stamps = regular;
     return open_tum_rgbd(folder_.path(), options);
@@ -146,9 +146,10 @@ TEST(TumRgbd, CaptureTimesAreRegularAndDepthIsDelayed) {
     const FrameEntry& before = recording->frames[i - 1];
     EXPECT_NEAR(static_cast<double>(entry.capture_ns - before.capture_ns), JitteringStamps::kPeriod_ns, 2e5);
   }
-  ASSERT_EQ(recording->notes.size(), 2U);
-  expect_contains(recording->notes[0], "rgb.txt: stamps jitter by ");
-  expect_contains(recording->notes[1], "depth.txt: stamps jitter by ");
+  ASSERT_EQ(recording->notes.size(), 3U);
+  expect_contains(recording->notes[0], "as given by the user");
+  expect_contains(recording->notes[1], "rgb.txt: stamps jitter by ");
+  expect_contains(recording->notes[2], "depth.txt: stamps jitter by ");
 }
 
 TEST(TumRgbd, RegularStampsCanBeSwitchedOff) {
@@ -161,7 +162,7 @@ TEST(TumRgbd, RegularStampsCanBeSwitchedOff) {
     EXPECT_EQ(entry.depth_capture_ns, entry.depth_timestamp_ns + JitteringStamps::kDepthDelay_ns);
     EXPECT_EQ(recording->load_frame(i)->capture_offset_ns, 0);
   }
-  EXPECT_TRUE(recording->notes.empty());
+  for (const std::string& note : recording->notes) EXPECT_EQ(note.find("jitter"), std::string::npos) << note;
   EXPECT_NE(recording->fingerprint, folder.open(true)->fingerprint);
 }
 
@@ -231,8 +232,8 @@ TEST(TumRgbd, RefusesTruthOfAnotherTime) {
   const TumFolder folder;
   folder.write("groundtruth.txt", "20.5 0 0 0 0 0 0 1\n21.5 0 0 0 0 0 0 1\n");
   const std::string message = refusal(folder, ErrorCode::data_corrupt);
-  expect_contains(message, "times 20.500000 to 21.500000");
-  expect_contains(message, "times 10.000000 to 10.200000");
+  expect_contains(message, "times 20.500000000 to 21.500000000");
+  expect_contains(message, "times 10.000000000 to 10.200000000");
 }
 
 TEST(TumRgbd, PartlyCoveringTruthIsAWarning) {
@@ -255,7 +256,7 @@ TEST(TumRgbd, RefusesMissingImage) {
 }
 
 TEST(TumRgbd, RefusesImagesThatDoNotFitTheCamera) {
-  TumOptions options;
+  ReadOptions options;
   options.camera = parse_camera("freiburg1").value();
   expect_contains(refusal(TumFolder(), ErrorCode::data_corrupt, options),
                   "0.png: image of 8x6 pixels, but the camera's calibration is for 640x480");

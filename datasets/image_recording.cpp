@@ -1,0 +1,183 @@
+#include "datasets/image_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/fingerprint.hpp"
+#include "datasets/depth_registration.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// Everything that a frame needs after opening; shared by all copies of the recording.
+struct FrameLoader {
+  std::vector<FrameEntry> frames;
+  Undistortion undistortion;
+  std::optional<DepthRegistration> registration;
+  DepthReader read_depth;
+
+  [[nodiscard]] Result<DepthImage> load_depth(const FrameEntry& entry) const {
+    const PinholeCamera& own = registration ? registration->depth_camera() : undistortion.camera();
+    auto depth = read_depth(entry.depth_file, {own.width_px, own.height_px});
+    if (!depth) return depth;
+    return registration ? registration->register_depth(*depth) : undistortion.undistort_depth(*depth);
+  }
+
+  [[nodiscard]] Result<RgbdFrame> load(std::size_t index) const {
+    check(index < frames.size(), "the frame exists");
+    const FrameEntry& entry = frames[index];
+    const PinholeCamera& camera = undistortion.camera();
+    const auto color = read_color(entry.color_file, ImageSize{camera.width_px, camera.height_px});
+    if (!color) return tl::unexpected(color.error());
+    auto depth = load_depth(entry);
+    if (!depth) return tl::unexpected(depth.error());
+    RgbdFrame frame;
+    frame.timestamp_ns = entry.timestamp_ns;
+    frame.capture_offset_ns = entry.capture_ns - entry.timestamp_ns;
+    frame.depth_offset_ns = entry.depth_capture_ns - entry.capture_ns;
+    frame.color = undistortion.undistort_color(*color);
+    frame.grey = to_grey(frame.color);
+    frame.depth_m = std::move(*depth);
+    return frame;
+  }
+};
+
+/// The camera with the images' size; a calibration of another size is an error.
+Result<CalibratedCamera> camera_of_images(CalibratedCamera camera, const std::filesystem::path& first_image) {
+  const auto size = read_image_size(first_image);
+  if (!size) return tl::unexpected(size.error());
+  PinholeCamera& pinhole = camera.pinhole;
+  if (pinhole.width_px == 0) {
+    pinhole.width_px = size->width_px;
+    pinhole.height_px = size->height_px;
+  }
+  if (*size != ImageSize{pinhole.width_px, pinhole.height_px}) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: image of {}x{} pixels, but the camera's calibration is for {}x{}",
+                            first_image.string(), size->width_px, size->height_px, pinhole.width_px,
+                            pinhole.height_px),
+                "give the intrinsics of these images: --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]");
+  }
+  return camera;
+}
+
+std::string text_of(const Vector3d& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
+
+std::string text_of(const SE3& T) {
+  const Quaterniond& q = T.rotation;
+  return fmt::format("{} {} {} {} {}", text_of(T.translation), q.x(), q.y(), q.z(), q.w());
+}
+
+std::string text_of(const PinholeCamera& p) {
+  return fmt::format("{} {} {} {} {} {}", p.width_px, p.height_px, p.fx_px, p.fy_px, p.cx_px, p.cy_px);
+}
+
+void add_sensors(Fingerprint& fingerprint, const Recording& recording, const ImageDecoding& decoding,
+                 const CalibratedCamera& camera) {
+  const BrownConrady& d = camera.distortion;
+  const SensorTiming& timing = camera.timing;
+  fingerprint.add(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", recording.format, decoding.identity,
+                              text_of(camera.pinhole), d.k1, d.k2, d.p1, d.p2, d.k3, timing.color_readout_s,
+                              timing.depth_readout_s, timing.depth_delay_s));
+  if (const auto& depth = decoding.calibration.depth) {
+    fingerprint.add(
+        fmt::format("depth camera {} {}", text_of(depth->pinhole), text_of(depth->T_color_depth)));
+  }
+  if (recording.imu_source == ImuSource::none) return;
+  const ImuNoise& noise = recording.rig.imu_noise;
+  fingerprint.add(fmt::format("imu {} {} {} {} {}", text_of(recording.rig.T_imu_camera),
+                              noise.gyroscope_radps_sqrthz, noise.accelerometer_mps2_sqrthz,
+                              noise.gyroscope_bias_radps2_sqrthz, noise.accelerometer_bias_mps3_sqrthz));
+}
+
+void add_samples(Fingerprint& fingerprint, const Recording& recording) {
+  for (const StampedPose& pose : recording.ground_truth) {
+    fingerprint.add(fmt::format("truth {} {}", pose.timestamp_ns, text_of(pose.T_world_camera)));
+  }
+  for (const AccelerometerSample& sample : recording.accelerometer) {
+    fingerprint.add(
+        fmt::format("accelerometer {} {}", sample.timestamp_ns, text_of(sample.specific_force_mps2)));
+  }
+  for (const ImuSample& sample : recording.imu) {
+    fingerprint.add(fmt::format("imu {} {} {}", sample.timestamp_ns, text_of(sample.angular_velocity_radps),
+                                text_of(sample.specific_force_mps2)));
+  }
+}
+
+/// The values that are used, not the text around them: a comment or a line ending does not make another
+/// recording.
+Result<std::string> fingerprint_of(const Recording& recording, const ImageDecoding& decoding,
+                                   const CalibratedCamera& camera) {
+  Fingerprint fingerprint;
+  add_sensors(fingerprint, recording, decoding, camera);
+  add_samples(fingerprint, recording);
+  for (const FrameEntry& frame : recording.frames) {
+    fingerprint.add(fmt::format("frame {} {} {} {}", frame.timestamp_ns, frame.depth_timestamp_ns,
+                                frame.capture_ns, frame.depth_capture_ns));
+    for (const auto& file : {frame.color_file, frame.depth_file}) {
+      const Result<void> added = fingerprint.add_file(file);
+      if (!added) return tl::unexpected(added.error());
+    }
+  }
+  return fingerprint.hex();
+}
+
+/// From here on the IMU's stamps are on the images' clock. Samples of an unknown sensor are of no use.
+void calibrate_imu(Recording& recording, const std::optional<ImuCalibration>& imu) {
+  if (!imu && recording.imu_source == ImuSource::recorded) {
+    recording.imu.clear();
+    recording.imu_source = ImuSource::none;
+    recording.warnings.push_back(fmt::format(
+        "{}: the inertial samples are not used, since the calibration has no [imu]", recording.name));
+  }
+  if (!imu) return;
+  recording.rig.T_imu_camera = imu->T_imu_camera;
+  recording.rig.imu_noise = imu->noise;
+  const std::int64_t offset_ns = std::llround(1e9 * imu->time_offset_s);
+  for (ImuSample& sample : recording.imu) sample.timestamp_ns -= offset_ns;
+}
+
+}  // namespace
+
+DepthReader png_depth(double units_per_metre) {
+  return [units_per_metre](const std::filesystem::path& file,
+                           const ImageSize& expected) -> Result<DepthImage> {
+    const auto values = read_depth16(file, expected);
+    if (!values) return tl::unexpected(values.error());
+    DepthImage depth_m(values->width, values->height);
+    std::ranges::transform(values->data, depth_m.data.begin(),
+                           [&](std::uint16_t value) { return static_cast<float>(value / units_per_metre); });
+    return depth_m;
+  };
+}
+
+Result<void> attach_images(Recording& recording, const ImageDecoding& decoding) {
+  check(!recording.frames.empty(), "a recording has frames");
+  const RigCalibration& calibration = decoding.calibration;
+  const auto camera = camera_of_images(calibration.color, recording.frames.front().color_file);
+  if (!camera) return tl::unexpected(camera.error());
+  const std::int64_t depth_delay_ns = std::llround(1e9 * camera->timing.depth_delay_s);
+  for (FrameEntry& frame : recording.frames) frame.depth_capture_ns += depth_delay_ns;
+  calibrate_imu(recording, calibration.imu);
+  recording.rig.camera = camera->pinhole;
+  recording.rig.timing = camera->timing;
+  auto fingerprint = fingerprint_of(recording, decoding, *camera);
+  if (!fingerprint) return tl::unexpected(fingerprint.error());
+  recording.fingerprint = std::move(*fingerprint);
+  std::optional<DepthRegistration> registration;
+  if (calibration.depth) {
+    registration.emplace(calibration.depth->pinhole, camera->pinhole, calibration.depth->T_color_depth);
+  }
+  const auto loader = std::make_shared<const FrameLoader>(
+      FrameLoader{recording.frames, Undistortion(*camera), std::move(registration), decoding.read_depth});
+  recording.load_frame = [loader](std::size_t frame) { return loader->load(frame); };
+  return {};
+}
+
+}  // namespace fusebench

@@ -1,0 +1,38 @@
+// From lists of image files to frames: what all formats that store images have in common.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/error.hpp"
+#include "datasets/image_files.hpp"
+#include "datasets/recording.hpp"
+#include "datasets/rig_calibration.hpp"
+
+namespace fusebench {
+
+/// Reads one depth image of the given size: z-depth in metres, 0 = no measurement, not yet undistorted or
+/// registered. Called from several threads.
+using DepthReader =
+    std::function<Result<DepthImage>(const std::filesystem::path& file, const ImageSize& expected)>;
+
+/// 16-bit grey PNGs; units_per_metre: the value of one metre.
+[[nodiscard]] DepthReader png_depth(double units_per_metre);
+
+/// How the files of a recording become frames.
+struct ImageDecoding {
+  /// Colour and registered depth are undistorted; depth of a camera of its own is registered to the colour
+  /// camera.
+  RigCalibration calibration;
+  DepthReader read_depth;
+  std::string identity;  ///< names the way depth is read ("png 5000"), for the fingerprint
+};
+
+/// Completes a recording whose frames, truth and inertial samples are in place: checks the size of the first
+/// image against the calibration, sets rig (camera, timing, IMU), applies the delay of depth and the offset
+/// of the IMU's clock, takes the fingerprint (every used image is read once), and provides load_frame.
+/// Errors: data_missing, data_corrupt.
+[[nodiscard]] Result<void> attach_images(Recording& recording, const ImageDecoding& decoding);
+
+}  // namespace fusebench

@@ -1,0 +1,36 @@
+// What a user may say about a recording that its files do not.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/error.hpp"
+#include "datasets/camera_model.hpp"
+#include "datasets/recording.hpp"
+#include "datasets/rig_calibration.hpp"
+
+namespace fusebench {
+
+/// Each reader takes what its format has a use for.
+struct ReadOptions {
+  std::optional<CalibratedCamera> camera;  ///< of the colour images; overrides every other calibration
+  std::optional<double> depth_units_per_metre;
+  double max_difference_s = 0.02;  ///< between a colour image and its depth image, for formats with two lists
+  bool regular_stamps = true;      ///< remove the jitter of the stamps (see regular_stamps.hpp)
+  double frame_rate_hz = 30;       ///< of recordings without stamps (ICL-NUIM)
+  bool filtered_depth = false;     ///< take the depth that the recording's authors have filtered
+};
+
+/// Errors: configuration (an option out of range).
+[[nodiscard]] Result<void> check_read_options(const ReadOptions& options);
+
+/// The calibration of a recording: calibration.toml in its folder, else what `published` gives; the options'
+/// camera and depth scale replace those parts. Where it comes from goes into recording.notes. Errors: those
+/// of `published` (only called when it is needed) and of calibration.toml.
+[[nodiscard]] Result<RigCalibration> choose_calibration(
+    const std::filesystem::path& folder, const ReadOptions& options,
+    const std::function<Result<RigCalibration>()>& published, Recording& recording);
+
+}  // namespace fusebench

@@ -1,0 +1,84 @@
+#include "datasets/side_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "core/stamped_rows.hpp"
+#include "core/trajectory.hpp"
+#include "core/trajectory_file.hpp"
+
+namespace fusebench {
+
+namespace {
+
+// A truth that pauses for longer than this (ten samples at 100 Hz) does not say what the camera did in
+// between.
+constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored);
+}
+
+}  // namespace
+
+Result<void> set_ground_truth(Recording& recording, Trajectory truth, const std::filesystem::path& source) {
+  const std::int64_t first_ns = recording.frames.front().timestamp_ns;
+  const std::int64_t last_ns = recording.frames.back().timestamp_ns;
+  if (truth.front().timestamp_ns > last_ns || truth.back().timestamp_ns < first_ns) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: ground truth (times {} to {}) does not overlap the images (times {} to {})",
+                            source.string(), stamp_text(truth.front().timestamp_ns),
+                            stamp_text(truth.back().timestamp_ns), stamp_text(first_ns), stamp_text(last_ns)),
+                "the truth must be of the same recording and clock, in seconds");
+  }
+  const auto uncovered = std::ranges::count_if(recording.frames, [&](const FrameEntry& frame) {
+    return !interpolate_pose(truth, frame.timestamp_ns, kMaxTruthGap_ns);
+  });
+  if (uncovered > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} of {} frames have no ground truth around them within {} s", source.string(),
+                    uncovered, recording.frames.size(), seconds_between(0, kMaxTruthGap_ns)));
+  }
+  recording.ground_truth = std::move(truth);
+  return {};
+}
+
+Result<void> read_ground_truth_beside(const std::filesystem::path& folder, Recording& recording) {
+  const std::filesystem::path file = folder / "groundtruth.txt";
+  if (!is_there(file)) return {};
+  // The published truth of freiburg2_desk repeats a stamp; TUM's own scripts keep the last of such rows.
+  auto truth = read_tum_trajectory(file, recording.warnings, Duplicates::last_in_order);
+  if (!truth) return tl::unexpected(truth.error());
+  return set_ground_truth(recording, std::move(*truth), file);
+}
+
+Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& recording) {
+  const std::filesystem::path file = folder / "imu.csv";
+  if (!is_there(file)) return {};
+  std::vector<ImuSample> samples;
+  const auto row = [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
+    ImuSample sample;
+    sample.timestamp_ns = time_ns;
+    if (auto read = table.numbers(1, {sample.angular_velocity_radps.data(), 3}); !read) return read;
+    if (auto read = table.numbers(4, {sample.specific_force_mps2.data(), 3}); !read) return read;
+    samples.push_back(sample);
+    return {};
+  };
+  const Result<void> done = for_each_stamped_row(file, "timestamp wx wy wz ax ay az", TimeOrder::increasing,
+                                                 row, TimeUnit::nanoseconds);
+  if (!done) return done;
+  recording.imu = std::move(samples);
+  recording.imu_source = ImuSource::recorded;
+  return {};
+}
+
+void note_simulation(const std::filesystem::path& folder, Recording& recording) {
+  recording.simulated = is_there(folder / "simulation.toml");
+  if (recording.simulated) recording.notes.emplace_back("simulated: simulation.toml says how it was made");
+}
+
+}  // namespace fusebench

@@ -1,0 +1,29 @@
+// Files that may lie beside the images of any format: what the format itself has no place for.
+#pragma once
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "datasets/recording.hpp"
+
+namespace fusebench {
+
+/// groundtruth.txt: TUM columns, seconds on the images' clock, T_groundtruth_camera of the colour camera.
+/// Fills recording.ground_truth; warns about frames that it does not cover. Leaves a recording without that
+/// file alone. Errors: data_corrupt (a row, the order in time, no overlap with the images in time).
+[[nodiscard]] Result<void> read_ground_truth_beside(const std::filesystem::path& folder,
+                                                    Recording& recording);
+
+/// Puts a truth into the recording that was read elsewhere; the same checks. `source` names the file in
+/// messages.
+[[nodiscard]] Result<void> set_ground_truth(Recording& recording, Trajectory truth,
+                                            const std::filesystem::path& source);
+
+/// imu.csv: EuRoC columns, "timestamp [ns], wx, wy, wz [rad/s], ax, ay, az [m/s^2]", on the IMU's clock.
+/// Fills recording.imu and imu_source. Errors: data_corrupt.
+[[nodiscard]] Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& recording);
+
+/// simulation.toml: a recording that was made by a simulator says so. Sets recording.simulated.
+void note_simulation(const std::filesystem::path& folder, Recording& recording);
+
+}  // namespace fusebench
