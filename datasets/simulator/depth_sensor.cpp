@@ -1,0 +1,58 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "datasets/simulator/image_sensors.hpp"
+#include "datasets/simulator/noise.hpp"
+#include "datasets/simulator/noise_depth.hpp"
+
+namespace fusebench {
+
+namespace {
+
+constexpr std::uint64_t kDepthNoise = 0xD0;  // keeps the random numbers of one seed apart
+
+std::uint16_t raw_value(float depth_m, double units_per_metre) {
+  const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
+  return units > 0 && units <= std::numeric_limits<std::uint16_t>::max() ? static_cast<std::uint16_t>(units)
+                                                                         : 0;
+}
+
+DepthImage measured_depth(const Image<Renderer::Surface>& surfaces, const DepthSensor& sensor,
+                          std::uint64_t key, const Workers& workers) {
+  switch (sensor.noise) {
+    case DepthNoise::handa:
+      return structured_light_depth(surfaces, sensor.camera, key, workers);
+    case DepthNoise::zr300:
+      return active_stereo_depth(surfaces, sensor.camera, key, workers);
+    case DepthNoise::none:
+      break;
+  }
+  DepthImage depth_m(surfaces.width, surfaces.height);
+  std::ranges::transform(surfaces.data, depth_m.data.begin(), &Renderer::Surface::depth_m);
+  return depth_m;
+}
+
+}  // namespace
+
+Image<std::uint16_t> sense_depth(const Renderer& renderer, const DepthSensor& sensor,
+                                 const PoseSpline& motion, const SE3& T_body_camera, std::int64_t capture_ns,
+                                 std::uint64_t seed, std::uint64_t frame, const Workers& workers) {
+  const int rows = sensor.readout_s == 0 ? 1 : sensor.camera.height_px;
+  RowPoses poses;
+  for (int row = 0; row < rows; ++row) {
+    const std::int64_t at_ns = row_time_ns(capture_ns, sensor.readout_s, row, sensor.camera.height_px);
+    poses.T_world_camera.push_back(motion.evaluate(at_ns).T_world_body * T_body_camera);
+  }
+  Image<Renderer::Surface> surfaces;
+  renderer.render_surfaces(sensor.camera, poses, workers, surfaces);
+  const DepthImage depth_m =
+      measured_depth(surfaces, sensor, mix_key(mix_key(seed, kDepthNoise), frame), workers);
+  Image<std::uint16_t> raw(depth_m.width, depth_m.height);
+  std::ranges::transform(depth_m.data, raw.data.begin(),
+                         [&](float depth) { return raw_value(depth, sensor.units_per_metre); });
+  return raw;
+}
+
+}  // namespace fusebench

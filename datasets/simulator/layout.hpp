@@ -1,0 +1,67 @@
+// How a simulated recording lies on disk: the layouts of TUM RGB-D, of ICL-NUIM (TUM-compatible packing) and
+// of the ZR300 recordings of FMDataset. Beside what the format itself has, every layout holds
+//
+//     calibration.toml         rig_calibration.hpp
+//     state_groundtruth.csv    EuRoC's columns: the IMU body's position, attitude, velocity and biases,
+//     images' clock scene.ply                the scene's mesh; the same world as the ground truth and
+//     state_groundtruth.csv
+//
+// and, where the format has no place for them, imu.csv and groundtruth.txt (side_files.hpp).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "datasets/image_files.hpp"
+#include "datasets/rig_calibration.hpp"
+#include "datasets/simulator/image_sensors.hpp"
+#include "datasets/simulator/imu_sensor.hpp"
+
+namespace fusebench {
+
+enum class RecordingLayout { tum, icl, zr300 };
+[[nodiscard]] std::string_view to_string(RecordingLayout layout);
+
+/// Everything of a simulated recording but its images.
+struct SimulatedData {
+  RigCalibration rig;
+  std::vector<std::int64_t> frame_ns;  ///< stamps of the images, which are taken at these instants
+  Trajectory truth;  ///< colour camera in the scene's world: all frames, and poses between them
+  SimulatedImu imu;
+  Mesh scene;
+};
+
+/// One layout: its clock, its names and its lists.
+struct LayoutDescription {
+  std::string_view name;
+  std::int64_t first_frame_ns;  ///< stamp of frame 0
+  std::int64_t imu_lead_ns;     ///< how long before it the IMU begins
+  std::int64_t tick_ns;         ///< stamps are multiples of it
+  double fixed_rate_hz;         ///< 0: any
+  DepthNoise depth_noise;       ///< of the sensor that the layout is known for
+  std::string (*color_name)(std::size_t frame, std::int64_t frame_ns);  ///< relative to the folder
+  std::string (*depth_name)(std::size_t frame, std::int64_t frame_ns);
+  /// Lists, IMU and ground truth of the format.
+  Result<void> (*write_lists)(const std::filesystem::path& folder, const SimulatedData& data);
+  /// The world of the files in the scene's world (both right-handed).
+  SE3 (*T_file_scene)(const SimulatedData& data);
+
+  [[nodiscard]] std::int64_t frame_ns(std::size_t frame, double rate_hz) const;
+};
+[[nodiscard]] const LayoutDescription& describe(RecordingLayout layout);
+
+/// The sensors that a layout is known for, at an image size: the published intrinsics (scaled with the
+/// width), depth in a camera of its own (zr300) or registered to colour, and the IMU of the ZR300. Global
+/// shutters. Error configuration: a size out of range.
+[[nodiscard]] Result<RigCalibration> layout_rig(RecordingLayout layout, const ImageSize& size);
+
+/// Writes everything but the images. Errors: io.
+[[nodiscard]] Result<void> write_layout(RecordingLayout layout, const std::filesystem::path& folder,
+                                        const SimulatedData& data);
+
+}  // namespace fusebench

@@ -1,0 +1,234 @@
+#include "datasets/simulator/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <variant>
+
+#include "core/toml_document.hpp"
+#include "datasets/simulator/room.hpp"
+#include "datasets/simulator/write_folder.hpp"
+#include "datasets/simulator/write_images.hpp"
+#include "datasets/simulator/write_lists.hpp"
+
+namespace fusebench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::int64_t kImuTail_ns = 50'000'000;  // after the last frame, so that samples surround it
+constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate need more than the frames'
+
+Result<void> check_options(const SimulationOptions& o) {
+  for (const auto& [name, value, low, high] :
+       {std::tuple{"duration_s", o.duration_s, 0.0, 3600.0}, std::tuple{"rate_hz", o.rate_hz, 1.0, 240.0},
+        std::tuple{"exposure_s", o.exposure_s, 0.0, 0.1},
+        std::tuple{"blur_samples", static_cast<double>(o.blur_samples), 1.0, 256.0},
+        std::tuple{"gain_drift", o.gain_drift, 0.0, 0.5}, std::tuple{"vignetting", o.vignetting, 0.0, 0.9},
+        std::tuple{"read_noise_grey", o.read_noise_grey, 0.0, 50.0},
+        std::tuple{"shot_noise", o.shot_noise, 0.0, 0.5},
+        std::tuple{"imu_rate_hz", o.imu_rate_hz, 50.0, 2000.0},
+        std::tuple{"color readout_s", o.rig.color.timing.color_readout_s, 0.0, 0.1},
+        std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0}}) {
+    if (!(value >= low && value <= high)) {
+      return fail(ErrorCode::configuration,
+                  fmt::format("{} = {} (allowed {} .. {})", name, value, low, high));
+    }
+  }
+  const double fixed_hz = describe(o.layout).fixed_rate_hz;
+  if (fixed_hz > 0 && o.rate_hz != fixed_hz) {
+    return fail(
+        ErrorCode::configuration,
+        fmt::format("rate_hz = {} (allowed in the {} layout: {})", o.rate_hz, to_string(o.layout), fixed_hz),
+        "its images have no stamps; readers count frames");
+  }
+  if (!o.rig.imu)
+    return fail(ErrorCode::configuration, "the calibration has no IMU", "start from the defaults");
+  return {};
+}
+
+/// The motion that was chosen, before its body is known.
+struct Drive {
+  PoseSpline camera;
+  double shrunk = 1;
+};
+
+Result<SimulatedScene> make_scene(const SimulationOptions& options) {
+  if (!options.scene_file.empty()) return read_scene(options.scene_file, options.scene);
+  return make_room(options.seed);
+}
+
+Result<std::optional<FilePath>> read_path(const SimulationOptions& options) {
+  if (options.trajectory_file.empty()) return std::optional<FilePath>{};
+  auto path = read_file_path(options.trajectory_file);
+  if (!path) return tl::unexpected(path.error());
+  return std::optional<FilePath>(std::move(*path));
+}
+
+/// Stamps of the frames.
+Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
+                                               const std::optional<FilePath>& path) {
+  const LayoutDescription& layout = describe(options.layout);
+  double duration_s = options.duration_s;
+  if (duration_s == 0 && path) {
+    const double lead_s = seconds_between(0, layout.imu_lead_ns);
+    duration_s = longest_duration_s(*path, options.file_motion, lead_s);
+  }
+  const auto count = static_cast<std::size_t>(std::max(0.0, std::round(duration_s * options.rate_hz)));
+  if (count < 2) {
+    return fail(ErrorCode::configuration,
+                fmt::format("duration_s = {} holds {} frames at {} Hz (at least 2)", duration_s, count,
+                            options.rate_hz),
+                "take a longer recording");
+  }
+  std::vector<std::int64_t> frame_ns;
+  for (std::size_t k = 0; k < count; ++k) frame_ns.push_back(layout.frame_ns(k, options.rate_hz));
+  return frame_ns;
+}
+
+Result<Drive> choose_motion(const SimulationOptions& options, const std::optional<FilePath>& path,
+                            const MotionSpan& span, const Eigen::AlignedBox3d& box,
+                            const HeadingTexture& texture) {
+  if (path) {
+    auto motion = file_motion(*path, options.file_motion, span, box, texture);
+    if (!motion) return tl::unexpected(motion.error());
+    return Drive{std::move(motion->camera), motion->shrunk};
+  }
+  auto camera = hand_held_motion(options.motion, span, box, options.seed, texture);
+  if (!camera) return tl::unexpected(camera.error());
+  return Drive{std::move(*camera), 1};
+}
+
+/// Poses of the colour camera at every frame and evenly between frames.
+Trajectory true_poses(const Shooting& shooting) {
+  Trajectory truth;
+  const auto add = [&](std::int64_t time_ns) {
+    truth.push_back({time_ns, shooting.body.evaluate(time_ns).T_world_body * shooting.T_body_color});
+  };
+  // One more at both ends: readers may find the capture a little before or after its stamp.
+  const std::int64_t step_ns = (shooting.frame_ns[1] - shooting.frame_ns[0]) / kTruthPerFrame;
+  add(shooting.frame_ns.front() - step_ns);
+  for (std::size_t k = 0; k + 1 < shooting.frame_ns.size(); ++k) {
+    const std::int64_t spacing_ns = shooting.frame_ns[k + 1] - shooting.frame_ns[k];
+    for (int i = 0; i < kTruthPerFrame; ++i) add(shooting.frame_ns[k] + spacing_ns * i / kTruthPerFrame);
+  }
+  add(shooting.frame_ns.back());
+  add(shooting.frame_ns.back() + step_ns);
+  return truth;
+}
+
+/// Everything but the images.
+Result<void> write_rest(const SimulationOptions& options, const Shooting& shooting, const MotionSpan& span,
+                        Mesh scene, const fs::path& folder, SimulationReport& report) {
+  SimulatedData data;
+  data.rig = options.rig;
+  data.rig.imu->time_offset_s = options.imu.time_offset_s;
+  data.frame_ns = shooting.frame_ns;
+  data.truth = true_poses(shooting);
+  data.imu = simulate_imu(shooting.body, span.begin_ns, span.last_frame_ns + kImuTail_ns, options.imu_rate_hz,
+                          options.imu, options.seed);
+  data.scene = std::move(scene);
+  report.imu_samples = data.imu.samples.size();
+  if (auto written = write_layout(options.layout, folder, data); !written) return written;
+  const Vector3d gravity =
+      describe(options.layout).T_file_scene(data).rotation * Vector3d(0, 0, -kGravity_mps2);
+  return write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
+}
+
+/// Whether the folder holds this very recording already. Error usage if it is anything else.
+Result<bool> is_there(const fs::path& folder, const std::string& identity) {
+  std::error_code ignored;
+  if (!fs::exists(folder, ignored)) return false;
+  const auto document = read_toml(folder / "simulation.toml");
+  if (document) {
+    for (const TomlEntry& entry : document->entries) {
+      const auto* value = std::get_if<OptionValue>(&entry.value);
+      const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+      if (entry.key == "identity" && text != nullptr && *text == identity) return true;
+    }
+  }
+  return fail(ErrorCode::usage,
+              fmt::format("{}: exists and is not the recording that is asked for", folder.string()),
+              "choose another folder, or remove this one");
+}
+
+/// "a/b/" names the same folder as "a/b".
+fs::path without_slash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+}  // namespace
+
+Result<SimulationOptions> simulation_defaults(RecordingLayout layout, MotionPreset preset,
+                                              const ImageSize& size) {
+  auto rig = layout_rig(layout, size);
+  if (!rig) return tl::unexpected(rig.error());
+  SimulationOptions options;
+  options.layout = layout;
+  options.preset = preset;
+  options.motion = motion_preset(preset);
+  options.rig = std::move(*rig);
+  options.depth_noise = describe(layout).depth_noise;
+  options.imu.sensor.noise = options.rig.imu->noise;
+  return options;
+}
+
+void remove_noise(SimulationOptions& options) {
+  options.gain_drift = 0;
+  options.vignetting = 0;
+  options.read_noise_grey = 0;
+  options.shot_noise = 0;
+  options.depth_noise = DepthNoise::none;
+  options.imu.sensor = ImuSensor{"ideal", {}, 0, 0};
+}
+
+Result<SimulationReport> simulate(const SimulationOptions& options, const fs::path& out,
+                                  const Workers& workers, const SimulationControl& control) {
+  if (const auto valid = check_options(options); !valid) return tl::unexpected(valid.error());
+  const fs::path folder = without_slash(out);
+  SimulationReport report;
+  const auto identity = simulation_identity(options);
+  if (!identity) return tl::unexpected(identity.error());
+  report.identity = *identity;
+  const auto there = is_there(folder, *identity);
+  if (!there) return tl::unexpected(there.error());
+  report.reused = *there;
+  if (report.reused) return report;
+
+  auto path = read_path(options);
+  if (!path) return tl::unexpected(path.error());
+  auto frame_ns = choose_times(options, *path);
+  if (!frame_ns) return tl::unexpected(frame_ns.error());
+  auto scene = make_scene(options);
+  if (!scene) return tl::unexpected(scene.error());
+  const MotionSpan span{frame_ns->front() - describe(options.layout).imu_lead_ns, frame_ns->front(),
+                        frame_ns->back()};
+  const Renderer renderer(*scene);
+  const auto drive = choose_motion(options, *path, span, scene->free_space,
+                                   look_around(renderer, scene->free_space, workers));
+  if (!drive) return tl::unexpected(drive.error());
+  const SE3& T_body_color = options.rig.imu->T_imu_camera;
+  const Shooting shooting{body_motion(drive->camera, T_body_color), T_body_color, std::move(*frame_ns)};
+  report.frames = shooting.frame_ns.size();
+  report.trajectory_shrunk = drive->shrunk;
+  if (*path) report.warnings = (*path)->warnings;
+  report.peaks = peak_speeds(shooting.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
+
+  StagedFolder staged(folder);
+  if (const auto created = staged.create(); !created) return tl::unexpected(created.error());
+  if (auto written = write_images(options, shooting, renderer, staged.path(), workers, control); !written)
+    return tl::unexpected(written.error());
+  if (auto written = write_rest(options, shooting, span, std::move(scene->mesh), staged.path(), report);
+      !written)
+    return tl::unexpected(written.error());
+  if (const auto committed = staged.commit(); !committed) return tl::unexpected(committed.error());
+  return report;
+}
+
+}  // namespace fusebench

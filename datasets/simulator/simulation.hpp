@@ -1,0 +1,92 @@
+// A whole simulated recording: scene, motion, sensors, and a folder that the readers open like any other.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "datasets/rig_calibration.hpp"
+#include "datasets/simulator/image_sensors.hpp"
+#include "datasets/simulator/imu_sensor.hpp"
+#include "datasets/simulator/layout.hpp"
+#include "datasets/simulator/motion.hpp"
+#include "datasets/simulator/motion_file.hpp"
+#include "datasets/simulator/scene_file.hpp"
+
+namespace fusebench {
+
+/// Everything that decides the bytes of a recording; simulation_defaults() fills it in.
+struct SimulationOptions {
+  RecordingLayout layout = RecordingLayout::zr300;
+  std::uint64_t seed = 1;  ///< of the motion and of all noise
+  double duration_s = 10;  ///< 0: the whole trajectory file
+  double rate_hz = 30;     ///< of the images
+
+  std::filesystem::path scene_file;  ///< PLY or OBJ; empty: the furnished room of the seed
+  SceneFileOptions scene;            ///< its axes and unit
+
+  MotionPreset preset = MotionPreset::slow;  ///< what `motion` started from
+  MotionOptions motion;
+  std::filesystem::path trajectory_file;  ///< drives the camera instead of `motion`; empty: none
+  FileMotionOptions file_motion;
+
+  RigCalibration
+      rig;  ///< what calibration.toml says: cameras with their read-out times, extrinsics, IMU densities
+  double exposure_s = 0.008;
+  int blur_samples = 8;
+  double gain_drift = 0.03;  ///< these four: see ColorSensor
+  double vignetting = 0.15;
+  double read_noise_grey = 1.0;
+  double shot_noise = 0.01;  ///< that of a pixel which holds 10000 electrons
+  DepthNoise depth_noise = DepthNoise::zr300;
+  double imu_rate_hz = 200;
+  ImuErrors imu;
+};
+
+/// The sensors and effects of a layout with the motion of a preset: motion blur, image noise, the depth noise
+/// of the layout's sensor, IMU noise and biases are on; rolling shutters, IMU scale errors and time offsets
+/// are not. Errors: configuration (an image size out of range).
+[[nodiscard]] Result<SimulationOptions> simulation_defaults(RecordingLayout layout, MotionPreset preset,
+                                                            const ImageSize& size = {640, 480});
+
+/// Switches off the noise of images, depth and IMU, its biases, gain drift and vignetting; motion blur stays.
+void remove_noise(SimulationOptions& options);
+
+/// Identifies the recording that the options make: they and the contents of the files that they name, as 32
+/// hexadecimal digits. Errors: data_missing.
+[[nodiscard]] Result<std::string> simulation_identity(const SimulationOptions& options);
+
+/// The text of simulation.toml: every option, the identity, and gravity in the world of the files.
+[[nodiscard]] std::string simulation_text(const SimulationOptions& options, const std::string& identity,
+                                          const Vector3d& gravity_world_mps2);
+
+struct SimulationReport {
+  std::string identity;
+  bool reused = false;  ///< the folder was there already; nothing was written, and the rest is empty
+  std::size_t frames = 0;
+  std::size_t imu_samples = 0;
+  PeakSpeeds peaks;              ///< of the colour camera, first to last frame
+  double trajectory_shrunk = 1;  ///< see FileMotion
+  std::vector<std::string> warnings;
+};
+
+/// What a caller wants to know and to say meanwhile.
+struct SimulationControl {
+  std::function<void(std::size_t done, std::size_t total)>
+      progress;                             ///< by one thread at a time; may be empty
+  const std::atomic<bool>* stop = nullptr;  ///< leave early, with an error
+};
+
+/// Writes a recording: whole, or not at all. The same options make the same bytes, with any number of
+/// threads. A folder that exists is left alone if its simulation.toml has the same identity (reused), and is
+/// an error otherwise. Errors: configuration (an option out of range), data_missing and data_corrupt (scene
+/// or trajectory file), io, run_failed (stopped).
+[[nodiscard]] Result<SimulationReport> simulate(const SimulationOptions& options,
+                                                const std::filesystem::path& folder, const Workers& workers,
+                                                const SimulationControl& control = {});
+
+}  // namespace fusebench

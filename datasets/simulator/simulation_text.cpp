@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/fingerprint.hpp"
+#include "core/toml_document.hpp"
+#include "datasets/simulator/simulation.hpp"
+
+namespace fusebench {
+
+namespace {
+
+// To be raised when the same options come to mean other bytes.
+constexpr int kSimulatorVersion = 1;
+
+std::string_view name_of(DepthNoise noise) {
+  switch (noise) {
+    case DepthNoise::none:
+      return "none";
+    case DepthNoise::handa:
+      return "handa";
+    case DepthNoise::zr300:
+      break;
+  }
+  return "zr300";
+}
+
+std::string toml_text(std::string_view text) { return to_toml(OptionValue(std::string(text))); }
+
+std::string matrix_text(const Matrix3d& m) {
+  return fmt::format("[{}, {}, {}, {}, {}, {}, {}, {}, {}]", m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1),
+                     m(1, 2), m(2, 0), m(2, 1), m(2, 2));
+}
+
+std::string motion_text(const SimulationOptions& o) {
+  if (!o.trajectory_file.empty()) {
+    const FileMotionOptions& f = o.file_motion;
+    return fmt::format("[trajectory]\nfile = {}\nspeed = {}\nfrom_rest = {}\nrest_s = {}\nstart_s = {}\n",
+                       toml_text(o.trajectory_file.filename().string()), f.speed, f.from_rest, f.rest_s,
+                       f.start_s);
+  }
+  const MotionOptions& m = o.motion;
+  return fmt::format(
+      "[motion]\npreset = {}\npeak_speed_mps = {}\npeak_rate_radps = {}\nposition_hz = [{}, {}]\n"
+      "rotation_hz = [{}, {}]\npan_share = {}\nshake_share = {}\nshake_hz = [{}, {}]\ntremor_m = {}\n"
+      "from_rest = {}\nrest_s = {}\nstart_s = {}\n",
+      toml_text(to_string(o.preset)), m.peak_speed_mps, m.peak_rate_radps, m.position_hz.low_hz,
+      m.position_hz.high_hz, m.rotation_hz.low_hz, m.rotation_hz.high_hz, m.pan_share, m.shake_share,
+      m.shake_hz.low_hz, m.shake_hz.high_hz, m.tremor_m, m.from_rest, m.rest_s, m.start_s);
+}
+
+std::string sensors_text(const SimulationOptions& o) {
+  const ImuNoise& n = o.imu.sensor.noise;
+  return fmt::format(
+      "[images]\nrate_hz = {}\nexposure_s = {}\nblur_samples = {}\ngain_drift = {}\nvignetting = {}\n"
+      "read_noise_grey = {}\nshot_noise = {}\ndepth_noise = {}\n\n"
+      "[imu_errors]  # measured = gain * true + bias + noise\nrate_hz = {}\nsensor = {}\n"
+      "gyroscope_noise_radps_sqrthz = {}\naccelerometer_noise_mps2_sqrthz = {}\n"
+      "gyroscope_bias_walk_radps2_sqrthz = {}\naccelerometer_bias_walk_mps3_sqrthz = {}\n"
+      "initial_gyroscope_bias_radps = {}\ninitial_accelerometer_bias_mps2 = {}\n"
+      "gyroscope_gain = {}\naccelerometer_gain = {}\n"
+      "gyroscope_range_radps = {}\naccelerometer_range_mps2 = {}\ntime_offset_s = {}\n",
+      o.rate_hz, o.exposure_s, o.blur_samples, o.gain_drift, o.vignetting, o.read_noise_grey, o.shot_noise,
+      toml_text(name_of(o.depth_noise)), o.imu_rate_hz, toml_text(o.imu.sensor.name),
+      n.gyroscope_radps_sqrthz, n.accelerometer_mps2_sqrthz, n.gyroscope_bias_radps2_sqrthz,
+      n.accelerometer_bias_mps3_sqrthz, o.imu.sensor.initial_gyroscope_bias_radps,
+      o.imu.sensor.initial_accelerometer_bias_mps2, matrix_text(o.imu.gyroscope_gain),
+      matrix_text(o.imu.accelerometer_gain), o.imu.gyroscope_range_radps, o.imu.accelerometer_range_mps2,
+      o.imu.time_offset_s);
+}
+
+std::string scene_text(const SimulationOptions& o) {
+  if (o.scene_file.empty()) return "[scene]\nkind = \"furnished room of the seed\"\n";
+  return fmt::format("[scene]\nkind = \"file\"\nfile = {}\ny_up = {}\nmetres_per_unit = {}\n",
+                     toml_text(o.scene_file.filename().string()), o.scene.y_up, o.scene.metres_per_unit);
+}
+
+/// All options but the calibration, which has a file of its own.
+std::string options_text(const SimulationOptions& o) {
+  return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}",
+                     kSimulatorVersion, toml_text(to_string(o.layout)), o.seed, o.duration_s, scene_text(o),
+                     motion_text(o), sensors_text(o));
+}
+
+}  // namespace
+
+Result<std::string> simulation_identity(const SimulationOptions& options) {
+  Fingerprint fingerprint;
+  fingerprint.add(options_text(options));
+  fingerprint.add(to_toml(options.rig));
+  for (const auto& file : {options.scene_file, options.trajectory_file}) {
+    if (file.empty()) continue;
+    if (const auto added = fingerprint.add_file(file); !added) return tl::unexpected(added.error());
+  }
+  return fingerprint.hex();
+}
+
+std::string simulation_text(const SimulationOptions& options, const std::string& identity,
+                            const Vector3d& gravity_world_mps2) {
+  const Vector3d& g = gravity_world_mps2;
+  return fmt::format(
+      "# This recording was made by `fusebench simulate`: images, IMU and truth are simulated. Its sensors "
+      "are\n"
+      "# described in calibration.toml; state_groundtruth.csv (the IMU body, images' clock) and scene.ply "
+      "are in\n"
+      "# the world of the ground truth.\nidentity = {}\ngravity_world_mps2 = [{}, {}, {}]\n{}",
+      toml_text(identity), g.x(), g.y(), g.z(), options_text(options));
+}
+
+}  // namespace fusebench

@@ -1,0 +1,30 @@
+// The images of a simulated recording.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "datasets/pose_spline.hpp"
+#include "datasets/simulator/layout.hpp"
+#include "datasets/simulator/renderer.hpp"
+#include "datasets/simulator/simulation.hpp"
+
+namespace fusebench {
+
+/// What moves, and when it is looked at.
+struct Shooting {
+  PoseSpline body;  ///< the IMU body in the scene's world
+  SE3 T_body_color;
+  std::vector<std::int64_t> frame_ns;  ///< middle of each exposure, and stamp
+};
+
+/// Renders and writes all colour and depth images below the folder, frames in parallel. Errors: io;
+/// run_failed (stopped). The error is that of the first frame that has one, whatever the threads.
+[[nodiscard]] Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
+                                        const Renderer& renderer, const std::filesystem::path& folder,
+                                        const Workers& workers, const SimulationControl& control);
+
+}  // namespace fusebench
