@@ -9,6 +9,8 @@
 #include <system_error>
 
 #include "core/nearest_name.hpp"
+#include "datasets/open_recording.hpp"
+#include "datasets/recording_catalogue.hpp"
 
 namespace fusebench {
 
@@ -63,7 +65,7 @@ Result<void> read_variants(const TomlEntry& entry, Suite& suite) {
 
 Result<void> read_imu(const TomlEntry& entry, Suite& suite) {
   const auto text = plain<std::string>(entry);
-  if (!text) return wrong(entry, "\"recorded\" or \"synthetic\"");
+  if (!text) return wrong(entry, "\"recorded\", \"synthetic\" or \"auto\"");
   const auto choice = parse_imu_choice(*text);
   if (!choice)
     return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, choice.error().message));
@@ -123,6 +125,47 @@ Result<void> check_suite(const Suite& suite, const fs::path& file) {
   return {};
 }
 
+/// The folders in a folder, except hidden ones.
+std::vector<fs::path> folders_in(const fs::path& parent, std::error_code& error) {
+  std::vector<fs::path> folders;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored) && !entry->path().filename().string().starts_with('.')) {
+      folders.push_back(entry->path());
+    }
+  }
+  return folders;
+}
+
+/// A recording of the catalogue that is not under `data`.
+tl::unexpected<Error> not_there(const CatalogueEntry& entry, const fs::path& data) {
+  const std::string folder = (data / entry.folders.front()).string();
+  return fail(
+      ErrorCode::data_missing,
+      fmt::format("{} ({}) is a known recording, but there is no folder {}", entry.name, entry.title, folder),
+      entry.downloads.empty()
+          ? fmt::format("{}; unpack it to {}", entry.download_note, folder)
+          : fmt::format("fetch it with scripts/fetch_datasets.sh {} --data {}", entry.name, data.string()));
+}
+
+/// The recording under `data` whose folder has that name, or an error that names the nearest.
+Result<fs::path> find_folder_named(const std::string& name, const fs::path& data) {
+  std::vector<std::string> present;
+  if (const auto folders = recordings_under(data)) {
+    for (const fs::path& folder : *folders) {
+      if (folder.filename() == name) return folder;
+      present.push_back(folder.filename().string());
+    }
+  }
+  std::vector<std::string_view> known(present.begin(), present.end());
+  for (const CatalogueEntry& entry : recording_catalogue()) known.push_back(entry.name);
+  const std::string there = present.empty()
+                                ? "there are none under --data"
+                                : fmt::format("under --data there are: {}", fmt::join(present, ", "));
+  return fail(ErrorCode::data_missing, fmt::format("no recording '{}' here or under {}", name, data.string()),
+              fmt::format("did you mean {}? {}", nearest_name(name, known), there));
+}
+
 }  // namespace
 
 Result<Suite> read_suite(const fs::path& file) {
@@ -153,16 +196,21 @@ Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant)
 Result<ImuChoice> parse_imu_choice(const std::string& text) {
   if (text == "recorded") return ImuChoice::recorded;
   if (text == "synthetic") return ImuChoice::synthetic;
-  return fail(ErrorCode::configuration, fmt::format("imu = {} (allowed: recorded | synthetic)", text));
+  if (text == "auto") return ImuChoice::automatic;
+  return fail(ErrorCode::configuration, fmt::format("imu = {} (allowed: recorded | synthetic | auto)", text));
 }
 
 Result<std::vector<fs::path>> recordings_under(const fs::path& data) {
   std::error_code error;
   std::vector<fs::path> folders;
-  for (fs::directory_iterator entry(data, error), end; !error && entry != end; entry.increment(error)) {
-    // The lists that every format known so far has.
-    if (fs::exists(entry->path() / "rgb.txt") && fs::exists(entry->path() / "depth.txt")) {
-      folders.push_back(entry->path());
+  for (const fs::path& folder : folders_in(data, error)) {
+    if (recognise_format(folder)) {
+      folders.push_back(folder);
+      continue;
+    }
+    std::error_code ignored;  // a folder that may not be read holds nothing for us
+    for (const fs::path& inner : folders_in(folder, ignored)) {
+      if (recognise_format(inner)) folders.push_back(inner);
     }
   }
   if (error) {
@@ -172,7 +220,7 @@ Result<std::vector<fs::path>> recordings_under(const fs::path& data) {
   }
   if (folders.empty()) {
     return fail(ErrorCode::data_missing, fmt::format("{}: holds no recordings", data.string()),
-                "a recording is a folder with rgb.txt and depth.txt");
+                "scripts/fetch_datasets.sh downloads published ones; `fusebench list recordings` names them");
   }
   std::sort(folders.begin(), folders.end());
   return folders;
@@ -185,20 +233,21 @@ Result<fs::path> find_recording(const std::string& name, const fs::path& data) {
     const fs::path folder = fs::weakly_canonical(name, ignored);
     return ignored ? fs::path(name) : folder;
   }
+  const CatalogueEntry* entry = find_catalogue_entry(name);
   if (data.empty()) {
-    return fail(ErrorCode::data_missing, fmt::format("{}: no such folder", name),
-                "with --data or FUSEBENCH_DATA, recordings can be named by their folder's name");
+    return fail(ErrorCode::data_missing,
+                entry == nullptr
+                    ? fmt::format("{}: no such folder", name)
+                    : fmt::format("{} is a known recording, but no folder of recordings is given", name),
+                "--data or FUSEBENCH_DATA names the folder of recordings");
   }
   if (fs::is_directory(data / name, ignored)) return data / name;
-  std::vector<std::string> known;
-  if (const auto folders = recordings_under(data)) {
-    for (const fs::path& folder : *folders) known.push_back(folder.filename().string());
+  if (entry != nullptr) {
+    const auto folder = catalogue_folder(*entry, data);
+    if (folder) return *folder;
+    return not_there(*entry, data);
   }
-  const std::vector<std::string_view> views(known.begin(), known.end());
-  return fail(ErrorCode::data_missing, fmt::format("no recording '{}' here or under {}", name, data.string()),
-              known.empty() ? "there are no recordings under --data"
-                            : fmt::format("did you mean {}? There are: {}", nearest_name(name, views),
-                                          fmt::join(known, ", ")));
+  return find_folder_named(name, data);
 }
 
 }  // namespace fusebench

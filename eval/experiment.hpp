@@ -17,10 +17,10 @@ namespace fusebench {
 /// A suite runs every variant over every recording.
 ///
 ///     name = "quickstart"             # required
-///     recordings = ["fr1_rpy", ...]   # folders, or names of folders under --data; this, or
+///     recordings = ["fr1_rpy", ...]   # folders, names of folders under --data or of the catalogue; this, or
 ///     all = true                      # every recording under --data
 ///     variants = ["full", "dm"]       # required
-///     imu = "synthetic"               # or "recorded" (default): what a variant that needs an IMU gets
+///     imu = "synthetic"               # or "auto", "recorded" (default): see ImuChoice
 ///     [config]                        # edits for all runs, as in a configuration file
 ///     iekf.max_iterations = 8
 struct Suite {
@@ -39,16 +39,17 @@ struct Suite {
 /// The configuration of one of the suite's variants, before --set.
 [[nodiscard]] Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant);
 
-/// "recorded" or "synthetic". Error configuration.
+/// "recorded", "synthetic" or "auto". Error configuration.
 [[nodiscard]] Result<ImuChoice> parse_imu_choice(const std::string& text);
 
-/// A folder as it is named, else the folder of that name under `data` (may be empty). Error data_missing that
-/// lists what is under `data`, with the nearest name.
+/// A folder as it is named, else the folder of that name under `data` (may be empty), else the recording of
+/// that name in the catalogue (datasets/recording_catalogue.hpp). Error data_missing that says what is known:
+/// how to fetch a recording of the catalogue, or what is under `data`, with the nearest name.
 [[nodiscard]] Result<std::filesystem::path> find_recording(const std::string& name,
                                                            const std::filesystem::path& data);
 
-/// The folders under `data` that hold a recording, by name. Errors: data_missing if `data` is no folder or
-/// has none.
+/// The folders under `data` that hold a recording of any format, directly or one level deeper
+/// (<scene>/<sequence>), by path. Errors: data_missing if `data` is no folder or has none.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> recordings_under(const std::filesystem::path& data);
 
 }  // namespace fusebench

@@ -171,6 +171,7 @@ void read_metrics(const Json& json, RecordedMetrics& metrics) {
 Json json_of(const RecordedRecording& recording) {
   return {{"name", recording.name},
           {"format", recording.format},
+          {"data", recording.data},
           {"frames", recording.frames},
           {"first_frame", recording.first_frame},
           {"duration_s", recording.duration_s},
@@ -183,6 +184,7 @@ Json json_of(const RecordedRecording& recording) {
 void read(const Json& json, RecordedRecording& recording) {
   recording.name = json.at("name");
   recording.format = json.at("format");
+  recording.data = json.at("data");
   recording.frames = json.at("frames");
   recording.first_frame = json.at("first_frame");
   recording.duration_s = json.at("duration_s");

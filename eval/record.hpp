@@ -47,7 +47,8 @@ struct RecordedOption {
 struct RecordedRecording {
   std::string name;
   std::string format;
-  std::size_t frames = 0;  ///< that the run was asked to process
+  std::string data = "recorded";  ///< or "simulated": with its truth and its IMU made by a simulator
+  std::size_t frames = 0;         ///< that the run was asked to process
   std::size_t first_frame = 0;
   double duration_s = 0;  ///< first to last of these frames
   std::string fingerprint;

@@ -49,13 +49,15 @@ Result<void> provide_imu(Recording& recording, const RunSpec& spec) {
     recording.imu_note.clear();
     return {};
   }
-  if (spec.imu == ImuChoice::synthetic) return add_synthetic_imu(recording);
-  if (recording.imu_source != ImuSource::none) return {};
+  const bool recorded = recording.imu_source != ImuSource::none;
+  if (spec.imu == ImuChoice::synthetic || (spec.imu == ImuChoice::automatic && !recorded))
+    return add_synthetic_imu(recording);
+  if (recorded) return {};
   return fail(
       ErrorCode::usage,
       fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
-      "--imu synthetic makes one from the ground truth (and says so in every table); --variant no-imu does "
-      "without");
+      "--imu synthetic (or auto, where there is none) makes one from the ground truth and says so in every "
+      "table; --variant no-imu does without");
 }
 
 /// What was done to the data on reading, and what to beware of. Where a message begins with the recording's
@@ -78,6 +80,7 @@ RunRecord record_of_question(const PreparedRun& run) {
   RunRecord record;
   record.recording = {.name = recording.name,
                       .format = recording.format,
+                      .data = recording.simulated ? "simulated" : "recorded",
                       .frames = recording.frames.size(),
                       .first_frame = run.spec.frames ? run.spec.frames->begin : 0,
                       .duration_s = seconds_between(recording.frames.front().timestamp_ns,

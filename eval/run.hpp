@@ -18,7 +18,11 @@
 namespace fusebench {
 
 /// Which IMU a variant that needs one gets.
-enum class ImuChoice { recorded, synthetic };
+enum class ImuChoice {
+  recorded,   ///< the recording's own; without one, the run is refused
+  synthetic,  ///< one made from the ground truth, even if the recording has its own
+  automatic,  ///< the recording's own, and where there is none, one made from the ground truth
+};
 
 /// Frames begin to end - 1.
 struct FrameWindow {

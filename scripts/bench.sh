@@ -7,7 +7,8 @@ usage() {
 Usage: scripts/bench.sh [DATA] [--data DATA] [ARGUMENT...]
 
 Installs missing packages, builds the release preset, runs configs/suites/quickstart.toml over the recordings in DATA
-(default: the environment variable FUSEBENCH_DATA) into results/runs/quickstart, and prints the table.
+(default: the environment variable FUSEBENCH_DATA) into results/runs/quickstart, and prints the table. Without DATA it
+simulates two recordings first (slow and fast motion, in results/simulated; made once) and runs over them.
 Further arguments go to `fusebench bench`, for example: --resume, --only variant=full, --out DIR.
 
 Exit codes are those of `fusebench bench`: 0 ok, 2 usage, 3 data missing or corrupt, 4 a run failed or was lost.
@@ -42,25 +43,43 @@ done
 
 # Before minutes of building: is there anything to run on?
 cd "$start_dir"
-if [[ -z $data || ! -d $data ]]; then
-  if [[ -n $data ]]; then printf 'bench: there is no folder %s\n' "$data" >&2; fi
-  cat >&2 <<'TEXT'
-bench: no recordings: download freiburg1_rpy (rgbd_dataset_freiburg1_rpy.tgz) from the TUM RGB-D page, https://cvg.cit.tum.de/data/datasets/rgbd-dataset/download, unpack it into a folder and run ./scripts/bench.sh FOLDER (or set FUSEBENCH_DATA to it).
-TEXT
-  exit 3
+if [[ -n $data ]]; then
+  if [[ ! -d $data ]]; then
+    printf 'bench: there is no folder %s; name the folder of recordings, or none to simulate some\n' "$data" >&2
+    exit 3
+  fi
+  data=$(cd "$data" && pwd)
 fi
-data=$(cd "$data" && pwd)
 if [[ -n $out ]]; then out=$(realpath -m -- "$out"); fi
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ./scripts/build.sh release
 
-out=${out:-results/runs/quickstart}
+fusebench=build/release/fusebench
+
+# Simulated recordings are the same bytes each time, and `simulate` leaves alone what is there already.
+simulate_recordings() {
+  local preset
+  for preset in slow fast; do
+    "$fusebench" simulate --preset "$preset" --format zr300 --seed 1 --duration 5 --out "$data/simulated_zr300_$preset" \
+      >/dev/null
+  done
+}
+
+name=quickstart
+if [[ -z $data ]]; then
+  printf 'bench: no recordings are given, so two are simulated (slow and fast motion)\n' >&2
+  name=simulated
+  data=results/simulated
+  simulate_recordings
+fi
+
+out=${out:-results/runs/$name}
 status=0
-build/release/fusebench bench configs/suites/quickstart.toml --data "$data" --out "$out" "${extra[@]}" || status=$?
+"$fusebench" bench configs/suites/quickstart.toml --data "$data" --out "$out" "${extra[@]}" || status=$?
 # A failed or lost run (4) is a row of the table, so the table is still worth reading.
 if ((status == 0 || status == 4)); then
-  build/release/fusebench table "$out"
+  "$fusebench" table "$out"
   printf '\nResults: %s\n' "$(realpath -m -- "$out")"
 fi
 exit "$status"

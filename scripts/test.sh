@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Every check and test: formatting, include directions, a warning-free build, generated pages, tests; clang-tidy on
-# request. Runs all of them even if one fails, and ends with the tests and a summary.
+# Every check and test: formatting, include directions, a warning-free build, generated pages, a minute of fuzzing,
+# tests; clang-tidy on request. Runs all of them even if one fails, and ends with the tests and a summary.
 # shellcheck disable=SC2317  # the checks are called through step
 set -euo pipefail
 
@@ -97,5 +97,6 @@ step build ./scripts/build.sh ci
 if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi
 step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
 if $tidy; then step clang-tidy check_tidy; fi
+step fuzz ./scripts/fuzz.sh 60
 step tests ctest --preset ci
 finish

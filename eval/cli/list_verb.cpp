@@ -8,6 +8,8 @@
 
 #include "core/config_access.hpp"
 #include "core/variants.hpp"
+#include "datasets/open_recording.hpp"
+#include "datasets/recording_catalogue.hpp"
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/text_layout.hpp"
@@ -62,15 +64,28 @@ Listing list_options() {
   return listing;
 }
 
+/// Published recordings, present or not, and then what else is under `data` (may be empty).
 Result<Listing> list_recordings(const std::filesystem::path& data) {
-  if (data.empty()) {
-    return fail(ErrorCode::data_missing, "no folder of recordings is given",
+  Listing listing{{"recording", "format", "frames", "licence", "folder", "title"}, {}};
+  std::vector<std::filesystem::path> others;
+  if (std::error_code error; std::filesystem::exists(data, error)) {
+    // An empty folder is no error here: the catalogue is worth printing.
+    if (auto found = recordings_under(data)) others = std::move(*found);
+  } else if (!data.empty()) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: no such folder", data.string()),
                 "--data or FUSEBENCH_DATA names the folder of recordings");
   }
-  const auto folders = recordings_under(data);
-  if (!folders) return tl::unexpected(folders.error());
-  Listing listing{{"recording", "folder"}, {}};
-  for (const auto& folder : *folders) listing.rows.push_back({folder.filename().string(), folder.string()});
+  for (const CatalogueEntry& entry : recording_catalogue()) {
+    const auto folder = catalogue_folder(entry, data);
+    if (folder) std::erase(others, *folder);
+    const auto frames = entry.frames ? entry.frames : entry.color_images;
+    listing.rows.push_back({entry.name, entry.format, frames ? std::to_string(*frames) : "?", entry.licence,
+                            folder ? folder->string() : "-", entry.title});
+  }
+  for (const auto& folder : others) {
+    listing.rows.push_back({folder.filename().string(), std::string(recognise_format(folder).value_or("")),
+                            "?", "?", folder.string(), ""});
+  }
   return listing;
 }
 

@@ -26,6 +26,7 @@ struct RunOptions {
   std::vector<std::string> sets;
   std::string frames;
   int threads = 1;
+  bool filtered_depth = false;
   bool json = false;
 };
 
@@ -40,6 +41,7 @@ Result<RunSpec> spec_of(const RunOptions& options) {
   const auto folder = find_recording(options.recording, options.data);
   if (!folder) return tl::unexpected(folder.error());
   spec.open.format = options.format;
+  spec.open.read.filtered_depth = options.filtered_depth;
   if (!options.camera.empty()) {
     const auto camera = parse_camera(options.camera);
     if (!camera) return tl::unexpected(camera.error());
@@ -94,10 +96,9 @@ Verb add_run_verb(CLI::App& app) {
       ->type_name("DIR")
       ->capture_default_str();
   verb->add_option("--imu", options->imu,
-                   "Inertial samples for variants that need them: recorded, or synthetic (made from the "
-                   "ground truth and "
-                   "labelled so)")
-      ->check(CLI::IsMember({"recorded", "synthetic"}))
+                   "Inertial samples for variants that need them: recorded, synthetic (made from the ground "
+                   "truth and labelled so), or auto (recorded where there are any)")
+      ->check(CLI::IsMember({"recorded", "synthetic", "auto"}))
       ->capture_default_str();
   add_set_option(*verb, options->sets);
   add_config_option(*verb, options->config);
@@ -106,6 +107,8 @@ Verb add_run_verb(CLI::App& app) {
   verb->add_option("--camera", options->camera,
                    "Calibration: a preset's name, or fx,fy,cx,cy[,k1,k2,p1,p2,k3]")
       ->type_name("CAMERA");
+  verb->add_flag("--filtered-depth", options->filtered_depth,
+                 "Depth that the recording's authors have filtered (zr300: folder filtered/)");
   verb->add_option("--format", options->format, "Format of the recording; recognised if not given")
       ->type_name("NAME");
   add_data_option(*verb, options->data);

@@ -22,5 +22,7 @@ struct Verb {
 [[nodiscard]] Verb add_table_verb(CLI::App& app);
 [[nodiscard]] Verb add_list_verb(CLI::App& app);
 [[nodiscard]] Verb add_config_verb(CLI::App& app);
+[[nodiscard]] Verb add_simulate_verb(CLI::App& app);
+[[nodiscard]] Verb add_inspect_verb(CLI::App& app);
 
 }  // namespace fusebench

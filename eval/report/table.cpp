@@ -72,6 +72,7 @@ TableRow row_of(const FoundRun& run) {
   const RunRecord& record = run.record;
   TableRow row;
   row.recording = record.recording.name;
+  row.data = record.recording.data;
   row.imu = record.recording.imu;
   row.variant = record.variant;
   row.run = run.folder.filename().string();
@@ -135,6 +136,12 @@ std::vector<std::string> footer_of(const ResultTable& table) {
         "synthetic IMU: made from the ground truth with sensor noise, since the recording has no gyroscope. "
         "Such rows "
         "compare variants; they are no evidence of accuracy without ground truth.");
+  }
+  const auto simulated = [](const TableRow& row) { return row.data == "simulated"; };
+  if (std::any_of(table.rows.begin(), table.rows.end(), simulated)) {
+    footer.emplace_back(
+        "simulated: images, IMU and ground truth were made by `fusebench simulate`; such rows say nothing "
+        "about real sensors beyond what the simulation models.");
   }
   return footer;
 }

@@ -14,14 +14,14 @@ namespace {
 using Cells = std::vector<std::string>;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr std::size_t kTextColumns = 4;  // recording, IMU, variant, status: left-aligned
+constexpr std::size_t kTextColumns = 5;  // recording, data, IMU, variant, status: left-aligned
 
 std::string shown(const std::optional<double>& value, double factor, int decimals) {
   return value ? fmt::format("{:.{}f}", *value * factor, decimals) : "-";
 }
 
 Cells header_cells() {
-  return {"recording", "IMU",        "variant",     "status",  "AIE",      "AIE common",
+  return {"recording", "data",       "IMU",         "variant", "status",   "AIE", "AIE common",
           "ATE [cm]",  "RPE [cm/s]", "RPE [deg/s]", "tracked", "vertices", "fps"};
 }
 
@@ -34,6 +34,7 @@ bool repeated(const ResultTable& table, const TableRow& row) {
 
 Cells shown_cells(const ResultTable& table, const TableRow& row) {
   return {row.recording,
+          row.data,
           row.imu,
           repeated(table, row) ? fmt::format("{} ({})", row.variant, row.run) : row.variant,
           std::string(to_string(row.status)),
@@ -102,8 +103,11 @@ std::string latex(const ResultTable& table) {
     for (const std::string& cell : cells) line += (line.empty() ? "" : " & ") + escaped(cell);
     return line + " \\\\\n";
   };
-  std::string text = "% requires \\usepackage{booktabs}\n\\begin{tabular}{llllrrrrrrrr}\n\\toprule\n";
-  text += line_of(header_cells()) + "\\midrule\n";
+  const Cells header = header_cells();
+  std::string text =
+      fmt::format("% requires \\usepackage{{booktabs}}\n\\begin{{tabular}}{{{}{}}}\n\\toprule\n",
+                  std::string(kTextColumns, 'l'), std::string(header.size() - kTextColumns, 'r'));
+  text += line_of(header) + "\\midrule\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (i > 0 && table.rows[i].recording != table.rows[i - 1].recording) text += "\\midrule\n";
     text += line_of(shown_cells(table, table.rows[i]));
@@ -123,15 +127,15 @@ std::string csv_cell(const std::string& text) {
 
 std::string csv(const ResultTable& table) {
   std::string text =
-      "recording,imu,variant,run,status,reason,aie_grey,aie_common_grey,ate_rmse_m,rpe_1s_m,rpe_1s_rad,"
+      "recording,data,imu,variant,run,status,reason,aie_grey,aie_common_grey,ate_rmse_m,rpe_1s_m,rpe_1s_rad,"
       "tracked,total,"
       "vertices,fps\n";
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "";
   };
   for (const TableRow& row : table.rows) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.recording),
-                        csv_cell(row.imu), csv_cell(row.variant), row.run, to_string(row.status),
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.recording),
+                        row.data, csv_cell(row.imu), csv_cell(row.variant), row.run, to_string(row.status),
                         csv_cell(row.reason), number(row.aie_grey), number(row.aie_common_grey),
                         number(row.ate_rmse_m), number(row.rpe_second_m), number(row.rpe_second_rad),
                         row.tracked, row.total, row.vertices, row.fps);
@@ -145,6 +149,7 @@ std::string json(const ResultTable& table) {
   Json rows = Json::array();
   for (const TableRow& row : table.rows) {
     rows.push_back({{"recording", row.recording},
+                    {"data", row.data},
                     {"imu", row.imu},
                     {"variant", row.variant},
                     {"run", row.run},

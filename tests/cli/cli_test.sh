@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|interrupt|determinism
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|recordings|interrupt|determinism
 TEXT
 }
 
@@ -176,6 +176,38 @@ check_bad_usage() {
   [[ $(cat obstacle) == 'in the way' ]] || complain "unwritable folder: the file in the way was changed"
 }
 
+# listed NAME PATTERN -- ARGUMENT...: `list recordings` succeeds, and a line of it matches the extended regular expression.
+listed() {
+  local name=$1 pattern=$2
+  shift 3
+  checks=$((checks + 1))
+  "$binary" list recordings "$@" >stdout 2>stderr || complain "$name: exit code $?"
+  grep -qE -- "$pattern" stdout || complain "$name: no line matches '$pattern'"
+}
+
+check_recordings() {
+  mkdir -p data/scene
+  cp -r "$golden" data/rgbd_dataset_freiburg1_rpy
+  cp -r "$golden" data/scene/freiburg1_walk
+  listed "without a folder" '^fr1_desk +tum +613 +CC BY 4.0 +- ' --
+  listed "absent" '^fr1_desk .* - ' -- --data data
+  listed "present" '^fr1_rpy +tum .* data/rgbd_dataset_freiburg1_rpy ' -- --data data
+  listed "others" '^freiburg1_walk +tum .* data/scene/freiburg1_walk' -- --data data
+  listed "json" '"recording": "dorm1_slow"' -- --data data --json
+  refused "no such folder" 3 'nowhere' 'hint:--data' -- list recordings --data nowhere
+
+  # By its published name, from any folder.
+  checks=$((checks + 1))
+  (mkdir elsewhere && cd elsewhere && "$binary" run fr1_rpy --data ../data --variant no-imu --frames 0:2 --out out) \
+    >stdout 2>stderr || complain "run by a published name: exit code $?"
+  grep -rq '"name": "rgbd_dataset_freiburg1_rpy"' --include record.json elsewhere/out || complain "another recording was run"
+  refused "known, but absent" 3 'fr1_desk.*rgbd_dataset_freiburg1_desk' 'hint:fetch_datasets.sh fr1_desk' \
+    -- run fr1_desk --data data --variant no-imu --out out
+  refused "by hand" 3 'dorm1_slow' 'hint:Google Drive.*data/dorm1/dorm1_slow' \
+    -- run dorm1_slow --data data --variant no-imu --out out
+  refused "nearly known" 3 'fr1_dsk' 'hint:fr1_desk' -- run fr1_dsk --data data --variant no-imu --out out
+}
+
 # stopped SIGNAL ARGUMENT...: the signal arrives while frames are processed; nothing of the run is left, and what was
 # there before still is.
 stopped() {
@@ -244,6 +276,7 @@ check_determinism() {
 case "$group" in
   bad-data) check_bad_data ;;
   bad-usage) check_bad_usage ;;
+  recordings) check_recordings ;;
   interrupt) check_interrupt ;;
   determinism) check_determinism ;;
   *) usage >&2; exit 2 ;;

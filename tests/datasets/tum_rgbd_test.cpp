@@ -183,7 +183,7 @@ TEST(TumRgbd, MissingLists) {
   const auto unrecognised = open_recording(folder.path());
   ASSERT_FALSE(unrecognised);
   EXPECT_EQ(unrecognised.error().code, ErrorCode::data_missing);
-  expect_contains(unrecognised.error().message, "looked for tum (files rgb.txt, depth.txt)");
+  expect_contains(unrecognised.error().message, "tum (files rgb.txt, depth.txt)");
 }
 
 TEST(TumRgbd, MissingFolderAndUnknownFormat) {
@@ -191,7 +191,7 @@ TEST(TumRgbd, MissingFolderAndUnknownFormat) {
   const auto unknown = open_recording(golden_tum_folder(), {"tmu", {}});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().code, ErrorCode::configuration);
-  expect_contains(unknown.error().message, "format = tmu (allowed tum)");
+  expect_contains(unknown.error().message, "format = tmu (allowed eth3d, icl, tum");
 }
 
 TEST(TumRgbd, TruthAndAccelerometerAreOptional) {

@@ -155,7 +155,42 @@ TEST_F(SuiteTest, RecordingsAreFoundByNameOrFolder) {
   EXPECT_EQ(missing.error().code, ErrorCode::data_missing);
   EXPECT_NE(missing.error().hint.find("fr1_rpy"), std::string::npos);
   EXPECT_EQ(recordings_under(folder_ / "absent").error().code, ErrorCode::data_missing);
-  EXPECT_EQ(recordings_under(folder_).error().code, ErrorCode::data_missing);
+  std::filesystem::create_directories(folder_ / "empty" / "scene" / "inner");
+  EXPECT_EQ(recordings_under(folder_ / "empty").error().code, ErrorCode::data_missing);
+}
+
+TEST_F(SuiteTest, RecordingsMayLieOneLevelDeeper) {
+  add_recording("data/scene/walk");
+  add_recording("data/plain");
+  add_recording("data/.hidden/walk2");
+  add_recording("data/a/b/too_deep");
+  const std::vector<std::filesystem::path> expected = {folder_ / "data" / "plain",
+                                                       folder_ / "data" / "scene" / "walk"};
+  EXPECT_EQ(recordings_under(folder_ / "data").value(), expected);
+  EXPECT_EQ(find_recording("walk", folder_ / "data").value(), expected[1]);
+  EXPECT_EQ(find_recording("scene/walk", folder_ / "data").value(), expected[1]);
+}
+
+TEST_F(SuiteTest, PublishedRecordingsAreFoundByTheirName) {
+  add_recording("data/rgbd_dataset_freiburg1_desk");
+  EXPECT_EQ(find_recording("fr1_desk", folder_ / "data").value(),
+            folder_ / "data" / "rgbd_dataset_freiburg1_desk");
+  // A folder of that very name goes first.
+  add_recording("data/fr1_desk");
+  EXPECT_EQ(find_recording("fr1_desk", folder_ / "data").value(), folder_ / "data" / "fr1_desk");
+
+  const auto absent = find_recording("fr2_desk", folder_ / "data");
+  ASSERT_FALSE(absent.has_value());
+  EXPECT_EQ(absent.error().code, ErrorCode::data_missing);
+  EXPECT_NE(absent.error().message.find("rgbd_dataset_freiburg2_desk"), std::string::npos)
+      << absent.error().message;
+  EXPECT_NE(absent.error().hint.find("fetch_datasets.sh fr2_desk"), std::string::npos) << absent.error().hint;
+  // No address: the sentence says where it is published.
+  EXPECT_NE(find_recording("dorm1_slow", folder_ / "data").error().hint.find("Google Drive"),
+            std::string::npos);
+  EXPECT_NE(find_recording("fr2_desk", {}).error().message.find("known recording"), std::string::npos);
+  EXPECT_NE(find_recording("fr2_dsk", folder_ / "data").error().hint.find("did you mean fr2_desk"),
+            std::string::npos);
 }
 
 }  // namespace

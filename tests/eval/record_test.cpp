@@ -15,15 +15,9 @@ RunRecord sample_record() {
   RunRecord record;
   record.status = RunStatus::ok;
   record.reason.clear();
-  record.recording = {"fr1 \"rpy\"",
-                      "tum",
-                      240,
-                      3,
-                      7.9671,
-                      "00ff",
-                      "synthetic IMU",
-                      "seed 1",
-                      {"stamps made \"regular\"", "warning: a gap"}};
+  record.recording = {
+      "fr1 \"rpy\"", "tum",  "simulated",     240,      3,
+      7.9671,        "00ff", "synthetic IMU", "seed 1", {"stamps made \"regular\"", "warning: a gap"}};
   record.variant = "full";
   record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},
                    {"depth.max_m", 1.0, "default"},

@@ -75,6 +75,20 @@ TEST_F(TableTest, ALostRunIsARowWithItsReasonAndNoNumbers) {
   EXPECT_NE(text.find("synthetic IMU: made from the ground truth"), std::string::npos) << text;
 }
 
+TEST_F(TableTest, SimulatedDataIsLabelled) {
+  add_run("full", RunStatus::ok, "", 0.0123, {});
+  const auto before = collect_table(folder_ / "runs");
+  ASSERT_TRUE(before.has_value());
+  for (const TableFormat format :
+       {TableFormat::markdown, TableFormat::csv, TableFormat::json, TableFormat::latex})
+    EXPECT_EQ(render_table(*before, format).find("simulated"), std::string::npos);
+  ResultTable table = *before;
+  table.rows[0].data = "simulated";
+  for (const TableFormat format :
+       {TableFormat::markdown, TableFormat::csv, TableFormat::json, TableFormat::latex})
+    EXPECT_NE(render_table(table, format).find("simulated"), std::string::npos);
+}
+
 TEST_F(TableTest, MarkdownLinesAreAligned) {
   add_three_runs();
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::markdown);
@@ -84,7 +98,7 @@ TEST_F(TableTest, MarkdownLinesAreAligned) {
   for (std::string line; std::getline(lines, line) && line.starts_with("|"); ++rows) {
     if (rows == 0) width = line.size();
     EXPECT_EQ(line.size(), width) << line;
-    EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 13) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 14) << line;
   }
   EXPECT_EQ(rows, 5);
 }
@@ -108,7 +122,7 @@ TEST_F(TableTest, CsvAndJsonCarryTheSameNumbers) {
 TEST_F(TableTest, LatexEscapesNames) {
   add_three_runs();
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);
-  EXPECT_NE(text.find("fr1\\_rpy & synthetic IMU & full & ok"), std::string::npos) << text;
+  EXPECT_NE(text.find("fr1\\_rpy & recorded & synthetic IMU & full & ok"), std::string::npos) << text;
   EXPECT_NE(text.find("\\toprule"), std::string::npos);
 }
 

@@ -1,0 +1,185 @@
+// Exposure, sharpness and depth of sampled frames.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/frame_statistics.hpp"
+#include "datasets/inspection/order_statistics.hpp"
+
+namespace fusebench {
+
+namespace {
+
+struct LoadedStatistics {
+  std::optional<MeasuredFrame> measured;
+  std::string error;
+};
+
+std::vector<std::size_t> sampled_frames(std::size_t frames, std::size_t samples) {
+  std::vector<std::size_t> result;
+  const std::size_t count = std::min(frames, std::max<std::size_t>(1, samples));
+  for (std::size_t i = 0; i < count; ++i) result.push_back(i * frames / count);
+  return result;
+}
+
+template <class Value>
+double median_of(const std::vector<FrameStatistics>& frames, Value FrameStatistics::*member) {
+  std::vector<double> values;
+  for (const FrameStatistics& frame : frames) values.push_back(frame.*member);
+  return median(std::move(values));
+}
+
+/// Range of the mean brightness after a running median over a second, which blinking lights do not move.
+double brightness_drift(const std::vector<FrameStatistics>& frames) {
+  double low = 255, high = 0;
+  for (const FrameStatistics& centre : frames) {
+    std::vector<double> around;
+    for (const FrameStatistics& frame : frames) {
+      if (std::abs(frame.time_s - centre.time_s) <= 0.5) around.push_back(frame.mean_grey);
+    }
+    const double level = median(std::move(around));
+    low = std::min(low, level);
+    high = std::max(high, level);
+  }
+  return frames.empty() ? 0 : high - low;
+}
+
+void check_exposure(Inspection& out) {
+  ExposureMeasurement& e = out.exposure;
+  e.mean_grey = median_of(out.images, &FrameStatistics::mean_grey);
+  e.saturated_share = median_of(out.images, &FrameStatistics::saturated_share);
+  e.dark_share = median_of(out.images, &FrameStatistics::dark_share);
+  e.drift_grey = brightness_drift(out.images);
+  std::vector<double> sharpness;
+  for (const FrameStatistics& frame : out.images) sharpness.push_back(frame.sharpness);
+  e.sharpness_median = median(sharpness);
+  e.sharpness_p05 = quantile(std::move(sharpness), 0.05);
+  if (e.mean_grey < 30) {
+    out.add("underexposed", Severity::warning,
+            fmt::format("the images are dark: mean {:.0f} of 255, {:.0f} % of pixels at 5 and below",
+                        e.mean_grey, 100 * e.dark_share),
+            "patches need gradients above the camera's noise; expect few");
+  }
+  if (e.saturated_share > 0.2) {
+    out.add("overexposed", Severity::warning,
+            fmt::format("{:.0f} % of pixels are saturated (250 and above)", 100 * e.saturated_share),
+            "saturated regions have no texture to track");
+  }
+  if (e.drift_grey > 40) {
+    out.add("brightness-drift", Severity::note,
+            fmt::format("the mean brightness moves over {:.0f} grey levels (exposure control, or the scene)",
+                        e.drift_grey),
+            "intensity errors contain it unless the variant estimates brightness");
+  }
+}
+
+void check_depth_values(Inspection& out) {
+  const DepthMeasurement& depth = out.depth;
+  const auto empty = std::ranges::count_if(
+      out.images, [](const FrameStatistics& frame) { return frame.depth_coverage < 0.01; });
+  if (empty > 0) {
+    const bool all = static_cast<std::size_t>(empty) == out.images.size();
+    out.add("depth-empty", all ? Severity::error : Severity::warning,
+            fmt::format("{} of {} sampled frames have depth in less than 1 % of their pixels", empty,
+                        out.images.size()),
+            "these frames cannot be fused");
+    if (all) return;
+  }
+  if (depth.coverage_median < 0.4) {
+    out.add(
+        "depth-holes", Severity::warning,
+        fmt::format("the median frame has depth in {:.0f} % of its pixels", 100 * depth.coverage_median),
+        "patches need depth: expect few where there are holes; a filtered or hole-filled version may exist");
+  }
+  // A room is a few metres deep, and sensors for rooms measure from about 0.3 m to 10 m.
+  const bool far = depth.median_m > 4.5 || depth.beyond_10m_share > 0.05;
+  const bool near = depth.median_m < 0.45 || depth.below_quarter_metre_share > 0.1;
+  const bool sure = depth.median_m > 6 || depth.beyond_10m_share > 0.2 || depth.median_m < 0.3 ||
+                    depth.below_quarter_metre_share > 0.25;
+  if (far || near) {
+    out.add("depth-range", sure ? Severity::error : Severity::warning,
+            fmt::format("the median depth is {:.3g} m, {:.0f} % of it beyond 10 m and {:.0f} % below 0.25 m: "
+                        "the value of "
+                        "a metre is probably {} than assumed",
+                        depth.median_m, 100 * depth.beyond_10m_share, 100 * depth.below_quarter_metre_share,
+                        far ? "larger (5000 rather than 1000?)" : "smaller (1000 rather than 5000?)"),
+            "set units_per_metre in [depth] of calibration.toml");
+  }
+}
+
+void gather_depth(const std::vector<LoadedStatistics>& loaded, Inspection& out) {
+  DepthMeasurement& depth = out.depth;
+  depth.histogram.assign(kDepthBins, 0);
+  std::vector<double> coverage, medians;
+  std::uint64_t measured = 0, beyond = 0, below = 0;
+  for (const LoadedStatistics& frame : loaded) {
+    if (!frame.measured) continue;
+    const MeasuredFrame& m = *frame.measured;
+    coverage.push_back(m.statistics.depth_coverage);
+    if (m.measured == 0) continue;
+    medians.push_back(m.statistics.depth_median_m);
+    depth.min_m = measured == 0 ? static_cast<double>(m.depth_min_m)
+                                : std::min(depth.min_m, static_cast<double>(m.depth_min_m));
+    depth.max_m = std::max(depth.max_m, m.statistics.depth_max_m);
+    measured += m.measured;
+    beyond += m.beyond_10m;
+    below += m.below_quarter_metre;
+    for (std::size_t bin = 0; bin < kDepthBins; ++bin) depth.histogram[bin] += m.histogram[bin];
+  }
+  if (!coverage.empty()) depth.coverage_min = *std::ranges::min_element(coverage);
+  depth.coverage_median = median(std::move(coverage));
+  depth.median_m = median(std::move(medians));
+  if (measured == 0) return;
+  depth.beyond_10m_share = static_cast<double>(beyond) / static_cast<double>(measured);
+  depth.below_quarter_metre_share = static_cast<double>(below) / static_cast<double>(measured);
+}
+
+void report_unreadable(const std::vector<LoadedStatistics>& loaded, Inspection& out) {
+  std::size_t unreadable = 0;
+  const std::string* first = nullptr;
+  for (const LoadedStatistics& frame : loaded) {
+    if (frame.measured) continue;
+    ++unreadable;
+    if (first == nullptr) first = &frame.error;
+  }
+  if (first == nullptr) return;
+  out.add("frame-unreadable", Severity::error,
+          fmt::format("{} of {} sampled frames cannot be loaded; the first: {}", unreadable, loaded.size(),
+                      *first),
+          "copy or download these files again");
+}
+
+}  // namespace
+
+void check_images(const Recording& recording, const Workers& workers, const InspectOptions& options,
+                  Inspection& out) {
+  const std::vector<std::size_t> frames = sampled_frames(recording.frames.size(), options.image_samples);
+  const auto loaded = workers.map_chunks<LoadedStatistics>(frames.size(), 1, [&](std::size_t i, std::size_t) {
+    LoadedStatistics result;
+    const auto frame = recording.load_frame(frames[i]);
+    if (!frame) {
+      result.error = frame.error().message;
+    } else {
+      result.measured = measure_frame(*frame);
+    }
+    return result;
+  });
+  report_unreadable(loaded, out);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!loaded[i].measured) continue;
+    FrameStatistics statistics = loaded[i].measured->statistics;
+    statistics.frame = frames[i];
+    statistics.time_s =
+        seconds_between(recording.frames.front().timestamp_ns, recording.frames[frames[i]].timestamp_ns);
+    out.images.push_back(statistics);
+  }
+  if (out.images.empty()) return;
+  gather_depth(loaded, out);
+  check_exposure(out);
+  check_depth_values(out);
+}
+
+}  // namespace fusebench

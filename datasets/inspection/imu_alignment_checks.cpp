@@ -1,0 +1,211 @@
+// The IMU against the camera's turns: clock, axes, unit, bias.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/turn_alignment.hpp"
+
+namespace fusebench {
+
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kMinExplained = 0.5;       // less than half of the variance: not the same motion
+constexpr double kOffsetWarning_s = 0.004;  // an eighth of a frame
+constexpr double kOffsetError_s = 0.010;
+constexpr double kRotationWarning_rad = radians(2);
+constexpr double kRotationError_rad = radians(5);
+constexpr double kSwapTolerance_rad = radians(20);
+constexpr double kSigmas = 4;
+
+struct SignedPermutation {
+  Matrix3d matrix = Matrix3d::Identity();
+  double distance_rad = 0;  ///< of the given matrix from it
+};
+
+/// The nearest of the 24 that have the determinant of the given orthogonal matrix.
+SignedPermutation nearest_permutation(const Matrix3d& given) {
+  SignedPermutation best;
+  double best_trace = -4;
+  std::array<int, 3> order{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Matrix3d candidate = Matrix3d::Zero();
+      for (int row = 0; row < 3; ++row)
+        candidate(row, order[static_cast<std::size_t>(row)]) = (signs >> row & 1) == 0 ? 1 : -1;
+      if (candidate.determinant() * given.determinant() < 0) continue;
+      const double trace = (candidate.transpose() * given).trace();
+      if (trace > best_trace) {
+        best_trace = trace;
+        best.matrix = candidate;
+      }
+    }
+  } while (std::ranges::next_permutation(order).found);
+  best.distance_rad = std::acos(std::clamp((best_trace - 1) / 2, -1.0, 1.0));
+  return best;
+}
+
+/// "(y, -x, z)": what the measured axes hold in terms of the calibrated ones.
+std::string permutation_text(const Matrix3d& permutation) {
+  constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
+  std::string text = "(";
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      const double value = permutation(row, column);
+      if (value == 0) continue;
+      text += fmt::format("{}{}{}", row == 0 ? "" : ", ", value < 0 ? "-" : "",
+                          kNames[static_cast<std::size_t>(column)]);
+    }
+  }
+  return text + ")";
+}
+
+std::string matrix_text(const Matrix3d& m) {
+  return fmt::format("[{:.4f} {:.4f} {:.4f}; {:.4f} {:.4f} {:.4f}; {:.4f} {:.4f} {:.4f}]", m(0, 0), m(0, 1),
+                     m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2));
+}
+
+void report_offset(const ImuAlignment& a, Inspection& out) {
+  const double offset_s = std::abs(a.time_offset_s);
+  if (offset_s < kOffsetWarning_s || offset_s < kSigmas * a.time_offset_sigma_s) return;
+  out.add(
+      "imu-time-offset", offset_s >= kOffsetError_s ? Severity::error : Severity::warning,
+      fmt::format("the IMU's stamps are {:.1f} ms (+- {:.1f}) {} than those of the {} for the same instant",
+                  1e3 * offset_s, 1e3 * a.time_offset_sigma_s, a.time_offset_s > 0 ? "later" : "earlier",
+                  a.source),
+      fmt::format("add {:+.4f} to time_offset_s in [imu] of calibration.toml", a.time_offset_s));
+}
+
+/// Whether the axes are as calibrated.
+void report_rotation(const ImuAlignment& a, const Matrix3d& calibrated, Inspection& out) {
+  const Matrix3d measured_calibrated = a.rotation_imu_camera * calibrated.transpose();
+  const SignedPermutation nearest = nearest_permutation(measured_calibrated);
+  const bool identity = nearest.matrix.isIdentity();
+  const bool known = a.rotation_sigma_rad < radians(3);
+  if (!identity && nearest.distance_rad < kSwapTolerance_rad && known) {
+    out.add(
+        "imu-axes-swapped", Severity::error,
+        fmt::format("the axes of the IMU are swapped{}: its (x, y, z) hold {} of the axes that T_imu_camera "
+                    "describes",
+                    a.rotation_imu_camera.determinant() < 0 ? " and mirrored" : "",
+                    permutation_text(nearest.matrix)),
+        a.rotation_imu_camera.determinant() < 0
+            ? "exchange the columns of the IMU's file, or negate one: no rotation repairs a mirrored sensor"
+            : fmt::format(
+                  "exchange the columns of the IMU's file, or set the rotation of T_imu_color in [imu] of "
+                  "calibration.toml to {}",
+                  matrix_text(a.rotation_imu_camera)));
+    return;
+  }
+  const double error_rad = a.rotation_error_rad;
+  if (error_rad < kRotationWarning_rad || error_rad < kSigmas * a.rotation_sigma_rad || !known) return;
+  out.add("extrinsic-rotated", error_rad >= kRotationError_rad ? Severity::error : Severity::warning,
+          fmt::format("the rotation of T_imu_camera is {:.1f} deg (+- {:.1f}) from the one that fits the "
+                      "turns of the {} best",
+                      kDegrees * error_rad, kDegrees * a.rotation_sigma_rad, a.source),
+          fmt::format("the best rotation for T_imu_color in [imu] of calibration.toml is {}",
+                      matrix_text(a.rotation_imu_camera)));
+}
+
+/// A factor of the gyroscope by which its values would be in degrees, or 1.
+double unit_of(double scale) {
+  const double magnitude = std::abs(scale);
+  if (magnitude > 0.8 * kDegrees && magnitude < 1.25 * kDegrees) return kDegrees;
+  if (magnitude > 0.8 / kDegrees && magnitude < 1.25 / kDegrees) return 1 / kDegrees;
+  return 1;
+}
+
+void report_scale(const ImuAlignment& a, Inspection& out) {
+  const double unit = unit_of(a.scale);
+  if (unit != 1) {
+    out.add("gyroscope-unit", Severity::error,
+            fmt::format("the gyroscope turns {:.4g} times as far as the camera: its values {}", a.scale,
+                        unit > 1 ? "are in degrees per second" : "were converted from degrees twice"),
+            fmt::format("multiply them by {:.6g}", 1 / unit));
+    return;
+  }
+  if (std::abs(a.scale - 1) < 0.05) return;
+  out.add(
+      "gyroscope-scale", std::abs(a.scale - 1) > 0.2 ? Severity::error : Severity::warning,
+      fmt::format("the gyroscope turns {:.3f} times as far as the {}", a.scale,
+                  a.source == "images" ? "images: its scale, or the focal length, is off" : "ground truth"),
+      a.source == "images" ? "check fx_px and fy_px of the calibration, then the gyroscope's unit"
+                           : "check the gyroscope's unit");
+}
+
+void report_bias(const ImuAlignment& a, Inspection& out) {
+  const double bias = out.imu->gyroscope_bias_radps->norm();
+  if (bias < 0.1 || unit_of(a.scale) != 1) return;
+  out.add("gyroscope-bias", Severity::warning,
+          fmt::format("the gyroscope's bias is {:.3f} rad/s ({:.1f} deg/s), by the {}", bias, kDegrees * bias,
+                      out.imu->bias_source),
+          "start from rest, or widen the prior of the bias");
+}
+
+ImuAlignment measured_alignment(const TurnAlignment& fit, const CameraTurns& turns, const SensorRig& rig) {
+  ImuAlignment a;
+  a.source = turns.source;
+  a.intervals = fit.intervals;
+  a.time_offset_s = fit.time_offset_s;
+  a.time_offset_sigma_s = fit.time_offset_sigma_s;
+  a.rotation_imu_camera = fit.rotation_imu_camera;
+  a.rotation_sigma_rad = fit.rotation_sigma_rad;
+  a.scale = fit.scale;
+  a.gyroscope_bias_radps = fit.bias_radps;
+  a.residual_radps = fit.residual_radps;
+  a.explained = fit.explained;
+  const Matrix3d difference = fit.rotation_imu_camera * rig.T_imu_camera.rotation_matrix().transpose();
+  a.rotation_error_rad = std::acos(std::clamp((difference.trace() - 1) / 2, -1.0, 1.0));
+  return a;
+}
+
+std::vector<TurnRate> rates_of(const CameraTurns& turns, std::int64_t origin_ns) {
+  std::vector<TurnRate> rates;
+  for (const CameraTurn& turn : turns.turns) {
+    rates.push_back(
+        {0.5 * (seconds_between(origin_ns, turn.begin_ns) + seconds_between(origin_ns, turn.end_ns)),
+         turn.turn_rad.norm() / seconds_between(turn.begin_ns, turn.end_ns)});
+  }
+  return rates;
+}
+
+}  // namespace
+
+void check_imu_alignment(const Recording& recording, const CameraTurns& turns, Inspection& out) {
+  if (!out.imu || out.has("imu-out-of-order") || out.has("imu-duplicate-stamp") || !times_are_plausible(out))
+    return;
+  const auto fit = align_turns(turns, GyroscopeIntegral(recording.imu));
+  if (!fit) {
+    out.add("imu-alignment-untested", Severity::note,
+            "the camera turns too little, or too few turns are known, to compare the IMU with it");
+    return;
+  }
+  ImuAlignment& a = out.imu_alignment.emplace(measured_alignment(*fit, turns, recording.rig));
+  a.rates = rates_of(turns, recording.frames.front().timestamp_ns);
+  if (a.explained < kMinExplained) {
+    out.add(
+        "imu-unrelated", Severity::error,
+        fmt::format("the IMU does not turn as the camera does: the turns of the {} explain {:.0f} % of "
+                    "the gyroscope's",
+                    a.source, 100 * std::max(0.0, a.explained)),
+        "check that the IMU's file is of this recording, its clock (offsets up to 0.5 s are searched), and "
+        "the order of its columns (angular velocity first)");
+    return;
+  }
+  if (!out.imu->gyroscope_bias_radps) {
+    out.imu->gyroscope_bias_radps = a.gyroscope_bias_radps;
+    out.imu->bias_source = a.source;
+  }
+  report_offset(a, out);
+  report_rotation(a, recording.rig.T_imu_camera.rotation_matrix(), out);
+  report_scale(a, out);
+  report_bias(a, out);
+}
+
+}  // namespace fusebench

@@ -1,0 +1,85 @@
+#include "datasets/inspection/inspection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "datasets/inspection/checks.hpp"
+
+namespace fusebench {
+
+void Inspection::add(std::string_view code, Severity severity, std::string message, std::string hint) {
+  check(std::ranges::any_of(finding_codes(), [&](const FindingCode& known) { return known.code == code; }),
+        "the code of a finding is in finding_codes()");
+  findings.push_back({std::string(code), severity, std::move(message), std::move(hint)});
+}
+
+bool Inspection::has(std::string_view code) const {
+  return std::ranges::any_of(findings, [&](const Finding& finding) { return finding.code == code; });
+}
+
+std::size_t Inspection::count(Severity severity) const {
+  return static_cast<std::size_t>(std::ranges::count(findings, severity, &Finding::severity));
+}
+
+Inspection refused_inspection(const std::string& recording, const std::string& format, const Error& error) {
+  Inspection out;
+  out.recording = recording;
+  out.format = format;
+  out.add("cannot-open", Severity::error, error.message, error.hint);
+  return out;
+}
+
+namespace {
+
+/// Whether the poses, by what was found so far, are those of the camera at their stamps.
+bool truth_is_trusted(const Inspection& out) {
+  return out.truth && out.truth->coverage > 0 &&
+         std::ranges::none_of(out.findings, [](const Finding& finding) {
+           return finding.severity == Severity::error && finding.code.starts_with("truth-");
+         });
+}
+
+/// What turns are compared with the IMU: those of the truth, if there is one that can be trusted.
+CameraTurns turns_for_imu(const Recording& recording, const Workers& workers, const InspectOptions& options,
+                          const Inspection& out) {
+  if (!out.imu || out.has("imu-out-of-order") || !times_are_plausible(out)) return {};
+  if (truth_is_trusted(out)) return turns_from_truth(recording);
+  return turns_from_images(recording, workers, options.turn_samples);
+}
+
+}  // namespace
+
+Inspection inspect(const Recording& recording, const Workers& workers, const InspectOptions& options) {
+  check(!recording.frames.empty(), "a recording that was opened has frames");
+  Inspection out;
+  out.recording = recording.name;
+  out.format = recording.format;
+  out.fingerprint = recording.fingerprint;
+  out.frames = recording.frames.size();
+  out.imu_source = recording.imu_source;
+  for (const std::string& warning : recording.warnings) out.add("reader-warning", Severity::warning, warning);
+  for (const std::string& note : recording.notes) out.add("reader-note", Severity::note, note);
+  if (options.expected_frames && *options.expected_frames != out.frames) {
+    out.add("frames-incomplete", Severity::warning,
+            fmt::format("there are {} frames; the recording is published with {}", out.frames,
+                        *options.expected_frames),
+            "download or unpack it again; results of a part are not those of the whole");
+  }
+  check_frame_stamps(recording, out);
+  check_truth_stamps(recording, out);
+  check_imu_stamps(recording, out);
+  check_imu_values(recording, out);
+  check_images(recording, workers, options, out);
+  check_reprojection(recording, workers, options, out);
+  check_imu_alignment(recording, turns_for_imu(recording, workers, options, out), out);
+  check_accelerometer(recording, out);
+  check_motion(recording, out);
+  check_repeated_images(recording, out);
+  check_registration(recording, workers, out);
+  std::ranges::stable_sort(out.findings, {}, &Finding::severity);
+  return out;
+}
+
+}  // namespace fusebench

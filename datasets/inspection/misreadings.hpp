@@ -1,0 +1,56 @@
+// Ways in which a recording may have been misread, tried against the pairs of frames that its ground truth
+// warps.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "datasets/inspection/frame_warp.hpp"
+#include "datasets/recording.hpp"
+
+namespace fusebench {
+
+/// How the pairs fit under one reading, compared with another.
+struct Comparison {
+  double factor = 1;  ///< geometric mean over pairs of the ratios of depth and intensity residuals
+  double wins = 0;    ///< share of pairs with a ratio below 1
+};
+
+/// Loaded pairs of a recording with what is needed to warp them.
+class WarpTest {
+ public:
+  WarpTest(const Recording& recording, std::vector<WarpPair> pairs, const Workers& workers);
+
+  [[nodiscard]] const std::vector<WarpPair>& pairs() const { return pairs_; }
+  [[nodiscard]] std::vector<std::optional<WarpResidual>> residuals(const Reading& reading) const;
+  [[nodiscard]] Comparison compare(const std::vector<std::optional<WarpResidual>>& base,
+                                   const Reading& reading) const;
+
+ private:
+  const Recording& recording_;
+  std::vector<WarpPair> pairs_;
+  std::int64_t gap_ns_;
+  const Workers& workers_;
+};
+
+/// A discrete misreading of the poses.
+struct Misreading {
+  std::string code;  ///< of its finding
+  std::string name;
+  SE3 (*pose)(const SE3&);
+};
+[[nodiscard]] const std::vector<Misreading>& pose_misreadings();
+
+/// A parameter that was fitted: its best value and how well it fits.
+struct FittedParameter {
+  double value = 0;
+  Comparison comparison;
+};
+[[nodiscard]] FittedParameter fit_depth_scale(const WarpTest& test,
+                                              const Reading& base);  ///< factor, 1/8 to 8
+[[nodiscard]] FittedParameter fit_focal_scale(const WarpTest& test,
+                                              const Reading& base);  ///< factor, 0.7 to 1.4
+[[nodiscard]] FittedParameter fit_truth_shift(const WarpTest& test, const Reading& base);  ///< s, up to 0.25
+
+}  // namespace fusebench

@@ -1,0 +1,224 @@
+// Calibration and ground truth: frames warped onto each other, and the misreading that would explain them
+// better.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/trajectory.hpp"
+#include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/misreadings.hpp"
+#include "datasets/inspection/order_statistics.hpp"
+#include "datasets/inspection/warp_pairs.hpp"
+
+namespace fusebench {
+
+namespace {
+
+// A misreading is named if it lowers the residuals to this share, in most pairs. Fitted parameters always
+// gain a little.
+constexpr double kClearFactor = 0.75;
+constexpr double kClearWins = 0.7;
+constexpr double kSlightFactor = 0.88;
+constexpr int kRounds = 3;
+
+bool clear(const Comparison& c, double factor) { return c.factor < factor && c.wins >= kClearWins; }
+
+void measure_pairs(const Recording& recording, const WarpTest& test, ReprojectionMeasurement& out) {
+  const auto residuals = test.residuals({});
+  const std::int64_t gap_ns = truth_gap_ns(recording);
+  std::vector<double> depth_m, depth_share, intensity;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!residuals[i]) continue;
+    const WarpPair& pair = test.pairs()[i];
+    const auto from = interpolate_pose(recording.ground_truth, pair.from_color_ns, gap_ns);
+    const auto to = interpolate_pose(recording.ground_truth, pair.to_color_ns, gap_ns);
+    const SE3 motion = from->inverse() * *to;
+    out.pairs.push_back({pair.from, pair.to, rotation_angle_rad(motion.rotation, Quaterniond::Identity()),
+                         motion.translation.norm(), residuals[i]->depth_m, residuals[i]->depth_share,
+                         residuals[i]->intensity_grey, residuals[i]->overlap});
+    depth_m.push_back(residuals[i]->depth_m);
+    depth_share.push_back(residuals[i]->depth_share);
+    intensity.push_back(residuals[i]->intensity_grey);
+  }
+  out.depth_residual_m = median(std::move(depth_m));
+  out.depth_residual_share = median(std::move(depth_share));
+  out.intensity_residual_grey = median(std::move(intensity));
+}
+
+std::string better_text(const Comparison& c) {
+  return fmt::format("lowers the residuals of warped frames to {:.0f} % (better in {:.0f} % of pairs)",
+                     100 * c.factor, 100 * c.wins);
+}
+
+/// What was found better in one round, and the reading with it.
+struct Improvement {
+  HypothesisResult result;
+  Comparison comparison;
+  Reading reading;
+};
+
+Improvement improvement(std::string code, std::string name, double value, const Comparison& c,
+                        Reading reading) {
+  return {{std::move(code), std::move(name), value, c.factor, c.wins}, c, std::move(reading)};
+}
+
+/// The misreadings of poses and the fitted parameters, each from the reading `base`.
+std::vector<Improvement> try_all(const WarpTest& test, const Reading& base) {
+  std::vector<Improvement> result;
+  const auto residuals = test.residuals(base);
+  for (const Misreading& misreading : pose_misreadings()) {
+    Reading reading = base;
+    reading.pose = [before = base.pose, misreading](const SE3& pose) {
+      return misreading.pose(before ? before(pose) : pose);
+    };
+    const Comparison c = test.compare(residuals, reading);
+    result.push_back(improvement(misreading.code, misreading.name, 0, c, std::move(reading)));
+  }
+  const FittedParameter depth = fit_depth_scale(test, base);
+  Reading reading = base;
+  reading.depth_scale *= depth.value;
+  result.push_back(improvement("depth-scale", "depth scaled", depth.value, depth.comparison, reading));
+  const FittedParameter focal = fit_focal_scale(test, base);
+  reading = base;
+  reading.focal_scale *= focal.value;
+  result.push_back(
+      improvement("focal-length", "focal length scaled", focal.value, focal.comparison, reading));
+  const FittedParameter shift = fit_truth_shift(test, base);
+  reading = base;
+  reading.truth_shift_ns += std::llround(1e9 * shift.value);
+  result.push_back(improvement("truth-time-offset", "ground truth shifted in time", shift.value,
+                               shift.comparison, reading));
+  return result;
+}
+
+Finding finding_of(const Improvement& found, const Recording& recording, double frame_s) {
+  const double value = found.result.value;
+  const std::string better = better_text(found.comparison);
+  Finding f{found.result.code, Severity::error, "", ""};
+  if (f.code == "truth-not-reflected") {
+    const bool negative = recording.rig.camera.fy_px < 0;
+    f.message = fmt::format(
+        "the poses are those of a y-up camera, or fy has the wrong sign: reflecting them {}", better);
+    f.hint = negative ? "images are stored top-down: use a positive fy_px and reflect the poses (F T F, F = "
+                        "diag(1, -1, 1))"
+                      : "reflect the poses: F T F with F = diag(1, -1, 1), that is (tx, -ty, tz) and (-qx, "
+                        "qy, -qz, qw); "
+                        "--format icl does it for ICL-NUIM";
+  } else if (f.code == "truth-inverted") {
+    f.message = fmt::format("the poses map from the world to the camera: inverting them {}", better);
+    f.hint = "invert the poses: groundtruth.txt holds camera positions in the world";
+  } else if (f.code == "truth-rotation-inverted") {
+    f.message = fmt::format("the rotations map from the world to the camera: inverting them {}", better);
+    f.hint = "conjugate the quaternions (negate qx, qy, qz)";
+  } else if (f.code == "truth-quaternion-order") {
+    f.message = fmt::format("the quaternions are in the order w x y z: reading them so {}", better);
+    f.hint = "groundtruth.txt holds qx qy qz qw";
+  } else if (f.code == "depth-scale") {
+    f.message = fmt::format("depth is {:.3f} times too {}: scaling it by {:.3f} {}",
+                            value < 1 ? 1 / value : value, value < 1 ? "large" : "small", value, better);
+    f.hint = fmt::format(
+        "multiply units_per_metre in [depth] of calibration.toml by {:.4g} (5000 for 1000 is 5)", 1 / value);
+  } else if (f.code == "focal-length") {
+    f.message = fmt::format("the focal length is {:.3f} of the true one: scaling fx and fy by {:.3f} {}",
+                            1 / value, value, better);
+    f.hint = "check fx_px and fy_px, and the size of the images for which they were calibrated";
+  } else {
+    const double frames = value / frame_s;
+    const bool row = std::abs(std::abs(frames) - 1) < 0.15;
+    f.message =
+        fmt::format("the ground truth's stamps are {:.1f} ms {} than the images'{}: shifting them {}",
+                    1e3 * std::abs(value), value > 0 ? "later" : "earlier", row ? ", one frame" : "", better);
+    f.hint = row ? "match poses to images by their index, not by the number of the row"
+                 : fmt::format("add {:+.4f} s to the stamps of the ground truth", -value);
+  }
+  return f;
+}
+
+/// Whether, and how severely, an improvement is reported.
+std::optional<Severity> severity_of(const Improvement& found, double frame_s) {
+  const std::string& code = found.result.code;
+  const double value = found.result.value;
+  if (code == "depth-scale" || code == "focal-length") {
+    const double off = std::abs(std::log(value));
+    const double error_off = code == "depth-scale" ? 0.10 : 0.05;
+    if (off > error_off && clear(found.comparison, kClearFactor)) return Severity::error;
+    if (off > 0.02 && clear(found.comparison, kSlightFactor)) return Severity::warning;
+    return std::nullopt;
+  }
+  if (code == "truth-time-offset") {
+    const double off_s = std::abs(value);
+    if (off_s > std::min(0.015, 0.5 * frame_s) && clear(found.comparison, kClearFactor))
+      return Severity::error;
+    if (off_s > 0.004 && clear(found.comparison, kSlightFactor)) return Severity::warning;
+    return std::nullopt;
+  }
+  if (clear(found.comparison, kClearFactor)) return Severity::error;
+  return std::nullopt;
+}
+
+/// The best explanation first; then, with it, the next one: several faults may be there at once.
+void search_misreadings(const Recording& recording, const WarpTest& test, ReprojectionMeasurement& measured,
+                        Inspection& out) {
+  const double frame_s = std::max(1e-3, out.color_stamps.median_interval_s);
+  Reading reading;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Improvement> tried = try_all(test, reading);
+    if (round == 0) {
+      for (const Improvement& t : tried) measured.hypotheses.push_back(t.result);
+    }
+    const Improvement* best = nullptr;
+    for (const Improvement& t : tried) {
+      if (!severity_of(t, frame_s) || out.has(t.result.code)) continue;
+      if (best == nullptr || t.comparison.factor < best->comparison.factor) best = &t;
+    }
+    if (best == nullptr) return;
+    const Finding finding = finding_of(*best, recording, frame_s);
+    out.add(finding.code, *severity_of(*best, frame_s), finding.message, finding.hint);
+    reading = best->reading;
+  }
+}
+
+}  // namespace
+
+void check_reprojection(const Recording& recording, const Workers& workers, const InspectOptions& options,
+                        Inspection& out) {
+  if (recording.rig.camera.fx_px <= 0 || recording.rig.camera.fy_px <= 0) {
+    out.add("focal-length", Severity::error,
+            fmt::format("fx = {}, fy = {} (allowed: above 0)", recording.rig.camera.fx_px,
+                        recording.rig.camera.fy_px),
+            "images are stored top-down: use a positive fy_px and reflect the poses");
+  }
+  if (!out.truth || out.has("truth-time-unit") || out.has("truth-out-of-order") || out.depth.median_m <= 0)
+    return;
+  const WarpTest test(
+      recording,
+      load_pairs(recording, choose_pairs(recording, out.depth.median_m, options.pair_samples), workers),
+      workers);
+  ReprojectionMeasurement measured;
+  measure_pairs(recording, test, measured);
+  if (measured.pairs.empty()) {
+    out.add(
+        "reprojection-untested", Severity::note,
+        "no pair of frames with ground truth sees the same place from two: the calibration is not tested");
+    return;
+  }
+  Reading still;
+  still.pose = [](const SE3&) { return SE3{}; };
+  measured.static_factor = test.compare(test.residuals({}), still).factor;
+  search_misreadings(recording, test, measured, out);
+  if (out.count(Severity::error) == 0 && clear(test.compare(test.residuals({}), still), kSlightFactor)) {
+    out.add("truth-inconsistent", Severity::error,
+            fmt::format("warping frames by the ground truth leaves {:.1f} times the residuals of no motion "
+                        "at all, and no known "
+                        "misreading explains it",
+                        1 / measured.static_factor),
+            "check that the ground truth is that of the colour camera, of this recording and of its clock");
+  }
+  out.reprojection = std::move(measured);
+}
+
+}  // namespace fusebench

@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "datasets/camera_presets.hpp"
+#include "datasets/inspection/inspection.hpp"
+#include "datasets/open_recording.hpp"
+#include "datasets/recording_catalogue.hpp"
+#include "eval/cli/console.hpp"
+#include "eval/cli/shared_options.hpp"
+#include "eval/cli/verbs.hpp"
+#include "eval/experiment.hpp"
+#include "eval/report/inspection_json.hpp"
+#include "eval/report/inspection_page.hpp"
+#include "eval/report/inspection_text.hpp"
+
+namespace fusebench {
+
+namespace {
+
+struct InspectVerbOptions {
+  std::string recording;
+  std::filesystem::path data;
+  std::string camera;
+  std::string format;
+  std::string frames;
+  std::filesystem::path page;
+  int threads = 1;
+  bool json = false;
+};
+
+/// What the user said wrongly is an error as in every verb; what the data are is for the inspection.
+bool is_finding(const Error& error) {
+  return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
+}
+
+Result<Recording> open(const InspectVerbOptions& options, const std::filesystem::path& folder) {
+  const auto window = parse_frames(options.frames);
+  if (!window) return tl::unexpected(window.error());
+  OpenOptions open;
+  open.format = options.format;
+  if (!options.camera.empty()) {
+    const auto camera = parse_camera(options.camera);
+    if (!camera) return tl::unexpected(camera.error());
+    open.read.camera = *camera;
+  }
+  auto recording = open_recording(folder, open);
+  if (!recording) return recording;
+  if (*window) {
+    const auto selected = select_frames(*recording, (*window)->begin, (*window)->end);
+    if (!selected) return tl::unexpected(selected.error());
+  }
+  return recording;
+}
+
+tl::unexpected<Error> interrupted() { return fail(ErrorCode::run_failed, "interrupted"); }
+
+/// How many frames the catalogue says there are.
+std::optional<std::size_t> published_frames(const InspectVerbOptions& options) {
+  const auto folder = find_recording(options.recording, options.data);
+  const CatalogueEntry* entry = folder ? catalogue_entry_of_folder(*folder) : nullptr;
+  if (entry == nullptr || !entry->frames) return std::nullopt;
+  return static_cast<std::size_t>(*entry->frames);
+}
+
+Result<void> write_page(const std::filesystem::path& file, const std::string& html) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << html;
+  stream.close();
+  if (!stream)
+    return fail(ErrorCode::io, fmt::format("{}: cannot be written", file.string()),
+                "choose another place for --page");
+  return {};
+}
+
+int print(const Inspection& inspection, const InspectVerbOptions& options) {
+  print_output(options.json ? to_json(inspection) : to_text(inspection));
+  return inspection.count(Severity::error) > 0 ? exit_code(ErrorCode::data_corrupt) : 0;
+}
+
+Result<int> run(const InspectVerbOptions& options) {
+  auto recording = find_recording(options.recording, options.data).and_then([&](const auto& folder) {
+    return open(options, folder);
+  });
+  if (!recording && options.json && is_finding(recording.error())) {
+    print_error(recording.error());
+    return print(refused_inspection(options.recording, options.format, recording.error()), options);
+  }
+  if (!recording) return tl::unexpected(recording.error());
+  // An interrupted inspection ends soon: it loads nothing more.
+  recording->load_frame = [load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
+    if (stop_requested()) return interrupted();
+    return load(frame);
+  };
+  const Workers workers(options.threads);
+  InspectOptions inspect_options;
+  if (options.frames.empty()) inspect_options.expected_frames = published_frames(options);
+  const Inspection inspection = inspect(*recording, workers, inspect_options);
+  if (stop_requested()) return interrupted();
+  if (!options.page.empty()) {
+    const auto written = write_page(options.page, to_page(inspection, *recording));
+    if (!written) return tl::unexpected(written.error());
+  }
+  return print(inspection, options);
+}
+
+}  // namespace
+
+Verb add_inspect_verb(CLI::App& app) {
+  auto options = std::make_shared<InspectVerbOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "inspect", "Checks a recording: stamps, images, depth, motion, IMU, calibration and ground truth");
+  verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
+      ->required();
+  verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
+  verb->add_option("--camera", options->camera,
+                   "Calibration: a preset's name, or fx,fy,cx,cy[,k1,k2,p1,p2,k3]")
+      ->type_name("CAMERA");
+  verb->add_option("--format", options->format, "Format of the recording; recognised if not given")
+      ->type_name("NAME");
+  verb->add_option("--page", options->page, "Writes a page with plots, which needs no network, as well")
+      ->type_name("FILE.html");
+  add_threads_option(*verb, options->threads);
+  add_data_option(*verb, options->data);
+  add_json_flag(*verb, options->json);
+  verb->footer(
+      "Findings are errors (do not trust results on this recording), warnings and notes; docs/inspect.md "
+      "lists\n"
+      "their codes. Exit code 3 if there is an error.");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace fusebench
