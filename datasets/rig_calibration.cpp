@@ -40,7 +40,8 @@ struct Range {
 constexpr Range kPixels{1e-3, 1e6};
 constexpr Range kCentre{-1e6, 1e6};
 constexpr Range kSize{1, 100'000};
-constexpr Range kNoise{0, 100};
+constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would silence all others
+constexpr Range kWalk{0, 100};
 constexpr Range kReadout{0, 1};
 constexpr Range kOffset{-10, 10};
 
@@ -86,6 +87,14 @@ class Section {
                        range.least, range.most),
            {});
     return range.least;
+  }
+
+  [[nodiscard]] int pixels(const std::string& key) {
+    const double value = number(key, kSize);
+    if (value != std::floor(value))
+      report(fmt::format("{}: {} must be a whole number", entries_.at(key)->place, entries_.at(key)->key),
+             {});
+    return static_cast<int>(value);
   }
 
   /// A list of exactly `count` numbers; empty if the key is not there.
@@ -141,10 +150,10 @@ class Section {
 /// Width and height are both given or both left out (0).
 PinholeCamera read_pinhole(Section& section, bool size_needed) {
   PinholeCamera camera;
-  const std::optional<double> absent = size_needed ? std::nullopt : std::optional<double>(0);
-  const bool sized = section.has("width_px") || section.has("height_px") || size_needed;
-  camera.width_px = static_cast<int>(section.number("width_px", kSize, sized ? std::nullopt : absent));
-  camera.height_px = static_cast<int>(section.number("height_px", kSize, sized ? std::nullopt : absent));
+  if (section.has("width_px") || section.has("height_px") || size_needed) {
+    camera.width_px = section.pixels("width_px");
+    camera.height_px = section.pixels("height_px");
+  }
   camera.fx_px = section.number("fx_px", kPixels);
   camera.fy_px = section.number("fy_px", kPixels);
   camera.cx_px = section.number("cx_px", kCentre);
@@ -189,10 +198,10 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
   } else {
     imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
   }
-  imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kNoise);
-  imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kNoise);
-  imu.noise.gyroscope_bias_radps2_sqrthz = section.number("gyroscope_bias_walk_radps2_sqrthz", kNoise);
-  imu.noise.accelerometer_bias_mps3_sqrthz = section.number("accelerometer_bias_walk_mps3_sqrthz", kNoise);
+  imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
+  imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);
+  imu.noise.gyroscope_bias_radps2_sqrthz = section.number("gyroscope_bias_walk_radps2_sqrthz", kWalk);
+  imu.noise.accelerometer_bias_mps3_sqrthz = section.number("accelerometer_bias_walk_mps3_sqrthz", kWalk);
   imu.time_offset_s = section.number("time_offset_s", kOffset, 0.0);
   return imu;
 }

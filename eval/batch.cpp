@@ -5,7 +5,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "eval/run_folder.hpp"
+#include "core/staged_folder.hpp"
 
 namespace fusebench {
 
@@ -78,7 +78,7 @@ void record_not_started(const BatchJob& job, const BatchOutcome& outcome) {
   record.variant = outcome.variant;
   record.config_hash = config_hash(job.spec.config.values);
   // If even this cannot be written the outcome still says what happened.
-  auto folder = RunFolder::create(job.spec.out / outcome.recording / outcome.variant / kNotStarted);
+  auto folder = StagedFolder::create(job.spec.out / outcome.recording / outcome.variant / kNotStarted);
   if (folder && folder->write("record.json", to_json(record))) static_cast<void>(folder->commit());
 }
 

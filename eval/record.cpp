@@ -8,6 +8,8 @@
 #include <sstream>
 #include <type_traits>
 
+#include "eval/json_text.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -315,7 +317,7 @@ std::string to_json(const RunRecord& record) {
       {"config", json_of(record.config)},
       {"timing", json_of(record.timing)},
       {"provenance", json_of(record.provenance)}};
-  return json.dump(2) + "\n";
+  return json_text(json) + "\n";
 }
 
 Result<RunRecord> parse_record(std::string_view json, const std::string& name) {

@@ -8,6 +8,7 @@
 #include "core/marching_cubes.hpp"
 #include "core/mesh_file.hpp"
 #include "core/pipeline.hpp"
+#include "core/staged_folder.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "datasets/synthetic_imu.hpp"
@@ -16,7 +17,6 @@
 #include "eval/frame_table.hpp"
 #include "eval/intensity_file.hpp"
 #include "eval/process_meter.hpp"
-#include "eval/run_folder.hpp"
 
 namespace fusebench {
 
@@ -145,7 +145,7 @@ Result<void> end_at_frame(Progress& progress, std::size_t frame, Error error, co
 
 /// All frames through the pipeline. Errors: io, a stop, and bad data if it is not recorded; whatever else
 /// goes wrong ends the run and is in the progress.
-Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, const RunFolder& folder,
+Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, const StagedFolder& folder,
                                 const RunControl& control) {
   Progress progress;
   const Recording& recording = run.recording;
@@ -220,7 +220,7 @@ RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, doub
 }
 
 Result<RecordedModel> write_model(const TsdfVolume& model, double min_weight, const Workers& workers,
-                                  const RunFolder& folder) {
+                                  const StagedFolder& folder) {
   const Mesh mesh = extract_mesh(model, min_weight, workers);
   if (auto written = write_ply(mesh, folder.file("mesh.ply")); !written)
     return tl::unexpected(written.error());
@@ -260,7 +260,7 @@ Result<PreparedRun> prepare_run(RunSpec spec) {
 
 Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
   const ProcessMeter meter;
-  auto folder = RunFolder::create(run.folder);
+  auto folder = StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
   RunRecord record = record_of_question(run);
 

@@ -12,7 +12,7 @@
 
 #include "core/toml_document.hpp"
 #include "datasets/simulator/room.hpp"
-#include "datasets/simulator/write_folder.hpp"
+#include "core/staged_folder.hpp"
 #include "datasets/simulator/write_images.hpp"
 #include "datasets/simulator/write_lists.hpp"
 
@@ -220,14 +220,14 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   if (*path) report.warnings = (*path)->warnings;
   report.peaks = peak_speeds(shooting.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
 
-  StagedFolder staged(folder);
-  if (const auto created = staged.create(); !created) return tl::unexpected(created.error());
-  if (auto written = write_images(options, shooting, renderer, staged.path(), workers, control); !written)
+  auto staged = StagedFolder::create(folder);
+  if (!staged) return tl::unexpected(staged.error());
+  if (auto written = write_images(options, shooting, renderer, staged->path(), workers, control); !written)
     return tl::unexpected(written.error());
-  if (auto written = write_rest(options, shooting, span, std::move(scene->mesh), staged.path(), report);
+  if (auto written = write_rest(options, shooting, span, std::move(scene->mesh), staged->path(), report);
       !written)
     return tl::unexpected(written.error());
-  if (const auto committed = staged.commit(); !committed) return tl::unexpected(committed.error());
+  if (const auto committed = staged->commit(); !committed) return tl::unexpected(committed.error());
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/experiment.hpp"
+#include "eval/json_text.hpp"
 
 namespace fusebench {
 
@@ -34,7 +35,7 @@ std::string json_of(const Suite& suite, const std::vector<BatchOutcome>& outcome
                     {"folder", outcome.folder.string()}});
   }
   const Json document = {{"suite", suite.name}, {"n_ok", ok}, {"n_total", total}, {"runs", runs}};
-  return document.dump(2) + "\n";
+  return json_text(document) + "\n";
 }
 
 /// The bar while a run goes on, one line when it has ended.

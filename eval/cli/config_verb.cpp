@@ -9,6 +9,7 @@
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/text_layout.hpp"
 #include "eval/cli/verbs.hpp"
+#include "eval/json_text.hpp"
 
 namespace fusebench {
 
@@ -66,7 +67,7 @@ std::string json_of(const EffectiveConfig& config, const std::vector<OptionRow>&
                        {"range", row.range},
                        {"sentence", row.sentence}});
   }
-  return Json{{"config_hash", config_hash(config.values)}, {"options", options}}.dump(2) + "\n";
+  return json_text(Json{{"config_hash", config_hash(config.values)}, {"options", options}}) + "\n";
 }
 
 Result<int> show_config(const ConfigOptions& options) {

@@ -15,6 +15,7 @@
 #include "eval/cli/text_layout.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/experiment.hpp"
+#include "eval/json_text.hpp"
 
 namespace fusebench {
 
@@ -147,7 +148,7 @@ std::string json_of(const std::string& what, const Listing& listing) {
     for (std::size_t i = 0; i < row.size(); ++i) entry[listing.columns[i]] = row[i];
     rows.push_back(entry);
   }
-  return Json{{what, rows}}.dump(2) + "\n";
+  return json_text(Json{{what, rows}}) + "\n";
 }
 
 Result<int> list(const ListOptions& options) {

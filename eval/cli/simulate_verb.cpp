@@ -9,6 +9,7 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
+#include "eval/json_text.hpp"
 
 namespace fusebench {
 
@@ -98,7 +99,7 @@ std::string json_of(const SimulateOptions& chosen, const SimulationReport& repor
     document["trajectory_scale"] = report.trajectory_shrunk;
     document["warnings"] = report.warnings;
   }
-  return document.dump(2) + "\n";
+  return json_text(document) + "\n";
 }
 
 void print_summary(const SimulationReport& report) {

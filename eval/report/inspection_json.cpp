@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "eval/json_text.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -163,7 +165,7 @@ std::string to_json(const Inspection& i) {
     document["imu_alignment"] = i.imu_alignment ? json_of(*i.imu_alignment) : Json(nullptr);
     document["reprojection"] = i.reprojection ? json_of(*i.reprojection) : Json(nullptr);
   }
-  return document.dump(2) + "\n";
+  return json_text(document) + "\n";
 }
 
 }  // namespace fusebench

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "eval/json_text.hpp"
 #include "eval/report/page_assets.hpp"
 
 namespace fusebench {
@@ -118,7 +119,7 @@ std::string html_of(const PageSection& section, Json& charts) {
 /// JSON that cannot end the script element that holds it.
 std::string script_safe(const Json& json) {
   std::string safe;
-  for (const char c : json.dump()) {
+  for (const char c : json_text(json, -1)) {
     if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
     safe += c;
   }

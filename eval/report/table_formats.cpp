@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "eval/json_text.hpp"
+
 #include "eval/report/table.hpp"
 
 namespace fusebench {
@@ -172,7 +174,7 @@ std::string json(const ResultTable& table) {
                          {"rows", rows},
                          {"notes", table.notes},
                          {"protocol", table.footer}};
-  return document.dump(2) + "\n";
+  return json_text(document) + "\n";
 }
 
 }  // namespace

@@ -43,6 +43,9 @@ struct Table {
   std::function<Reading(const fs::path& folder)> read;
 };
 
+/// What a list of tests shows.
+void PrintTo(const Table& table, std::ostream* stream) { *stream << table.file; }
+
 Reading read_trajectory(const fs::path& folder) {
   std::vector<std::string> warnings;
   const auto poses = read_tum_trajectory(folder / "trajectory.txt", warnings);

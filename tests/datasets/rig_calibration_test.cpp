@@ -149,6 +149,8 @@ TEST(RigCalibration, ErrorsNameThePlace) {
             "c.toml:2: [color] needs the key cy_px");
   EXPECT_EQ(refusal(with_color("focal = 1\n")), "c.toml:6: unknown key 'color.focal' (nearest: fx_px)");
   EXPECT_EQ(refusal(with_color("width_px = 640\n")), "c.toml:1: [color] needs the key height_px");
+  EXPECT_EQ(refusal(with_color("width_px = 640.5\nheight_px = 480\n")),
+            "c.toml:6: color.width_px must be a whole number");
   EXPECT_EQ(refusal(with_color("distortion = [1, 2, 3, 4]\n")),
             "c.toml:6: color.distortion must be a list of 5 finite numbers");
   EXPECT_EQ(refusal("[color]\nfx_px = -500\n"),
@@ -163,6 +165,12 @@ TEST(RigCalibration, ErrorsNameThePlace) {
             "c.toml:1: calibration_source must be a text");
   EXPECT_EQ(refusal(with_color("[imu]\nT_imu_color = " + std::string(kIdentity))),
             "c.toml:6: [imu] needs the key gyroscope_noise_radps_sqrthz");
+}
+
+TEST(RigCalibration, RefusesAnImuWithoutNoise) {
+  EXPECT_EQ(refusal(with_color("[imu]\nT_imu_color = " + std::string(kIdentity) +
+                               "gyroscope_noise_radps_sqrthz = 0\n")),
+            "c.toml:8: imu.gyroscope_noise_radps_sqrthz must be a number from 1e-09 to 100");
 }
 
 TEST(RigCalibration, PartsThatNeedEachOther) {

@@ -81,13 +81,15 @@ class Layouts : public ::testing::TestWithParam<RecordingLayout> {
     options_.scene_file = testing::write_box_scene(temporary_.path());
     if (!noise) remove_noise(options_);
     const Workers workers(1);
-    const auto report = simulate(options_, path(), workers, {});
+    const auto report = simulate(options_, path(noise), workers, {});
     EXPECT_TRUE(report) << report.error().message;
-    auto recording = open_recording(path());
+    auto recording = open_recording(path(noise));
     EXPECT_TRUE(recording) << recording.error().message;
     return recording.value();
   }
-  [[nodiscard]] fs::path path() const { return temporary_.path() / "recording"; }
+  [[nodiscard]] fs::path path(bool noise = false) const {
+    return temporary_.path() / (noise ? "noisy" : "recording");
+  }
   static SE3 pose_of(const Recording& recording, std::size_t frame) {
     return interpolate_pose(recording.ground_truth, recording.frames[frame].capture_ns, kMaxGap_ns).value();
   }
@@ -269,13 +271,37 @@ TEST_P(Layouts, SceneLiesInTheWorldOfTheTruth) {
   EXPECT_LT(share_on_surface(*scene, *frame, camera, elsewhere * T_camera_world), 0.5);
 }
 
-TEST_P(Layouts, NoiseLeavesTheGeometryInPlace) {
-  const Recording recording = make(true);
-  const auto a = recording.load_frame(2);
-  const auto b = recording.load_frame(7);
-  ASSERT_TRUE(a && b);
-  const SE3 T_b_a = pose_of(recording, 7).inverse() * pose_of(recording, 2);
-  EXPECT_LT(overlap(recording.rig.camera, *a, *b, T_b_a).depth_m, 0.05);
+/// Median of how far the measurements of two images of one view lie apart, metres.
+double median_difference_m(const DepthImage& a, const DepthImage& b) {
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < a.data.size(); ++i) {
+    if (a.data[i] > 0 && b.data[i] > 0)
+      differences.push_back(std::abs(static_cast<double>(a.data[i]) - static_cast<double>(b.data[i])));
+  }
+  EXPECT_GT(differences.size(), 2000U);
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return *middle;
+}
+
+TEST_P(Layouts, DepthReprojectsWithinItsNoise) {
+  const Recording clean = make();
+  const Recording noisy = make(true);
+  const auto a = noisy.load_frame(2);
+  const auto b = noisy.load_frame(7);
+  const auto exact_a = clean.load_frame(2);
+  const auto exact_b = clean.load_frame(7);
+  ASSERT_TRUE(a && b && exact_a && exact_b);
+  const double noise_a_m = median_difference_m(a->depth_m, exact_a->depth_m);
+  const double noise_b_m = median_difference_m(b->depth_m, exact_b->depth_m);
+  EXPECT_GT(noise_a_m, 0.001);
+  const SE3 T_b_a = pose_of(noisy, 7).inverse() * pose_of(noisy, 2);
+  const double floor_m = overlap(clean.rig.camera, *exact_a, *exact_b, T_b_a).depth_m;
+  // Medians of independent errors of one kind add like their variances.
+  const double predicted_m = std::sqrt(noise_a_m * noise_a_m + noise_b_m * noise_b_m + floor_m * floor_m);
+  const double residual_m = overlap(noisy.rig.camera, *a, *b, T_b_a).depth_m;
+  EXPECT_LT(residual_m, 1.4 * predicted_m);
+  EXPECT_GT(residual_m, 0.6 * predicted_m);
 }
 
 TEST(IclLayout, WritesPosesAsTheyArePublished) {

@@ -1,4 +1,4 @@
-#include "eval/run_folder.hpp"
+#include "core/staged_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace fusebench {
 namespace {
 
-using RunFolderTest = testing::InTemporaryFolder;
+using StagedFolderTest = testing::InTemporaryFolder;
 
 std::size_t entries(const std::filesystem::path& folder) {
   std::size_t count = 0;
@@ -18,10 +18,10 @@ std::size_t entries(const std::filesystem::path& folder) {
   return count;
 }
 
-TEST_F(RunFolderTest, NothingIsSeenBeforeTheCommit) {
+TEST_F(StagedFolderTest, NothingIsSeenBeforeTheCommit) {
   const auto place = folder_ / "out" / "recording" / "full" / "0123";
   {
-    auto run = RunFolder::create(place);
+    auto run = StagedFolder::create(place);
     ASSERT_TRUE(run.has_value());
     ASSERT_TRUE(run->write("record.json", "{}").has_value());
     EXPECT_FALSE(std::filesystem::exists(place));
@@ -31,33 +31,33 @@ TEST_F(RunFolderTest, NothingIsSeenBeforeTheCommit) {
   EXPECT_EQ(entries(folder_ / "out" / "recording" / "full"), 2U);
 }
 
-TEST_F(RunFolderTest, AnAbandonedRunLeavesNothing) {
+TEST_F(StagedFolderTest, AnAbandonedRunLeavesNothing) {
   {
-    auto run = RunFolder::create(folder_ / "out" / "recording" / "full" / "0123");
+    auto run = StagedFolder::create(folder_ / "out" / "recording" / "full" / "0123");
     ASSERT_TRUE(run.has_value());
     ASSERT_TRUE(run->write("record.json", "{}").has_value());
   }
   EXPECT_EQ(entries(folder_), 0U);
 }
 
-TEST_F(RunFolderTest, AnAbandonedRunKeepsWhatWasThere) {
+TEST_F(StagedFolderTest, AnAbandonedRunKeepsWhatWasThere) {
   write("out/recording/full/0123/record.json", "old");
-  { auto run = RunFolder::create(folder_ / "out" / "recording" / "full" / "0123"); }
+  { auto run = StagedFolder::create(folder_ / "out" / "recording" / "full" / "0123"); }
   EXPECT_EQ(testing::read_bytes(folder_ / "out/recording/full/0123/record.json"), "old");
 }
 
-TEST_F(RunFolderTest, TheOldRunIsReplacedWhole) {
+TEST_F(StagedFolderTest, TheOldRunIsReplacedWhole) {
   write("0123/record.json", "old");
   write("0123/extra.txt", "old");
-  auto run = RunFolder::create(folder_ / "0123");
+  auto run = StagedFolder::create(folder_ / "0123");
   ASSERT_TRUE(run && run->write("record.json", "new") && run->commit());
   EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), "new");
   EXPECT_EQ(entries(folder_), 2U);
 }
 
-TEST_F(RunFolderTest, APlaceThatCannotBeWrittenIsAnIoError) {
+TEST_F(StagedFolderTest, APlaceThatCannotBeWrittenIsAnIoError) {
   const auto file = write("file", "not a folder");
-  const auto run = RunFolder::create(file / "recording" / "0123");
+  const auto run = StagedFolder::create(file / "recording" / "0123");
   ASSERT_FALSE(run.has_value());
   EXPECT_EQ(run.error().code, ErrorCode::io);
   EXPECT_EQ(entries(folder_), 1U);

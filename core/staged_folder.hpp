@@ -1,4 +1,4 @@
-// A run's folder appears whole or not at all: it is filled under a temporary name beside its place and then
+// A folder that appears whole or not at all: it is filled under a temporary name beside its place and then
 // renamed.
 #pragma once
 
@@ -11,17 +11,18 @@
 
 namespace fusebench {
 
-class RunFolder {
+class StagedFolder {
  public:
   /// Creates the temporary folder beside `final_folder`, and the folders above it. Error io.
-  [[nodiscard]] static Result<RunFolder> create(const std::filesystem::path& final_folder);
+  [[nodiscard]] static Result<StagedFolder> create(const std::filesystem::path& final_folder);
 
-  RunFolder(RunFolder&& other) noexcept;
-  RunFolder& operator=(RunFolder&&) = delete;
+  StagedFolder(StagedFolder&& other) noexcept;
+  StagedFolder& operator=(StagedFolder&&) = delete;
   /// Removes everything that was created, unless commit() succeeded.
-  ~RunFolder();
+  ~StagedFolder();
 
-  /// Where to write.
+  /// Where to write: the temporary folder, and a file in it.
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
   [[nodiscard]] std::filesystem::path file(std::string_view name) const { return temporary_ / name; }
   /// Writes a whole text file. Error io.
   [[nodiscard]] Result<void> write(std::string_view name, std::string_view text) const;
@@ -29,7 +30,7 @@ class RunFolder {
   [[nodiscard]] Result<void> commit();
 
  private:
-  RunFolder() = default;
+  StagedFolder() = default;
 
   std::filesystem::path final_;
   std::filesystem::path temporary_;             // empty once committed

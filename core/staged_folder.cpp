@@ -1,4 +1,4 @@
-#include "eval/run_folder.hpp"
+#include "core/staged_folder.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// "<name><suffix of this process>" beside a path; the dot keeps it out of listings of runs.
+/// "<name><suffix of this process>" beside a path; the dot keeps it out of listings.
 fs::path hidden_sibling(const fs::path& path, std::string_view suffix) {
   return path.parent_path() / fmt::format(".{}.{}.{}", path.filename().string(), getpid(), suffix);
 }
@@ -26,8 +26,8 @@ tl::unexpected<Error> io_error(const fs::path& path, const std::error_code& erro
 
 }  // namespace
 
-Result<RunFolder> RunFolder::create(const fs::path& final_folder) {
-  RunFolder folder;
+Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
+  StagedFolder folder;
   folder.final_ = final_folder;
   std::error_code error;
   std::vector<fs::path> missing;
@@ -48,19 +48,19 @@ Result<RunFolder> RunFolder::create(const fs::path& final_folder) {
   return folder;
 }
 
-RunFolder::RunFolder(RunFolder&& other) noexcept
+StagedFolder::StagedFolder(StagedFolder&& other) noexcept
     : final_(std::move(other.final_)),
       temporary_(std::exchange(other.temporary_, {})),
       created_(std::exchange(other.created_, {})) {}
 
-RunFolder::~RunFolder() {
+StagedFolder::~StagedFolder() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
   // Innermost first; one that holds something else stays.
   for (auto parent = created_.rbegin(); parent != created_.rend(); ++parent) fs::remove(*parent, ignored);
 }
 
-Result<void> RunFolder::write(std::string_view name, std::string_view text) const {
+Result<void> StagedFolder::write(std::string_view name, std::string_view text) const {
   std::ofstream stream(file(name), std::ios::binary);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
   stream.close();
@@ -68,7 +68,7 @@ Result<void> RunFolder::write(std::string_view name, std::string_view text) cons
   return {};
 }
 
-Result<void> RunFolder::commit() {
+Result<void> StagedFolder::commit() {
   std::error_code error;
   const fs::path old = hidden_sibling(final_, "old");
   const bool replaces = fs::exists(final_, error);
