@@ -60,21 +60,6 @@ Result<void> read_frames(const std::filesystem::path& folder, Recording& recordi
   return for_each_associated_row(folder / "associated.txt", take);
 }
 
-Result<std::vector<ImuSample>> read_imu(const std::filesystem::path& file) {
-  std::vector<ImuSample> samples;
-  const auto row = [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
-    ImuSample sample;
-    sample.timestamp_ns = time_ns;
-    if (auto read = table.numbers(1, {sample.angular_velocity_radps.data(), 3}); !read) return read;
-    if (auto read = table.numbers(4, {sample.specific_force_mps2.data(), 3}); !read) return read;
-    samples.push_back(sample);
-    return {};
-  };
-  const auto done = for_each_stamped_row(file, "timestamp wx wy wz ax ay az", TimeOrder::increasing, row);
-  if (!done) return tl::unexpected(done.error());
-  return samples;
-}
-
 /// imu.txt, else imu.csv beside.
 Result<void> take_imu(const std::filesystem::path& folder, const RigCalibration& calibration,
                       Recording& recording) {
@@ -91,18 +76,8 @@ Result<void> take_imu(const std::filesystem::path& folder, const RigCalibration&
                     file.string()));
     return {};
   }
-  auto samples = read_imu(file);
+  auto samples = read_imu_table(file, TimeUnit::seconds);
   if (!samples) return tl::unexpected(samples.error());
-  const std::int64_t first_ns = recording.frames.front().timestamp_ns;
-  const std::int64_t last_ns = recording.frames.back().timestamp_ns;
-  if (samples->front().timestamp_ns > last_ns || samples->back().timestamp_ns < first_ns) {
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("{}: inertial samples (times {} to {}) do not overlap the images (times {} to {})",
-                    file.string(), stamp_text(samples->front().timestamp_ns),
-                    stamp_text(samples->back().timestamp_ns), stamp_text(first_ns), stamp_text(last_ns)),
-        "times are in seconds on the images' clock");
-  }
   recording.imu = std::move(*samples);
   recording.imu_source = ImuSource::recorded;
   return {};
@@ -120,11 +95,7 @@ Result<Recording> open_eth3d_slam(const std::filesystem::path& folder, const Rea
   if (const auto read = read_ground_truth_beside(folder, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = take_imu(folder, *calibration, recording); !read) return tl::unexpected(read.error());
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  const auto attached =
-      attach_images(recording, {std::move(*calibration), png_depth(units), fmt::format("png {}", units)});
-  if (!attached) return tl::unexpected(attached.error());
-  return recording;
+  return with_png_images(std::move(recording), std::move(*calibration), kUnitsPerMetre);
 }
 
 }  // namespace fusebench

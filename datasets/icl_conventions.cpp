@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
+
+#include "datasets/recording_catalogue.hpp"
 
 namespace fusebench {
 
@@ -28,11 +31,10 @@ SE3 icl_reflect(const SE3& T_world_camera) {
 }
 
 RigCalibration icl_calibration() {
-  RigCalibration calibration;
-  calibration.color.pinhole = {640, 480, 481.2, 480.0, 319.5, 239.5};
-  calibration.source =
-      "ICL-NUIM, Handa et al., ICRA 2014 (published fy = -480: here +480, and poses are reflected)";
-  return calibration;
+  auto calibration = catalogue_calibration("icl_nuim");
+  check(calibration.has_value(), "the catalogue holds the calibration of ICL-NUIM");
+  calibration->depth_units_per_metre.reset();  // that of the PNGs; .depth files have another
+  return *std::move(calibration);
 }
 
 void add_icl_frames(const std::vector<IclFrame>& frames, const ReadOptions& options, Recording& recording) {

@@ -36,7 +36,8 @@ struct IclFrame {
 /// F T F: a pose of the renderer as a pose of a camera with y down in a world with y down. Its own inverse.
 [[nodiscard]] SE3 icl_reflect(const SE3& T_world_camera);
 
-/// 640x480, 481.2, +480, 319.5, 239.5, no distortion (Handa et al., ICRA 2014; the published fy is -480).
+/// 640x480, 481.2, +480, 319.5, 239.5, no distortion (configs/recordings/icl_nuim.toml; the published fy is
+/// -480).
 [[nodiscard]] RigCalibration icl_calibration();
 
 /// Fills recording.frames from frames in the order of their index, and notes how they got their time. Missing

@@ -22,6 +22,7 @@ namespace fusebench {
 namespace {
 
 constexpr double kUnitsPerMetre = 5000;
+constexpr std::size_t kFramesWithoutPose = 1;  // the trajectories begin at frame 1
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 /// The number in an image's name, where the name is one.
@@ -133,7 +134,7 @@ Result<void> read_truth(const std::filesystem::path& folder, const ReadOptions& 
     pose.timestamp_ns = icl_time_ns(pose.timestamp_ns / kNanosecondsPerSecond, options.frame_rate_hz);
     pose.T_world_camera = icl_reflect(pose.T_world_camera);
   }
-  return set_ground_truth(recording, std::move(*poses), **file);
+  return set_ground_truth(recording, std::move(*poses), **file, kFramesWithoutPose);
 }
 
 }  // namespace
@@ -154,11 +155,7 @@ Result<Recording> open_icl_nuim(const std::filesystem::path& folder, const ReadO
   add_icl_frames(*frames, options, recording);
   if (const auto read = read_truth(folder, options, recording); !read) return tl::unexpected(read.error());
   if (const auto read = read_imu_beside(folder, recording); !read) return tl::unexpected(read.error());
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  const auto attached =
-      attach_images(recording, {std::move(*calibration), png_depth(units), fmt::format("png {}", units)});
-  if (!attached) return tl::unexpected(attached.error());
-  return recording;
+  return with_png_images(std::move(recording), std::move(*calibration), kUnitsPerMetre);
 }
 
 }  // namespace fusebench

@@ -91,7 +91,7 @@ void compare(const PovrayCamera& camera, const SE3& pose, const PinholeCamera& u
   if (pose.translation.norm() > kFarAway_m) {
     recording.warnings.push_back(fmt::format(
         "{}: the first camera is {:.0f} m from the scene's origin; for a scene in centimetres, as that "
-        "of Handa et al. 2012, depth_units_per_metre is 100",
+        "of Handa et al. 2012, --depth-units (units_per_metre in [depth] of calibration.toml) is 100",
         recording.name, pose.translation.norm()));
   }
 }

@@ -14,6 +14,9 @@ namespace fusebench {
 
 namespace {
 
+// Less than this is the rounding of stamps that are regular already.
+constexpr double kNoJitter_s = 1e-4;
+
 std::vector<std::int64_t> stamps(std::span<const ListedImage> images) {
   std::vector<std::int64_t> result;
   result.reserve(images.size());
@@ -28,7 +31,7 @@ std::vector<std::int64_t> capture_times(const ImageList& list, const ReadOptions
   std::vector<std::int64_t> recorded = stamps(list.images);
   if (!options.regular_stamps) return recorded;
   auto regular = regular_stamps(recorded);
-  if (!regular) return recorded;
+  if (!regular || regular->jitter_max_s < kNoJitter_s) return recorded;
   recording.notes.push_back(
       fmt::format("{}: stamps jitter by {:.1f} ms rms (at most {:.1f} ms) and were made regular", list.name,
                   1e3 * regular->jitter_rms_s, 1e3 * regular->jitter_max_s));

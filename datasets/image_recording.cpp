@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/fingerprint.hpp"
+#include "core/trajectory_file.hpp"
 #include "datasets/depth_registration.hpp"
 
 namespace fusebench {
@@ -128,19 +129,49 @@ Result<std::string> fingerprint_of(const Recording& recording, const ImageDecodi
   return fingerprint.hex();
 }
 
+/// The images decide what is used: an IMU of another time is an error, one that begins late or ends early a
+/// warning.
+Result<void> check_imu_overlap(Recording& recording) {
+  const std::int64_t first_ns = recording.imu.front().timestamp_ns;
+  const std::int64_t last_ns = recording.imu.back().timestamp_ns;
+  const std::int64_t begin_ns = recording.frames.front().timestamp_ns;
+  const std::int64_t end_ns = recording.frames.back().timestamp_ns;
+  if (first_ns > end_ns || last_ns < begin_ns) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}: inertial samples (times {} to {}) do not overlap the images (times {} to {})",
+                    recording.name, stamp_text(first_ns), stamp_text(last_ns), stamp_text(begin_ns),
+                    stamp_text(end_ns)),
+        "both must be of one recording, in the format's unit of time; clocks that differ by a constant need "
+        "time_offset_s in [imu] of calibration.toml");
+  }
+  const auto outside = std::ranges::count_if(recording.frames, [&](const FrameEntry& frame) {
+    return frame.timestamp_ns < first_ns || frame.timestamp_ns > last_ns;
+  });
+  if (outside > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} of {} frames are before the first or after the last inertial sample",
+                    recording.name, outside, recording.frames.size()));
+  }
+  return {};
+}
+
 /// From here on the IMU's stamps are on the images' clock. Samples of an unknown sensor are of no use.
-void calibrate_imu(Recording& recording, const std::optional<ImuCalibration>& imu) {
+Result<void> calibrate_imu(Recording& recording, const std::optional<ImuCalibration>& imu) {
   if (!imu && recording.imu_source == ImuSource::recorded) {
     recording.imu.clear();
     recording.imu_source = ImuSource::none;
     recording.warnings.push_back(fmt::format(
-        "{}: the inertial samples are not used, since the calibration has no [imu]", recording.name));
+        "{}: the inertial samples are not used, since nothing says where the IMU sits and how noisy it "
+        "is: put a calibration.toml with [color] and [imu] (T_imu_color, noise densities) beside them",
+        recording.name));
   }
-  if (!imu) return;
+  if (!imu) return {};
   recording.rig.T_imu_camera = imu->T_imu_camera;
   recording.rig.imu_noise = imu->noise;
   const std::int64_t offset_ns = std::llround(1e9 * imu->time_offset_s);
   for (ImuSample& sample : recording.imu) sample.timestamp_ns -= offset_ns;
+  return recording.imu.empty() ? Result<void>{} : check_imu_overlap(recording);
 }
 
 }  // namespace
@@ -164,7 +195,7 @@ Result<void> attach_images(Recording& recording, const ImageDecoding& decoding) 
   if (!camera) return tl::unexpected(camera.error());
   const std::int64_t depth_delay_ns = std::llround(1e9 * camera->timing.depth_delay_s);
   for (FrameEntry& frame : recording.frames) frame.depth_capture_ns += depth_delay_ns;
-  calibrate_imu(recording, calibration.imu);
+  if (auto calibrated = calibrate_imu(recording, calibration.imu); !calibrated) return calibrated;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
   auto fingerprint = fingerprint_of(recording, decoding, *camera);
@@ -178,6 +209,15 @@ Result<void> attach_images(Recording& recording, const ImageDecoding& decoding) 
       FrameLoader{recording.frames, Undistortion(*camera), std::move(registration), decoding.read_depth});
   recording.load_frame = [loader](std::size_t frame) { return loader->load(frame); };
   return {};
+}
+
+Result<Recording> with_png_images(Recording recording, RigCalibration calibration,
+                                  double published_units_per_metre) {
+  const double units = calibration.depth_units_per_metre.value_or(published_units_per_metre);
+  const auto attached =
+      attach_images(recording, {std::move(calibration), png_depth(units), fmt::format("png {}", units)});
+  if (!attached) return tl::unexpected(attached.error());
+  return recording;
 }
 
 }  // namespace fusebench

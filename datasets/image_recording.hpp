@@ -35,4 +35,9 @@ struct ImageDecoding {
 /// Errors: data_missing, data_corrupt.
 [[nodiscard]] Result<void> attach_images(Recording& recording, const ImageDecoding& decoding);
 
+/// The same for colour and depth in PNGs. published_units_per_metre: of the format, where the calibration
+/// says nothing.
+[[nodiscard]] Result<Recording> with_png_images(Recording recording, RigCalibration calibration,
+                                                double published_units_per_metre);
+
 }  // namespace fusebench

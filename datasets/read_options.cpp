@@ -16,9 +16,9 @@ Result<void> check_read_options(const ReadOptions& options) {
     return fail(ErrorCode::configuration,
                 fmt::format("max_difference_s = {} (allowed: above 0, up to 1)", options.max_difference_s));
   }
-  if (!(options.frame_rate_hz > 0 && options.frame_rate_hz <= 1000)) {
+  if (!(options.frame_rate_hz >= 1 && options.frame_rate_hz <= 1000)) {
     return fail(ErrorCode::configuration,
-                fmt::format("frame_rate_hz = {} (allowed: above 0, up to 1000)", options.frame_rate_hz));
+                fmt::format("frame_rate_hz = {} (allowed: 1 to 1000)", options.frame_rate_hz));
   }
   return {};
 }
@@ -38,8 +38,8 @@ Result<RigCalibration> choose_calibration(const std::filesystem::path& folder, c
     calibration = std::move(*known);
     if (!calibration.source.empty())
       recording.notes.push_back(fmt::format("calibration: {}", calibration.source));
-  } else if (!options.camera) {
-    return known;
+  } else if (!options.camera || known.error().code != ErrorCode::configuration) {
+    return known;  // the user's camera takes the place of one that is not known, not of a file that is broken
   }
   if (options.camera) {
     calibration.color = *options.camera;

@@ -15,8 +15,8 @@ namespace fusebench {
 
 /// Each reader takes what its format has a use for.
 struct ReadOptions {
-  std::optional<CalibratedCamera> camera;  ///< of the colour images; overrides every other calibration
-  std::optional<double> depth_units_per_metre;
+  std::optional<CalibratedCamera> camera;       ///< of the colour images; overrides every other calibration
+  std::optional<double> depth_units_per_metre;  ///< value of one metre in the depth images
   double max_difference_s = 0.02;  ///< between a colour image and its depth image, for formats with two lists
   bool regular_stamps = true;      ///< remove the jitter of the stamps (see regular_stamps.hpp)
   double frame_rate_hz = 30;       ///< of recordings without stamps (ICL-NUIM)

@@ -254,10 +254,9 @@ Result<RigCalibration> rig_calibration(const TomlDocument& document, const std::
   return calibration;
 }
 
-Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "calibration.toml";
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return std::optional<RigCalibration>{};
+namespace {
+
+Result<RigCalibration> read_calibration(const std::filesystem::path& file) {
   const auto document = read_toml(file);
   if (!document) return tl::unexpected(document.error());
   for (const TomlEntry& entry : document->entries) {
@@ -268,9 +267,20 @@ Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesys
                   "a calibration has calibration_source and the tables [color], [depth] and [imu]");
     }
   }
-  auto calibration = rig_calibration(*document, file.string());
-  if (!calibration) return tl::unexpected(calibration.error());
-  return std::optional<RigCalibration>(std::move(*calibration));
+  return rig_calibration(*document, file.string());
+}
+
+}  // namespace
+
+Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "calibration.toml";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return std::optional<RigCalibration>{};
+  auto calibration = read_calibration(file);
+  if (calibration) return std::optional<RigCalibration>(std::move(*calibration));
+  // The file is part of the recording, not of what the user asked for.
+  calibration.error().code = ErrorCode::data_corrupt;
+  return tl::unexpected(calibration.error());
 }
 
 std::string to_toml(const RigCalibration& calibration) {

@@ -70,7 +70,8 @@ inline constexpr std::string_view kRigidTransformRule =
 /// orthonormalised).
 [[nodiscard]] Result<RigCalibration> rig_calibration(const TomlDocument& document, const std::string& file);
 
-/// calibration.toml in the folder; nothing if there is none. Errors: as above, and unknown top-level keys.
+/// calibration.toml in the folder; nothing if there is none. Errors: data_corrupt, with the message of the
+/// above, and for unknown top-level keys.
 [[nodiscard]] Result<std::optional<RigCalibration>> read_calibration_beside(
     const std::filesystem::path& folder);
 

@@ -25,7 +25,8 @@ bool is_there(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<void> set_ground_truth(Recording& recording, Trajectory truth, const std::filesystem::path& source) {
+Result<void> set_ground_truth(Recording& recording, Trajectory truth, const std::filesystem::path& source,
+                              std::size_t published_without) {
   const std::int64_t first_ns = recording.frames.front().timestamp_ns;
   const std::int64_t last_ns = recording.frames.back().timestamp_ns;
   if (truth.front().timestamp_ns > last_ns || truth.back().timestamp_ns < first_ns) {
@@ -35,13 +36,16 @@ Result<void> set_ground_truth(Recording& recording, Trajectory truth, const std:
                             stamp_text(truth.back().timestamp_ns), stamp_text(first_ns), stamp_text(last_ns)),
                 "the truth must be of the same recording and clock, in seconds");
   }
-  const auto uncovered = std::ranges::count_if(recording.frames, [&](const FrameEntry& frame) {
+  const auto is_uncovered = [&](const FrameEntry& frame) {
     return !interpolate_pose(truth, frame.timestamp_ns, kMaxTruthGap_ns);
-  });
+  };
+  const auto uncovered = static_cast<std::size_t>(std::ranges::count_if(recording.frames, is_uncovered));
+  const bool as_published = uncovered <= published_without && is_uncovered(recording.frames.front());
   if (uncovered > 0) {
-    recording.warnings.push_back(
-        fmt::format("{}: {} of {} frames have no ground truth around them within {} s", source.string(),
-                    uncovered, recording.frames.size(), seconds_between(0, kMaxTruthGap_ns)));
+    (as_published ? recording.notes : recording.warnings)
+        .push_back(fmt::format("{}: {} of {} frames have no ground truth around them within {} s",
+                               source.string(), uncovered, recording.frames.size(),
+                               seconds_between(0, kMaxTruthGap_ns)));
   }
   recording.ground_truth = std::move(truth);
   return {};
@@ -56,9 +60,7 @@ Result<void> read_ground_truth_beside(const std::filesystem::path& folder, Recor
   return set_ground_truth(recording, std::move(*truth), file);
 }
 
-Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& recording) {
-  const std::filesystem::path file = folder / "imu.csv";
-  if (!is_there(file)) return {};
+Result<std::vector<ImuSample>> read_imu_table(const std::filesystem::path& file, TimeUnit unit) {
   std::vector<ImuSample> samples;
   const auto row = [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
     ImuSample sample;
@@ -68,10 +70,18 @@ Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& rec
     samples.push_back(sample);
     return {};
   };
-  const Result<void> done = for_each_stamped_row(file, "timestamp wx wy wz ax ay az", TimeOrder::increasing,
-                                                 row, TimeUnit::nanoseconds);
-  if (!done) return done;
-  recording.imu = std::move(samples);
+  const Result<void> done =
+      for_each_stamped_row(file, "timestamp wx wy wz ax ay az", TimeOrder::increasing, row, unit);
+  if (!done) return tl::unexpected(done.error());
+  return samples;
+}
+
+Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& recording) {
+  const std::filesystem::path file = folder / "imu.csv";
+  if (!is_there(file)) return {};
+  auto samples = read_imu_table(file, TimeUnit::nanoseconds);
+  if (!samples) return tl::unexpected(samples.error());
+  recording.imu = std::move(*samples);
   recording.imu_source = ImuSource::recorded;
   return {};
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/error.hpp"
+#include "core/text_table.hpp"
 #include "datasets/recording.hpp"
 
 namespace fusebench {
@@ -15,9 +17,15 @@ namespace fusebench {
                                                     Recording& recording);
 
 /// Puts a truth into the recording that was read elsewhere; the same checks. `source` names the file in
-/// messages.
+/// messages. published_without: frames at the beginning for which the format publishes no pose, which is
+/// worth a note and no warning.
 [[nodiscard]] Result<void> set_ground_truth(Recording& recording, Trajectory truth,
-                                            const std::filesystem::path& source);
+                                            const std::filesystem::path& source,
+                                            std::size_t published_without = 0);
+
+/// Inertial samples as text: "timestamp wx wy wz ax ay az", rad/s and m/s^2, on the IMU's clock. Errors:
+/// data_missing, data_corrupt (a row, the order in time).
+[[nodiscard]] Result<std::vector<ImuSample>> read_imu_table(const std::filesystem::path& file, TimeUnit unit);
 
 /// imu.csv: EuRoC columns, "timestamp [ns], wx, wy, wz [rad/s], ax, ay, az [m/s^2]", on the IMU's clock.
 /// Fills recording.imu and imu_source. Errors: data_corrupt.

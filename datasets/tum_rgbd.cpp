@@ -61,11 +61,7 @@ Result<Recording> open_tum_rgbd(const std::filesystem::path& folder, const ReadO
     return tl::unexpected(read.error());
   if (const auto read = read_accelerometer(folder, recording); !read) return tl::unexpected(read.error());
   if (const auto read = read_imu_beside(folder, recording); !read) return tl::unexpected(read.error());
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  const auto attached =
-      attach_images(recording, {std::move(*calibration), png_depth(units), fmt::format("png {}", units)});
-  if (!attached) return tl::unexpected(attached.error());
-  return recording;
+  return with_png_images(std::move(recording), std::move(*calibration), kUnitsPerMetre);
 }
 
 }  // namespace fusebench

@@ -28,11 +28,16 @@ bool is_there(const fs::path& file) {
   return fs::exists(file, ignored);
 }
 
-/// calib.txt has no distortion. FMDataset's lens has some; another device is recognised by its focal length.
+/// calib.txt has no distortion. FMDataset's lens has some; another device, whose focal length may be near, is
+/// recognised by its intrinsics as a whole.
 void complete_distortion(const RigCalibration& fmdataset, RigCalibration& calibration) {
-  constexpr double kSameLens = 0.01;
-  const double fx_px = fmdataset.color.pinhole.fx_px;
-  const bool same = std::abs(calibration.color.pinhole.fx_px - fx_px) < kSameLens * fx_px;
+  constexpr double kSameLens_px = 0.5;
+  const PinholeCamera& published = fmdataset.color.pinhole;
+  const PinholeCamera& given = calibration.color.pinhole;
+  const bool same = std::abs(given.fx_px - published.fx_px) < kSameLens_px &&
+                    std::abs(given.fy_px - published.fy_px) < kSameLens_px &&
+                    std::abs(given.cx_px - published.cx_px) < kSameLens_px &&
+                    std::abs(given.cy_px - published.cy_px) < kSameLens_px;
   if (same) calibration.color.distortion = fmdataset.color.distortion;
   calibration.source +=
       same ? ", with the published distortion of FMDataset's ZR300" : ", without distortion";
@@ -66,41 +71,10 @@ Result<RigCalibration> known_calibration(const fs::path& folder) {
   return fmdataset;
 }
 
-/// The images decide what is used: an IMU of another time is an error, one that ends early a warning.
-Result<void> check_imu_overlap(const fs::path& folder, Recording& recording) {
-  if (recording.imu.empty()) return {};
-  const std::int64_t first_ns = recording.imu.front().timestamp_ns;
-  const std::int64_t last_ns = recording.imu.back().timestamp_ns;
-  const std::int64_t begin_ns = recording.frames.front().timestamp_ns;
-  const std::int64_t end_ns = recording.frames.back().timestamp_ns;
-  if (first_ns > end_ns || last_ns < begin_ns) {
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("{}: inertial samples (times {} to {}) do not overlap the images (times {} to {})",
-                    folder.string(), stamp_text(first_ns), stamp_text(last_ns), stamp_text(begin_ns),
-                    stamp_text(end_ns)),
-        "both must be of one recording and clock");
-  }
-  const auto outside = std::ranges::count_if(recording.frames, [&](const FrameEntry& frame) {
-    return frame.timestamp_ns < first_ns || frame.timestamp_ns > last_ns;
-  });
-  if (outside > 0) {
-    recording.warnings.push_back(
-        fmt::format("{}: {} of {} frames are before the first or after the last "
-                    "inertial sample",
-                    folder.string(), outside, recording.frames.size()));
-  }
-  return {};
-}
-
 Result<void> read_imu(const fs::path& folder, Recording& recording) {
-  const auto read = [&] {
-    if (is_there(folder / "IMU.txt")) return read_zr300_imu(folder, recording);
-    if (is_there(folder / "GYRO.txt")) return read_zr300_gyro_and_accel(folder, recording);
-    return read_imu_beside(folder, recording);
-  };
-  const Result<void> done = read();
-  return done ? check_imu_overlap(folder, recording) : done;
+  if (is_there(folder / "IMU.txt")) return read_zr300_imu(folder, recording);
+  if (is_there(folder / "GYRO.txt")) return read_zr300_gyro_and_accel(folder, recording);
+  return read_imu_beside(folder, recording);
 }
 
 using ImageLists = Result<Zr300Images> (*)(const fs::path& folder, bool filtered, Recording& recording);
@@ -119,11 +93,7 @@ Result<Recording> open_with(ImageLists read_lists, const fs::path& folder, const
   if (const auto read = read_ground_truth_beside(folder, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = read_imu(folder, recording); !read) return tl::unexpected(read.error());
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  const auto attached =
-      attach_images(recording, {std::move(*calibration), png_depth(units), fmt::format("png {}", units)});
-  if (!attached) return tl::unexpected(attached.error());
-  return recording;
+  return with_png_images(std::move(recording), std::move(*calibration), kUnitsPerMetre);
 }
 
 }  // namespace

@@ -114,25 +114,29 @@ list() {
   done <<<"$all_names"
 }
 
-# The lists that make a folder a recording of the format, and its folders of colour and of depth images.
+# The lists that make a folder a recording of the format, those of them that count its frames, and its folders of colour and of
+# depth images.
 layout() {
   case "$1" in
     tum) markers=(rgb.txt depth.txt) color=rgb depth=depth ;;
     icl) markers=(associations.txt) color=rgb depth=depth ;;
-    eth3d) markers=(rgb.txt depth.txt calibration.txt) color=rgb depth=depth ;;
+    eth3d) markers=(rgb.txt depth.txt associated.txt calibration.txt) color=rgb depth=depth ;;
     zr300) markers=(TIMESTAMP.txt IMU.txt) color=color depth=depth ;;
     *) die 2 "format '$1' is not known to this script" ;;
   esac
+  counted=("${markers[@]}")
+  if [[ $1 == eth3d ]]; then counted=(associated.txt); fi
 }
 
-# listed FOLDER: the images that its lists name.
+# listed FOLDER LIST...: the images that the lists name.
 listed() {
-  local list
-  for list in "${markers[@]}"; do
+  local folder=$1 list
+  shift
+  for list in "$@"; do
     case "$list" in
-      rgb.txt | depth.txt) awk '!/^#/ && NF >= 2 { print $2 }' "$1/$list" ;;
-      associations.txt) awk '!/^#/ && NF >= 4 { print $2; print $4 }' "$1/$list" ;;
-      TIMESTAMP.txt) awk -F, -v c="$color" -v d="$depth" '!/^#/ && NF >= 3 { print c "/" $2; print d "/" $3 }' "$1/$list" ;;
+      rgb.txt | depth.txt) awk '!/^#/ && NF >= 2 { print $2 }' "$folder/$list" ;;
+      associations.txt | associated.txt) awk '!/^#/ && NF >= 4 { print $2; print $4 }' "$folder/$list" ;;
+      TIMESTAMP.txt) awk -F, -v c="$color" -v d="$depth" '!/^#/ && NF >= 3 { print c "/" $2; print d "/" $3 }' "$folder/$list" ;;
     esac
   done | tr -d '\r'
 }
@@ -156,7 +160,7 @@ incomplete() {
     END {
       if (!rows) print "its lists are empty"
       else if (count) printf "%d listed images are missing or empty, the first is %s\n", count, first
-    }' <(find "$folder" -name '*.png' -type f -size +0 -printf '%P\n') <(listed "$folder"))
+    }' <(find "$folder" -name '*.png' -type f -size +0 -printf '%P\n') <(listed "$folder" "${markers[@]}"))
   if [[ -n $missing ]]; then
     printf '%s\n' "$missing"
     return
@@ -171,7 +175,7 @@ incomplete() {
   done
   # The formats that list pairs; two images are listed for each.
   expected=$(value "$file" frames)
-  found=$(($(listed "$folder" | wc -l) / 2))
+  found=$(($(listed "$folder" "${counted[@]}" | wc -l) / 2))
   if [[ -n $expected ]] && ((found != expected)); then
     printf '%d frames are listed, but %d are expected\n' "$found" "$expected"
   fi

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "datasets/inspection/camera_turns.hpp"
 #include "datasets/inspection/inspection.hpp"
 
 namespace fusebench {
@@ -32,8 +31,10 @@ void check_motion(const Recording& recording, Inspection& out);
 
 /// Saturation, repeated values and units of the IMU; gravity and biases at rest.
 void check_imu_values(const Recording& recording, Inspection& out);
-/// Time offset, axes, scale and gyroscope bias against the camera's turns.
-void check_imu_alignment(const Recording& recording, const CameraTurns& turns, Inspection& out);
+/// Time offset, axes, scale and gyroscope bias against the camera's turns: those of the truth, if what was
+/// found so far lets it be trusted, else those of the images. Needs the checks of the truth and its warping.
+void check_imu_alignment(const Recording& recording, const Workers& workers, const InspectOptions& options,
+                         Inspection& out);
 /// Gravity and accelerometer bias against ground truth. Needs the alignment.
 void check_accelerometer(const Recording& recording, Inspection& out);
 

@@ -89,10 +89,10 @@ void check_depth_values(Inspection& out) {
     if (all) return;
   }
   if (depth.coverage_median < 0.4) {
-    out.add(
-        "depth-holes", Severity::warning,
-        fmt::format("the median frame has depth in {:.0f} % of its pixels", 100 * depth.coverage_median),
-        "patches need depth: expect few where there are holes; a filtered or hole-filled version may exist");
+    out.add("depth-holes", Severity::warning,
+            fmt::format("the median frame has depth in {:.0f} % of its pixels", 100 * depth.coverage_median),
+            "patches need depth: expect few where there are holes; --filtered-depth takes the depth that a "
+            "recording's authors have filled");
   }
   // A room is a few metres deep, and sensors for rooms measure from about 0.3 m to 10 m.
   const bool far = depth.median_m > 4.5 || depth.beyond_10m_share > 0.05;

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/inspection/checks.hpp"
@@ -22,6 +24,7 @@ constexpr double kOffsetError_s = 0.010;
 constexpr double kRotationWarning_rad = radians(2);
 constexpr double kRotationError_rad = radians(5);
 constexpr double kSwapTolerance_rad = radians(20);
+constexpr double kKnown_rad = radians(3);  // the uncertainty of a rotation that is worth telling
 constexpr double kSigmas = 4;
 
 struct SignedPermutation {
@@ -82,28 +85,39 @@ void report_offset(const ImuAlignment& a, Inspection& out) {
       fmt::format("add {:+.4f} to time_offset_s in [imu] of calibration.toml", a.time_offset_s));
 }
 
+/// No rotation fits: the axes are exchanged or negated so that they are left-handed.
+void report_mirrored(const ImuAlignment& a, const SignedPermutation& nearest, Inspection& out) {
+  const std::string hold =
+      nearest.distance_rad < kSwapTolerance_rad && a.rotation_sigma_rad < kKnown_rad
+          ? fmt::format("swapped and mirrored: its (x, y, z) hold {} of the axes that T_imu_camera describes",
+                        permutation_text(nearest.matrix))
+          : fmt::format("mirrored: only a reflection fits the turns of the {}", a.source);
+  out.add("imu-axes-swapped", Severity::error, "the axes of the IMU are " + hold,
+          "exchange the columns of the IMU's file, or negate one: no rotation repairs a mirrored sensor");
+}
+
 /// Whether the axes are as calibrated.
 void report_rotation(const ImuAlignment& a, const Matrix3d& calibrated, Inspection& out) {
   const Matrix3d measured_calibrated = a.rotation_imu_camera * calibrated.transpose();
   const SignedPermutation nearest = nearest_permutation(measured_calibrated);
+  if (!a.rotation_error_rad) {
+    report_mirrored(a, nearest, out);
+    return;
+  }
   const bool identity = nearest.matrix.isIdentity();
-  const bool known = a.rotation_sigma_rad < radians(3);
+  const bool known = a.rotation_sigma_rad < kKnown_rad;
   if (!identity && nearest.distance_rad < kSwapTolerance_rad && known) {
     out.add(
         "imu-axes-swapped", Severity::error,
-        fmt::format("the axes of the IMU are swapped{}: its (x, y, z) hold {} of the axes that T_imu_camera "
+        fmt::format("the axes of the IMU are swapped: its (x, y, z) hold {} of the axes that T_imu_camera "
                     "describes",
-                    a.rotation_imu_camera.determinant() < 0 ? " and mirrored" : "",
                     permutation_text(nearest.matrix)),
-        a.rotation_imu_camera.determinant() < 0
-            ? "exchange the columns of the IMU's file, or negate one: no rotation repairs a mirrored sensor"
-            : fmt::format(
-                  "exchange the columns of the IMU's file, or set the rotation of T_imu_color in [imu] of "
-                  "calibration.toml to {}",
-                  matrix_text(a.rotation_imu_camera)));
+        fmt::format("exchange the columns of the IMU's file, or set the rotation of T_imu_color in [imu] of "
+                    "calibration.toml to {}",
+                    matrix_text(a.rotation_imu_camera)));
     return;
   }
-  const double error_rad = a.rotation_error_rad;
+  const double error_rad = *a.rotation_error_rad;
   if (error_rad < kRotationWarning_rad || error_rad < kSigmas * a.rotation_sigma_rad || !known) return;
   out.add("extrinsic-rotated", error_rad >= kRotationError_rad ? Severity::error : Severity::warning,
           fmt::format("the rotation of T_imu_camera is {:.1f} deg (+- {:.1f}) from the one that fits the "
@@ -160,6 +174,7 @@ ImuAlignment measured_alignment(const TurnAlignment& fit, const CameraTurns& tur
   a.gyroscope_bias_radps = fit.bias_radps;
   a.residual_radps = fit.residual_radps;
   a.explained = fit.explained;
+  if (fit.rotation_imu_camera.determinant() < 0) return a;
   const Matrix3d difference = fit.rotation_imu_camera * rig.T_imu_camera.rotation_matrix().transpose();
   a.rotation_error_rad = std::acos(std::clamp((difference.trace() - 1) / 2, -1.0, 1.0));
   return a;
@@ -175,29 +190,77 @@ std::vector<TurnRate> rates_of(const CameraTurns& turns, std::int64_t origin_ns)
   return rates;
 }
 
+/// Whether the poses, by what was found so far, are those of the camera at their stamps.
+bool truth_is_trusted(const Inspection& out) {
+  return out.truth && out.truth->coverage > 0 &&
+         std::ranges::none_of(out.findings, [](const Finding& finding) {
+           return finding.severity == Severity::error && finding.code.starts_with("truth-");
+         });
+}
+
+/// Turns of the camera, and how those of the gyroscope fit them.
+struct ComparedTurns {
+  CameraTurns turns;
+  std::optional<TurnAlignment> fit;
+
+  ComparedTurns(CameraTurns camera, const GyroscopeIntegral& gyroscope)
+      : turns(std::move(camera)), fit(align_turns(turns, gyroscope)) {}
+
+  [[nodiscard]] bool related() const { return fit && fit->offset_found && fit->explained >= kMinExplained; }
+};
+
+/// With the truth, if there is one that can be trusted. If the IMU does not turn as the truth does, the
+/// images tell which of the two is wrong.
+ComparedTurns compare_turns(const Recording& recording, const Workers& workers, const InspectOptions& options,
+                            Inspection& out) {
+  const GyroscopeIntegral gyroscope(recording.imu);
+  const auto by_images = [&] {
+    return ComparedTurns(turns_from_images(recording, workers, options.turn_samples), gyroscope);
+  };
+  if (!truth_is_trusted(out)) return by_images();
+  ComparedTurns by_truth(turns_from_truth(recording), gyroscope);
+  if (!by_truth.fit || by_truth.related()) return by_truth;
+  ComparedTurns other = by_images();
+  if (!other.related()) return by_truth;
+  out.add("truth-inconsistent", Severity::error,
+          "the ground truth does not turn as the images and the IMU do, which agree with each other",
+          "check that the ground truth is that of the colour camera, of this recording and of its clock");
+  return other;
+}
+
+void report_unrelated(const ComparedTurns& compared, Inspection& out) {
+  const std::string why =
+      compared.fit->offset_found
+          ? fmt::format("the turns of the {} explain {:.0f} % of the gyroscope's", compared.turns.source,
+                        100 * std::max(0.0, compared.fit->explained))
+          : fmt::format("no time offset within +-0.5 s fits it best to the turns of the {}",
+                        compared.turns.source);
+  out.add("imu-unrelated", Severity::error, "the IMU does not turn as the camera does: " + why,
+          "check that the IMU's file is of this recording, its clock (offsets up to 0.5 s are searched), and "
+          "the order of its columns (angular velocity first)");
+}
+
 }  // namespace
 
-void check_imu_alignment(const Recording& recording, const CameraTurns& turns, Inspection& out) {
+void check_imu_alignment(const Recording& recording, const Workers& workers, const InspectOptions& options,
+                         Inspection& out) {
   if (!out.imu || out.has("imu-out-of-order") || out.has("imu-duplicate-stamp") || !times_are_plausible(out))
     return;
-  const auto fit = align_turns(turns, GyroscopeIntegral(recording.imu));
-  if (!fit) {
+  const ComparedTurns compared = compare_turns(recording, workers, options, out);
+  if (!compared.fit) {
     out.add("imu-alignment-untested", Severity::note,
             "the camera turns too little, or too few turns are known, to compare the IMU with it");
     return;
   }
-  ImuAlignment& a = out.imu_alignment.emplace(measured_alignment(*fit, turns, recording.rig));
-  a.rates = rates_of(turns, recording.frames.front().timestamp_ns);
-  if (a.explained < kMinExplained) {
-    out.add(
-        "imu-unrelated", Severity::error,
-        fmt::format("the IMU does not turn as the camera does: the turns of the {} explain {:.0f} % of "
-                    "the gyroscope's",
-                    a.source, 100 * std::max(0.0, a.explained)),
-        "check that the IMU's file is of this recording, its clock (offsets up to 0.5 s are searched), and "
-        "the order of its columns (angular velocity first)");
+  if (compared.fit->offset_found) {
+    out.imu_alignment = measured_alignment(*compared.fit, compared.turns, recording.rig);
+    out.imu_alignment->rates = rates_of(compared.turns, recording.frames.front().timestamp_ns);
+  }
+  if (!compared.related()) {
+    report_unrelated(compared, out);
     return;
   }
+  const ImuAlignment& a = *out.imu_alignment;
   if (!out.imu->gyroscope_bias_radps) {
     out.imu->gyroscope_bias_radps = a.gyroscope_bias_radps;
     out.imu->bias_source = a.source;

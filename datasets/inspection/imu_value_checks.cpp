@@ -15,7 +15,8 @@ namespace fusebench {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-// A sensor at the end of its range repeats that value; below these it is the scene of no interesting range.
+// A sensor at the end of its range repeats that value. No sensor's range ends below these, so repeated
+// extremes there are not looked at.
 constexpr double kMinGyroscopeRange_radps = radians(120);
 constexpr double kMinAccelerometerRange_mps2 = 15;
 constexpr std::size_t kPlateau = 3;

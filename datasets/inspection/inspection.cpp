@@ -31,26 +31,6 @@ Inspection refused_inspection(const std::string& recording, const std::string& f
   return out;
 }
 
-namespace {
-
-/// Whether the poses, by what was found so far, are those of the camera at their stamps.
-bool truth_is_trusted(const Inspection& out) {
-  return out.truth && out.truth->coverage > 0 &&
-         std::ranges::none_of(out.findings, [](const Finding& finding) {
-           return finding.severity == Severity::error && finding.code.starts_with("truth-");
-         });
-}
-
-/// What turns are compared with the IMU: those of the truth, if there is one that can be trusted.
-CameraTurns turns_for_imu(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                          const Inspection& out) {
-  if (!out.imu || out.has("imu-out-of-order") || !times_are_plausible(out)) return {};
-  if (truth_is_trusted(out)) return turns_from_truth(recording);
-  return turns_from_images(recording, workers, options.turn_samples);
-}
-
-}  // namespace
-
 Inspection inspect(const Recording& recording, const Workers& workers, const InspectOptions& options) {
   check(!recording.frames.empty(), "a recording that was opened has frames");
   Inspection out;
@@ -73,7 +53,7 @@ Inspection inspect(const Recording& recording, const Workers& workers, const Ins
   check_imu_values(recording, out);
   check_images(recording, workers, options, out);
   check_reprojection(recording, workers, options, out);
-  check_imu_alignment(recording, turns_for_imu(recording, workers, options, out), out);
+  check_imu_alignment(recording, workers, options, out);
   check_accelerometer(recording, out);
   check_motion(recording, out);
   check_repeated_images(recording, out);

@@ -70,9 +70,11 @@ inline constexpr std::size_t kDepthBins = 121;
 struct RegistrationMeasurement {
   int shift_x_px = 0;  ///< of depth to colour
   int shift_y_px = 0;
-  double gain = 1;        ///< mean gradient under the edges there, divided by that without a shift
-  double contrast = 0;    ///< the same, divided by the mean over all shifts
-  std::size_t edges = 0;  ///< pixels
+  bool at_border = false;   ///< of the shifts that are tried: the best one may lie beyond
+  double gain = 1;          ///< mean gradient under the edges there, divided by that without a shift
+  double contrast = 0;      ///< the same, divided by the mean over all shifts
+  double peak_at_rest = 0;  ///< best alignment within a few pixels of no shift, divided by the mean around it
+  std::size_t edges = 0;    ///< pixels
 };
 
 struct ExposureMeasurement {
@@ -146,10 +148,10 @@ struct TurnRate {
 struct ImuAlignment {
   std::string source;  ///< "ground truth" or "images"
   std::size_t intervals = 0;
-  double time_offset_s = 0;                             ///< IMU's stamp minus camera's stamp of one instant
-  double time_offset_sigma_s = 0;                       ///< standard deviation from the residuals
-  double rotation_error_rad = 0;                        ///< between the best rotation and the calibration's
-  double rotation_sigma_rad = 0;                        ///< of the worst axis
+  double time_offset_s = 0;                  ///< IMU's stamp minus camera's stamp of one instant
+  double time_offset_sigma_s = 0;            ///< standard deviation from the residuals
+  std::optional<double> rotation_error_rad;  ///< from the best rotation to the calibration's, unless mirrored
+  double rotation_sigma_rad = 0;             ///< of the worst axis
   Matrix3d rotation_imu_camera = Matrix3d::Identity();  ///< the best; determinant -1 if the axes are mirrored
   double scale = 1;                                     ///< gyroscope's turns divided by the camera's
   Vector3d gyroscope_bias_radps = Vector3d::Zero();

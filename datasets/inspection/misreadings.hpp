@@ -51,6 +51,6 @@ struct FittedParameter {
                                               const Reading& base);  ///< factor, 1/8 to 8
 [[nodiscard]] FittedParameter fit_focal_scale(const WarpTest& test,
                                               const Reading& base);  ///< factor, 0.7 to 1.4
-[[nodiscard]] FittedParameter fit_truth_shift(const WarpTest& test, const Reading& base);  ///< s, up to 0.25
+[[nodiscard]] FittedParameter fit_truth_shift(const WarpTest& test, const Reading& base);  ///< s, up to 0.24
 
 }  // namespace fusebench

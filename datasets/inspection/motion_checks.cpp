@@ -61,12 +61,14 @@ std::vector<SpeedSample> speeds_from_gyroscope(const Recording& recording, const
 void report_jumps(const MotionMeasurement& motion, Inspection& out) {
   const auto fastest = std::ranges::max_element(
       motion.speeds, {}, [](const SpeedSample& s) { return s.linear_mps.value_or(0); });
+  const auto fastest_turn = std::ranges::max_element(motion.speeds, {}, &SpeedSample::angular_radps);
   const bool jumps = *motion.linear_max_mps > 8 || motion.angular_max_radps > 20;
   if (!jumps) return;
   out.add("truth-jump", Severity::warning,
-          fmt::format(
-              "the ground truth moves with up to {:.1f} m/s and {:.0f} deg/s (frame {}), which no hand does",
-              *motion.linear_max_mps, kDegrees * motion.angular_max_radps, fastest->frame),
+          fmt::format("the ground truth moves with up to {:.1f} m/s (frame {}) and {:.0f} deg/s (frame {}), "
+                      "which no hand does",
+                      *motion.linear_max_mps, fastest->frame, kDegrees * motion.angular_max_radps,
+                      fastest_turn->frame),
           "leave the poses around it out, or look whether its stamps are right");
 }
 

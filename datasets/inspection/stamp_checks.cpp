@@ -70,7 +70,7 @@ std::vector<std::int64_t> stamps_of(const Entries& entries, Member member) {
   return stamps;
 }
 
-/// "after frame 12 (0.40 s)": the end of the largest interval's beginning.
+/// Index of the stamp at which the largest interval begins.
 std::size_t largest_interval(std::span<const std::int64_t> stamps_ns) {
   std::size_t largest = 0;
   for (std::size_t i = 0; i + 1 < stamps_ns.size(); ++i) {

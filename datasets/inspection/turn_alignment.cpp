@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "datasets/inspection/order_statistics.hpp"
@@ -13,6 +14,7 @@ namespace fusebench {
 namespace {
 
 constexpr double kMaxOffset_s = 0.5;
+constexpr double kOffsetStep_s = 0.01;
 constexpr std::size_t kMinIntervals = 8;
 constexpr double kMinRate_radps = radians(3);
 // A mirrored rotation must leave this share of the squared residual of a proper one: noise does not do that.
@@ -84,46 +86,51 @@ Fit fit_at(const Sums& s, bool mirrored) {
   return fit;
 }
 
-/// The cost without which share of intervals happened to lie inside, normalised.
-double relative_cost(const Fit& fit, std::size_t all) {
-  if (fit.total <= 0 || fit.weights < 0.5 * static_cast<double>(all)) return 1;
-  return fit.cost / fit.total;
+bool holds_enough(const Fit& fit, std::size_t all) {
+  return fit.total > 0 && fit.weights >= 0.5 * static_cast<double>(all);
+}
+
+/// What a fit leaves unexplained of the turns that it was compared with, 0 to 1. For the search over all
+/// offsets: far offsets compare other parts of the motion, and a still part would be explained by anything.
+double unexplained(const Fit& fit, std::size_t all) {
+  return holds_enough(fit, all) ? fit.cost / fit.total : 1;
+}
+
+/// Squared residual per interval, rad^2. For near offsets: dividing by the motion would favour those that
+/// happen to take in more of it.
+double mean_cost(const Fit& fit, std::size_t all) {
+  return holds_enough(fit, all) ? fit.cost / fit.weights : std::numeric_limits<double>::infinity();
 }
 
 struct OffsetSearch {
   double offset_s = 0;
-  double cost = 1;
+  double cost = std::numeric_limits<double>::infinity();
 };
 
+/// Offsets at steps around a centre; cost: unexplained() or mean_cost().
 OffsetSearch search(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, bool mirrored,
-                    double centre_s, double radius_s, double step_s) {
-  OffsetSearch best{centre_s, 2};
+                    double centre_s, double radius_s, double step_s,
+                    double (*cost)(const Fit&, std::size_t)) {
+  OffsetSearch best{centre_s};
   const int steps = static_cast<int>(std::lround(radius_s / step_s));
   for (int i = -steps; i <= steps; ++i) {
     const double offset_s = centre_s + i * step_s;
-    const double cost =
-        relative_cost(fit_at(sums_at(intervals, gyroscope, offset_s), mirrored), intervals.size());
-    if (cost < best.cost) best = {offset_s, cost};
+    const double here = cost(fit_at(sums_at(intervals, gyroscope, offset_s), mirrored), intervals.size());
+    if (here < best.cost) best = {offset_s, here};
   }
   return best;
 }
 
-/// Minimum of the parabola through three costs; its curvature gives the uncertainty.
-struct Vertex {
-  double offset_s = 0;
-  double curvature = 0;  ///< second derivative of the cost in rad^2
-};
-
-Vertex parabola(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, bool mirrored,
+/// Minimum of the parabola through three costs.
+double parabola(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, bool mirrored,
                 double centre_s, double step_s) {
   const auto cost = [&](double offset_s) {
     return fit_at(sums_at(intervals, gyroscope, offset_s), mirrored).cost;
   };
   const double left = cost(centre_s - step_s), middle = cost(centre_s), right = cost(centre_s + step_s);
   const double second = (left - 2 * middle + right) / (step_s * step_s);
-  if (second <= 0) return {centre_s, 0};
-  const double shift_s = (left - right) / (2 * step_s * second);
-  return {centre_s + std::clamp(shift_s, -step_s, step_s), second};
+  if (second <= 0) return centre_s;
+  return centre_s + std::clamp((left - right) / (2 * step_s * second), -step_s, step_s);
 }
 
 /// Huber weights of the residuals at a fit, with the scale from their median.
@@ -160,15 +167,41 @@ double camera_rms(const std::vector<Interval>& intervals) {
   return intervals.empty() ? 0 : std::sqrt(sum / static_cast<double>(intervals.size()));
 }
 
-/// Standard deviation of the rotation about its least known axis: the information about an axis is the
-/// turning across it.
-double rotation_sigma(const std::vector<Interval>& intervals, double variance_rad2) {
-  Matrix3d scatter = Matrix3d::Zero();
-  for (const Interval& interval : intervals)
-    scatter += interval.weight * interval.camera_rad * interval.camera_rad.transpose();
-  const Matrix3d information = scatter.trace() * Matrix3d::Identity() - scatter;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(information);
-  return std::sqrt(variance_rad2 / std::max(1e-12, solver.eigenvalues()[0]));
+using Matrix8d = Eigen::Matrix<double, 8, 8>;
+
+/// How well all that is fitted together is known: offset, rotation (3), bias (3), scale. The curvature of the
+/// cost would not tell, since the gyroscope's noise bends it as well. So the model is linearised, with the
+/// change of the rate from the gyroscope smoothed over kSmoothing_s; the noise that is left in it would count
+/// as information about the offset and is taken off. What the turns do not tell is known as wide as it is
+/// searched.
+Matrix8d covariance(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope,
+                    const Fit& fit, double offset_s, double variance_rad2) {
+  constexpr double kSmoothing_s = 0.15;
+  Eigen::Matrix<double, 8, 1> prior_sigma;
+  prior_sigma << kMaxOffset_s / 2, Vector3d::Constant(radians(90)), Vector3d::Constant(0.1), 1;
+  const auto smooth_turn = [&](double time_s) {
+    return gyroscope.turn_rad(time_s - kSmoothing_s / 2, time_s + kSmoothing_s / 2);
+  };
+  Matrix8d information = (variance_rad2 * prior_sigma.cwiseAbs2().cwiseInverse()).asDiagonal();
+  double noise = 0;
+  for (const Interval& interval : intervals) {
+    const auto before = smooth_turn(interval.begin_s + offset_s);
+    const auto after = smooth_turn(interval.end_s + offset_s);
+    if (!before || !after) continue;
+    const double dt_s = interval.end_s - interval.begin_s;
+    const Vector3d turned_rad = fit.rotation * interval.camera_rad;
+    Eigen::Matrix<double, 3, 8> model;
+    model << (*after - *before) / kSmoothing_s, -hat(fit.scale * turned_rad), dt_s * Matrix3d::Identity(),
+        turned_rad;
+    information += interval.weight * model.transpose() * model;
+    noise += interval.weight * 3 * 2 * variance_rad2 / (dt_s * kSmoothing_s);
+  }
+  // Of the offset's own information, what is left when the others take their part.
+  const Eigen::Matrix<double, 7, 1> shared = information.bottomLeftCorner<7, 1>();
+  const double taken = shared.dot(information.bottomRightCorner<7, 7>().ldlt().solve(shared));
+  const double least = variance_rad2 / (prior_sigma[0] * prior_sigma[0]);
+  information(0, 0) = taken + std::max(least, information(0, 0) - taken - noise);
+  return variance_rad2 * information.inverse();
 }
 
 }  // namespace
@@ -178,28 +211,33 @@ std::optional<TurnAlignment> align_turns(const CameraTurns& turns, const Gyrosco
   TurnAlignment result;
   result.camera_rms_radps = camera_rms(intervals);
   if (intervals.size() < kMinIntervals || result.camera_rms_radps < kMinRate_radps) return std::nullopt;
-  const OffsetSearch proper = search(intervals, gyroscope, false, 0, kMaxOffset_s, 0.01);
-  const OffsetSearch mirror = search(intervals, gyroscope, true, 0, kMaxOffset_s, 0.01);
+  const OffsetSearch proper =
+      search(intervals, gyroscope, false, 0, kMaxOffset_s, kOffsetStep_s, unexplained);
+  const OffsetSearch mirror = search(intervals, gyroscope, true, 0, kMaxOffset_s, kOffsetStep_s, unexplained);
   const bool mirrored = mirror.cost < kMirroredGain * proper.cost;
   double offset_s = (mirrored ? mirror : proper).offset_s;
   for (int round = 0; round < 3; ++round) {
     reweight(intervals, gyroscope, fit_at(sums_at(intervals, gyroscope, offset_s), mirrored), offset_s);
-    offset_s = search(intervals, gyroscope, mirrored, offset_s, 0.012, 0.002).offset_s;
-    offset_s = parabola(intervals, gyroscope, mirrored, offset_s, 0.004).offset_s;
+    offset_s = search(intervals, gyroscope, mirrored, offset_s, 0.03, 0.002, mean_cost).offset_s;
+    offset_s = parabola(intervals, gyroscope, mirrored, offset_s, 0.004);
   }
-  const Vertex vertex = parabola(intervals, gyroscope, mirrored, offset_s, 0.004);
-  const Fit fit = fit_at(sums_at(intervals, gyroscope, vertex.offset_s), mirrored);
+  const double vertex_s = parabola(intervals, gyroscope, mirrored, offset_s, 0.004);
+  const Fit fit = fit_at(sums_at(intervals, gyroscope, vertex_s), mirrored);
   const double freedom = std::max(1.0, 3 * fit.weights - 8);
   const double variance_rad2 = fit.cost / freedom;
   double dt_s = 0;
   for (const Interval& interval : intervals)
     dt_s += (interval.end_s - interval.begin_s) / static_cast<double>(intervals.size());
   result.intervals = intervals.size();
-  result.time_offset_s = vertex.offset_s;
-  result.time_offset_sigma_s =
-      vertex.curvature > 0 ? std::sqrt(2 * variance_rad2 / vertex.curvature) : kMaxOffset_s;
+  // At an end, the cost may fall further beyond it; the refinement must not wander off either.
+  const double farthest_s = std::max(std::abs((mirrored ? mirror : proper).offset_s), std::abs(vertex_s));
+  result.offset_found = farthest_s < kMaxOffset_s - kOffsetStep_s;
+  result.time_offset_s = vertex_s;
+  const Matrix8d known = covariance(intervals, gyroscope, fit, vertex_s, variance_rad2);
+  result.time_offset_sigma_s = std::sqrt(known(0, 0));
   result.rotation_imu_camera = fit.rotation;
-  result.rotation_sigma_rad = rotation_sigma(intervals, variance_rad2);
+  result.rotation_sigma_rad =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(known.block<3, 3>(1, 1)).eigenvalues()[2]);
   result.scale = fit.scale;
   result.bias_radps = fit.bias_radps;
   result.residual_radps = std::sqrt(std::max(0.0, fit.cost) / std::max(1.0, fit.weights)) / dt_s;

@@ -11,6 +11,7 @@ namespace fusebench {
 /// turn_imu(t + offset) = rotation * turn_camera(t) + bias * duration, by least squares.
 struct TurnAlignment {
   std::size_t intervals = 0;
+  bool offset_found = false;  ///< the optimum lies within the offsets that are searched, not at their end
   double time_offset_s = 0;
   double time_offset_sigma_s = 0;
   Matrix3d rotation_imu_camera =
@@ -23,8 +24,8 @@ struct TurnAlignment {
   double camera_rms_radps = 0;
 };
 
-/// Searches offsets within +-0.5 s. Nothing if fewer than 8 intervals lie within the gyroscope's time, or the
-/// camera turns by less than 3 deg/s rms.
+/// Searches offsets within +-0.5 s; one within 0.01 s of an end counts as not found. Nothing if fewer than 8
+/// intervals lie within the gyroscope's time, or the camera turns by less than 3 deg/s rms.
 [[nodiscard]] std::optional<TurnAlignment> align_turns(const CameraTurns& turns,
                                                        const GyroscopeIntegral& gyroscope);
 

@@ -5,6 +5,7 @@
 
 #include "core/mesh_file.hpp"
 #include "datasets/simulator/write_lists.hpp"
+#include "datasets/time_unit.hpp"
 
 namespace fusebench {
 
@@ -13,14 +14,15 @@ namespace {
 SE3 same_world(const SimulatedData&) { return {}; }
 
 // TUM counts the seconds since 1970 with six decimals; ICL-NUIM has no clock, so frame k is at k / 30 s; the
-// ZR300 counts microseconds since its start, and its images begin 0.75 s after its IMU.
+// ZR300 counts microseconds since its start, and its images begin 0.75 s after its IMU. Readers of the ZR300
+// tell the unit of its stamps by their spacing, so images have to lie within kImageSpacing (time_unit.hpp).
 constexpr std::array<LayoutDescription, 3> kLayouts = {{
-    {"tum", 1'600'000'000'000'000'000, 250'000'000, 1000, 0, DepthNoise::handa, tum_color_name,
+    {"tum", 1'600'000'000'000'000'000, 250'000'000, 1000, 1, 240, DepthNoise::handa, tum_color_name,
      tum_depth_name, write_tum_lists, same_world},
-    {"icl", 0, 250'000'000, 1, 30, DepthNoise::handa, icl_color_name, icl_depth_name, write_icl_lists,
+    {"icl", 0, 250'000'000, 1, 30, 30, DepthNoise::handa, icl_color_name, icl_depth_name, write_icl_lists,
      icl_T_file_scene},
-    {"zr300", 755'000'000, 750'000'000, 1000, 0, DepthNoise::zr300, zr300_color_name, zr300_depth_name,
-     write_zr300_lists, same_world},
+    {"zr300", 755'000'000, 750'000'000, 1000, 1 / kImageSpacing.most_s, 1 / kImageSpacing.least_s,
+     DepthNoise::zr300, zr300_color_name, zr300_depth_name, write_zr300_lists, same_world},
 }};
 
 Mesh moved(Mesh mesh, const SE3& T_file_scene) {

@@ -2,11 +2,14 @@
 // of the ZR300 recordings of FMDataset. Beside what the format itself has, every layout holds
 //
 //     calibration.toml         rig_calibration.hpp
-//     state_groundtruth.csv    EuRoC's columns: the IMU body's position, attitude, velocity and biases,
-//     images' clock scene.ply                the scene's mesh; the same world as the ground truth and
-//     state_groundtruth.csv
+//     state_groundtruth.csv    EuRoC's columns: position, attitude, velocity and biases of the IMU
+//                              body, on the images' clock
+//     scene.ply                the scene's mesh; the same world as the ground truth
 //
-// and, where the format has no place for them, imu.csv and groundtruth.txt (side_files.hpp).
+// and, where the format has no place for them, imu.csv and groundtruth.txt (side_files.hpp). ICL-NUIM's
+// ground truth (livingRoom0.gt.freiburg) is reflected as published, left-handed with y up, while scene.ply
+// and state_groundtruth.csv are in the right-handed world with y down that the reader makes of it
+// (icl_conventions.hpp).
 #pragma once
 
 #include <cstdint>
@@ -42,13 +45,14 @@ struct LayoutDescription {
   std::int64_t first_frame_ns;  ///< stamp of frame 0
   std::int64_t imu_lead_ns;     ///< how long before it the IMU begins
   std::int64_t tick_ns;         ///< stamps are multiples of it
-  double fixed_rate_hz;         ///< 0: any
-  DepthNoise depth_noise;       ///< of the sensor that the layout is known for
+  double lowest_rate_hz;        ///< of the images; what readers of the format take
+  double highest_rate_hz;
+  DepthNoise depth_noise;  ///< of the sensor that the layout is known for
   std::string (*color_name)(std::size_t frame, std::int64_t frame_ns);  ///< relative to the folder
   std::string (*depth_name)(std::size_t frame, std::int64_t frame_ns);
   /// Lists, IMU and ground truth of the format.
   Result<void> (*write_lists)(const std::filesystem::path& folder, const SimulatedData& data);
-  /// The world of the files in the scene's world (both right-handed).
+  /// Maps points of the scene's world into the world of scene.ply and of the states (both right-handed).
   SE3 (*T_file_scene)(const SimulatedData& data);
 
   [[nodiscard]] std::int64_t frame_ns(std::size_t frame, double rate_hz) const;

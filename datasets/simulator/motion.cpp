@@ -103,11 +103,13 @@ PathClock clock_for(const MotionOptions& options, const MotionSpan& span, const 
 }
 
 /// Scales until both peaks are met: positions are linear in their scale but for the tremor, angular velocity
-/// in the angles' only for small ones, so a few rounds are needed.
-PoseSpline scaled_motion(const HandPath& path, const MotionOptions& options, const MotionSpan& span,
-                         double heading_rad) {
+/// in the angles' only for small ones, so a few rounds are needed. Error configuration: they are not met
+/// within 1 % (by a tremor that is faster than the peak, say).
+Result<PoseSpline> scaled_motion(const HandPath& path, const MotionOptions& options, const MotionSpan& span,
+                                 double heading_rad) {
   constexpr int kMostRounds = 30;
   constexpr double kTolerance = 2e-3;
+  constexpr double kPromised = 1e-2;
   const PathClock clock = clock_for(options, span, path);
   Scale scale{0.5 * options.peak_speed_mps, 0.5 * options.peak_rate_radps, heading_rad};
   for (int round = 0;; ++round) {
@@ -116,8 +118,16 @@ PoseSpline scaled_motion(const HandPath& path, const MotionOptions& options, con
     const PeakSpeeds peaks = peak_speeds(spline, SE3{}, span.first_frame_ns, span.last_frame_ns);
     const double position = options.peak_speed_mps / peaks.speed_mps;
     const double angle = options.peak_rate_radps / peaks.rate_radps;
-    if (round == kMostRounds || std::max(std::abs(position - 1), std::abs(angle - 1)) < kTolerance) {
-      return spline;
+    const double off = std::max(std::abs(position - 1), std::abs(angle - 1));
+    const bool last = round == kMostRounds || !std::isfinite(off);
+    if (off < (last ? kPromised : kTolerance)) return spline;
+    if (last) {
+      return fail(
+          ErrorCode::configuration,
+          fmt::format("motion.peak_speed_mps = {} and motion.peak_rate_radps = {} are not met within "
+                      "1 %: {:.4g} m/s and {:.4g} rad/s were reached",
+                      options.peak_speed_mps, options.peak_rate_radps, peaks.speed_mps, peaks.rate_radps),
+          "take a longer recording, less tremor, or other speeds");
     }
     scale.position_m *= position;
     scale.angle_rad *= angle;
@@ -230,14 +240,17 @@ Result<PoseSpline> hand_held_motion(const MotionOptions& options, const MotionSp
   Vector3d stretch = Vector3d::Ones();
   const HandPath path(options, seed, stretch, length_s);
   double heading_rad = path.mean_yaw_rad();
-  heading_rad += texture.best_turn_rad(scaled_motion(path, options, span, heading_rad));
+  const auto unturned = scaled_motion(path, options, span, heading_rad);
+  if (!unturned) return unturned;
+  heading_rad += texture.best_turn_rad(*unturned);
   for (int attempt = 0; attempt < kMostTries; ++attempt) {
-    PoseSpline spline = scaled_motion(HandPath(options, seed, stretch, length_s), options, span, heading_rad);
-    const Eigen::AlignedBox3d extent = extent_of(spline);
+    auto spline = scaled_motion(HandPath(options, seed, stretch, length_s), options, span, heading_rad);
+    if (!spline) return spline;
+    const Eigen::AlignedBox3d extent = extent_of(*spline);
     const Vector3d size_m = extent.sizes();
     if ((size_m.array() <= room_m.array()).all()) {
-      const Vector3d shift = middle_of_path(spline, box, size_m) - extent.center();
-      for (Vector3d& point : spline.position_world_m) point += shift;
+      const Vector3d shift = middle_of_path(*spline, box, size_m) - extent.center();
+      for (Vector3d& point : spline->position_world_m) point += shift;
       return spline;
     }
     // The same speed within less space: turn round sooner along the axes that are too long.

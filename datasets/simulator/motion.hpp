@@ -54,7 +54,8 @@ struct MotionSpan {
 /// A hand-held motion of the colour camera (T_world_camera, world z up) within the box: sums of sines within
 /// the bands, mostly horizontal, with its roll and pitch small. Peak speeds between the first and the last
 /// frame are met within 1 %. The same arguments give the same motion. Errors: configuration (an option out of
-/// range; a span too short to start from rest; a box in which the speed cannot be reached).
+/// range; a span too short to start from rest; peaks that are not met; a box in which the speed cannot be
+/// reached).
 [[nodiscard]] Result<PoseSpline> hand_held_motion(const MotionOptions& options, const MotionSpan& span,
                                                   const Eigen::AlignedBox3d& box, std::uint64_t seed,
                                                   const HeadingTexture& texture = {});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "core/stamped_rows.hpp"
@@ -37,11 +38,16 @@ Result<std::size_t> count_columns(const std::filesystem::path& file) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()),
                 "give a trajectory file: TUM columns, or one of ICL-NUIM's");
   }
-  std::string line;
+  std::string buffer(TextTable::kLongestLine + 1, '\0');
   std::vector<std::string_view> fields;
-  while (std::getline(stream, line)) {
-    split_fields(line, fields);
+  int line = 1;
+  for (; stream.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++line) {
+    split_fields(buffer.c_str(), fields);
     if (!fields.empty() && !fields.front().empty() && fields.front().front() != '#') return fields.size();
+  }
+  if (!stream.eof() && !stream.bad()) {
+    return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: line is longer than {} characters",
+                                                     file.string(), line, TextTable::kLongestLine));
   }
   return fail(ErrorCode::data_corrupt, fmt::format("{}: holds no pose", file.string()));
 }
@@ -159,6 +165,18 @@ Result<FilePath> read_file_path(const std::filesystem::path& file) {
   return path;
 }
 
+Result<void> check_file_motion(const FileMotionOptions& options) {
+  for (const auto& [name, value, low, high] :
+       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"rest_s", options.rest_s, 0.0, 60.0},
+        std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
+    if (!(value >= low && value <= high)) {
+      return fail(ErrorCode::configuration,
+                  fmt::format("trajectory.{} = {} (allowed {} .. {})", name, value, low, high));
+    }
+  }
+  return {};
+}
+
 double longest_duration_s(const FilePath& path, const FileMotionOptions& options, double lead_s) {
   const double moving_s = path.length_s() / options.speed;
   // A start covers half of the path that its time would.
@@ -168,9 +186,7 @@ double longest_duration_s(const FilePath& path, const FileMotionOptions& options
 
 Result<FileMotion> file_motion(const FilePath& path, const FileMotionOptions& options, const MotionSpan& span,
                                const Eigen::AlignedBox3d& box, const HeadingTexture& texture) {
-  if (!(options.speed >= 0.05 && options.speed <= 20)) {
-    return fail(ErrorCode::configuration, fmt::format("speed = {} (allowed 0.05 .. 20)", options.speed));
-  }
+  if (const auto valid = check_file_motion(options); !valid) return tl::unexpected(valid.error());
   const double lead_s = seconds_between(span.begin_ns, span.first_frame_ns);
   const double duration_s = seconds_between(span.first_frame_ns, span.last_frame_ns);
   const double longest_s = longest_duration_s(path, options, lead_s);

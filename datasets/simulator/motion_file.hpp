@@ -1,11 +1,12 @@
 // Motion along a trajectory that somebody recorded.
 //
 // Files that are read, by their columns and name:
-//   TUM text       timestamp tx ty tz qx qy qz qw: colour camera (x right, y down, z forward) in a world with
-//   z up
-//   *.gt.freiburg* the same columns as ICL-NUIM publishes them: index instead of a time, left-handed with y
-//   up 13 columns     index and the 3x4 camera-to-world matrix (row-major) of the renderer that made
-//   ICL-NUIM: same axes
+//   TUM text         timestamp tx ty tz qx qy qz qw: colour camera (x right, y down, z forward) in a world
+//                    with z up
+//   *.gt.freiburg*   the same columns as ICL-NUIM publishes them: index instead of a time, left-handed with
+//                    y up
+//   13 columns       index and the 3x4 camera-to-world matrix (row-major) of the renderer that made
+//                    ICL-NUIM: same axes
 // ICL-NUIM has 30 frames a second.
 #pragma once
 
@@ -42,18 +43,21 @@ struct FileMotionOptions {
   double start_s = 1.0;
 };
 
+/// Errors: configuration (speed, rest_s or start_s out of range).
+[[nodiscard]] Result<void> check_file_motion(const FileMotionOptions& options);
+
 struct FileMotion {
   PoseSpline camera;  ///< T_world_camera, world z up
   double shrunk = 1;  ///< factor on the positions, so that the path stays in the box; 1: it fits as it is
   double heading_rad = 0;  ///< by which it was turned about the vertical
 };
 
-/// How long a recording along the path can be, from its first frame on.
+/// How long a recording along the path can be, from its first frame on. The options must be in range.
 [[nodiscard]] double longest_duration_s(const FilePath& path, const FileMotionOptions& options,
                                         double lead_s);
 
 /// Puts the middle of the path's extent into the middle of the box, turned about the vertical as it fits
-/// best. Errors: configuration (speed out of range; a span longer than the path), data_corrupt (the fit
+/// best. Errors: configuration (an option out of range; a span longer than the path), data_corrupt (the fit
 /// failed).
 [[nodiscard]] Result<FileMotion> file_motion(const FilePath& path, const FileMotionOptions& options,
                                              const MotionSpan& span, const Eigen::AlignedBox3d& box,

@@ -3,15 +3,14 @@
 // authors' published code (github.com/ankurhanda/simkinect, add_noise.py, commit 1106ad0):
 //   1. each pixel looks at its depth bilinearly at a place shifted by N(0, (1/2 px)^2) in u and v;
 //   2. disparity f B / z with B = 0.075 m and the camera's f (480 px there), rounded to 1/8 px;
-//   3. disparity is measured where the projector has a dot, if within 9 x 9 pixels more than 1/1.2 of the
-//   dots agree with
-//      the window's mean within 0.1 px times 1.44 r^2 (r: pixels from the centre, at least the centre itself
-//      to 0.1 px); other pixels take the disparity of the nearest dot within 3 px, so depth edges have holes
-//      and fattened rims, and surfaces seen obliquely have holes;
-//   4. z = 35130 / round(35130 / round(100 z) + N(0, (1/6)^2)) / 100, which is Barron & Malik's: 35130 are
-//   the Kinect's
-//      focal length, baseline and 1/8 px in centimetres. (The published code rounds after it has added 0.5,
-//      which would move every depth towards the camera by half a step; that is left out.)
+//   3. disparity is measured where the projector has a dot, if within 9 x 9 pixels more than 1/1.2 of
+//      the dots agree with the window's mean within 0.1 px times 1.44 r^2 (r: pixels from the centre, at
+//      least the centre itself to 0.1 px); other pixels take the disparity of the nearest dot within 3 px,
+//      so depth edges have holes and fattened rims, and surfaces seen obliquely have holes;
+//   4. z = 35130 / round(35130 / round(100 z) + N(0, (1/6)^2)) / 100, which is Barron & Malik's: 35130
+//      are the Kinect's focal length, baseline and 1/8 px in centimetres. (The published code rounds
+//      after it has added 0.5, which would move every depth towards the camera by half a step; that is
+//      left out.)
 // Assumptions of ours: the dots (one a 3 x 3 cell, at a place from a hash; the published pattern is an
 // image), and that nothing is measured on surfaces seen at more than 80 degrees, where a dot is stretched
 // beyond recognition.

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr float kFarthest_m = 1e6F;  // a float resolves 6 cm there; far below what overflows when multiplied
 constexpr float kTextureRepeat_m = 1.2F;
 constexpr int kTextureSide = 512;
 
@@ -139,9 +140,9 @@ SimulatedScene textured(const Mesh& mesh) {
 }  // namespace
 
 Result<SimulatedScene> read_scene(const fs::path& file, const SceneFileOptions& options) {
-  if (!(options.metres_per_unit > 0 && std::isfinite(options.metres_per_unit))) {
+  if (!(options.metres_per_unit >= 1e-6 && options.metres_per_unit <= 1e6)) {
     return fail(ErrorCode::configuration,
-                fmt::format("metres_per_unit = {} (allowed above 0)", options.metres_per_unit));
+                fmt::format("metres_per_unit = {} (allowed 1e-6 .. 1e6)", options.metres_per_unit));
   }
   Result<Mesh> mesh = read_mesh(file);
   if (!mesh) return tl::unexpected(mesh.error());
@@ -152,9 +153,13 @@ Result<SimulatedScene> read_scene(const fs::path& file, const SceneFileOptions& 
   }
   Eigen::AlignedBox3d bounds;
   for (Eigen::Vector3f& vertex : mesh->vertices) {
-    if (!vertex.allFinite())
-      return fail(ErrorCode::data_corrupt, fmt::format("{}: a vertex is not finite", file.string()));
     vertex *= static_cast<float>(options.metres_per_unit);
+    if (!(vertex.array().abs() <= kFarthest_m).all()) {
+      return fail(ErrorCode::data_corrupt,
+                  fmt::format("{}: a vertex at {}, {}, {} m (allowed -1e6 .. 1e6; metres_per_unit = {})",
+                              file.string(), vertex.x(), vertex.y(), vertex.z(), options.metres_per_unit),
+                  "a scene lies near the origin; check its unit");
+    }
     if (options.y_up) vertex = Eigen::Vector3f(vertex.x(), -vertex.z(), vertex.y());
     bounds.extend(vertex.cast<double>());
   }

@@ -10,9 +10,9 @@
 #include <utility>
 #include <variant>
 
+#include "core/staged_folder.hpp"
 #include "core/toml_document.hpp"
 #include "datasets/simulator/room.hpp"
-#include "core/staged_folder.hpp"
 #include "datasets/simulator/write_images.hpp"
 #include "datasets/simulator/write_lists.hpp"
 
@@ -23,11 +23,25 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kImuTail_ns = 50'000'000;  // after the last frame, so that samples surround it
+constexpr double kLongest_s = 3600;
+// With half of the longest read-out, depth is still within the motion, which goes on for
+// MotionSpan::kTail_ns.
+constexpr double kLongestDelay_s = 0.05;
 constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate need more than the frames'
+
+/// Readers of some formats refuse other rates (zr300) or count frames (icl).
+Result<void> check_rate(const SimulationOptions& o) {
+  const LayoutDescription& layout = describe(o.layout);
+  if (o.rate_hz >= layout.lowest_rate_hz && o.rate_hz <= layout.highest_rate_hz) return {};
+  return fail(ErrorCode::configuration,
+              fmt::format("rate_hz = {} (allowed in the {} layout: {} .. {})", o.rate_hz, layout.name,
+                          layout.lowest_rate_hz, layout.highest_rate_hz),
+              "readers must be able to tell the times of the images");
+}
 
 Result<void> check_options(const SimulationOptions& o) {
   for (const auto& [name, value, low, high] :
-       {std::tuple{"duration_s", o.duration_s, 0.0, 3600.0}, std::tuple{"rate_hz", o.rate_hz, 1.0, 240.0},
+       {std::tuple{"duration_s", o.duration_s, 0.0, kLongest_s},
         std::tuple{"exposure_s", o.exposure_s, 0.0, 0.1},
         std::tuple{"blur_samples", static_cast<double>(o.blur_samples), 1.0, 256.0},
         std::tuple{"gain_drift", o.gain_drift, 0.0, 0.5}, std::tuple{"vignetting", o.vignetting, 0.0, 0.9},
@@ -35,22 +49,18 @@ Result<void> check_options(const SimulationOptions& o) {
         std::tuple{"shot_noise", o.shot_noise, 0.0, 0.5},
         std::tuple{"imu_rate_hz", o.imu_rate_hz, 50.0, 2000.0},
         std::tuple{"color readout_s", o.rig.color.timing.color_readout_s, 0.0, 0.1},
+        std::tuple{"depth readout_s", o.rig.color.timing.depth_readout_s, 0.0, 0.1},
+        std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kLongestDelay_s, kLongestDelay_s},
         std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
                   fmt::format("{} = {} (allowed {} .. {})", name, value, low, high));
     }
   }
-  const double fixed_hz = describe(o.layout).fixed_rate_hz;
-  if (fixed_hz > 0 && o.rate_hz != fixed_hz) {
-    return fail(
-        ErrorCode::configuration,
-        fmt::format("rate_hz = {} (allowed in the {} layout: {})", o.rate_hz, to_string(o.layout), fixed_hz),
-        "its images have no stamps; readers count frames");
-  }
   if (!o.rig.imu)
     return fail(ErrorCode::configuration, "the calibration has no IMU", "start from the defaults");
-  return {};
+  if (auto valid = check_rate(o); !valid) return valid;
+  return check_file_motion(o.file_motion);
 }
 
 /// The motion that was chosen, before its body is known.
@@ -79,6 +89,13 @@ Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
   if (duration_s == 0 && path) {
     const double lead_s = seconds_between(0, layout.imu_lead_ns);
     duration_s = longest_duration_s(*path, options.file_motion, lead_s);
+    if (!(duration_s <= kLongest_s)) {
+      return fail(
+          ErrorCode::configuration,
+          fmt::format("{}: holds {:g} s at speed {:g} (a recording has up to {:g} s)",
+                      options.trajectory_file.string(), duration_s, options.file_motion.speed, kLongest_s),
+          "give a duration to take the beginning of the path, or a higher speed");
+    }
   }
   const auto count = static_cast<std::size_t>(std::max(0.0, std::round(duration_s * options.rate_hz)));
   if (count < 2) {

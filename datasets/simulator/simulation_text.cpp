@@ -97,13 +97,19 @@ Result<std::string> simulation_identity(const SimulationOptions& options) {
 std::string simulation_text(const SimulationOptions& options, const std::string& identity,
                             const Vector3d& gravity_world_mps2) {
   const Vector3d& g = gravity_world_mps2;
+  const std::string_view reflected =
+      options.layout == RecordingLayout::icl
+          ? "# livingRoom0.gt.freiburg is reflected as ICL-NUIM publishes it (left-handed, y up); the other "
+            "two "
+            "are in\n# the right-handed world with y down that the reader makes of it.\n"
+          : "";
   return fmt::format(
       "# This recording was made by `fusebench simulate`: images, IMU and truth are simulated. Its sensors "
       "are\n"
       "# described in calibration.toml; state_groundtruth.csv (the IMU body, images' clock) and scene.ply "
       "are in\n"
-      "# the world of the ground truth.\nidentity = {}\ngravity_world_mps2 = [{}, {}, {}]\n{}",
-      toml_text(identity), g.x(), g.y(), g.z(), options_text(options));
+      "# the world of the ground truth.\n{}identity = {}\ngravity_world_mps2 = [{}, {}, {}]\n{}",
+      reflected, toml_text(identity), g.x(), g.y(), g.z(), options_text(options));
 }
 
 }  // namespace fusebench

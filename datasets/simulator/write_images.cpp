@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <system_error>
@@ -49,8 +50,9 @@ Result<void> write_frame(const SimulationOptions& options, const Shooting& shoot
   if (auto written = write_png(folder / layout.color_name(k, time_ns), image); !written) return written;
 
   const SE3 T_body_depth = rig.depth ? T_body_color * rig.depth->T_color_depth : T_body_color;
+  const std::int64_t depth_ns = time_ns + std::llround(1e9 * rig.color.timing.depth_delay_s);
   Image<std::uint16_t> depth = sense_depth(renderer, depth_sensor(options), shooting.body, T_body_depth,
-                                           time_ns, options.seed, k, alone);
+                                           depth_ns, options.seed, k, alone);
   // Registered depth has the pixels of the colour image, which are distorted.
   if (!rig.depth && !rig.color.distortion.is_zero()) depth = distort_depth(depth, rig.color);
   return write_png(folder / layout.depth_name(k, time_ns), depth);

@@ -18,7 +18,7 @@ namespace fusebench {
 struct Shooting {
   PoseSpline body;  ///< the IMU body in the scene's world
   SE3 T_body_color;
-  std::vector<std::int64_t> frame_ns;  ///< middle of each exposure, and stamp
+  std::vector<std::int64_t> frame_ns;  ///< stamps, and middles of the exposures (depth: its delay later)
 };
 
 /// Renders and writes all colour and depth images below the folder, frames in parallel. Errors: io;

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "datasets/camera_presets.hpp"
 #include "datasets/inspection/inspection.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/recording_catalogue.hpp"
 #include "eval/cli/console.hpp"
+#include "eval/cli/reading_options.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/experiment.hpp"
@@ -25,8 +25,7 @@ namespace {
 struct InspectVerbOptions {
   std::string recording;
   std::filesystem::path data;
-  std::string camera;
-  std::string format;
+  ReadingOptions reading;
   std::string frames;
   std::filesystem::path page;
   int threads = 1;
@@ -41,14 +40,9 @@ bool is_finding(const Error& error) {
 Result<Recording> open(const InspectVerbOptions& options, const std::filesystem::path& folder) {
   const auto window = parse_frames(options.frames);
   if (!window) return tl::unexpected(window.error());
-  OpenOptions open;
-  open.format = options.format;
-  if (!options.camera.empty()) {
-    const auto camera = parse_camera(options.camera);
-    if (!camera) return tl::unexpected(camera.error());
-    open.read.camera = *camera;
-  }
-  auto recording = open_recording(folder, open);
+  const auto how = open_options(options.reading);
+  if (!how) return tl::unexpected(how.error());
+  auto recording = open_recording(folder, *how);
   if (!recording) return recording;
   if (*window) {
     const auto selected = select_frames(*recording, (*window)->begin, (*window)->end);
@@ -88,7 +82,7 @@ Result<int> run(const InspectVerbOptions& options) {
   });
   if (!recording && options.json && is_finding(recording.error())) {
     print_error(recording.error());
-    return print(refused_inspection(options.recording, options.format, recording.error()), options);
+    return print(refused_inspection(options.recording, options.reading.format, recording.error()), options);
   }
   if (!recording) return tl::unexpected(recording.error());
   // An interrupted inspection ends soon: it loads nothing more.
@@ -117,11 +111,7 @@ Verb add_inspect_verb(CLI::App& app) {
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
-  verb->add_option("--camera", options->camera,
-                   "Calibration: a preset's name, or fx,fy,cx,cy[,k1,k2,p1,p2,k3]")
-      ->type_name("CAMERA");
-  verb->add_option("--format", options->format, "Format of the recording; recognised if not given")
-      ->type_name("NAME");
+  add_reading_options(*verb, options->reading);
   verb->add_option("--page", options->page, "Writes a page with plots, which needs no network, as well")
       ->type_name("FILE.html");
   add_threads_option(*verb, options->threads);

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "datasets/camera_presets.hpp"
 #include "eval/cli/console.hpp"
+#include "eval/cli/reading_options.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/experiment.hpp"
@@ -20,13 +20,11 @@ struct RunOptions {
   std::string variant = "full";
   std::filesystem::path out = "results/runs";
   std::string imu = "recorded";
-  std::string camera;
-  std::string format;
+  ReadingOptions reading;
   std::filesystem::path config;
   std::vector<std::string> sets;
   std::string frames;
   int threads = 1;
-  bool filtered_depth = false;
   bool json = false;
 };
 
@@ -40,13 +38,9 @@ Result<RunSpec> spec_of(const RunOptions& options) {
   if (!imu) return tl::unexpected(imu.error());
   const auto folder = find_recording(options.recording, options.data);
   if (!folder) return tl::unexpected(folder.error());
-  spec.open.format = options.format;
-  spec.open.read.filtered_depth = options.filtered_depth;
-  if (!options.camera.empty()) {
-    const auto camera = parse_camera(options.camera);
-    if (!camera) return tl::unexpected(camera.error());
-    spec.open.read.camera = *camera;
-  }
+  auto open = open_options(options.reading);
+  if (!open) return tl::unexpected(open.error());
+  spec.open = std::move(*open);
   spec.recording = *folder;
   spec.imu = *imu;
   spec.variant = options.variant;
@@ -104,13 +98,7 @@ Verb add_run_verb(CLI::App& app) {
   add_config_option(*verb, options->config);
   add_threads_option(*verb, options->threads);
   verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
-  verb->add_option("--camera", options->camera,
-                   "Calibration: a preset's name, or fx,fy,cx,cy[,k1,k2,p1,p2,k3]")
-      ->type_name("CAMERA");
-  verb->add_flag("--filtered-depth", options->filtered_depth,
-                 "Depth that the recording's authors have filtered (zr300: folder filtered/)");
-  verb->add_option("--format", options->format, "Format of the recording; recognised if not given")
-      ->type_name("NAME");
+  add_reading_options(*verb, options->reading);
   add_data_option(*verb, options->data);
   add_json_flag(*verb, options->json);
   verb->footer(

@@ -144,11 +144,13 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
                                   "The first frame is in full motion; default for --trajectory");
   verb.add_flag("--from-rest", options.from_rest, "Still for 1 s, then a smooth start; default for --preset")
       ->excludes(in_motion);
-  verb.add_option("--trajectory", options.trajectory,
-                  "Camera path instead of a preset: TUM text (world z up), or a trajectory of ICL-NUIM")
-      ->type_name("FILE");
+  auto* trajectory =
+      verb.add_option("--trajectory", options.trajectory,
+                      "Camera path instead of a preset: TUM text (world z up), or a trajectory of ICL-NUIM")
+          ->type_name("FILE");
   verb.add_option("--speed", options.speed, "Drives the path of --trajectory that much faster")
       ->type_name("X")
+      ->needs(trajectory)
       ->capture_default_str();
   verb.add_option("--duration", options.duration_s, "Length; 0: all of --trajectory")
       ->type_name("S")
@@ -156,7 +158,7 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
 }
 
 void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
-  verb.add_option("--rate", options.rate_hz, "Images a second (icl: 30)")
+  verb.add_option("--rate", options.rate_hz, "Images a second (icl: 30, zr300: 4 to 200)")
       ->type_name("HZ")
       ->capture_default_str();
   verb.add_option("--size", options.size, "Pixels of the images")->type_name("WxH")->capture_default_str();
@@ -193,11 +195,13 @@ Verb add_simulate_verb(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   add_motion_options(*verb, *options);
-  verb->add_option("--scene", options->scene, "PLY or OBJ (z up) instead of the furnished room")
-      ->type_name("FILE");
-  verb->add_flag("--scene-y-up", options->scene_options.y_up, "The y axis of --scene points up");
+  auto* scene = verb->add_option("--scene", options->scene, "PLY or OBJ (z up) instead of the furnished room")
+                    ->type_name("FILE");
+  verb->add_flag("--scene-y-up", options->scene_options.y_up, "The y axis of --scene points up")
+      ->needs(scene);
   verb->add_option("--scene-unit", options->scene_options.metres_per_unit, "Metres that a unit of --scene is")
       ->type_name("M")
+      ->needs(scene)
       ->capture_default_str();
   add_sensor_options(*verb, *options);
   add_threads_option(*verb, options->threads);

@@ -101,7 +101,7 @@ Json json_of(const ImuAlignment& a) {
           {"intervals", a.intervals},
           {"time_offset_s", {{"value", a.time_offset_s}, {"sigma", a.time_offset_sigma_s}}},
           {"rotation_imu_camera", json_of(a.rotation_imu_camera)},
-          {"rotation_error_rad", {{"value", a.rotation_error_rad}, {"sigma", a.rotation_sigma_rad}}},
+          {"rotation_error_rad", {{"value", json_of(a.rotation_error_rad)}, {"sigma", a.rotation_sigma_rad}}},
           {"gyroscope_scale", a.scale},
           {"residual_radps", a.residual_radps},
           {"explained", a.explained}};
@@ -151,9 +151,12 @@ std::string to_json(const Inspection& i) {
                                {"repeated_depth", i.association.frozen}};
     document["exposure"] = json_of(i.exposure);
     document["depth"] = json_of(i.depth);
-    document["registration"] = {{"shift_px", {i.registration.shift_x_px, i.registration.shift_y_px}},
+    Json shift_px = {i.registration.shift_x_px, i.registration.shift_y_px};
+    if (i.registration.at_border) shift_px = nullptr;
+    document["registration"] = {{"shift_px", shift_px},
                                 {"gain", i.registration.gain},
                                 {"contrast", i.registration.contrast},
+                                {"peak_at_rest", i.registration.peak_at_rest},
                                 {"edge_pixels", i.registration.edges}};
     document["motion"] = json_of(i.motion);
     document["truth"] = nullptr;

@@ -60,9 +60,11 @@ void image_rows(const Inspection& i, std::vector<InspectionRow>& all) {
   depth.add("range", fmt::format("{:.2f} to {:.2f} m, median {:.2f} m, {:.1f} % beyond 10 m", d.min_m,
                                  d.max_m, d.median_m, 100 * d.beyond_10m_share));
   if (i.registration.edges > 0) {
+    const RegistrationMeasurement& r = i.registration;
     depth.add("edges on colour",
-              fmt::format("best when shifted by ({}, {}) px, {:.2f} times as well as unshifted",
-                          i.registration.shift_x_px, i.registration.shift_y_px, i.registration.gain));
+              r.at_border ? "best beyond the shifts that are tried"
+                          : fmt::format("best when shifted by ({}, {}) px, {:.2f} times as well as unshifted",
+                                        r.shift_x_px, r.shift_y_px, r.gain));
   }
   depth.append_to(all);
 }
@@ -129,8 +131,10 @@ void imu_rows(const Inspection& i, std::vector<InspectionRow>& all) {
              fmt::format("{:+.2f} ms +- {:.2f} (IMU later than the {}; {} turns)", 1e3 * a.time_offset_s,
                          1e3 * a.time_offset_sigma_s, a.source, a.intervals));
     rows.add("extrinsic rotation",
-             fmt::format("{:.2f} deg +- {:.2f} off the calibration's", kDegrees * a.rotation_error_rad,
-                         kDegrees * a.rotation_sigma_rad));
+             a.rotation_error_rad
+                 ? fmt::format("{:.2f} deg +- {:.2f} off the calibration's", kDegrees * *a.rotation_error_rad,
+                               kDegrees * a.rotation_sigma_rad)
+                 : "none fits: the axes are mirrored");
     rows.add("gyroscope scale",
              fmt::format("{:.4f}; explains {:.1f} % of the turns", a.scale, 100 * a.explained));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text_table.hpp"
 #include "eval/json_text.hpp"
 #include "eval/report/page_assets.hpp"
 
@@ -41,7 +42,7 @@ std::string escaped(std::string_view text) {
 /// Six digits say what a chart can show, and halve the file.
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", value));
+  return parse_number(fmt::format("{:.6g}", value)).value_or(value);
 }
 
 std::string_view style_name(SeriesStyle style) {

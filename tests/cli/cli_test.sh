@@ -163,6 +163,13 @@ check_bad_usage() {
   refused "unknown option" 2 'frobnicate' -- "${run[@]}" --frobnicate
   refused "no threads" 2 'threads' -- run freiburg1_copy --variant no-imu --out out --threads 0
 
+  refused "speed without a path" 2 'speed' 'trajectory' -- simulate --out out --speed 2
+  refused "unit without a scene" 2 'scene-unit' 'scene' -- simulate --out out --scene-unit 0.001
+  refused "up without a scene" 2 'scene-y-up' 'scene' -- simulate --out out --scene-y-up
+  printf '%s 0 0 1 0 0 0 1\n' 0 1 2 3 >path.txt
+  refused "no speed" 2 'speed = 0 ' 'allowed' -- simulate --out out --trajectory path.txt --duration 0 --speed 0
+  refused "hardly any speed" 2 'speed = 1e-09' -- simulate --out out --trajectory path.txt --duration 0 --speed 1e-9
+
   printf 'name = "s"\nall = true\nvariant = ["full"]\n' >suite.toml
   refused "unknown key of a suite" 2 'suite.toml:3' 'variants' -- bench suite.toml --data . --out out
   printf 'name = "s"\nall = true\nvariants = ["fulll"]\n' >suite.toml

@@ -177,7 +177,8 @@ TEST(IclPovray, TellsOfAnotherCameraAndAnotherUnit) {
   options.camera->pinhole = {8, 6, 8 * 481.2 / 640, 6, 3.5, 2.5};
   EXPECT_TRUE(folder.open(options).value().warnings.empty());
   folder.write(PovrayFolder::stem(0) + ".txt", camera_text(Matrix3d::Identity(), {91, 465, -292}));
-  EXPECT_NE(folder.open(options).value().warnings.at(0).find("depth_units_per_metre is 100"),
+  EXPECT_NE(folder.open(options).value().warnings.at(0).find(
+                "units_per_metre in [depth] of calibration.toml) is 100"),
             std::string::npos);
   folder.write(PovrayFolder::stem(0) + ".txt", camera_text(Matrix3d::Identity(), {0, 0, 0}, 2.0));
   EXPECT_NE(folder.open(options).value().warnings.at(0).find("focal lengths of 4.0 and 6.0 px"),

@@ -166,6 +166,56 @@ TEST(TumRgbd, RegularStampsCanBeSwitchedOff) {
   EXPECT_NE(recording->fingerprint, folder.open(true)->fingerprint);
 }
 
+/// The calibration of TumFolder's camera with an IMU whose clock is ahead of the images'.
+std::string calibration_with_imu(double time_offset_s) {
+  return fmt::format(
+      "[color]\nfx_px = 10\nfy_px = 11\ncx_px = 3.5\ncy_px = 2.5\n[imu]\n"
+      "T_imu_color = [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0]\ngyroscope_noise_radps_sqrthz = 1e-3\n"
+      "accelerometer_noise_mps2_sqrthz = 1e-2\ngyroscope_bias_walk_radps2_sqrthz = 1e-5\n"
+      "accelerometer_bias_walk_mps3_sqrthz = 1e-4\ntime_offset_s = {}\n",
+      time_offset_s);
+}
+
+TEST(TumRgbd, AnImuBesideIsPutOnTheImagesClock) {
+  const TumFolder folder;
+  folder.write("calibration.toml", calibration_with_imu(0.02));
+  folder.write("imu.csv", "#t,w,a\n9900000000,0.1,0.2,0.3,0,9.8,0\n10400000000,0.1,0.2,0.3,0,9.8,0\n");
+  const auto recording = open_tum_rgbd(folder.path(), {});
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->imu_source, ImuSource::recorded);
+  ASSERT_EQ(recording->imu.size(), 2U);
+  EXPECT_EQ(recording->imu[0].timestamp_ns, 9'880'000'000);
+  EXPECT_EQ(recording->rig.T_imu_camera.translation.x(), 0.1);
+  EXPECT_TRUE(recording->warnings.empty());
+}
+
+TEST(TumRgbd, ImuAndImagesOverlapOnTheImagesClock) {
+  const TumFolder folder;
+  folder.write("imu.csv", "17900000000,0,0,0,0,9.8,0\n18400000000,0,0,0,0,9.8,0\n");
+  folder.write("calibration.toml", calibration_with_imu(8));
+  EXPECT_TRUE(open_tum_rgbd(folder.path(), {}));
+  folder.write("calibration.toml", calibration_with_imu(0));
+  expect_contains(refusal(folder, ErrorCode::data_corrupt, {}), "do not overlap the images");
+}
+
+TEST(TumRgbd, AnImuWithoutCalibrationSaysWhatToAdd) {
+  const TumFolder folder;
+  folder.write("imu.csv", "9900000000,0,0,0,0,9.8,0\n10400000000,0,0,0,0,9.8,0\n");
+  const auto recording = open_tum_rgbd(folder.path(), small_camera());
+  ASSERT_TRUE(recording);
+  EXPECT_EQ(recording->imu_source, ImuSource::none);
+  ASSERT_EQ(recording->warnings.size(), 1U);
+  expect_contains(recording->warnings[0], "T_imu_color");
+}
+
+TEST(TumRgbd, ABrokenCalibrationIsBadData) {
+  const TumFolder folder;
+  folder.write("calibration.toml", "[color]\nfx_px = 10\n");
+  expect_contains(refusal(folder, ErrorCode::data_corrupt, {}), "needs the key fy_px");
+  // Given by the user, the camera replaces one that is not known, not a file that cannot be read.
+  expect_contains(refusal(folder, ErrorCode::data_corrupt, small_camera()), "needs the key fy_px");
+}
+
 TEST(TumRgbd, UnmatchedImagesAreCounted) {
   const TumFolder folder;
   folder.write("depth.txt", "10.01 depth/0.png\n10.13 depth/1.png\n10.19 depth/2.png\n");

@@ -341,7 +341,7 @@ TEST(Zr300, WithoutACalibratedImuThereIsNone) {
   const auto recording = open_zr300(folder.path(), {});
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->imu_source, ImuSource::none);
-  EXPECT_TRUE(any_contains(recording->warnings, "the calibration has no [imu]"));
+  EXPECT_TRUE(any_contains(recording->warnings, "nothing says where the IMU sits"));
 }
 
 /// FMDataset itself, where it is there.

@@ -50,6 +50,13 @@ TEST(InspectionText, PutsErrorsFirst) {
   EXPECT_THAT(text, HasSubstr("angular speed"));
 }
 
+TEST(InspectionPage, WritesEveryFiniteNumber) {
+  Chart chart;
+  chart.series.push_back({"tiny", {{5e-310, 0.123456789}}});
+  EXPECT_THAT(to_html({"title", "", {{"section", "", std::vector<Chart>{chart}}}}),
+              HasSubstr("e-310,0.123457]"));
+}
+
 TEST(InspectionPage, NeedsNoNetworkAndEscapes) {
   Recording recording = clean_recording({.frames = 30});
   recording.name = "<script>&";

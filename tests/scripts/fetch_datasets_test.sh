@@ -63,7 +63,11 @@ for i in range(3):
     icl['associations.txt'] += f'{i} depth/{i}.png {i} rgb/{i}.png\n'.encode()
     icl.update({f'depth/{i}.png': image(f'd{i}'), f'rgb/{i}.png': image(f'c{i}')})
 tgz('flat.tar.gz', icl)
-zipped('shake_rgbd.zip', {**tum('shake/'), 'shake/calibration.txt': b'1 1 1 1\n'})
+associated = b''.join(f'{i}.5 rgb/{i}.5.png {i}.5 depth/{i}.5.png\n'.encode() for i in range(3))
+shake = {**tum('shake/'), 'shake/calibration.txt': b'1 1 1 1\n', 'shake/associated.txt': associated}
+zipped('shake_rgbd.zip', shake)
+zipped('apart_rgbd.zip', {k: v for k, v in shake.items() if k != 'shake/associated.txt'})
+zipped('lost_rgbd.zip', {**shake, 'shake/associated.txt': associated + b'9.5 rgb/9.5.png 9.5 depth/9.5.png\n'})
 zipped('shake_imu.zip', {'shake/imu.txt': b'# empty\n'})
 zipped('escape.zip', {**tum('zipescape/'), '../../evil.txt': b'evil'})
 (out / 'torn.tgz').write_bytes((out / 'walk.tgz').read_bytes()[:-5000])
@@ -140,7 +144,9 @@ address() { printf '"https://example.invalid/files/%s"' "$1"; }
 walk_facts=("archive_bytes = $(bytes walk.tgz)" "archive_sha256 = \"$(digest walk.tgz)\"" 'color_images = 3 # counted' 'depth_images = 3')
 recording walk tum "$(address walk.tgz)" "${walk_facts[@]}"
 recording flat icl "$(address flat.tar.gz)" 'frames = 3'
-recording shake eth3d "$(address shake_rgbd.zip), $(address shake_imu.zip)"
+recording shake eth3d "$(address shake_rgbd.zip), $(address shake_imu.zip)" 'frames = 3'
+recording apart eth3d "$(address apart_rgbd.zip)"
+recording lost eth3d "$(address lost_rgbd.zip)"
 recording by_hand zr300 '' 'download_note = "It is on a drive"' 'frames = 2'
 recording few tum "$(address few.tgz)"
 recording counted tum "$(address walk.tgz)" 'depth_images = 4'
@@ -268,6 +274,8 @@ run 3 "404" gone
 expect_nothing gone
 run 3 "depth/1.5.png" few
 if [[ -d $data/there/few ]]; then fail 'an incomplete recording is in place'; fi
+run 3 "there is no associated.txt" apart
+run 3 "the first is rgb/9.5.png" lost
 run 3 "3 images in depth, but 4 are expected" counted
 if [[ -d $data/there/counted ]]; then fail 'a recording with other counts is in place'; fi
 

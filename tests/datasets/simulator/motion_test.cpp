@@ -66,6 +66,17 @@ TEST(HandHeldMotion, ReachesItsPeakSpeedsAndNoMore) {
   });
 }
 
+TEST(HandHeldMotion, SaysWhatItReachedWhenItCannotMeetThePeaks) {
+  MotionOptions options = options_of(MotionPreset::slow, false);
+  options.peak_speed_mps = 0.01;
+  options.tremor_m = 0.005;  // moves faster than that on its own
+  const auto motion = hand_held_motion(options, span_of(8), kBox, 1);
+  ASSERT_FALSE(motion);
+  EXPECT_EQ(motion.error().code, ErrorCode::configuration);
+  EXPECT_NE(motion.error().message.find("peak_speed_mps = 0.01"), std::string::npos);
+  EXPECT_NE(motion.error().message.find("were reached"), std::string::npos) << motion.error().message;
+}
+
 TEST(HandHeldMotion, StaysInTheBoxAndUpright) {
   for_all_motions([](const MotionOptions&, const PoseSpline& motion, const MotionSpan& span) {
     for (std::int64_t t = span.begin_ns; t <= span.last_frame_ns; t += 10 * kStep_ns) {
@@ -384,8 +395,19 @@ TEST_F(MotionFile, ErrorsNameFileAndLine) {
   const auto empty = read_file_path(write("e.txt", "# nothing\n"));
   ASSERT_FALSE(empty);
   EXPECT_EQ(empty.error().code, ErrorCode::data_corrupt);
+  const auto wide = read_file_path(write("w.txt", "# c2w\n" + std::string(70'000, '7')));
+  ASSERT_FALSE(wide);
+  EXPECT_NE(wide.error().message.find("w.txt:2: line is longer than"), std::string::npos)
+      << wide.error().message;
   FilePath path;
   for (int k = 0; k < 60; ++k) path.poses.push_back({std::llround(k / 30.0 * 1e9), pose_at(k / 30.0)});
+  for (const double speed : {0.0, 1e-9, 1e9, std::nan("")}) {
+    FileMotionOptions options;
+    options.speed = speed;
+    const auto refused = file_motion(path, options, span_of(1), kBox);
+    ASSERT_FALSE(refused) << speed;
+    EXPECT_EQ(refused.error().code, ErrorCode::configuration);
+  }
   const auto longer = file_motion(path, {}, span_of(4), kBox);
   ASSERT_FALSE(longer);
   EXPECT_NE(longer.error().message.find("duration_s"), std::string::npos) << longer.error().message;

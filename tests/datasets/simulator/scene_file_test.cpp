@@ -98,6 +98,11 @@ TEST_F(SceneFile, NamesWhatIsWrong) {
                "nan.obj");
   expect_error(write("quad.obj", kQuad), ErrorCode::configuration, "metres_per_unit = 0",
                {.metres_per_unit = 0});
+  expect_error(write("quad.obj", kQuad), ErrorCode::configuration, "allowed 1e-6 .. 1e6",
+               {.metres_per_unit = 1e300});
+  // Finite in the file, infinite in metres.
+  expect_error(write("wide.obj", "v 0 0 0\nv 1e37 0 0\nv 0 1 0\nf 1 2 3\n"), ErrorCode::data_corrupt,
+               "wide.obj", {.metres_per_unit = 1000});
 }
 
 }  // namespace

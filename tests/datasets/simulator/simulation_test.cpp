@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/trajectory_file.hpp"
+#include "datasets/open_recording.hpp"
 #include "tests/datasets/simulator/box_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -141,10 +142,52 @@ TEST_F(Simulation, ErrorsNameTheOption) {
   EXPECT_NE(message([](auto& o) { o.duration_s = 0; }).find("duration_s"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.rate_hz = 25; }, RecordingLayout::icl).find("rate_hz = 25"),
             std::string::npos);
+  // The zr300 reader tells the unit of stamps by their spacing.
+  EXPECT_NE(message([](auto& o) { o.rate_hz = 3; }).find("zr300 layout: 4 .. 200"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.rate_hz = 201; }).find("rate_hz = 201"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.rig.color.timing.depth_delay_s = 1; }).find("delay_s = 1"),
+            std::string::npos);
   EXPECT_NE(message([](auto& o) { o.trajectory_file = "/none.txt"; }).find("/none.txt"), std::string::npos);
   const auto size = simulation_defaults(RecordingLayout::tum, MotionPreset::slow, {0, 0});
   ASSERT_FALSE(size);
   EXPECT_NE(size.error().message.find("0x0"), std::string::npos);
+}
+
+TEST_F(Simulation, TheWholeOfATrajectoryIsNotTooLong) {
+  std::string path;
+  for (const double t : {0, 1000, 2000, 3000, 4000}) path += fmt::format("{} {} 0 1 0 0 0 1\n", t, t / 4000);
+  SimulationOptions options = small_options();
+  options.trajectory_file = write("path.txt", path);
+  options.duration_s = 0;
+  const auto longer = simulate(options, folder_ / "never", one_, {});
+  ASSERT_FALSE(longer);
+  EXPECT_EQ(longer.error().code, ErrorCode::configuration);
+  EXPECT_NE(longer.error().message.find("up to 3600 s"), std::string::npos) << longer.error().message;
+  for (const double speed : {0.0, 1e-9, -1.0, std::nan("")}) {
+    options.file_motion.speed = speed;
+    const auto refused = simulate(options, folder_ / "never", one_, {});
+    ASSERT_FALSE(refused) << speed;
+    EXPECT_NE(refused.error().message.find("speed ="), std::string::npos) << refused.error().message;
+  }
+}
+
+TEST_F(Simulation, TakesDepthAsMuchLaterAsTheCalibrationSays) {
+  SimulationOptions options = small_options();
+  remove_noise(options);
+  options.rate_hz = 25;
+  options.duration_s = 4 / 25.0;
+  ASSERT_TRUE(simulate(options, folder_ / "plain", one_, {}));
+  options.rig.color.timing.depth_delay_s = 0.04;  // one frame
+  ASSERT_TRUE(simulate(options, folder_ / "late", one_, {}));
+  auto plain = files_in(folder_ / "plain");
+  auto late = files_in(folder_ / "late");
+  EXPECT_TRUE(late.at("depth/755000.png") == plain.at("depth/795000.png"));
+  EXPECT_FALSE(late.at("depth/755000.png") == plain.at("depth/755000.png"));
+  EXPECT_TRUE(late.at("color/755000.png") == plain.at("color/755000.png"));
+  const auto recording = open_recording(folder_ / "late");
+  ASSERT_TRUE(recording) << recording.error().message;
+  const FrameEntry& frame = recording->frames.front();
+  EXPECT_EQ(frame.depth_capture_ns - frame.capture_ns, 40'000'000);
 }
 
 TEST_F(Simulation, FollowsATrajectoryFile) {

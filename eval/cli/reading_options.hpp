@@ -1,0 +1,33 @@
+// How a recording is to be read, as verbs that open one take it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/error.hpp"
+#include "datasets/open_recording.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace fusebench {
+
+/// As typed; see ReadOptions.
+struct ReadingOptions {
+  std::string camera;
+  std::string format;
+  std::optional<double> depth_units_per_metre;
+  double max_difference_s = ReadOptions{}.max_difference_s;
+  double frame_rate_hz = ReadOptions{}.frame_rate_hz;
+  bool published_stamps = false;
+  bool filtered_depth = false;
+};
+
+/// --camera, --format, --depth-units, --max-difference, --frame-rate, --published-stamps, --filtered-depth.
+void add_reading_options(CLI::App& verb, ReadingOptions& options);
+
+/// Error configuration: an unknown camera. Ranges are checked by the reader.
+[[nodiscard]] Result<OpenOptions> open_options(const ReadingOptions& options);
+
+}  // namespace fusebench
