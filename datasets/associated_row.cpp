@@ -23,6 +23,8 @@ Result<AssociatedRow> associated_row(const TextTable& table, const std::filesyst
         fmt::format("cannot tell which image is depth: {} or {}", table.text(1), table.text(3)),
         "exactly one of the two must lie in a folder whose name begins with 'depth'");
   }
+  if (table.text(0).empty() || table.text(2).empty())
+    return table.fail_here("a time is empty", "remove the comma without a value before it");
   const std::size_t depth = depth_first ? 0 : 2;
   const std::size_t color = 2 - depth;
   return AssociatedRow{std::string(table.text(color)), std::string(table.text(depth)),

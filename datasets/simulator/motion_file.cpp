@@ -203,7 +203,7 @@ Result<FileMotion> file_motion(const FilePath& path, const FileMotionOptions& op
     return smooth->evaluate(std::llround(1e9 * path_s)).T_world_body;
   };
   FileMotion motion{spline_along(pose_at, clock, span)};
-  place_in_box(box, texture, motion);
+  if (!options.in_place) place_in_box(box, texture, motion);
   return motion;
 }
 

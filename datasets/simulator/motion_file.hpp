@@ -41,6 +41,7 @@ struct FileMotionOptions {
   bool from_rest = false;  ///< hold the first pose, then start smoothly; otherwise as the path begins
   double rest_s = 1.0;     ///< as in MotionOptions
   double start_s = 1.0;
+  bool in_place = false;  ///< the poses are in the scene's world already: neither moved, turned nor shrunk
 };
 
 /// Errors: configuration (speed, rest_s or start_s out of range).
@@ -56,9 +57,9 @@ struct FileMotion {
 [[nodiscard]] double longest_duration_s(const FilePath& path, const FileMotionOptions& options,
                                         double lead_s);
 
-/// Puts the middle of the path's extent into the middle of the box, turned about the vertical as it fits
-/// best. Errors: configuration (an option out of range; a span longer than the path), data_corrupt (the fit
-/// failed).
+/// Unless it is in place, puts the middle of the path's extent into the middle of the box, turned about the
+/// vertical as it fits best. Errors: configuration (an option out of range; a span longer than the path),
+/// data_corrupt (the fit failed).
 [[nodiscard]] Result<FileMotion> file_motion(const FilePath& path, const FileMotionOptions& options,
                                              const MotionSpan& span, const Eigen::AlignedBox3d& box,
                                              const HeadingTexture& texture = {});

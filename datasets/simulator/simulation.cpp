@@ -12,6 +12,7 @@
 
 #include "core/staged_folder.hpp"
 #include "core/toml_document.hpp"
+#include "datasets/open_recording.hpp"
 #include "datasets/simulator/room.hpp"
 #include "datasets/simulator/write_images.hpp"
 #include "datasets/simulator/write_lists.hpp"
@@ -67,6 +68,7 @@ Result<void> check_options(const SimulationOptions& o) {
 struct Drive {
   PoseSpline camera;
   double shrunk = 1;
+  double turned_rad = 0;
 };
 
 Result<SimulatedScene> make_scene(const SimulationOptions& options) {
@@ -115,11 +117,11 @@ Result<Drive> choose_motion(const SimulationOptions& options, const std::optiona
   if (path) {
     auto motion = file_motion(*path, options.file_motion, span, box, texture);
     if (!motion) return tl::unexpected(motion.error());
-    return Drive{std::move(motion->camera), motion->shrunk};
+    return Drive{std::move(motion->camera), motion->shrunk, motion->heading_rad};
   }
   auto camera = hand_held_motion(options.motion, span, box, options.seed, texture);
   if (!camera) return tl::unexpected(camera.error());
-  return Drive{std::move(*camera), 1};
+  return Drive{std::move(*camera)};
 }
 
 /// Poses of the colour camera at every frame and evenly between frames.
@@ -158,7 +160,8 @@ Result<void> write_rest(const SimulationOptions& options, const Shooting& shooti
   return write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
 }
 
-/// Whether the folder holds this very recording already. Error usage if it is anything else.
+/// Whether the folder holds this very recording already, as whole as its reader can tell. Error usage if it
+/// is anything else.
 Result<bool> is_there(const fs::path& folder, const std::string& identity) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return false;
@@ -167,7 +170,13 @@ Result<bool> is_there(const fs::path& folder, const std::string& identity) {
     for (const TomlEntry& entry : document->entries) {
       const auto* value = std::get_if<OptionValue>(&entry.value);
       const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-      if (entry.key == "identity" && text != nullptr && *text == identity) return true;
+      if (entry.key != "identity" || text == nullptr || *text != identity) continue;
+      const auto recording = open_recording(folder);
+      if (recording) return true;
+      return fail(
+          ErrorCode::usage,
+          fmt::format("{}: is this recording, but damaged: {}", folder.string(), recording.error().message),
+          "remove the folder, and it is made again");
     }
   }
   return fail(ErrorCode::usage,
@@ -234,6 +243,7 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   const Shooting shooting{body_motion(drive->camera, T_body_color), T_body_color, std::move(*frame_ns)};
   report.frames = shooting.frame_ns.size();
   report.trajectory_shrunk = drive->shrunk;
+  report.trajectory_turned_rad = drive->turned_rad;
   if (*path) report.warnings = (*path)->warnings;
   report.peaks = peak_speeds(shooting.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
 

@@ -70,7 +70,8 @@ struct SimulationReport {
   std::size_t frames = 0;
   std::size_t imu_samples = 0;
   PeakSpeeds peaks;              ///< of the colour camera, first to last frame
-  double trajectory_shrunk = 1;  ///< see FileMotion
+  double trajectory_shrunk = 1;  ///< these two: see FileMotion
+  double trajectory_turned_rad = 0;
   std::vector<std::string> warnings;
 };
 

@@ -34,9 +34,10 @@ std::string matrix_text(const Matrix3d& m) {
 std::string motion_text(const SimulationOptions& o) {
   if (!o.trajectory_file.empty()) {
     const FileMotionOptions& f = o.file_motion;
-    return fmt::format("[trajectory]\nfile = {}\nspeed = {}\nfrom_rest = {}\nrest_s = {}\nstart_s = {}\n",
-                       toml_text(o.trajectory_file.filename().string()), f.speed, f.from_rest, f.rest_s,
-                       f.start_s);
+    return fmt::format(
+        "[trajectory]\nfile = {}\nspeed = {}\nfrom_rest = {}\nrest_s = {}\nstart_s = {}\nin_place = {}\n",
+        toml_text(o.trajectory_file.filename().string()), f.speed, f.from_rest, f.rest_s, f.start_s,
+        f.in_place);
   }
   const MotionOptions& m = o.motion;
   return fmt::format(

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "datasets/simulator/simulation.hpp"
 #include "eval/cli/console.hpp"
@@ -77,6 +78,8 @@ Result<SimulationOptions> simulation_of(const SimulateOptions& chosen) {
   options->trajectory_file = chosen.trajectory;
   options->file_motion.speed = chosen.speed;
   options->file_motion.from_rest = chosen.from_rest;
+  // In a scene of the user's own, the poses say where the camera is; in the furnished room they cannot.
+  options->file_motion.in_place = !chosen.scene.empty();
   options->exposure_s = chosen.exposure_s;
   options->blur_samples = chosen.blur_samples;
   options->rig.color.timing.color_readout_s = chosen.rolling_shutter_s;
@@ -97,6 +100,7 @@ std::string json_of(const SimulateOptions& chosen, const SimulationReport& repor
     document["peak_speed_mps"] = report.peaks.speed_mps;
     document["peak_rate_radps"] = report.peaks.rate_radps;
     document["trajectory_scale"] = report.trajectory_shrunk;
+    document["trajectory_turned_rad"] = report.trajectory_turned_rad;
     document["warnings"] = report.warnings;
   }
   return json_text(document) + "\n";
@@ -108,6 +112,10 @@ void print_summary(const SimulationReport& report) {
     return;
   }
   for (const std::string& warning : report.warnings) print_progress(fmt::format("warning: {}", warning));
+  if (report.trajectory_turned_rad != 0) {
+    print_progress(fmt::format("the trajectory was moved into the room and turned by {:.0f} degrees",
+                               report.trajectory_turned_rad * 180 / std::numbers::pi));
+  }
   if (report.trajectory_shrunk < 1) {
     print_progress(
         fmt::format("warning: the trajectory was shrunk to {:.0f} % to stay in the free part of the scene",

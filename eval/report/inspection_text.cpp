@@ -155,9 +155,13 @@ std::vector<InspectionRow> inspection_rows(const Inspection& inspection) {
 }
 
 std::string inspection_title(const Inspection& i) {
-  return fmt::format("{} ({}): {} frames, IMU: {}; {} errors, {} warnings, {} notes", i.recording,
-                     i.format.empty() ? "format unknown" : i.format, i.frames, to_string(i.imu_source),
-                     i.count(Severity::error), i.count(Severity::warning), i.count(Severity::note));
+  const auto counted = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  return fmt::format(
+      "{} ({}): {}, IMU: {}; {}, {}, {}", i.recording, i.format.empty() ? "format unknown" : i.format,
+      counted(i.frames, "frame"), to_string(i.imu_source), counted(i.count(Severity::error), "error"),
+      counted(i.count(Severity::warning), "warning"), counted(i.count(Severity::note), "note"));
 }
 
 std::string to_text(const Inspection& inspection) {

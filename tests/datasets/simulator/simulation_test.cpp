@@ -92,6 +92,12 @@ TEST_F(Simulation, AFolderIsReusedOrLeftAlone) {
   EXPECT_TRUE(again->reused);
   EXPECT_EQ(again->identity, first->identity);
   EXPECT_EQ(fs::last_write_time(out / "IMU.txt"), written);
+  const fs::path image = fs::directory_iterator(out / "color")->path();
+  fs::rename(image, folder_ / "image.png");
+  const auto damaged = simulate(options, out, one_, {});
+  ASSERT_FALSE(damaged);
+  EXPECT_NE(damaged.error().message.find("damaged"), std::string::npos) << damaged.error().message;
+  fs::rename(folder_ / "image.png", image);
   options.exposure_s = 0.009;
   const auto other = simulate(options, out, one_, {});
   ASSERT_FALSE(other);
@@ -211,6 +217,15 @@ TEST_F(Simulation, FollowsATrajectoryFile) {
   EXPECT_NEAR(duration_s, 5 / 30.0 + 2 / 90.0, 1e-5);  // the truth has a pose more at both ends
   EXPECT_LT((moved.translation - Vector3d(-0.6 * duration_s, 0, 0)).norm(), 2e-3);  // left of the camera
   EXPECT_NEAR(report->peaks.speed_mps, 0.6, 0.02);
+  options.file_motion.in_place = true;
+  const auto kept = simulate(options, folder_ / "c", one_, {});
+  ASSERT_TRUE(kept) << kept.error().message;
+  const auto poses = read_tum_trajectory(folder_ / "c" / "groundtruth.txt", warnings);
+  ASSERT_TRUE(poses);
+  EXPECT_LT((poses->front().T_world_camera.translation.cwiseProduct(Vector3d(1, 0, 1)) - Vector3d(0, 0, 1.3))
+                .norm(),
+            2e-3);
+  options.file_motion.in_place = false;
   options.duration_s = 0;
   const auto whole = simulate(options, folder_ / "b", one_, {});
   ASSERT_TRUE(whole) << whole.error().message;
