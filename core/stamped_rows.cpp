@@ -37,24 +37,31 @@ class Clock {
 
 }  // namespace
 
-Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
-                                  TimeOrder order, const StampedRow& row, TimeUnit unit) {
+Result<void> for_each_row(const std::filesystem::path& file, std::string_view columns,
+                          const std::function<Result<void>(const TextTable& table)>& row) {
   Result<TextTable> table = TextTable::open(file, columns);
   if (!table) return tl::unexpected(table.error());
-  Clock clock(order);
   bool empty = true;
   while (true) {
     const Result<bool> got = table->next();
     if (!got) return tl::unexpected(got.error());
     if (!*got) break;
     empty = false;
-    const Result<std::int64_t> time_ns = table->time_ns(0, unit);
-    if (!time_ns) return tl::unexpected(time_ns.error());
-    if (auto later = clock.take(*table, *time_ns); !later) return later;
-    if (auto done = row(*table, *time_ns); !done) return done;
+    if (auto done = row(*table); !done) return done;
   }
   if (!empty) return {};
   return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected {})", file.string(), columns));
+}
+
+Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
+                                  TimeOrder order, const StampedRow& row, TimeUnit unit) {
+  Clock clock(order);
+  return for_each_row(file, columns, [&](const TextTable& table) -> Result<void> {
+    const Result<std::int64_t> time_ns = table.time_ns(0, unit);
+    if (!time_ns) return tl::unexpected(time_ns.error());
+    if (auto later = clock.take(table, *time_ns); !later) return later;
+    return row(table, *time_ns);
+  });
 }
 
 }  // namespace fusebench

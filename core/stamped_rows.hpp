@@ -17,6 +17,11 @@ enum class TimeOrder {
   any,
 };
 
+/// Calls row for every row of the table, in the order of the file, up to the first error. Errors:
+/// data_missing; data_corrupt (those of TextTable, a table without rows); those of row.
+[[nodiscard]] Result<void> for_each_row(const std::filesystem::path& file, std::string_view columns,
+                                        const std::function<Result<void>(const TextTable& table)>& row);
+
 /// What is done with one row; column 0 is its time.
 using StampedRow = std::function<Result<void>(const TextTable& table, std::int64_t time_ns)>;
 

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "core/printable.hpp"
+#include "core/stamped_rows.hpp"
 
 namespace fusebench {
 
@@ -49,21 +50,12 @@ Result<void> check_images_exist(const std::filesystem::path& list, int line, con
 Result<void> for_each_associated_row(
     const std::filesystem::path& list,
     const std::function<Result<void>(const TextTable& table, const AssociatedRow& row)>& use) {
-  Result<TextTable> table = TextTable::open(list, kColumns);
-  if (!table) return tl::unexpected(table.error());
-  bool empty = true;
-  while (true) {
-    const Result<bool> got = table->next();
-    if (!got) return tl::unexpected(got.error());
-    if (!*got) break;
-    empty = false;
-    const auto row = associated_row(*table, list.parent_path());
+  return for_each_row(list, kColumns, [&](const TextTable& table) -> Result<void> {
+    const auto row = associated_row(table, list.parent_path());
     if (!row) return tl::unexpected(row.error());
-    if (auto there = check_images_exist(list, table->line(), *row); !there) return there;
-    if (auto used = use(*table, *row); !used) return used;
-  }
-  if (!empty) return {};
-  return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected {})", list.string(), kColumns));
+    if (auto there = check_images_exist(list, table.line(), *row); !there) return there;
+    return use(table, *row);
+  });
 }
 
 std::optional<AssociatedRow> first_associated_row(const std::filesystem::path& list) {

@@ -54,9 +54,8 @@ Result<Recording> open(const InspectVerbOptions& options, const std::filesystem:
 tl::unexpected<Error> interrupted() { return fail(ErrorCode::run_failed, "interrupted"); }
 
 /// How many frames the catalogue says there are.
-std::optional<std::size_t> published_frames(const InspectVerbOptions& options) {
-  const auto folder = find_recording(options.recording, options.data);
-  const CatalogueEntry* entry = folder ? catalogue_entry_of_folder(*folder) : nullptr;
+std::optional<std::size_t> published_frames(const std::filesystem::path& folder) {
+  const CatalogueEntry* entry = catalogue_entry_of_folder(folder);
   if (entry == nullptr || !entry->frames) return std::nullopt;
   return static_cast<std::size_t>(*entry->frames);
 }
@@ -77,9 +76,8 @@ int print(const Inspection& inspection, const InspectVerbOptions& options) {
 }
 
 Result<int> run(const InspectVerbOptions& options) {
-  auto recording = find_recording(options.recording, options.data).and_then([&](const auto& folder) {
-    return open(options, folder);
-  });
+  const auto folder = find_recording(options.recording, options.data);
+  auto recording = folder.and_then([&](const auto& found) { return open(options, found); });
   if (!recording && options.json && is_finding(recording.error())) {
     print_error(recording.error());
     return print(refused_inspection(options.recording, options.reading.format, recording.error()), options);
@@ -92,7 +90,7 @@ Result<int> run(const InspectVerbOptions& options) {
   };
   const Workers workers(options.threads);
   InspectOptions inspect_options;
-  if (options.frames.empty()) inspect_options.expected_frames = published_frames(options);
+  if (options.frames.empty()) inspect_options.expected_frames = published_frames(*folder);
   const Inspection inspection = inspect(*recording, workers, inspect_options);
   if (stop_requested()) return interrupted();
   if (!options.page.empty()) {
