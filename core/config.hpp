@@ -81,6 +81,7 @@ struct MotionConfig {
   double acceleration_noise_mps2_sqrthz = 1.5;
   double angular_acceleration_noise_radps2_sqrthz = 3.0;
   double gravity_noise_rad_sqrthz = 1e-5;
+  double exposure_s = 0.01;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number(
@@ -95,6 +96,10 @@ struct MotionConfig {
         "constant-velocity prior: white angular acceleration (rad/s^2/sqrt(Hz)); about 0.5 rad/s a frame");
     v.number("gravity_noise_rad_sqrthz", self.gravity_noise_rad_sqrthz, 0.0, 1.0,
              "random walk of the gravity direction against the map (rad/sqrt(Hz)), for the map's slow tilt");
+    v.number(
+        "exposure_s", self.exposure_s, 0.0, 0.5,
+        "exposure of a colour image, from which motion blur is predicted (seconds; no format records it, "
+        "10 ms is usual indoors)");
   }
 };
 

@@ -40,6 +40,7 @@ class Update {
     }
     result.map_cost_posterior = map_cost(now, quadratic.cost);
     result.posterior = posterior(now, quadratic);
+    result.measurement = quadratic;
     return result;
   }
 

@@ -43,6 +43,7 @@ class PoseMeasurement {
 
 struct IekfResult {
   GaussianState posterior;
+  PoseQuadratic measurement;  ///< the last linearisation, at the posterior: what the measurement alone says
   int iterations = 0;         ///< accepted steps over all stages
   bool converged = false;     ///< the last step was below both thresholds
   double map_cost_prior = 0;  ///< J at the prediction (last stage only)

@@ -138,7 +138,8 @@ void test_mutual_occlusion(std::span<std::vector<WarpedPixel>> warped, int width
       if (!w.visible) continue;
       const double front_m = cell(w);
       const double tolerance_m = std::max(3.0 * depth_sigma_m(front_m, depth), depth.edge_jump * front_m);
-      w.visible = w.depth_m <= front_m + tolerance_m;
+      w.covered = w.depth_m > front_m + tolerance_m;
+      w.visible = !w.covered;
     }
   }
 }
@@ -153,6 +154,7 @@ void test_measured_occlusion(std::span<WarpedPixel> warped, const DepthImage& de
     const double measured_m = depth_m(x, y);
     if (measured_m <= 0) continue;  // no measurement, no verdict
     const double allowed_m = std::max(tolerance_m, 3.0 * depth_sigma_m(measured_m, depth));
+    w.covered = w.depth_m - measured_m > allowed_m;
     w.visible = std::abs(w.depth_m - measured_m) <= allowed_m;
   }
 }

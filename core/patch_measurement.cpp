@@ -200,6 +200,7 @@ void PatchMeasurement::judge_visibility(std::size_t patch, bool gate) {
   for (std::size_t i = 0; i < warped.size(); ++i) {
     const WarpedPixel& w = warped[i];
     in_image += w.in_image ? 1 : 0;
+    outcome.covered_pixels += w.covered ? 1 : 0;
     if (!w.visible) continue;
     ++outcome.usable_pixels;
     outcome.centre_px += w.pixel_px;

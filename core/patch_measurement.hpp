@@ -29,7 +29,8 @@ struct PatchOutcome {
   bool accepted = false;  ///< tracked, and consistent (chi-square gate)
   bool shrunk = false;    ///< lost pixels to occlusion
   bool extended = false;
-  int usable_pixels = 0;  ///< visible, level 0
+  int usable_pixels = 0;   ///< visible, level 0
+  int covered_pixels = 0;  ///< in the image, behind something that was measured or warped before them
   int photometric_residuals = 0;
   int geometric_residuals = 0;
   double chi2_photometric = 0;  ///< sum of squared whitened residuals

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -66,6 +67,7 @@ struct Pipeline::State {
   Result<FrameReport> process_once(const RgbdFrame& frame);
   Result<FrameReport> restart_in_motion(const RgbdFrame& second);
   [[nodiscard]] CameraVelocity camera_velocity(const FilterState& motion) const;
+  [[nodiscard]] double predicted_blur_px(const FilterState& motion) const;
   [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
   PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
@@ -86,6 +88,8 @@ struct Pipeline::State {
   std::optional<RgbdFrame> first_frame;   ///< until the second one has told how fast it was
   std::optional<FilterState> initial_motion;
   std::vector<Patch> patches;            ///< cut from the last tracked frame
+  std::int64_t reference_ns = 0;         ///< the instant that they were cut at
+  SE3 T_world_imu_reference;             ///< and the pose
   std::vector<TrackedCentre> survivors;  ///< where the good ones of them are in the current frame
 };
 
@@ -118,6 +122,7 @@ Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second) 
 Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   FrameReport report;
   report.timestamp_ns = frame.timestamp_ns;
+  report.capture_ns = frame.capture_ns();
   check(!estimate || frame.capture_ns() > timestamp_ns, "frames come in the order of time");
 
   const bool first = !estimate.has_value();
@@ -137,6 +142,7 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
     refresh(prepared, report);  // Sec. 2.3: patch update
   }
   report.T_world_camera = T_world_camera();
+  report.estimate = *estimate;
   report.velocity_world_mps = estimate->mean.velocity_world_mps;
   report.angular_velocity_radps = estimate->mean.angular_velocity_imu_radps;
   report.model_blocks = model.block_count();
@@ -149,6 +155,11 @@ CameraVelocity Pipeline::State::camera_velocity(const FilterState& motion) const
   const Vector3d velocity_imu = motion.T_world_imu.rotation.conjugate() * motion.velocity_world_mps +
                                 rate_imu.cross(rig.T_imu_camera.translation);
   return {R_camera_imu * rate_imu, R_camera_imu * velocity_imu};
+}
+
+/// How far the image centre moves during an exposure, by rotation alone (depth is of the next frame).
+double Pipeline::State::predicted_blur_px(const FilterState& motion) const {
+  return rig.camera.fx_px * camera_velocity(motion).angular_radps.head<2>().norm() * config.motion.exposure_s;
 }
 
 /// True if the update changed the velocity so much that a frame compensated by the prediction is off by some
@@ -205,12 +216,17 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
   PatchMeasurement measurement(config, rig, observed, patches, workers);
   const IekfResult result = iekf_update(prior, measurement, config.iekf);
   describe(measurement, result, report);
+  report.blur_px = predicted_blur_px(prior.mean);
+  report.health = judge_health(observed, measurement.outcomes(), report.blur_px, config);
 
   if (report.patches_accepted < config.iekf.min_patches) {
-    report.reason = fmt::format("{} of {} patches were usable (iekf.min_patches = {})",
-                                report.patches_accepted, report.patches, config.iekf.min_patches);
+    report.reason =
+        fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
+                    report.patches_accepted, report.patches, config.iekf.min_patches);
     return false;
   }
+  report.evidence = PoseEvidence{reference_ns, T_world_imu_reference, result.posterior.mean.T_world_imu,
+                                 result.measurement};
   estimate = result.posterior;
   survivors.clear();
   for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -226,11 +242,15 @@ void Pipeline::State::describe(const PatchMeasurement& measurement, const IekfRe
                                FrameReport& report) const {
   double chi2_photometric = 0;
   double chi2_geometric = 0;
-  for (const PatchOutcome& outcome : measurement.outcomes()) {
+  std::vector<double> motion_px;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const Patch& patch = patches[p];
+    const PatchOutcome& outcome = measurement.outcomes()[p];
     report.patches += outcome.in_view ? 1 : 0;
     report.patches_tracked += outcome.tracked ? 1 : 0;
     report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
     report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
+    if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());
     if (!outcome.accepted) continue;
     ++report.patches_accepted;
     report.pixels_photometric += outcome.photometric_residuals;
@@ -240,6 +260,11 @@ void Pipeline::State::describe(const PatchMeasurement& measurement, const IekfRe
   }
   if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
   if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
+  if (!motion_px.empty()) {
+    const auto middle = motion_px.begin() + static_cast<std::ptrdiff_t>(motion_px.size() / 2);
+    std::nth_element(motion_px.begin(), middle, motion_px.end());
+    report.patch_motion_px = *middle;
+  }
   report.iterations = result.iterations;
   report.converged = result.converged;
   report.intensity = measurement.intensity_residuals();
@@ -254,6 +279,8 @@ void Pipeline::State::refresh(const PreparedFrame& prepared, FrameReport& report
   const StageClock clock(report, Stage::refresh);
   const ReferenceFrame reference{prepared.pyramid, prepared.frame.depth_m, rig.camera, T_world_camera()};
   patches = refresh_patches(reference, model, survivors, config, workers);
+  reference_ns = timestamp_ns;
+  T_world_imu_reference = estimate->mean.T_world_imu;
 }
 
 Pipeline::Pipeline(const Config& config, const SensorRig& rig, std::span<const ImuSample> imu,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,9 @@
 
 #include "core/config.hpp"
 #include "core/error.hpp"
+#include "core/filter_state.hpp"
+#include "core/frame_health.hpp"
+#include "core/iekf.hpp"
 #include "core/intensity_residual.hpp"
 #include "core/parallel.hpp"
 #include "core/tsdf_volume.hpp"
@@ -30,12 +34,25 @@ enum class Stage { preprocess, predict, update, fuse, refresh };
 inline constexpr std::array<std::string_view, 5> kStageNames = {"preprocess", "predict", "update", "fuse",
                                                                 "refresh"};
 
+/// What the images alone say about the pose of a frame, given the frame that its patches were cut from and
+/// the model: cost(T_world_imu * d) = information and gradient around the pose. Batch estimators use it.
+struct PoseEvidence {
+  std::int64_t reference_ns = 0;  ///< capture instant of the frame that the patches were cut from
+  SE3 T_world_imu_reference;      ///< the pose that they were cut at
+  SE3 T_world_imu;                ///< where the quadratic was taken: the posterior
+  PoseQuadratic quadratic;
+};
+
 /// What happened in one frame.
 struct FrameReport {
   std::int64_t timestamp_ns = 0;
   FrameStatus status = FrameStatus::lost;
   std::string reason;  ///< why it is lost; empty otherwise
+  FrameHealth health = FrameHealth::good;
+  std::int64_t capture_ns = 0;  ///< the instant that the pose is of
   SE3 T_world_camera;
+  GaussianState estimate;                ///< the whole state and its covariance, after the frame
+  std::optional<PoseEvidence> evidence;  ///< of tracked frames but the first
   Vector3d velocity_world_mps = Vector3d::Zero();
   Vector3d angular_velocity_radps = Vector3d::Zero();  ///< body frame
   int patches = 0;                                     ///< projected into this frame
@@ -50,6 +67,8 @@ struct FrameReport {
   double chi2_photometric = 0;  ///< mean squared whitened residual of accepted patches
   double chi2_geometric = 0;
   std::size_t model_blocks = 0;
+  double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
+  double blur_px = 0;          ///< predicted length of motion blur at the image centre
   std::vector<IntensityResidual> intensity;           ///< of all tracked patches, by patch, then pixel
   std::array<double, kStageNames.size()> stage_ms{};  ///< wall time; the only part that is not reproducible
 };

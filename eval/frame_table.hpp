@@ -1,10 +1,11 @@
 // frames.csv: a row per frame.
 //
-// Columns: frame, timestamp, status, reason, patches (projected, tracked, accepted, shrunk, extended), pixels
-// (photometric, geometric), aie_grey and aie_pixels of the frame, iterations, converged, chi2 (photometric,
-// geometric), speed_mps, angular_speed_radps, blur_px (fx * angular speed * 10 ms: how far the image centre
-// moves during an exposure of 10 ms), model_blocks; then milliseconds per stage. All but the milliseconds are
-// the same when the run is repeated.
+// Columns: frame, timestamp, status, health and reason, patches (projected, tracked, accepted, shrunk,
+// extended), pixels (photometric, geometric), aie_grey and aie_pixels of the frame, iterations, converged,
+// chi2 (photometric, geometric), speed_mps, angular_speed_radps, blur_px (predicted), patch_motion_px (median
+// since the last frame), position_sigma_m and rotation_sigma_rad (the filter's, longest axis),
+// imu_time_offset_s, model_blocks; then milliseconds per stage. All but the milliseconds are the same when
+// the run is repeated.
 #pragma once
 
 #include <string>
@@ -17,7 +18,6 @@ namespace fusebench {
 [[nodiscard]] std::string frame_table_header();
 
 /// One line, with its line break. decode_ms: reading and undistorting the images.
-[[nodiscard]] std::string frame_table_row(std::size_t frame, const FrameReport& report,
-                                          const PinholeCamera& camera, double decode_ms);
+[[nodiscard]] std::string frame_table_row(std::size_t frame, const FrameReport& report, double decode_ms);
 
 }  // namespace fusebench

@@ -108,7 +108,7 @@ RunRecord record_of_question(const PreparedRun& run) {
 /// Takes one frame's report into the progress; ends the run when too many frames are lost in a row.
 void take_report(Progress& progress, std::size_t frame, const FrameReport& report, const PreparedRun& run,
                  double decode_ms) {
-  progress.frame_table += frame_table_row(frame, report, run.recording.rig.camera, decode_ms);
+  progress.frame_table += frame_table_row(frame, report, decode_ms);
   progress.decode_ms += decode_ms;
   for (std::size_t stage = 0; stage < report.stage_ms.size(); ++stage) {
     progress.stage_ms[stage] += report.stage_ms[stage];

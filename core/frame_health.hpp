@@ -1,0 +1,31 @@
+// What troubles a frame: judged by its images and by what became of the patches, so that a report can say why
+// a frame was lost or is weak. The paper leaves failures open.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/config.hpp"
+#include "core/patch_measurement.hpp"
+
+namespace fusebench {
+
+/// The first that applies, in this order.
+enum class FrameHealth {
+  dark,              ///< (nearly) no light: a covered or switched-off camera
+  occluded,          ///< something new stands before most of the patches
+  short_of_depth,    ///< most of the image has no usable depth
+  short_of_texture,  ///< nearly no gradients to track
+  inconsistent,      ///< most patches contradict the pose
+  short_of_patches,  ///< too few in view for another reason
+  blurred,           ///< the predicted blur is longer than a patch
+  good,
+};
+[[nodiscard]] std::string_view to_string(FrameHealth health);
+
+/// Judges a frame by its pyramid, its gated depth, the outcomes of the patches that were projected into it
+/// and the predicted length of its motion blur.
+[[nodiscard]] FrameHealth judge_health(const ObservedFrame& frame, std::span<const PatchOutcome> outcomes,
+                                       double blur_px, const Config& config);
+
+}  // namespace fusebench
