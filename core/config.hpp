@@ -81,6 +81,8 @@ struct MotionConfig {
   double acceleration_noise_mps2_sqrthz = 1.5;
   double angular_acceleration_noise_radps2_sqrthz = 3.0;
   double gravity_noise_rad_sqrthz = 1e-5;
+  double drift_factor_rotation = 3.3;
+  double drift_factor_position = 5.5;
   double exposure_s = 0.01;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -96,6 +98,13 @@ struct MotionConfig {
         "constant-velocity prior: white angular acceleration (rad/s^2/sqrt(Hz)); about 0.5 rad/s a frame");
     v.number("gravity_noise_rad_sqrthz", self.gravity_noise_rad_sqrthz, 0.0, 1.0,
              "random walk of the gravity direction against the map (rad/sqrt(Hz)), for the map's slow tilt");
+    v.number(
+        "drift_factor_rotation", self.drift_factor_rotation, 1.0, 100.0,
+        "the model drifts this much more in orientation than independent errors of the frames would make it "
+        "(standard deviations): consecutive frames see the same patches on the same model, so their errors "
+        "are "
+        "alike; only the reported uncertainty depends on it (NEES of simulated runs)");
+    v.number("drift_factor_position", self.drift_factor_position, 1.0, 100.0, "the same for position");
     v.number(
         "exposure_s", self.exposure_s, 0.0, 0.5,
         "exposure of a colour image, from which motion blur is predicted (seconds; no format records it, "
@@ -239,6 +248,8 @@ struct IekfConfig {
   double converged_rotation_rad = 1e-4;
   double converged_translation_m = 1e-4;
   double max_chi2_per_measurement = 9.0;
+  double scatter_prior_freedom = 1.0;
+  double scale_share = 0.2;
   int min_patches = 5;
   int max_lost_frames = 10;
 
@@ -252,6 +263,14 @@ struct IekfConfig {
              "and translates less than this");
     v.number("max_chi2_per_measurement", self.max_chi2_per_measurement, 0.1, 1e6,
              "a patch whose mean squared whitened residual exceeds this is rejected");
+    v.number(
+        "scatter_prior_freedom", self.scatter_prior_freedom, 0.0, 1e9,
+        "the variance of the residuals follows how patches disagree; this many degrees of freedom stand for "
+        "the claim before (pixels_per_measurement and the noise), 1e9 for it alone");
+    v.number(
+        "scale_share", self.scale_share, 0.0, 1.0,
+        "the noise of residuals follows what each tracked frame shows by this share (Huber's Proposal 2); 0 "
+        "keeps photometric.noise_grey and the depth noise as they are");
     v.number("min_patches", self.min_patches, 1, 1000,
              "with fewer accepted patches the prediction is kept and the frame counts as lost");
     v.number("max_lost_frames", self.max_lost_frames, 0, 100000,

@@ -13,6 +13,8 @@ FilterState plus(const FilterState& state, const StateVector& delta) {
   result.gravity_direction_world = s2_plus(state.gravity_direction_world, delta.segment<2>(kGravity));
   result.angular_velocity_imu_radps += delta.segment<3>(kAngularVelocity);
   result.imu_time_offset_s += delta[kImuTimeOffset];
+  result.reference_offset += delta.segment<kPoseSize>(kReferencePose);
+  result.model_offset += delta.segment<kPoseSize>(kModelPose);
   return result;
 }
 
@@ -26,6 +28,8 @@ StateVector minus(const FilterState& to, const FilterState& from) {
   delta.segment<2>(kGravity) = s2_minus(to.gravity_direction_world, from.gravity_direction_world);
   delta.segment<3>(kAngularVelocity) = to.angular_velocity_imu_radps - from.angular_velocity_imu_radps;
   delta[kImuTimeOffset] = to.imu_time_offset_s - from.imu_time_offset_s;
+  delta.segment<kPoseSize>(kReferencePose) = to.reference_offset - from.reference_offset;
+  delta.segment<kPoseSize>(kModelPose) = to.model_offset - from.model_offset;
   return delta;
 }
 

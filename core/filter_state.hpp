@@ -1,8 +1,10 @@
-// The state of the filter and its 21-dimensional error state.
+// The state of the filter and its 33-dimensional error state.
 //
 // x (+) d: rotation and gravity move on their manifolds (R Exp(d), S2), everything else adds. The order of
 // the error state is the order of StateOffset. World is the first camera frame, so gravity's direction is a
-// state.
+// state. What the images tell is relative to the frame that the patches were cut from, and to the model; the
+// errors of these two are part of the state (stochastic cloning, Roumeliotis & Burdick 2002), see
+// pose_anchors.hpp.
 #pragma once
 
 #include "core/geometry.hpp"
@@ -19,7 +21,9 @@ enum StateOffset : int {
   kGravity = 15,            ///< rad, tangent of S2 at the gravity direction
   kAngularVelocity = 17,    ///< rad/s, IMU
   kImuTimeOffset = 20,      ///< s
-  kStateSize = 21,
+  kReferencePose = 21,      ///< rad and m as the pose: error of the pose that the patches were cut at
+  kModelPose = 27,          ///< the same: error of the model's place in the world, at that pose
+  kStateSize = 33,
 };
 inline constexpr int kPoseSize = 6;  ///< rotation and position lead the error state
 
@@ -36,6 +40,9 @@ struct FilterState {
   Vector3d angular_velocity_imu_radps = Vector3d::Zero();
   /// IMU clock minus camera clock: a frame stamped t shows the pose at t + offset of the IMU's clock.
   double imu_time_offset_s = 0;
+  SE3 T_world_imu_reference;                     ///< where the patches were cut; no error of its own
+  Vector6d reference_offset = Vector6d::Zero();  ///< correction of that pose since, in its tangent
+  Vector6d model_offset = Vector6d::Zero();      ///< where the model is in the world, in the same tangent
 };
 
 /// Mean and covariance (in the tangent space at the mean).

@@ -11,7 +11,11 @@ namespace {
 
 constexpr double kDarkGrey = 6.0;         // mean of the image; noise and black level of a covered camera
 constexpr double kLeastDepthShare = 0.1;  // of the image; patches need half of their pixels anyway
-constexpr double kGradientGrey = 4.0;     // between neighbours of the coarsest level; above its noise
+// Of the patches in view. Less than half is enough: near surfaces have the strongest corners, so a thing of
+// this size outvotes the rest of the scene once patches are cut from it (a hand before 40 % of the image
+// does).
+constexpr double kCoveredShare = 0.25;
+constexpr double kGradientGrey = 4.0;  // between neighbours of the coarsest level; above its noise
 constexpr double kLeastTextureShare = 0.01;
 
 double mean_grey(const GreyImage& image) {
@@ -72,7 +76,7 @@ FrameHealth judge_health(const ObservedFrame& frame, std::span<const PatchOutcom
     tracked += outcome.tracked ? 1 : 0;
     accepted += outcome.accepted ? 1 : 0;
   }
-  if (in_view > 0 && 2 * covered > in_view) return FrameHealth::occluded;
+  if (in_view > 0 && covered > kCoveredShare * in_view) return FrameHealth::occluded;
   if (depth_share(frame.depth_m) < kLeastDepthShare) return FrameHealth::short_of_depth;
   if (texture_share(frame.pyramid.back()) < kLeastTextureShare) return FrameHealth::short_of_texture;
   if (tracked > 0 && 2 * accepted < tracked) return FrameHealth::inconsistent;

@@ -13,7 +13,7 @@ namespace fusebench {
 /// The first that applies, in this order.
 enum class FrameHealth {
   dark,              ///< (nearly) no light: a covered or switched-off camera
-  occluded,          ///< something new stands before most of the patches
+  occluded,          ///< something new stands before a quarter of the patches or more
   short_of_depth,    ///< most of the image has no usable depth
   short_of_texture,  ///< nearly no gradients to track
   inconsistent,      ///< most patches contradict the pose

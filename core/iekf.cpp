@@ -7,12 +7,20 @@ namespace fusebench {
 
 namespace {
 
-/// One iterate: y, the chart coordinates d = P_(:,pose) y, and the state there.
+/// One iterate: y, the chart coordinates d = P B^T y, the state there, and what the images are compared at.
 struct Iterate {
-  Vector6d y = Vector6d::Zero();
+  MeasuredVector y = MeasuredVector::Zero();
   StateVector delta = StateVector::Zero();
+  MeasuredVector measured = MeasuredVector::Zero();  ///< B d
+  MeasuredVector tangents = MeasuredVector::Zero();  ///< of the poses, at the prior's pose
   FilterState state;
+  PoseHypothesis poses;
 };
+
+SE3 moved(const SE3& T_world_imu, const Vector6d& tangent) {
+  return {(T_world_imu.rotation * so3_exp(tangent.head<3>())).normalized(),
+          T_world_imu.translation + tangent.tail<3>()};
+}
 
 class Update {
  public:
@@ -20,13 +28,18 @@ class Update {
       : prior_(prior),
         measurement_(measurement),
         config_(config),
-        gain_columns_(prior.covariance.leftCols<kPoseSize>()),
-        pose_covariance_(prior.covariance.topLeftCorner<kPoseSize, kPoseSize>()) {}
+        combinations_(measured_combinations(prior.mean)),
+        gain_columns_(prior.covariance * combinations_.transpose()),
+        measured_covariance_(combinations_ * gain_columns_) {
+    // What an earlier update of the same patches has learnt of the reference pose.
+    known_.head<kPoseSize>() = -pose_transport(prior.mean.T_world_imu, prior.mean.T_world_imu_reference) *
+                               prior.mean.reference_offset;
+  }
 
-  IekfResult run(const Vector6d& start) {
+  IekfResult run(const MeasuredVector& start) {
     IekfResult result;
     Iterate now = at(start);
-    PoseQuadratic quadratic;
+    MeasurementQuadratic quadratic;
     const int stages = measurement_.stages();
     for (int stage = 0; stage < stages; ++stage) {
       const bool last = stage + 1 == stages;
@@ -38,64 +51,103 @@ class Update {
       if (budget <= 0) continue;
       iterate_stage(stage, budget, last, now, quadratic, result);
     }
-    result.map_cost_posterior = map_cost(now, quadratic.cost);
+    result.map_cost_posterior = map_cost(now, quadratic.cost());
     result.posterior = posterior(now, quadratic);
-    result.measurement = quadratic;
+    result.measurement = at_posterior(now, quadratic);
     return result;
   }
 
  private:
-  Iterate at(const Vector6d& y) const {
+  Iterate at(const MeasuredVector& y) const {
     Iterate iterate;
     iterate.y = y;
     iterate.delta = gain_columns_ * y;
+    iterate.measured = measured_covariance_ * y;
     iterate.state = plus(prior_.mean, iterate.delta);
+    iterate.tangents = iterate.measured + known_;
+    iterate.poses = {moved(prior_.mean.T_world_imu, iterate.tangents.head<kPoseSize>()),
+                     moved(prior_.mean.T_world_imu, iterate.tangents.tail<kPoseSize>())};
     return iterate;
   }
 
   double map_cost(const Iterate& iterate, double measurement_cost) const {
-    return 0.5 * iterate.y.dot(pose_covariance_ * iterate.y) + measurement_cost;
+    return 0.5 * iterate.y.dot(iterate.measured) + measurement_cost;
   }
 
-  /// Derivative of the pose's tangent at the iterate by the chart coordinates at the prior.
-  static Matrix6d chart_jacobian(const Iterate& iterate) {
-    Matrix6d jacobian = Matrix6d::Identity();
-    jacobian.topLeftCorner<3, 3>() = so3_right_jacobian(iterate.delta.segment<3>(kRotation));
+  /// Derivative of the poses' tangents at the iterate by the chart coordinates at the prior.
+  static MeasuredMatrix chart_jacobian(const Iterate& iterate) {
+    MeasuredMatrix jacobian = MeasuredMatrix::Identity();
+    jacobian.topLeftCorner<3, 3>() = so3_right_jacobian(iterate.tangents.head<3>());
+    jacobian.block<3, 3>(kPoseSize, kPoseSize) = so3_right_jacobian(iterate.tangents.segment<3>(kPoseSize));
     return jacobian;
   }
 
-  void iterate_stage(int stage, int budget, bool last, Iterate& now, PoseQuadratic& quadratic,
+  /// Information and gradient of the measurement in the chart at the prior.
+  struct ChartQuadratic {
+    MeasuredMatrix information = MeasuredMatrix::Zero();
+    MeasuredVector gradient;
+  };
+  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const MeasuredMatrix& chart) {
+    ChartQuadratic result;
+    result.information.topLeftCorner<kPoseSize, kPoseSize>() = quadratic.by_reference.information;
+    result.information.bottomRightCorner<kPoseSize, kPoseSize>() = quadratic.by_model.information;
+    result.information = chart.transpose() * result.information * chart;
+    result.gradient << quadratic.by_reference.gradient, quadratic.by_model.gradient;
+    result.gradient = chart.transpose() * result.gradient;
+    return result;
+  }
+
+  void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,
                      IekfResult& result) {
-    quadratic = measurement_.linearise(now.state.T_world_imu, stage, false);
-    if (last) result.map_cost_prior = map_cost(now, quadratic.cost);
+    quadratic = measurement_.linearise(now.poses, stage, false);
+    if (last) result.map_cost_prior = map_cost(now, quadratic.cost());
     result.converged = false;
+    bool gated = false;
     for (int iteration = 0; iteration < budget && !result.converged; ++iteration) {
-      const Iterate before = now;
+      const PoseHypothesis before = now.poses;
       if (!step(now, quadratic)) break;
       ++result.iterations;
-      const double turned =
-          rotation_angle_rad(before.state.T_world_imu.rotation, now.state.T_world_imu.rotation);
-      const double moved = (now.state.T_world_imu.translation - before.state.T_world_imu.translation).norm();
-      result.converged = turned < config_.converged_rotation_rad && moved < config_.converged_translation_m;
-      quadratic = measurement_.linearise(now.state.T_world_imu, stage, last);
+      result.converged = is_small_step(before.T_world_imu_by_reference, now.poses.T_world_imu_by_reference) &&
+                         is_small_step(before.T_world_imu_by_model, now.poses.T_world_imu_by_model);
+      quadratic = measurement_.linearise(now.poses, stage, last);
+      gated = last;
     }
+    if (last && !gated) quadratic = measurement_.linearise(now.poses, stage, true);
+  }
+
+  bool is_small_step(const SE3& from, const SE3& to) const {
+    return rotation_angle_rad(from.rotation, to.rotation) < config_.converged_rotation_rad &&
+           (to.translation - from.translation).norm() < config_.converged_translation_m;
+  }
+
+  /// Both parts around the posterior: the one by reference was taken at another pose.
+  static PoseQuadratic at_posterior(const Iterate& now, const MeasurementQuadratic& quadratic) {
+    const SE3& from = now.poses.T_world_imu_by_reference;
+    const SE3& to = now.state.T_world_imu;
+    Vector6d step;
+    step << so3_log(from.rotation.conjugate() * to.rotation), to.translation - from.translation;
+    PoseQuadratic sum = quadratic.by_model;
+    sum.add(quadratic.by_reference, 1.0);
+    const Vector6d change = quadratic.by_reference.information * step;
+    sum.cost += step.dot(quadratic.by_reference.gradient) + 0.5 * step.dot(change);
+    sum.gradient += change;
+    return sum;
   }
 
   /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.
-  bool step(Iterate& now, const PoseQuadratic& quadratic) {
-    const Matrix6d chart = chart_jacobian(now);
-    const Matrix6d information = chart.transpose() * quadratic.information * chart;
-    const Vector6d gradient = chart.transpose() * quadratic.gradient;
-    // Stationarity of J in y: (I + Lambda P) y = Lambda P y_now - g.
-    const Matrix6d system = Matrix6d::Identity() + information * pose_covariance_;
-    const Vector6d target = system.partialPivLu().solve(information * (pose_covariance_ * now.y) - gradient);
-    const Vector6d full = target - now.y;
-    const Vector6d tangent_step = chart * (pose_covariance_ * full);
-    const double cost_now = map_cost(now, quadratic.cost);
+  bool step(Iterate& now, const MeasurementQuadratic& quadratic) {
+    const MeasuredMatrix chart = chart_jacobian(now);
+    const ChartQuadratic local = in_chart(quadratic, chart);
+    // Stationarity of J in y: (I + Lambda S) y = Lambda S y_now - g, with S = B P B^T.
+    const MeasuredMatrix system = MeasuredMatrix::Identity() + local.information * measured_covariance_;
+    const MeasuredVector target =
+        system.partialPivLu().solve(local.information * now.measured - local.gradient);
+    const MeasuredVector full = target - now.y;
+    const MeasuredVector tangent_step = chart * (measured_covariance_ * full);
+    const double cost_now = map_cost(now, quadratic.cost());
     for (double fraction = 1.0; fraction > 0.05; fraction *= 0.5) {
       const Iterate trial = at(now.y + fraction * full);
-      const double cost =
-          map_cost(trial, measurement_.trial_cost(trial.state.T_world_imu, tangent_step, fraction));
+      const double cost = map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction));
       if (cost <= cost_now) {
         measurement_.accept();
         now = trial;
@@ -105,27 +157,29 @@ class Update {
     return false;
   }
 
-  GaussianState posterior(const Iterate& now, const PoseQuadratic& quadratic) const {
-    const Matrix6d chart = chart_jacobian(now);
-    const Matrix6d information = chart.transpose() * quadratic.information * chart;
-    const Matrix6d system = Matrix6d::Identity() + information * pose_covariance_;
-    const Matrix6d reduction = system.partialPivLu().solve(information);
-    const StateMatrix in_chart = prior_.covariance - gain_columns_ * reduction * gain_columns_.transpose();
+  GaussianState posterior(const Iterate& now, const MeasurementQuadratic& quadratic) const {
+    const MeasuredMatrix information = in_chart(quadratic, chart_jacobian(now)).information;
+    const MeasuredMatrix system = MeasuredMatrix::Identity() + information * measured_covariance_;
+    const MeasuredMatrix reduction = system.partialPivLu().solve(information);
+    const StateMatrix in_chart_at_prior =
+        prior_.covariance - gain_columns_ * reduction * gain_columns_.transpose();
     const StateMatrix transport = chart_transport(prior_.mean, now.delta);
-    return {now.state, symmetrised(transport * in_chart * transport.transpose())};
+    return {now.state, symmetrised(transport * in_chart_at_prior * transport.transpose())};
   }
 
   const GaussianState& prior_;
   PoseMeasurement& measurement_;
   const IekfConfig& config_;
-  const Eigen::Matrix<double, kStateSize, kPoseSize> gain_columns_;
-  const Matrix6d pose_covariance_;
+  const Eigen::Matrix<double, kMeasuredSize, kStateSize> combinations_;  ///< B
+  const Eigen::Matrix<double, kStateSize, kMeasuredSize> gain_columns_;  ///< P B^T
+  MeasuredVector known_ = MeasuredVector::Zero();  ///< tangents of the poses at the prior
+  const MeasuredMatrix measured_covariance_;       ///< S = B P B^T
 };
 
 }  // namespace
 
 IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement, const IekfConfig& config,
-                       const Vector6d& start) {
+                       const MeasuredVector& start) {
   return Update(prior, measurement, config).run(start);
 }
 

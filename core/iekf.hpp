@@ -3,13 +3,14 @@
 //   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
-// every one. A measurement sees the pose only, so the optimum is x_prior (+) P_(:,pose) y for some y in R^6:
-// the update iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity
-// along by their correlations.
+// every one. A measurement sees two combinations B d of the error state only (pose_anchors.hpp), so the
+// optimum is x_prior (+) P B^T y for some y in R^12: the update iterates on y, never inverts P (which may be
+// singular), and carries velocity, biases and gravity along by their correlations.
 #pragma once
 
 #include "core/config.hpp"
 #include "core/filter_state.hpp"
+#include "core/pose_anchors.hpp"
 
 namespace fusebench {
 
@@ -19,7 +20,32 @@ struct PoseQuadratic {
   Matrix6d information = Matrix6d::Zero();  ///< H^T R^-1 H
   Vector6d gradient = Vector6d::Zero();     ///< H^T R^-1 r
   double cost = 0;                          ///< robust cost of the residuals, at the pose
+
+  void add(const PoseQuadratic& other, double factor) {
+    information += factor * other.information;
+    gradient += factor * other.gradient;
+    cost += factor * other.cost;
+  }
 };
+
+/// Where the IMU is, if the frame that the patches were cut from, or the model, is where it was thought to
+/// be. The two differ by what the update learns about these.
+struct PoseHypothesis {
+  SE3 T_world_imu_by_reference;
+  SE3 T_world_imu_by_model;
+};
+
+/// The cost of a measurement, in the tangents of the two poses of a hypothesis.
+struct MeasurementQuadratic {
+  PoseQuadratic by_reference;
+  PoseQuadratic by_model;
+
+  [[nodiscard]] double cost() const { return by_reference.cost + by_model.cost; }
+};
+
+inline constexpr int kMeasuredSize = 2 * kPoseSize;
+using MeasuredVector = Eigen::Matrix<double, kMeasuredSize, 1>;
+using MeasuredMatrix = Eigen::Matrix<double, kMeasuredSize, kMeasuredSize>;
 
 /// What an update needs of a measurement. Nuisance parameters (brightness of patches) are the measurement's
 /// own: it eliminates them in linearise() and moves them along in trial_cost() and accept().
@@ -33,10 +59,11 @@ class PoseMeasurement {
   /// Number of resolutions, coarse to fine; the last one is the measurement itself.
   [[nodiscard]] virtual int stages() const { return 1; }
   /// Fixes associations, visibility and robust weights at the pose. `gate`: reject what is inconsistent.
-  [[nodiscard]] virtual PoseQuadratic linearise(const SE3& T_world_imu, int stage, bool gate) = 0;
-  /// Cost at another pose with everything that the last linearise() fixed; `step` is the full tangent step
-  /// from there, of which `fraction` was taken.
-  [[nodiscard]] virtual double trial_cost(const SE3& T_world_imu, const Vector6d& step, double fraction) = 0;
+  [[nodiscard]] virtual MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) = 0;
+  /// Cost at other poses with everything that the last linearise() fixed; `step` is the full tangent step
+  /// from there (by reference, then by model), of which `fraction` was taken.
+  [[nodiscard]] virtual double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
+                                          double fraction) = 0;
   /// The last trial becomes the current estimate.
   virtual void accept() = 0;
 };
@@ -54,6 +81,7 @@ struct IekfResult {
 /// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the
 /// prediction).
 [[nodiscard]] IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
-                                     const IekfConfig& config, const Vector6d& start = Vector6d::Zero());
+                                     const IekfConfig& config,
+                                     const MeasuredVector& start = MeasuredVector::Zero());
 
 }  // namespace fusebench

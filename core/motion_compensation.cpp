@@ -35,9 +35,13 @@ bool is_inside(const Vector2d& pixel_px, const PinholeCamera& camera) {
          pixel_px.y() >= -kRounding_px && pixel_px.y() <= camera.height_px - 1 + kRounding_px;
 }
 
-int nearest_index(double coordinate, int size) {
-  return static_cast<int>(std::lround(std::clamp(coordinate, 0.0, size - 1.0)));
+/// std::lround for numbers from 0 on; that one is a call, eleven times a pixel.
+int rounded(double value) {
+  const int floored = static_cast<int>(value);
+  return value - floored >= 0.5 ? floored + 1 : floored;  // the difference is exact
 }
+
+int nearest_index(double coordinate, int size) { return rounded(std::clamp(coordinate, 0.0, size - 1.0)); }
 
 /// Neighbouring pixels come from neighbouring sources: each search starts with the displacement of the pixel
 /// before it in the row, and only the first of a row starts from nothing.
@@ -100,7 +104,7 @@ Rgb sample_color(const ColorImage& image, double x, double y) {
   for (std::size_t c = 0; c < 3; ++c) {
     const double upper = (1 - ax) * image(x0, y0)[c] + ax * image(x0 + 1, y0)[c];
     const double lower = (1 - ax) * image(x0, y0 + 1)[c] + ax * image(x0 + 1, y0 + 1)[c];
-    result[c] = static_cast<std::uint8_t>(std::lround((1 - ay) * upper + ay * lower));
+    result[c] = static_cast<std::uint8_t>(rounded((1 - ay) * upper + ay * lower));
   }
   return result;
 }
@@ -111,7 +115,7 @@ void compensate_color_row(const RgbdFrame& source, const PinholeCamera& camera,
     const Vector2d from = color_source(camera, motions, u, v, target.depth_m(u, v)).value_or(Vector2d(u, v));
     const double x = std::clamp(from.x(), 0.0, camera.width_px - 1.0);
     const double y = std::clamp(from.y(), 0.0, camera.height_px - 1.0);
-    target.grey(u, v) = static_cast<std::uint8_t>(std::lround(sample_bilinear(source.grey, x, y).value));
+    target.grey(u, v) = static_cast<std::uint8_t>(rounded(sample_bilinear(source.grey, x, y).value));
     target.color(u, v) = sample_color(source.color, x, y);
     if (!is_inside(from, camera)) target.depth_m(u, v) = 0;  // no colour, no use
   }

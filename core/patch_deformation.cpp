@@ -138,8 +138,7 @@ void test_mutual_occlusion(std::span<std::vector<WarpedPixel>> warped, int width
       if (!w.visible) continue;
       const double front_m = cell(w);
       const double tolerance_m = std::max(3.0 * depth_sigma_m(front_m, depth), depth.edge_jump * front_m);
-      w.covered = w.depth_m > front_m + tolerance_m;
-      w.visible = !w.covered;
+      w.visible = w.depth_m <= front_m + tolerance_m;
     }
   }
 }

@@ -23,7 +23,7 @@ struct WarpedPixel {
   double depth_m = 0;                             ///< z of the pixel's own surface point
   bool in_image = false;  ///< in front of the camera and inside, with room to interpolate
   bool visible = false;   ///< in_image and not occluded
-  bool covered = false;   ///< in_image, and something nearer was found there
+  bool covered = false;   ///< in_image, and something nearer was measured there
 };
 
 /// Projects the pixels of one level. `posed` has the camera of that level. visible = in_image until a test

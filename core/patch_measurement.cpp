@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/depth_gates.hpp"
+#include "core/patch_scatter.hpp"
 #include "core/residuals.hpp"
 
 namespace fusebench {
@@ -18,20 +19,24 @@ double prior_information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma
 }  // namespace
 
 struct PatchMeasurement::PosedLevels {
-  PosedLevels(const SensorRig& rig, const SE3& T_world_imu, int levels) {
+  PosedLevels(const SensorRig& rig, const PoseHypothesis& poses, int levels)
+      : by_model(rig.camera, poses.T_world_imu_by_model, rig.T_imu_camera) {
     for (int level = 0; level < levels; ++level) {
-      at.emplace_back(camera_at_level(rig.camera, level), T_world_imu, rig.T_imu_camera);
+      at.emplace_back(camera_at_level(rig.camera, level), poses.T_world_imu_by_reference, rig.T_imu_camera);
     }
   }
-  std::vector<PosedCamera> at;
+  std::vector<PosedCamera> at;  ///< by reference
+  PosedCamera by_model;
 };
 
 PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, const ObservedFrame& frame,
-                                   std::span<const Patch> patches, const Workers& workers)
+                                   std::span<const Patch> patches, const ResidualScale& scale,
+                                   const Workers& workers)
     : config_(config),
       rig_(rig),
       frame_(frame),
       patches_(patches),
+      scale_(scale),
       workers_(workers),
       warped_(static_cast<std::size_t>(config.patches.levels)),
       states_(patches.size()),
@@ -39,27 +44,36 @@ PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, c
   for (auto& level : warped_) level.resize(patches.size());
 }
 
-PoseQuadratic PatchMeasurement::linearise(const SE3& T_world_imu, int stage, bool gate) {
+MeasurementQuadratic PatchMeasurement::linearise(const PoseHypothesis& poses, int stage, bool gate) {
   const int finest_level = config_.patches.levels - 1 - stage;
-  const PosedLevels posed(rig_, T_world_imu, config_.patches.levels);
+  const PosedLevels posed(rig_, poses, config_.patches.levels);
   warp_all(posed, finest_level);
   workers_.for_chunks(patches_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       outcomes_[p] = {};
-      states_[p].quadratic = {};
+      states_[p].photometric = {};
+      states_[p].geometric = {};
       associate_planes(p, posed, finest_level);
       sum_photometric(p, posed, finest_level);
       sum_geometric(p, posed);
       if (finest_level == 0) judge_visibility(p, gate);
     }
   });
-  PoseQuadratic sum;
+  photometric_variance_ = measured_variance(&PatchState::photometric);
+  geometric_variance_ = measured_variance(&PatchState::geometric);
+  MeasurementQuadratic sum;
   for (const PatchState& state : states_) {
-    sum.information += state.quadratic.information;
-    sum.gradient += state.quadratic.gradient;
-    sum.cost += state.quadratic.cost;
+    sum.by_reference.add(state.photometric, 1.0 / photometric_variance_);
+    sum.by_model.add(state.geometric, 1.0 / geometric_variance_);
   }
   return sum;
+}
+
+double PatchMeasurement::measured_variance(PoseQuadratic PatchState::*kind) const {
+  std::vector<PoseQuadratic> clusters;
+  clusters.reserve(states_.size());
+  for (const PatchState& state : states_) clusters.push_back(state.*kind);
+  return variance_factor(patch_scatter(clusters), config_.iekf.scatter_prior_freedom);
 }
 
 void PatchMeasurement::warp_all(const PosedLevels& posed, int finest_level) {
@@ -85,7 +99,7 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
   PatchState& state = states_[patch];
   state.pairs.clear();
   if (config_.terms.geometric_weight <= 0) return;
-  const PosedCamera& camera = posed.at.front();
+  const PosedCamera& camera = posed.by_model;
   const double min_normal_cosine = std::cos(radians(config_.geometric.max_normal_angle_deg));
   const double min_incidence_cosine = std::cos(radians(config_.depth.max_incidence_deg));
   for (int level = finest_level; level < config_.patches.levels; ++level) {
@@ -108,8 +122,9 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
       // Depth noise acts along the ray; the plane sees its share along the normal.
       const double along_ray_m =
           depth_sigma_m(measured_camera.z(), config_.depth) * measured_camera.norm() / measured_camera.z();
-      state.pairs.push_back({camera.to_imu(measured_camera), pixel.point_world, pixel.normal_world,
-                             std::hypot(along_ray_m * incidence_cosine, config_.geometric.model_noise_m)});
+      state.pairs.push_back(
+          {camera.to_imu(measured_camera), pixel.point_world, pixel.normal_world,
+           scale_.geometric * std::hypot(along_ray_m * incidence_cosine, config_.geometric.model_noise_m)});
     }
   }
 }
@@ -117,20 +132,20 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
 void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed, int finest_level) {
   PatchState& state = states_[patch];
   PatchOutcome& outcome = outcomes_[patch];
-  PoseQuadratic& sum = state.quadratic;
+  PoseQuadratic& sum = state.photometric;
   Brightness& light = state.brightness;
   state.active.clear();
   light.information.setZero();
   light.gradient.setZero();
   light.by_pose.setZero();
-  const double noise = config_.photometric.noise_grey;
+  const double noise = scale_.photometric * config_.photometric.noise_grey;
   const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
   for (int level = finest_level; level < config_.patches.levels; ++level) {
     const auto l = static_cast<std::size_t>(level);
     const auto& pixels = patches_[patch].levels[l].pixels;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const WarpedPixel& w = warped_[l][patch][i];
-      if (!w.visible) continue;
+      if (!w.visible || !pixels[i].depth_confirmed) continue;
       const IntensitySample observed = sample_bilinear(frame_.pyramid[l], w.pixel_px.x(), w.pixel_px.y());
       const Projection projection = project_with_jacobian(posed.at[l], w.warp_point_camera);
       const PhotometricResidual r = photometric_residual(observed, projection.jacobian, pixels[i].intensity,
@@ -146,6 +161,7 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       light.gradient += weight * r.value_grey * by_light;
       light.by_pose += weight * by_light * r.jacobian;
       outcome.chi2_photometric += whitened * whitened;
+      outcome.robust_photometric += robust.weight * whitened * whitened;
       ++outcome.photometric_residuals;
       state.active.push_back({level, &pixels[i]});
     }
@@ -159,10 +175,10 @@ void PatchMeasurement::reduce_brightness(PatchState& state) const {
                        prior_information(config_.photometric.offset_sigma_grey));
   light.information += prior.asDiagonal().toDenseMatrix();
   light.gradient += prior.cwiseProduct(light.value - Vector2d(1.0, 0.0));
-  state.quadratic.cost += brightness_cost(light.value);
+  state.photometric.cost += brightness_cost(light.value);
   const Eigen::Matrix2d inverse = light.information.inverse();
-  state.quadratic.information -= light.by_pose.transpose() * inverse * light.by_pose;
-  state.quadratic.gradient -= light.by_pose.transpose() * inverse * light.gradient;
+  state.photometric.information -= light.by_pose.transpose() * inverse * light.by_pose;
+  state.photometric.gradient -= light.by_pose.transpose() * inverse * light.gradient;
 }
 
 double PatchMeasurement::brightness_cost(const Vector2d& value) const {
@@ -178,14 +194,15 @@ void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed
   const double share = config_.terms.geometric_weight / config_.geometric.pixels_per_measurement;
   for (const PlanePair& pair : state.pairs) {
     const PlaneResidual r =
-        point_to_plane_residual(posed.at.front(), pair.point_imu, pair.plane_point_world, pair.normal_world);
+        point_to_plane_residual(posed.by_model, pair.point_imu, pair.plane_point_world, pair.normal_world);
     const double whitened = r.value_m / pair.sigma_m;
     const RobustValue robust = huber(whitened, config_.geometric.huber_sigmas);
     const double weight = share * robust.weight / (pair.sigma_m * pair.sigma_m);
-    state.quadratic.information += weight * r.jacobian.transpose() * r.jacobian;
-    state.quadratic.gradient += weight * r.value_m * r.jacobian.transpose();
-    state.quadratic.cost += share * robust.cost;
+    state.geometric.information += weight * r.jacobian.transpose() * r.jacobian;
+    state.geometric.gradient += weight * r.value_m * r.jacobian.transpose();
+    state.geometric.cost += share * robust.cost;
     outcome.chi2_geometric += whitened * whitened;
+    outcome.robust_geometric += robust.weight * whitened * whitened;
     ++outcome.geometric_residuals;
   }
 }
@@ -220,12 +237,14 @@ void PatchMeasurement::judge_visibility(std::size_t patch, bool gate) {
                         Vector2d::Constant(config_.patches.size_px % 2 == 0 ? 0.5 : 0.0);
     outcome.mean_error_grey = difference / outcome.usable_pixels;
   }
-  outcome.accepted = outcome.tracked && (!gate || is_consistent(outcome));
+  const bool informative = outcome.photometric_residuals + outcome.geometric_residuals > 0;
+  outcome.accepted = outcome.tracked && informative && (!gate || is_consistent(outcome));
   if (!outcome.accepted) {
     // Rejected honestly: neither its residuals nor its brightness prior count.
     state.active.clear();
     state.pairs.clear();
-    state.quadratic = {};
+    state.photometric = {};
+    state.geometric = {};
   }
 }
 
@@ -241,13 +260,15 @@ bool PatchMeasurement::is_consistent(const PatchOutcome& outcome) const {
          outcome.chi2_geometric <= limit * std::max(1, outcome.geometric_residuals);
 }
 
-double PatchMeasurement::trial_cost(const SE3& T_world_imu, const Vector6d& step, double fraction) {
-  const PosedLevels posed(rig_, T_world_imu, config_.patches.levels);
+double PatchMeasurement::trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
+                                    double fraction) {
+  const PosedLevels posed(rig_, poses, config_.patches.levels);
   std::vector<double> costs(states_.size(), 0.0);
   workers_.for_chunks(states_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       Brightness& light = states_[p].brightness;
-      const Vector2d light_step = -light.information.inverse() * (light.gradient + light.by_pose * step);
+      const Vector2d light_step =
+          -light.information.inverse() * (light.gradient + light.by_pose * step.head<kPoseSize>());
       light.trial = light.value + fraction * light_step;
       costs[p] = patch_cost(states_[p], posed);
     }
@@ -259,13 +280,14 @@ double PatchMeasurement::trial_cost(const SE3& T_world_imu, const Vector6d& step
 
 double PatchMeasurement::patch_cost(const PatchState& state, const PosedLevels& posed) const {
   if (state.active.empty() && state.pairs.empty()) return 0;
-  double cost = brightness_cost(state.brightness.trial) + photometric_cost(state, posed);
+  double cost =
+      (brightness_cost(state.brightness.trial) + photometric_cost(state, posed)) / photometric_variance_;
   const double share = config_.terms.geometric_weight / config_.geometric.pixels_per_measurement;
   for (const PlanePair& pair : state.pairs) {
-    const PosedCamera& camera = posed.at.front();
+    const PosedCamera& camera = posed.by_model;
     const Vector3d point_world = camera.R_world_imu * pair.point_imu + camera.t_world_imu_m;
     const double whitened = pair.normal_world.dot(point_world - pair.plane_point_world) / pair.sigma_m;
-    cost += share * huber(whitened, config_.geometric.huber_sigmas).cost;
+    cost += share * huber(whitened, config_.geometric.huber_sigmas).cost / geometric_variance_;
   }
   return cost;
 }
@@ -286,7 +308,8 @@ double PatchMeasurement::photometric_cost(const PatchState& state, const PosedLe
     const double y = std::clamp(pixel.y(), 0.0, image.height - 1.0);
     const double predicted =
         state.brightness.trial.x() * active.pixel->intensity + state.brightness.trial.y();
-    const double whitened = (sample_bilinear(image, x, y).value - predicted) / config_.photometric.noise_grey;
+    const double whitened = (sample_bilinear(image, x, y).value - predicted) /
+                            (scale_.photometric * config_.photometric.noise_grey);
     cost += share * huber(whitened, config_.photometric.huber_sigmas).cost;
   }
   return cost;

@@ -1,6 +1,7 @@
 // The measurement of the filter: all patches against one frame. Stacks the photometric (Eq. 3) and
 // point-to-plane (Eq. 4) residuals of all pixels of all patches, whitened and robustly weighted, and reduces
-// them to a 6x6 information form.
+// them to two 6x6 information forms: colour tells the pose against the reference frame, depth against the
+// model.
 #pragma once
 
 #include <span>
@@ -12,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "core/patch_deformation.hpp"
 #include "core/patches.hpp"
+#include "core/residual_scale.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {
@@ -30,11 +32,13 @@ struct PatchOutcome {
   bool shrunk = false;    ///< lost pixels to occlusion
   bool extended = false;
   int usable_pixels = 0;   ///< visible, level 0
-  int covered_pixels = 0;  ///< in the image, behind something that was measured or warped before them
+  int covered_pixels = 0;  ///< in the image, behind something that was measured before them
   int photometric_residuals = 0;
   int geometric_residuals = 0;
   double chi2_photometric = 0;  ///< sum of squared whitened residuals
   double chi2_geometric = 0;
+  double robust_photometric = 0;  ///< sum of min(r^2, k |r|) of the same, with Huber's k
+  double robust_geometric = 0;
   double gain = 1;             ///< brightness of the frame against the patch's reference
   double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
   Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
@@ -44,15 +48,19 @@ class PatchMeasurement final : public PoseMeasurement {
  public:
   /// All references must outlive the measurement.
   PatchMeasurement(const Config& config, const SensorRig& rig, const ObservedFrame& frame,
-                   std::span<const Patch> patches, const Workers& workers);
+                   std::span<const Patch> patches, const ResidualScale& scale, const Workers& workers);
 
   [[nodiscard]] int stages() const override { return config_.patches.levels; }
-  [[nodiscard]] PoseQuadratic linearise(const SE3& T_world_imu, int stage, bool gate) override;
-  [[nodiscard]] double trial_cost(const SE3& T_world_imu, const Vector6d& step, double fraction) override;
+  [[nodiscard]] MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) override;
+  [[nodiscard]] double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
+                                  double fraction) override;
   void accept() override;
 
   /// One outcome a patch, from the last linearise() (which must have been of the last stage).
   [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
+  /// By what factors the variances of the residuals exceed their claim there (patch_scatter.hpp).
+  [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
+  [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
   /// Level-0 intensity differences of tracked patches there.
   [[nodiscard]] std::vector<IntensityResidual> intensity_residuals() const;
 
@@ -82,9 +90,10 @@ class PatchMeasurement final : public PoseMeasurement {
     Brightness brightness;
     std::vector<ActivePixel> active;
     std::vector<PlanePair> pairs;
-    PoseQuadratic quadratic;
+    PoseQuadratic photometric;
+    PoseQuadratic geometric;
   };
-  /// A pose hypothesis at all pyramid levels.
+  /// The hypothesis for colour at all pyramid levels, and for depth.
   struct PosedLevels;
 
   void warp_all(const PosedLevels& posed, int finest_level);
@@ -93,6 +102,7 @@ class PatchMeasurement final : public PoseMeasurement {
   void sum_photometric(std::size_t patch, const PosedLevels& posed, int finest_level);
   void sum_geometric(std::size_t patch, const PosedLevels& posed);
   void reduce_brightness(PatchState& state) const;
+  [[nodiscard]] double measured_variance(PoseQuadratic PatchState::*kind) const;
   [[nodiscard]] double brightness_cost(const Vector2d& value) const;
   [[nodiscard]] double patch_cost(const PatchState& state, const PosedLevels& posed) const;
   [[nodiscard]] double photometric_cost(const PatchState& state, const PosedLevels& posed) const;
@@ -102,10 +112,13 @@ class PatchMeasurement final : public PoseMeasurement {
   const SensorRig& rig_;
   const ObservedFrame& frame_;
   std::span<const Patch> patches_;
+  const ResidualScale scale_;
   const Workers& workers_;
   std::vector<std::vector<std::vector<WarpedPixel>>> warped_;  ///< [level][patch][pixel]
   std::vector<PatchState> states_;
   std::vector<PatchOutcome> outcomes_;
+  double photometric_variance_ = 1;  ///< these two: factors on the claimed variance, by the last linearise()
+  double geometric_variance_ = 1;
 };
 
 }  // namespace fusebench

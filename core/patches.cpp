@@ -11,18 +11,35 @@ namespace fusebench {
 
 namespace {
 
-/// A pixel of a level that needs its surface: where it is in the level, and in level 0.
+/// A pixel of a level that needs its surface: where it is in the level, and which of the pixels of level 0.
 struct Request {
   std::size_t patch = 0;
   std::size_t level = 0;
   int x = 0;  ///< level pixels
   int y = 0;
+  std::size_t surface = 0;  ///< number of its pixel of level 0
 };
 
-/// All pixels of the squares around the centres at all levels, by patch, level, row, column.
-std::vector<Request> requests_of(std::span<const TrackedCentre> centres, const ReferenceFrame& frame,
-                                 int size_px) {
-  std::vector<Request> requests;
+/// What squares need: many ask for the same pixel, those of other levels and of neighbours.
+struct Requests {
+  std::vector<Request> requests;    ///< by patch, level, row, column
+  std::vector<Vector2d> pixels_px;  ///< level 0, each once
+};
+
+/// All pixels of the squares around the centres at all levels.
+Requests requests_of(std::span<const TrackedCentre> centres, const ReferenceFrame& frame, int size_px) {
+  Requests result;
+  constexpr std::uint32_t kNew = 0;
+  const GreyImage& full = frame.pyramid[0];
+  Image<std::uint32_t> numbers(full.width, full.height, kNew);  // of the pixels, from 1
+  const auto number_of = [&](int x, int y) -> std::size_t {
+    std::uint32_t& number = numbers(x, y);
+    if (number == kNew) {
+      result.pixels_px.emplace_back(x, y);
+      number = static_cast<std::uint32_t>(result.pixels_px.size());
+    }
+    return number - 1;
+  };
   for (std::size_t p = 0; p < centres.size(); ++p) {
     for (std::size_t l = 0; l < frame.pyramid.size(); ++l) {
       const GreyImage& image = frame.pyramid[l];
@@ -32,13 +49,13 @@ std::vector<Request> requests_of(std::span<const TrackedCentre> centres, const R
       for (int y = y0; y < y0 + size_px; ++y) {
         for (int x = x0; x < x0 + size_px; ++x) {
           // A coarse square may reach over the border, and its last row beyond level 0's.
-          if (image.contains(x, y) && frame.pyramid[0].contains(x << l, y << l))
-            requests.push_back({p, l, x, y});
+          if (image.contains(x, y) && full.contains(x << l, y << l))
+            result.requests.push_back({p, l, x, y, number_of(x << l, y << l)});
         }
       }
     }
   }
-  return requests;
+  return result;
 }
 
 /// True if the model's surface can stand for what the camera sees at the pixel.
@@ -55,14 +72,24 @@ bool is_usable(const SurfacePoint& surface, const ReferenceFrame& frame, const V
   return measured_m <= 0 || std::abs(measured_m - surface.depth_m) <= allowed_m;
 }
 
+/// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
+/// without any lies in a hole, or the camera has no depth: there the model's surface has to do.
+void trust_model_in_holes(Patch& patch) {
+  for (const PatchLevel& level : patch.levels) {
+    for (const PatchPixel& pixel : level.pixels) {
+      if (pixel.depth_confirmed) return;
+    }
+  }
+  for (PatchLevel& level : patch.levels) {
+    for (PatchPixel& pixel : level.pixels) pixel.depth_confirmed = true;
+  }
+}
+
 /// Patches with the pixels that have a usable surface.
 std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& model,
                                std::span<const TrackedCentre> centres, const Config& config,
                                const Workers& workers) {
-  const std::vector<Request> requests = requests_of(centres, frame, config.patches.size_px);
-  std::vector<Vector2d> pixels;
-  pixels.reserve(requests.size());
-  for (const Request& r : requests) pixels.emplace_back(r.x << r.level, r.y << r.level);
+  const auto [requests, pixels] = requests_of(centres, frame, config.patches.size_px);
   const std::vector<SurfacePoint> surfaces =
       raycast_pixels(model, frame.camera, frame.T_world_camera, pixels, config.depth, workers);
 
@@ -73,9 +100,9 @@ std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& mo
     patches[p].age = centres[p].age;
     patches[p].levels.resize(frame.pyramid.size());
   }
-  for (std::size_t i = 0; i < requests.size(); ++i) {
+  for (const Request& r : requests) {
+    const std::size_t i = r.surface;
     if (!is_usable(surfaces[i], frame, pixels[i], config)) continue;
-    const Request& r = requests[i];
     PatchPixel pixel;
     pixel.reference_pixel =
         static_cast<std::uint32_t>(pixels[i].y()) * static_cast<std::uint32_t>(frame.camera.width_px) +
@@ -84,8 +111,11 @@ std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& mo
     pixel.point_world =
         frame.T_world_camera * frame.camera.back_project(pixels[i].x(), pixels[i].y(), surfaces[i].depth_m);
     pixel.normal_world = surfaces[i].normal_world;
+    pixel.depth_confirmed =
+        frame.depth_m(static_cast<int>(pixels[i].x()), static_cast<int>(pixels[i].y())) > 0;
     patches[r.patch].levels[r.level].pixels.push_back(pixel);
   }
+  for (Patch& patch : patches) trust_model_in_holes(patch);
   return patches;
 }
 
@@ -135,6 +165,25 @@ std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume
   }
   std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
   return patches;
+}
+
+double fused_share(const TsdfVolume& model, std::span<const Patch> patches, const ReferenceFrame& frame,
+                   const DepthConfig& depth) {
+  const SE3 T_camera_world = frame.T_world_camera.inverse();
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Patch& patch : patches) {
+    for (const PatchPixel& pixel : patch.levels.front().pixels) {
+      ++count;
+      if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
+      const Vector3d lattice = pixel.point_world / model.voxel_m();
+      const Voxel* voxel = model.find_voxel(lattice.array().round().cast<int>());
+      if (voxel == nullptr || !(voxel->weight > 0)) continue;
+      const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
+      sum += std::min(1.0, weight / static_cast<double>(voxel->weight));
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
 }  // namespace fusebench

@@ -20,6 +20,10 @@ struct PatchPixel {
   double intensity = 0;  ///< grey levels, at the patch level
   Vector3d point_world = Vector3d::Zero();   ///< model surface behind the pixel, metres
   Vector3d normal_world = Vector3d::Zero();  ///< unit, towards free space
+  /// The frame measured depth here as well, so that colour and depth belong together. At a silhouette a pixel
+  /// of the near surface may have the depth of the far one, which would move it the wrong way: such pixels
+  /// are not aligned by (they count in the intensity error all the same).
+  bool depth_confirmed = true;
   /// What is projected to find the pixel in the next frame: the pixel lands at project(warp_point) +
   /// warp_offset. This is all that the kinds of deformation differ in.
   Vector3d warp_point_world = Vector3d::Zero();
@@ -58,5 +62,11 @@ struct TrackedCentre {
 [[nodiscard]] std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
                                                  std::span<const TrackedCentre> survivors,
                                                  const Config& config, const Workers& workers);
+
+/// The mean share that a frame which was just fused has in the model where the patches cut from it are: near
+/// 1 where the surface is new, small where many frames made it, 0 where the frame measured no depth and
+/// without patches.
+[[nodiscard]] double fused_share(const TsdfVolume& model, std::span<const Patch> patches,
+                                 const ReferenceFrame& frame, const DepthConfig& depth);
 
 }  // namespace fusebench

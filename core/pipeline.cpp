@@ -14,6 +14,7 @@
 #include "core/motion_prior.hpp"
 #include "core/patch_measurement.hpp"
 #include "core/patches.hpp"
+#include "core/pose_anchors.hpp"
 
 namespace fusebench {
 
@@ -87,9 +88,10 @@ struct Pipeline::State {
   std::int64_t timestamp_ns = 0;          ///< instant of the last frame
   std::optional<RgbdFrame> first_frame;   ///< until the second one has told how fast it was
   std::optional<FilterState> initial_motion;
-  std::vector<Patch> patches;            ///< cut from the last tracked frame
+  std::vector<Patch> patches;            ///< cut from the last fused frame
+  int occluded_frames = 0;               ///< in a row
+  ResidualScale residual_scale;          ///< what the residuals of the frames so far showed
   std::int64_t reference_ns = 0;         ///< the instant that they were cut at
-  SE3 T_world_imu_reference;             ///< and the pose
   std::vector<TrackedCentre> survivors;  ///< where the good ones of them are in the current frame
 };
 
@@ -112,6 +114,7 @@ Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second) 
   estimate.reset();
   model = TsdfVolume(config.tsdf);
   survivors.clear();
+  residual_scale = {};
   const Result<FrameReport> first = process_once(*first_frame);
   if (!first) return first;
   return process_once(second);
@@ -133,16 +136,21 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   const bool tracked = first || track(*predicted, prepared, report);  // Eqs. 1-5 and 15-23
   if (!tracked || first) estimate = *predicted;                       // a lost frame keeps the prediction
   timestamp_ns = frame.capture_ns();
-  if (tracked && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
+  // What has come to stand before many patches is no part of the scene, and patches cut from it would lead
+  // astray; what stays there for a second is.
+  constexpr int kMostOccludedFrames = 30;
+  occluded_frames = report.health == FrameHealth::occluded ? occluded_frames + 1 : 0;
+  const bool trusted = tracked && (occluded_frames == 0 || occluded_frames > kMostOccludedFrames);
+  if (trusted && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
   report.status = first ? FrameStatus::initialised : tracked ? FrameStatus::tracked : FrameStatus::lost;
 
-  if (tracked) {
+  if (trusted) {
     const Result<void> fused = fuse(prepared, report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(prepared, report);  // Sec. 2.3: patch update
   }
   report.T_world_camera = T_world_camera();
-  report.estimate = *estimate;
+  report.estimate = in_first_camera_world(*estimate);
   report.velocity_world_mps = estimate->mean.velocity_world_mps;
   report.angular_velocity_radps = estimate->mean.angular_velocity_imu_radps;
   report.model_blocks = model.block_count();
@@ -213,7 +221,7 @@ Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport&
 bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& prepared, FrameReport& report) {
   const StageClock clock(report, Stage::update);
   const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
-  PatchMeasurement measurement(config, rig, observed, patches, workers);
+  PatchMeasurement measurement(config, rig, observed, patches, residual_scale, workers);
   const IekfResult result = iekf_update(prior, measurement, config.iekf);
   describe(measurement, result, report);
   report.blur_px = predicted_blur_px(prior.mean);
@@ -223,11 +231,15 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
     report.reason =
         fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
                     report.patches_accepted, report.patches, config.iekf.min_patches);
+    // A light or a blur that the learnt noise does not allow must not lock every frame out.
+    residual_scale = {std::max(1.0, residual_scale.photometric), std::max(1.0, residual_scale.geometric)};
     return false;
   }
-  report.evidence = PoseEvidence{reference_ns, T_world_imu_reference, result.posterior.mean.T_world_imu,
-                                 result.measurement};
+  report.evidence = PoseEvidence{reference_ns, prior.mean.T_world_imu_reference,
+                                 result.posterior.mean.T_world_imu, result.measurement};
   estimate = result.posterior;
+  if (report.health != FrameHealth::occluded)
+    residual_scale = followed_scale(residual_scale, measurement.outcomes(), config);
   survivors.clear();
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const PatchOutcome& outcome = measurement.outcomes()[p];
@@ -265,6 +277,8 @@ void Pipeline::State::describe(const PatchMeasurement& measurement, const IekfRe
     std::nth_element(motion_px.begin(), middle, motion_px.end());
     report.patch_motion_px = *middle;
   }
+  report.variance_photometric = measurement.photometric_variance();
+  report.variance_geometric = measurement.geometric_variance();
   report.iterations = result.iterations;
   report.converged = result.converged;
   report.intensity = measurement.intensity_residuals();
@@ -280,7 +294,9 @@ void Pipeline::State::refresh(const PreparedFrame& prepared, FrameReport& report
   const ReferenceFrame reference{prepared.pyramid, prepared.frame.depth_m, rig.camera, T_world_camera()};
   patches = refresh_patches(reference, model, survivors, config, workers);
   reference_ns = timestamp_ns;
-  T_world_imu_reference = estimate->mean.T_world_imu;
+  const double share = fused_share(model, patches, reference, config.depth);
+  estimate =
+      anchored(*estimate, {share, config.motion.drift_factor_rotation, config.motion.drift_factor_position});
 }
 
 Pipeline::Pipeline(const Config& config, const SensorRig& rig, std::span<const ImuSample> imu,

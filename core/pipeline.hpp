@@ -24,7 +24,7 @@ namespace fusebench {
 
 enum class FrameStatus {
   initialised,  ///< the first frame
-  tracked,      ///< the update was accepted and the frame fused
+  tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
   lost,         ///< too few honest patches: the prediction was kept, the frame not fused
 };
 [[nodiscard]] std::string_view to_string(FrameStatus status);
@@ -66,6 +66,8 @@ struct FrameReport {
   bool converged = false;
   double chi2_photometric = 0;  ///< mean squared whitened residual of accepted patches
   double chi2_geometric = 0;
+  double variance_photometric = 1;  ///< factor on the claimed variance (patch_scatter.hpp)
+  double variance_geometric = 1;
   std::size_t model_blocks = 0;
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
   double blur_px = 0;          ///< predicted length of motion blur at the image centre

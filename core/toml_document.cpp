@@ -74,8 +74,12 @@ class Collector {
                                 place(node), printable(key), kLongestKey));
       }
       if (const auto* nested = node.as_table()) {
-        tables_.emplace_back(nested->source().begin, TomlTable{key, place(*nested)});
-        if (auto visited = visit(*nested, key); !visited) return visited;
+        if (auto visited = visit_nested(*nested, key); !visited) return visited;
+      } else if (const auto* list = node.as_array(); list != nullptr && list->is_array_of_tables()) {
+        for (std::size_t i = 0; i < list->size(); ++i) {
+          const auto visited = visit_nested(*list->get_as<toml::table>(i), fmt::format("{}[{}]", key, i));
+          if (!visited) return visited;
+        }
       } else if (auto added = add(key, node); !added) {
         return added;
       }
@@ -100,6 +104,11 @@ class Collector {
  private:
   std::string place(const toml::node& node) const {
     return fmt::format("{}:{}", name_, node.source().begin.line);
+  }
+
+  Result<void> visit_nested(const toml::table& table, const std::string& key) {
+    tables_.emplace_back(table.source().begin, TomlTable{key, place(table)});
+    return visit(table, key);
   }
 
   Result<void> add(const std::string& key, const toml::node& node) {

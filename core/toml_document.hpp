@@ -17,12 +17,14 @@ using TomlList = std::vector<OptionValue>;
 
 /// One assignment of the file.
 struct TomlEntry {
-  std::string key;  ///< dotted: [iekf] max_iterations = 8 has the key "iekf.max_iterations"
+  /// dotted: [iekf] max_iterations = 8 has the key "iekf.max_iterations", the first [[bars]] title = "x" the
+  /// key "bars[0].title"
+  std::string key;
   std::variant<OptionValue, TomlList> value;
   std::string place;  ///< "file:line", for messages
 };
 
-/// One [table] header (or inline table), also when it is empty.
+/// One [table] or [[table]] header (or inline table), also when it is empty.
 struct TomlTable {
   std::string key;
   std::string place;
@@ -34,8 +36,8 @@ struct TomlDocument {
 };
 
 /// Reads a TOML file. Errors: data_missing if it cannot be opened; configuration, with file:line, for bad
-/// syntax, for what nothing here takes (dates, tables inside lists, quoted keys that are no plain names), and
-/// for more than 1 MiB.
+/// syntax, for what nothing here takes (dates, lists of tables and other values, quoted keys that are no
+/// plain names), and for more than 1 MiB.
 [[nodiscard]] Result<TomlDocument> read_toml(const std::filesystem::path& file);
 
 /// The same for a text; `name` stands for the file in messages.

@@ -82,6 +82,8 @@ class TsdfVolume {
   /// Half width of the band (metres) of the voxels updated at this depth: tsdf.truncation_m, two voxels, or
   /// tsdf.truncation_sigmas of the depth noise, whichever is most.
   [[nodiscard]] double truncation_m(double depth_m, const DepthConfig& depth) const;
+  /// Weight of one measurement of a surface at this depth, see integrate().
+  [[nodiscard]] double measurement_weight(double depth_m, const DepthConfig& depth) const;
   /// Points whose coordinates are all below this in magnitude (metres) have lattice coordinates.
   [[nodiscard]] double reach_m() const { return config_.voxel_m * (1 << 30); }
 

@@ -36,15 +36,16 @@ FilterState some_state() {
 class PositionMeasurement final : public PoseMeasurement {
  public:
   PositionMeasurement(Vector3d z, double sigma) : z_(std::move(z)), information_(1.0 / (sigma * sigma)) {}
-  PoseQuadratic linearise(const SE3& T, int, bool) override {
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
+    const Vector3d error = poses.T_world_imu_by_model.translation - z_;
     PoseQuadratic q;
     q.information.bottomRightCorner<3, 3>().diagonal().setConstant(information_);
-    q.gradient.tail<3>() = information_ * (T.translation - z_);
-    q.cost = 0.5 * information_ * (T.translation - z_).squaredNorm();
-    return q;
+    q.gradient.tail<3>() = information_ * error;
+    q.cost = 0.5 * information_ * error.squaredNorm();
+    return {{}, q};
   }
-  double trial_cost(const SE3& T, const Vector6d&, double) override {
-    return 0.5 * information_ * (T.translation - z_).squaredNorm();
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+    return 0.5 * information_ * (poses.T_world_imu_by_model.translation - z_).squaredNorm();
   }
   void accept() override {}
 
@@ -67,9 +68,9 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
   const StateMatrix transport = chart_transport(prior.mean, delta);
   const StateMatrix expected = transport * in_chart * transport.transpose();
 
-  Vector6d far_start;
-  far_start << 300, -500, 200, 800, -400, 900;
-  for (const Vector6d& start : {Vector6d(Vector6d::Zero()), far_start}) {
+  MeasuredVector far_start;
+  far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300;
+  for (const MeasuredVector& start : {MeasuredVector(MeasuredVector::Zero()), far_start}) {
     PositionMeasurement measurement(z, sigma);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
     EXPECT_TRUE(result.converged);
@@ -121,9 +122,9 @@ PlaneProblem plane_problem(const SE3& T_world_imu_true) {
 class PlaneMeasurement final : public PoseMeasurement {
  public:
   explicit PlaneMeasurement(const PlaneProblem& problem) : problem_(problem) {}
-  PoseQuadratic linearise(const SE3& T, int, bool) override {
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
     PoseQuadratic q;
-    const PosedCamera posed(testing::small_camera(), T, SE3{});
+    const PosedCamera posed(testing::small_camera(), poses.T_world_imu_by_model, SE3{});
     for (std::size_t i = 0; i < problem_.normals.size(); ++i) {
       const PlaneResidual r = point_to_plane_residual(posed, problem_.points_imu[i], problem_.plane_points[i],
                                                       problem_.normals[i]);
@@ -133,9 +134,11 @@ class PlaneMeasurement final : public PoseMeasurement {
       q.gradient += weight * r.value_m * r.jacobian.transpose();
       q.cost += robust.cost;
     }
-    return q;
+    return {{}, q};
   }
-  double trial_cost(const SE3& T, const Vector6d&, double) override { return linearise(T, 0, false).cost; }
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+    return linearise(poses, 0, false).cost();
+  }
   void accept() override {}
 
  private:
