@@ -1,0 +1,91 @@
+// All poses, velocities and biases of a recording at once, and if asked for the calibration of camera and
+// IMU, from inertial samples and from what images said of the motion between frames: a maximum a posteriori
+// estimate.
+//
+// World is the camera of the first frame: the first pose is fixed. Unknowns of a frame: pose and velocity of
+// the IMU, biases. Common unknowns: the direction of gravity, T_imu_camera, and the offset of the IMU's
+// clock. Samples are integrated again with each new offset and bias until nothing moves.
+//
+// The scale of what the images say is not known (the filter counts correlated pixels as few measurements),
+// and errors of neighbouring frames have one cause. So the visual information is divided by
+//
+//   variance factor     sum of squared visual residuals / their redundancy (Helmert), times
+//   correlation factor  1 + 2 sum of their autocorrelation over frames, up to the first lag below 0.05:
+//                       what white noise must have to look alike over long times
+//
+// which are estimated in turns with the states. The inertial noise is taken as given; its own variance factor
+// is reported.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/filter_state.hpp"
+#include "core/smoother/relative_motion.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+inline constexpr int kBatchStateSize = 15;    ///< the error state's first five parts (StateOffset)
+inline constexpr int kBatchCommonSize = 9;    ///< and of the common unknowns:
+inline constexpr int kCommonGravity = 0;      ///< rad, tangent of S2
+inline constexpr int kCommonRotation = 2;     ///< rad, right perturbation of R_imu_camera (camera frame)
+inline constexpr int kCommonTranslation = 5;  ///< m, imu
+inline constexpr int kCommonTimeOffset = 8;   ///< s
+using BatchStateMatrix = Eigen::Matrix<double, kBatchStateSize, kBatchStateSize>;
+using BatchCommonMatrix = Eigen::Matrix<double, kBatchCommonSize, kBatchCommonSize>;
+
+struct BatchInput {
+  std::vector<std::int64_t> instants_ns;     ///< of the frames, on the camera's clock, increasing
+  std::vector<FilterState> initial;          ///< one a frame: where the search begins
+  std::vector<RelativeCameraMotion> visual;  ///< in any order; lost frames have none
+  std::span<const ImuSample> imu;            ///< sorted; must outlive the call only
+  ImuNoise imu_noise;
+  SE3 T_imu_camera;          ///< where the search begins
+  double time_offset_s = 0;  ///< the same for the IMU's clock minus the camera's
+};
+
+struct BatchOptions {
+  /// Standard deviations of the priors; 0 holds the value fixed.
+  double rotation_prior_rad = 0;
+  double translation_prior_m = 0;
+  double time_offset_prior_s = 0;
+  /// And their means; not given: where the search begins.
+  std::optional<SE3> T_imu_camera_expected;
+  std::optional<double> time_offset_expected_s;
+  double gyroscope_bias_sigma_radps = 0.05;    ///< around 0, first frame
+  double accelerometer_bias_sigma_mps2 = 0.3;  ///< the same
+  double outlier_sigmas = 5.0;                 ///< Huber's, on the six residuals of a pair of frames
+  int max_rounds = 12;                         ///< of integration and search
+};
+
+struct BatchFrame {
+  FilterState state;  ///< with gravity and the clock's offset, which are common
+  /// Rotation, position, velocity and biases, in the tangent at the state.
+  BatchStateMatrix covariance = BatchStateMatrix::Zero();
+  double visual_residual = -1;  ///< rms of the normalised residuals of its image; negative without one
+};
+
+struct BatchEstimate {
+  std::vector<BatchFrame> frames;
+  SE3 T_imu_camera;
+  double time_offset_s = 0;
+  Vector3d gravity_direction_world = Vector3d::UnitY();
+  BatchCommonMatrix common_covariance = BatchCommonMatrix::Zero();  ///< what is held fixed has zeros
+  double variance_factor = 1;
+  double correlation_factor = 1;
+  double inertial_variance_factor = 1;  ///< 1 if the noise of the IMU is what it is said to be
+  std::size_t outliers = 0;             ///< images beyond outlier_sigmas
+  int rounds = 0;
+  bool converged = false;
+};
+
+/// One thread; depends on nothing but its arguments. Errors: configuration (an option out of range),
+/// data_corrupt (fewer than three frames, no visual motion, frames or samples that do not fit, a search that
+/// failed).
+[[nodiscard]] Result<BatchEstimate> estimate_batch(const BatchInput& input, const BatchOptions& options);
+
+}  // namespace fusebench

@@ -1,0 +1,153 @@
+// The residuals of the batch estimator, for Ceres' automatic derivatives. Parameter blocks: rotations as
+// quaternions x, y, z, w; positions, velocities (world); biases as gyroscope, then accelerometer; the
+// direction of gravity; the extrinsic of the camera; the offset of the IMU's clock.
+#pragma once
+
+#include <ceres/rotation.h>
+
+#include "core/geometry.hpp"
+#include "core/imu_preintegration.hpp"
+#include "core/smoother/relative_motion.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+
+template <class T>
+Vector3<T> rotation_vector(const Eigen::Quaternion<T>& q) {
+  const T ordered[4] = {q.w(), q.x(), q.y(), q.z()};
+  Vector3<T> vector;
+  ceres::QuaternionToAngleAxis(ordered, vector.data());
+  return vector;
+}
+
+template <class T>
+Eigen::Quaternion<T> rotation_by(const Vector3<T>& vector) {
+  T q[4];
+  ceres::AngleAxisToQuaternion(vector.data(), q);
+  return {q[0], q[1], q[2], q[3]};
+}
+
+template <class T>
+Eigen::Map<const Eigen::Quaternion<T>> as_rotation(const T* x) {
+  return Eigen::Map<const Eigen::Quaternion<T>>(x);
+}
+template <class T>
+Eigen::Map<const Vector3<T>> as_vector(const T* x) {
+  return Eigen::Map<const Vector3<T>>(x);
+}
+
+/// Increments that were integrated with some biases and some offset of the clock, and their first order
+/// dependence on both.
+struct InertialResidual {
+  PreintegratedImu imu;
+  Vector3d gyroscope_bias;      ///< that it was integrated with
+  Vector3d accelerometer_bias;  ///< the same
+  double time_offset_s;         ///< the same
+  Matrix9d whitening;           ///< of (rotation, velocity, position)
+
+  template <class T>
+  bool operator()(const T* rotation_i, const T* position_i, const T* velocity_i, const T* bias_i,
+                  const T* rotation_j, const T* position_j, const T* velocity_j, const T* gravity_direction,
+                  const T* time_offset, T* residual) const {
+    const T shift = time_offset[0] - time_offset_s;
+    const Vector3<T> by_gyroscope = as_vector(bias_i) - gyroscope_bias;
+    const Vector3<T> by_accelerometer = as_vector(bias_i + 3) - accelerometer_bias;
+    const Vector3<T> turn =
+        imu.rotation_by_gyroscope_bias * by_gyroscope + imu.rotation_by_time_offset * shift;
+    const Eigen::Quaternion<T> R_measured = imu.delta_rotation.cast<T>() * rotation_by<T>(turn);
+    const Vector3<T> velocity_change =
+        imu.delta_velocity_mps + imu.velocity_by_gyroscope_bias * by_gyroscope +
+        imu.velocity_by_accelerometer_bias * by_accelerometer + imu.velocity_by_time_offset * shift;
+    const Vector3<T> position_change = imu.delta_position_m + imu.position_by_gyroscope_bias * by_gyroscope +
+                                       imu.position_by_accelerometer_bias * by_accelerometer +
+                                       imu.position_by_time_offset * shift;
+
+    const double dt = imu.duration_s;
+    const Eigen::Quaternion<T> R_imu_world = as_rotation(rotation_i).conjugate();
+    const Vector3<T> fall = as_vector(gravity_direction) * T(kGravity_mps2);
+    const Vector3<T> velocity = as_vector(velocity_i);
+    Eigen::Matrix<T, 9, 1> error;
+    error.template head<3>() =
+        rotation_vector<T>(R_measured.conjugate() * (R_imu_world * as_rotation(rotation_j)));
+    error.template segment<3>(3) =
+        R_imu_world * Vector3<T>(as_vector(velocity_j) - velocity - fall * T(dt)) - velocity_change;
+    error.template tail<3>() = R_imu_world * Vector3<T>(as_vector(position_j) - as_vector(position_i) -
+                                                        velocity * T(dt) - fall * T(0.5 * dt * dt)) -
+                               position_change;
+    Eigen::Map<Eigen::Matrix<T, 9, 1>> result(residual);
+    result = whitening * error;
+    return true;
+  }
+};
+
+/// Biases walk at random.
+struct BiasWalkResidual {
+  double gyroscope_sigma;      ///< of the step
+  double accelerometer_sigma;  ///< the same
+
+  template <class T>
+  bool operator()(const T* bias_i, const T* bias_j, T* residual) const {
+    for (int k = 0; k < 3; ++k) {
+      residual[k] = (bias_j[k] - bias_i[k]) / gyroscope_sigma;
+      residual[k + 3] = (bias_j[k + 3] - bias_i[k + 3]) / accelerometer_sigma;
+    }
+    return true;
+  }
+};
+
+/// What images say about the motion of the camera between two frames.
+struct VisualResidual {
+  SE3 T_reference_camera;  ///< as measured
+  Matrix6d whitening;
+
+  template <class T>
+  bool operator()(const T* rotation_reference, const T* position_reference, const T* rotation,
+                  const T* position, const T* rotation_imu_camera, const T* position_imu_camera,
+                  T* residual) const {
+    const Eigen::Quaternion<T> R_imu_camera = as_rotation(rotation_imu_camera);
+    const Eigen::Quaternion<T> R_world_reference = as_rotation(rotation_reference) * R_imu_camera;
+    const Vector3<T> lever = as_vector(position_imu_camera);
+    const Vector3<T> camera = as_rotation(rotation) * lever + as_vector(position);
+    const Vector3<T> reference = as_rotation(rotation_reference) * lever + as_vector(position_reference);
+    Eigen::Matrix<T, 6, 1> error;
+    error.template head<3>() =
+        rotation_vector<T>(T_reference_camera.rotation.conjugate().cast<T>() *
+                           (R_world_reference.conjugate() * (as_rotation(rotation) * R_imu_camera)));
+    error.template tail<3>() =
+        R_world_reference.conjugate() * Vector3<T>(camera - reference) - T_reference_camera.translation;
+    Eigen::Map<Eigen::Matrix<T, 6, 1>> result(residual);
+    result = whitening * error;
+    return true;
+  }
+};
+
+/// A rotation is about what one knew before.
+struct RotationPrior {
+  Quaterniond expected;
+  double sigma_rad;
+
+  template <class T>
+  bool operator()(const T* rotation, T* residual) const {
+    Eigen::Map<Vector3<T>> result(residual);
+    result = rotation_vector<T>(expected.conjugate().cast<T>() * as_rotation(rotation)) / T(sigma_rad);
+    return true;
+  }
+};
+
+/// So is a vector, component by component.
+template <int Size>
+struct VectorPrior {
+  Eigen::Matrix<double, Size, 1> expected;
+  Eigen::Matrix<double, Size, 1> sigma;
+
+  template <class T>
+  bool operator()(const T* value, T* residual) const {
+    for (int k = 0; k < Size; ++k) residual[k] = (value[k] - expected[k]) / sigma[k];
+    return true;
+  }
+};
+
+}  // namespace fusebench

@@ -1,0 +1,46 @@
+// Entries of the inverse of a sparse matrix without the whole inverse: variances of large least-squares
+// problems.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+namespace fusebench {
+
+/// Indices of 64 bits, unlike those in Ceres: Debian builds that library (a static one) without AVX, the
+/// linker keeps one copy of every function that both use, and memory of one alignment must not be freed as
+/// another.
+using SparseIndex = std::ptrdiff_t;
+using SparseMatrixd = Eigen::SparseMatrix<double, Eigen::ColMajor, SparseIndex>;
+using SparseRowsd = Eigen::SparseMatrix<double, Eigen::RowMajor, SparseIndex>;
+
+/// The inverse of a symmetric positive definite matrix, at all entries where its Cholesky factor is not zero
+/// by structure (Takahashi's recursion; Erisman & Tinney 1975). That includes the pattern of the matrix, so
+/// the covariance of any two unknowns that meet in a residual is there.
+class SelectedInverse {
+ public:
+  /// Only the lower triangle is read. Nothing if the matrix is not positive definite.
+  [[nodiscard]] static std::optional<SelectedInverse> of(const SparseMatrixd& matrix);
+
+  /// The entry, which must be one of those above (see check()).
+  [[nodiscard]] double entry(Eigen::Index row, Eigen::Index column) const;
+  /// A block of entries of the inverse, all of which must be there.
+  [[nodiscard]] Eigen::MatrixXd block(Eigen::Index row, Eigen::Index column, Eigen::Index rows,
+                                      Eigen::Index columns) const;
+  /// Whole columns of the inverse, from the factor.
+  [[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& unit_columns) const;
+
+ private:
+  using Factor = Eigen::SimplicialLDLT<SparseMatrixd, Eigen::Lower, Eigen::AMDOrdering<SparseIndex>>;
+
+  explicit SelectedInverse(std::shared_ptr<const Factor> factor);
+  void fill_column(Eigen::Index column);
+
+  std::shared_ptr<const Factor> factor_;
+  SparseMatrixd inverse_;  ///< lower triangle in the order of the factor
+};
+
+}  // namespace fusebench
