@@ -196,6 +196,8 @@ Result<void> attach_images(Recording& recording, const ImageDecoding& decoding) 
   const std::int64_t depth_delay_ns = std::llround(1e9 * camera->timing.depth_delay_s);
   for (FrameEntry& frame : recording.frames) frame.depth_capture_ns += depth_delay_ns;
   if (auto calibrated = calibrate_imu(recording, calibration.imu); !calibrated) return calibrated;
+  recording.calibration = calibration;
+  recording.calibration->color = *camera;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
   auto fingerprint = fingerprint_of(recording, decoding, *camera);

@@ -83,7 +83,11 @@ Result<Recording> open_recording(const std::filesystem::path& folder, const Open
   for (const RecordingFormat& format : formats()) {
     if (options.format.empty() ? fits(format, folder) : format.name == options.format) {
       auto recording = format.open(folder, options.read);
-      if (recording) note_simulation(folder, *recording);
+      if (!recording) return recording;
+      note_simulation(folder, *recording);
+      if (const auto read = read_exact_truth_beside(folder, *recording); !read) {
+        return tl::unexpected(read.error());
+      }
       return recording;
     }
   }

@@ -26,10 +26,16 @@ Result<void> check_read_options(const ReadOptions& options) {
 Result<RigCalibration> choose_calibration(const std::filesystem::path& folder, const ReadOptions& options,
                                           const std::function<Result<RigCalibration>()>& published,
                                           Recording& recording) {
-  auto beside = read_calibration_beside(folder);
+  Result<std::optional<RigCalibration>> beside;
+  if (!options.calibration) beside = read_calibration_beside(folder);
   if (!beside) return tl::unexpected(beside.error());
   RigCalibration calibration;
-  if (*beside) {
+  if (options.calibration) {
+    calibration = *options.calibration;
+    recording.notes.push_back(
+        fmt::format("calibration: as given by the user ({})",
+                    calibration.source.empty() ? "no source given" : calibration.source));
+  } else if (*beside) {
     calibration = std::move(**beside);
     recording.notes.push_back(
         fmt::format("calibration: calibration.toml in the recording's folder ({})",

@@ -15,6 +15,7 @@ namespace fusebench {
 
 /// Each reader takes what its format has a use for.
 struct ReadOptions {
+  std::optional<RigCalibration> calibration;    ///< takes the place of calibration.toml and of published ones
   std::optional<CalibratedCamera> camera;       ///< of the colour images; overrides every other calibration
   std::optional<double> depth_units_per_metre;  ///< value of one metre in the depth images
   double max_difference_s = 0.02;  ///< between a colour image and its depth image, for formats with two lists
@@ -26,7 +27,8 @@ struct ReadOptions {
 /// Errors: configuration (an option out of range).
 [[nodiscard]] Result<void> check_read_options(const ReadOptions& options);
 
-/// The calibration of a recording: calibration.toml in its folder, else what `published` gives; the options'
+/// The calibration of a recording: the options', else calibration.toml in its folder, else what `published`
+/// gives; the options'
 /// camera and depth scale replace those parts. Where it comes from goes into recording.notes. Errors: those
 /// of `published` (only called when it is needed) and of calibration.toml.
 [[nodiscard]] Result<RigCalibration> choose_calibration(

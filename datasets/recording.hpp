@@ -4,18 +4,25 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/stamped_state.hpp"
 #include "core/types.hpp"
+#include "datasets/rig_calibration.hpp"
 
 namespace fusebench {
 
 /// Where inertial samples come from; printed in every record and table.
 enum class ImuSource { none, recorded, synthetic };
 [[nodiscard]] std::string_view to_string(ImuSource source);  ///< "none", "recorded", "synthetic IMU"
+
+/// What the first line of a ground truth says that `fusebench smooth` made, and what records say of it then.
+inline constexpr std::string_view kPseudoGroundTruth =
+    "pseudo ground truth: batch estimate of the same recording, not independent";
 
 struct FrameEntry {
   std::int64_t timestamp_ns = 0;        ///< colour image
@@ -48,12 +55,17 @@ struct Recording {
   std::vector<AccelerometerSample>
       accelerometer;  ///< TUM's Kinect; not an IMU (no gyroscope), no estimator uses it
   std::vector<StampedPose>
-      ground_truth;  ///< T_groundtruth_camera: colour camera in the truth's own world; may be empty
-  std::vector<std::string> notes;     ///< what was done to the data on reading, for the run's log
-  std::vector<std::string> warnings;  ///< things a user should know (unmatched images, gaps)
+      ground_truth;         ///< T_groundtruth_camera: colour camera in the truth's own world; may be empty
+  std::string truth_label;  ///< kPseudoGroundTruth if that is what ground_truth is; else empty
+  std::optional<RigCalibration> calibration;  ///< as read, before undistortion; of what files say, not of a
+                                              ///< synthetic IMU
+  std::vector<std::string> notes;             ///< what was done to the data on reading, for the run's log
+  std::vector<std::string> warnings;          ///< things a user should know (unmatched images, gaps)
   /// Loads, checks, undistorts one frame. Safe to call from several threads. Errors: data_missing,
   /// data_corrupt.
   std::function<Result<RgbdFrame>(std::size_t frame)> load_frame;
+  std::vector<StampedState> state_truth;  ///< of the recorded IMU, on the images' clock; may be empty
+  std::filesystem::path truth_mesh_file;  ///< the scene, in the ground truth's world; empty if there is none
 };
 
 /// A recording that knows its name (the folder's) and format, and nothing else yet.

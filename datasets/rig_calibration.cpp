@@ -254,8 +254,6 @@ Result<RigCalibration> rig_calibration(const TomlDocument& document, const std::
   return calibration;
 }
 
-namespace {
-
 Result<RigCalibration> read_calibration(const std::filesystem::path& file) {
   const auto document = read_toml(file);
   if (!document) return tl::unexpected(document.error());
@@ -269,8 +267,6 @@ Result<RigCalibration> read_calibration(const std::filesystem::path& file) {
   }
   return rig_calibration(*document, file.string());
 }
-
-}  // namespace
 
 Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.toml";

@@ -70,6 +70,10 @@ inline constexpr std::string_view kRigidTransformRule =
 /// orthonormalised).
 [[nodiscard]] Result<RigCalibration> rig_calibration(const TomlDocument& document, const std::string& file);
 
+/// A file of such a calibration and nothing else. Errors: data_missing, and configuration as above and for
+/// unknown top-level keys.
+[[nodiscard]] Result<RigCalibration> read_calibration(const std::filesystem::path& file);
+
 /// calibration.toml in the folder; nothing if there is none. Errors: data_corrupt, with the message of the
 /// above, and for unknown top-level keys.
 [[nodiscard]] Result<std::optional<RigCalibration>> read_calibration_beside(

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string>
 #include <system_error>
 #include <utility>
 
 #include "core/stamped_rows.hpp"
 #include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
+#include "datasets/state_truth.hpp"
 
 namespace fusebench {
 
@@ -57,6 +60,11 @@ Result<void> read_ground_truth_beside(const std::filesystem::path& folder, Recor
   // The published truth of freiburg2_desk repeats a stamp; TUM's own scripts keep the last of such rows.
   auto truth = read_tum_trajectory(file, recording.warnings, Duplicates::last_in_order);
   if (!truth) return tl::unexpected(truth.error());
+  if (std::string first; std::getline(std::ifstream(file), first) && first.starts_with("# ") &&
+                         first.substr(2).starts_with(kPseudoGroundTruth)) {
+    recording.truth_label = kPseudoGroundTruth;
+    recording.notes.push_back(fmt::format("ground truth: {}", kPseudoGroundTruth));
+  }
   return set_ground_truth(recording, std::move(*truth), file);
 }
 
@@ -83,6 +91,16 @@ Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& rec
   if (!samples) return tl::unexpected(samples.error());
   recording.imu = std::move(*samples);
   recording.imu_source = ImuSource::recorded;
+  return {};
+}
+
+Result<void> read_exact_truth_beside(const std::filesystem::path& folder, Recording& recording) {
+  if (const auto mesh = folder / "scene.ply"; is_there(mesh)) recording.truth_mesh_file = mesh;
+  const std::filesystem::path file = folder / "state_groundtruth.csv";
+  if (!is_there(file)) return {};
+  auto states = read_state_truth(file);
+  if (!states) return tl::unexpected(states.error());
+  recording.state_truth = std::move(*states);
   return {};
 }
 

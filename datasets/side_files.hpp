@@ -31,6 +31,11 @@ namespace fusebench {
 /// Fills recording.imu and imu_source. Errors: data_corrupt.
 [[nodiscard]] Result<void> read_imu_beside(const std::filesystem::path& folder, Recording& recording);
 
+/// state_groundtruth.csv (state_truth.hpp; on the images' clock) and scene.ply (a mesh in the world of the
+/// ground truth, which is not opened here). Fills recording.state_truth and truth_mesh_file. Errors:
+/// data_corrupt.
+[[nodiscard]] Result<void> read_exact_truth_beside(const std::filesystem::path& folder, Recording& recording);
+
 /// simulation.toml: a recording that was made by a simulator says so. Sets recording.simulated.
 void note_simulation(const std::filesystem::path& folder, Recording& recording);
 

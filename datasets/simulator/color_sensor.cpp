@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "datasets/simulator/image_sensors.hpp"
@@ -78,21 +79,29 @@ struct Exposure {
   RayField rays;
   std::vector<Vector2d> offsets;
   SrgbEncoder encoder;
+  const MovingThing* before;
 
-  [[nodiscard]] SE3 T_world_camera(int row, std::size_t sample) const {
+  [[nodiscard]] std::int64_t instant_ns(int row, std::size_t sample) const {
     const double middle = (static_cast<double>(sample) + 0.5) / static_cast<double>(offsets.size()) - 0.5;
     const auto after_ns = static_cast<std::int64_t>(std::llround(1e9 * sensor.exposure_s * middle));
     const std::int64_t row_ns =
         row_time_ns(capture_ns, sensor.camera.timing.color_readout_s, row, sensor.camera.pinhole.height_px);
-    return motion.evaluate(row_ns + after_ns).T_world_body * T_body_camera;
+    return row_ns + after_ns;
+  }
+
+  [[nodiscard]] SE3 T_world_camera(int row, std::size_t sample) const {
+    return motion.evaluate(instant_ns(row, sample)).T_world_body * T_body_camera;
   }
 
   /// The row's light, averaged over the exposure.
   void integrate(int row, const std::vector<SE3>& poses, std::span<Eigen::Vector3f> light) const {
     const auto count = static_cast<float>(offsets.size());
     for (std::size_t s = 0; s < offsets.size(); ++s) {
-      renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count,
-                                light);
+      std::optional<Foreground> thing;
+      if (before != nullptr)
+        thing.emplace(Foreground{before->surface, before->T_thing_camera(instant_ns(row, s))});
+      renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count, light,
+                                thing ? &*thing : nullptr);
     }
   }
 
@@ -146,20 +155,22 @@ double exposure_gain(double drift, std::int64_t capture_ns, std::uint64_t seed) 
 
 ColorImage expose_color(const Renderer& renderer, const ColorSensor& sensor, const PoseSpline& motion,
                         const SE3& T_body_camera, std::int64_t capture_ns, std::uint64_t seed,
-                        std::uint64_t frame, const Workers& workers) {
+                        std::uint64_t frame, const Workers& workers, const MovingThing* before) {
   const PinholeCamera& camera = sensor.camera.pinhole;
   check(camera.width_px > 0 && camera.height_px > 0, "a simulated camera has a size");
   check(sensor.blur_samples >= 1, "an exposure has at least one sample");
-  const Exposure exposure{.renderer = renderer,
-                          .sensor = sensor,
-                          .motion = motion,
-                          .T_body_camera = T_body_camera,
-                          .capture_ns = capture_ns,
-                          .noise_key = mix_key(mix_key(seed, kPixelNoise), frame),
-                          .gain = static_cast<float>(exposure_gain(sensor.gain_drift, capture_ns, seed)),
-                          .rays = RayField(sensor.camera, workers),
-                          .offsets = sample_offsets(sensor.blur_samples),
-                          .encoder = {}};
+  const Exposure exposure{
+      .renderer = renderer,
+      .sensor = sensor,
+      .motion = motion,
+      .T_body_camera = T_body_camera,
+      .capture_ns = capture_ns,
+      .noise_key = mix_key(mix_key(seed, kPixelNoise), frame),
+      .gain = static_cast<float>(sensor.gain * exposure_gain(sensor.gain_drift, capture_ns, seed)),
+      .rays = RayField(sensor.camera, workers),
+      .offsets = sample_offsets(sensor.blur_samples),
+      .encoder = {},
+      .before = before};
   ColorImage image(camera.width_px, camera.height_px);
   const auto rows = static_cast<std::size_t>(camera.height_px);
   const bool rolling = sensor.camera.timing.color_readout_s != 0;
@@ -171,7 +182,7 @@ ColorImage expose_color(const Renderer& renderer, const ColorSensor& sensor, con
         for (std::size_t s = 0; s < poses.size(); ++s) poses[s] = exposure.T_world_camera(row, s);
       }
       std::ranges::fill(light, Eigen::Vector3f::Zero());
-      exposure.integrate(row, poses, light);
+      if (!sensor.covered) exposure.integrate(row, poses, light);
       exposure.develop(row, light, image);
     }
   });

@@ -34,19 +34,41 @@ DepthImage measured_depth(const Image<Renderer::Surface>& surfaces, const DepthS
   return depth_m;
 }
 
+/// What the camera sees of a surface whose frame is a function of the time.
+Image<Renderer::Surface> seen_by(const Renderer& surface, const DepthSensor& sensor, std::int64_t capture_ns,
+                                 const std::function<SE3(std::int64_t)>& T_surface_camera,
+                                 const Workers& workers) {
+  const int rows = sensor.readout_s == 0 ? 1 : sensor.camera.height_px;
+  RowPoses poses;
+  for (int row = 0; row < rows; ++row) {
+    poses.T_world_camera.push_back(
+        T_surface_camera(row_time_ns(capture_ns, sensor.readout_s, row, sensor.camera.height_px)));
+  }
+  Image<Renderer::Surface> surfaces;
+  surface.render_surfaces(sensor.camera, poses, workers, surfaces);
+  return surfaces;
+}
+
+/// Keeps the nearer one of each pixel; 0 is nothing.
+void put_before(const Image<Renderer::Surface>& nearer, Image<Renderer::Surface>& surfaces) {
+  for (std::size_t i = 0; i < surfaces.data.size(); ++i) {
+    const Renderer::Surface& a = nearer.data[i];
+    Renderer::Surface& b = surfaces.data[i];
+    if (a.depth_m > 0 && (b.depth_m <= 0 || a.depth_m < b.depth_m)) b = a;
+  }
+}
+
 }  // namespace
 
 Image<std::uint16_t> sense_depth(const Renderer& renderer, const DepthSensor& sensor,
                                  const PoseSpline& motion, const SE3& T_body_camera, std::int64_t capture_ns,
-                                 std::uint64_t seed, std::uint64_t frame, const Workers& workers) {
-  const int rows = sensor.readout_s == 0 ? 1 : sensor.camera.height_px;
-  RowPoses poses;
-  for (int row = 0; row < rows; ++row) {
-    const std::int64_t at_ns = row_time_ns(capture_ns, sensor.readout_s, row, sensor.camera.height_px);
-    poses.T_world_camera.push_back(motion.evaluate(at_ns).T_world_body * T_body_camera);
-  }
-  Image<Renderer::Surface> surfaces;
-  renderer.render_surfaces(sensor.camera, poses, workers, surfaces);
+                                 std::uint64_t seed, std::uint64_t frame, const Workers& workers,
+                                 const MovingThing* before) {
+  Image<Renderer::Surface> surfaces = seen_by(
+      renderer, sensor, capture_ns,
+      [&](std::int64_t t_ns) { return motion.evaluate(t_ns).T_world_body * T_body_camera; }, workers);
+  if (before != nullptr)
+    put_before(seen_by(before->surface, sensor, capture_ns, before->T_thing_camera, workers), surfaces);
   const DepthImage depth_m =
       measured_depth(surfaces, sensor, mix_key(mix_key(seed, kDepthNoise), frame), workers);
   Image<std::uint16_t> raw(depth_m.width, depth_m.height);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -24,6 +25,14 @@ struct ColorSensor {
   double shot_noise =
       0;  ///< standard deviation of full-scale linear light 1; at light L it is this times sqrt(L)
   int blur_samples = 8;  ///< instants of the exposure, each at another place within the pixel; at least 1
+  double gain = 1;       ///< factor on all light, on top of the drift
+  bool covered = false;  ///< no light comes in; the noise stays
+};
+
+/// A thing that moves before the camera while an image is taken.
+struct MovingThing {
+  const Renderer& surface;                            ///< in the thing's own frame
+  std::function<SE3(std::int64_t)> T_thing_camera{};  ///< at an instant; camera: the one that takes the image
 };
 
 enum class DepthNoise {
@@ -43,17 +52,18 @@ struct DepthSensor {
 
 /// The image that the sensor takes around capture_ns (middle of the exposure of its middle row).
 /// T_body_camera places the camera on the body that the spline moves. The same seed and frame give the same
-/// bytes.
+/// bytes. before: may be null.
 [[nodiscard]] ColorImage expose_color(const Renderer& renderer, const ColorSensor& sensor,
                                       const PoseSpline& motion, const SE3& T_body_camera,
                                       std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
-                                      const Workers& workers);
+                                      const Workers& workers, const MovingThing* before = nullptr);
 
 /// Raw values as the format stores them (0: no measurement, or beyond 65535 units).
 [[nodiscard]] Image<std::uint16_t> sense_depth(const Renderer& renderer, const DepthSensor& sensor,
                                                const PoseSpline& motion, const SE3& T_body_camera,
                                                std::int64_t capture_ns, std::uint64_t seed,
-                                               std::uint64_t frame, const Workers& workers);
+                                               std::uint64_t frame, const Workers& workers,
+                                               const MovingThing* before = nullptr);
 
 /// The factor on all light at a time: 1 + drift s(t), with s a sum of three sines (periods 3.1 s, 7.3 s and
 /// 17 s, phases from the seed) that stays within -1 and 1.

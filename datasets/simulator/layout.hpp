@@ -34,9 +34,12 @@ enum class RecordingLayout { tum, icl, zr300 };
 struct SimulatedData {
   RigCalibration rig;
   std::vector<std::int64_t> frame_ns;  ///< stamps of the images, which are taken at these instants
+  std::vector<bool> dropped{};         ///< by frame: the lists leave it out; empty: none
   Trajectory truth;  ///< colour camera in the scene's world: all frames, and poses between them
   SimulatedImu imu;
   Mesh scene;
+
+  [[nodiscard]] bool has_frame(std::size_t frame) const { return dropped.empty() || !dropped[frame]; }
 };
 
 /// One layout: its clock, its names and its lists.

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -134,6 +136,37 @@ Result<PoseSpline> scaled_motion(const HandPath& path, const MotionOptions& opti
   }
 }
 
+double heading_of(const Vector3d& forward_world) { return std::atan2(forward_world.y(), forward_world.x()); }
+
+Vector3d mean_forward(const PoseSpline& spline) {
+  Vector3d forward = Vector3d::Zero();
+  for (const Quaterniond& rotation : spline.rotation_world_body) forward += rotation * Vector3d::UnitZ();
+  return forward;
+}
+
+/// Where a path looks, and the weights of its speeds along the axes of the world.
+struct View {
+  double heading_rad = 0;
+  std::array<double, 3> weight = HandPath::kHabit;
+};
+
+/// unturned: the motion with the path's own heading.
+View choose_view(const HandPath& path, const MotionOptions& options, const PoseSpline& unturned,
+                 const HeadingTexture& texture) {
+  const double best_rad = path.mean_yaw_rad() + texture.best_turn_rad(unturned);
+  if (!options.sideways) return {best_rad};
+  constexpr double kForward = 0.15;
+  constexpr double kUp = 0.45;
+  // Angles are sums of sines, whose mean over a short recording is not zero.
+  const double lean_rad = heading_of(mean_forward(unturned)) - path.mean_yaw_rad();
+  const double wanted_rad = texture.only_rad.value_or(best_rad + lean_rad);
+  constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
+  const double quarters = std::round(wanted_rad / kQuarter_rad);
+  const bool along_x = std::fmod(quarters, 2) == 0;
+  return {kQuarter_rad * quarters - lean_rad,
+          along_x ? std::array{kForward, 1.0, kUp} : std::array{1.0, kForward, kUp}};
+}
+
 /// Of the control points, whose hull holds the spline.
 Eigen::AlignedBox3d extent_of(const PoseSpline& spline) {
   Eigen::AlignedBox3d extent;
@@ -146,8 +179,7 @@ Eigen::AlignedBox3d extent_of(const PoseSpline& spline) {
 /// middle.
 Vector3d middle_of_path(const PoseSpline& spline, const Eigen::AlignedBox3d& box, const Vector3d& size_m) {
   constexpr double kShare = 0.6;
-  Vector3d forward = Vector3d::Zero();
-  for (const Quaterniond& rotation : spline.rotation_world_body) forward += rotation * Vector3d::UnitZ();
+  Vector3d forward = mean_forward(spline);
   forward.z() = 0;
   forward /= std::max(forward.norm(), 1e-9);
   return box.center() + 0.5 * kShare * (box.sizes() - size_m).cwiseProduct(forward);
@@ -162,9 +194,11 @@ std::string_view to_string(MotionPreset preset) {
     case MotionPreset::fast:
       return "fast";
     case MotionPreset::shake:
+      return "shake";
+    case MotionPreset::sweep:
       break;
   }
-  return "shake";
+  return "sweep";
 }
 
 MotionOptions motion_preset(MotionPreset preset) {
@@ -179,6 +213,12 @@ MotionOptions motion_preset(MotionPreset preset) {
     options.peak_speed_mps = 1.2;
     options.peak_rate_radps = 2.5;
     options.shake_share = 0.75;
+  } else if (preset == MotionPreset::sweep) {
+    options.peak_speed_mps = 2.0;
+    options.peak_rate_radps = 1.0;
+    options.position_hz = {0.25, 0.6};
+    options.rotation_hz = {0.3, 0.8};
+    options.sideways = true;
   }
   return options;
 }
@@ -239,12 +279,12 @@ Result<PoseSpline> hand_held_motion(const MotionOptions& options, const MotionSp
   const Vector3d room_m = box.sizes();
   Vector3d stretch = Vector3d::Ones();
   const HandPath path(options, seed, stretch, length_s);
-  double heading_rad = path.mean_yaw_rad();
-  const auto unturned = scaled_motion(path, options, span, heading_rad);
+  const auto unturned = scaled_motion(path, options, span, path.mean_yaw_rad());
   if (!unturned) return unturned;
-  heading_rad += texture.best_turn_rad(*unturned);
+  const View view = choose_view(path, options, *unturned, texture);
   for (int attempt = 0; attempt < kMostTries; ++attempt) {
-    auto spline = scaled_motion(HandPath(options, seed, stretch, length_s), options, span, heading_rad);
+    auto spline = scaled_motion(HandPath(options, seed, stretch, length_s, view.weight), options, span,
+                                view.heading_rad);
     if (!spline) return spline;
     const Eigen::AlignedBox3d extent = extent_of(*spline);
     const Vector3d size_m = extent.sizes();

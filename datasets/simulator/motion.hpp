@@ -18,6 +18,7 @@ enum class MotionPreset {
   slow,   ///< careful scanning: up to 0.4 m/s and 0.6 rad/s
   fast,   ///< quick pans, back and forth: up to 2 m/s and 3 rad/s
   shake,  ///< shaking at 2 to 4 Hz on a slow path: up to 1.2 m/s and 2.5 rad/s
+  sweep,  ///< quick sideways scanning of something near: up to 2 m/s and 1 rad/s
 };
 [[nodiscard]] std::string_view to_string(MotionPreset preset);
 
@@ -35,6 +36,7 @@ struct MotionOptions {
   double pan_share = 0;    ///< share of the angular speed that quick pans have, 0 to 1
   double shake_share = 0;  ///< share of both speeds that shaking has, 0 to 1
   FrequencyBand shake_hz{2, 4};
+  bool sideways = false;     ///< across the direction of view, which is that of an axis of the world
   double tremor_m = 1.5e-4;  ///< amplitude of the hand's tremor (6 to 10 Hz), once it moves
   bool from_rest = true;     ///< still before it moves; otherwise in full motion from the beginning
   double rest_s = 1.0;       ///< stillness from the first frame on

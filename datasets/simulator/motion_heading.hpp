@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "core/parallel.hpp"
 #include "datasets/pose_spline.hpp"
@@ -17,7 +18,8 @@ struct HeadingTexture {
   static constexpr std::size_t kHeadings = 24;
 
   std::array<double, kHeadings>
-      share{};  ///< of the image's cells that hold an edge, 0 to 1, every 15 degrees
+      share{};                     ///< of the image's cells that hold an edge, 0 to 1, every 15 degrees
+  std::optional<double> only_rad;  ///< the one heading that is worth looking at; empty: by the texture
 
   [[nodiscard]] double at(double heading_rad) const;  ///< interpolated, periodic
 

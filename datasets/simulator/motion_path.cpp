@@ -13,8 +13,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kSines = 4;  // an odd rhythm already; more of them only approach a normal distribution
 
-// Hand-held cameras turn mostly about the vertical and move mostly in the horizontal plane.
-constexpr std::array<double, 3> kPositionWeight = {1.0, 1.0, 0.35};
+// Hand-held cameras turn mostly about the vertical.
 constexpr std::array<double, 3> kAngleWeight = {1.0, 0.35, 0.2};
 // Shaking has no such habit.
 constexpr std::array<double, 3> kShakePositionWeight = {0.8, 0.8, 1.0};
@@ -31,7 +30,8 @@ enum SingleStream : std::uint64_t { pan_pause = 50, pan_duration, pan_angle, sha
 
 }  // namespace
 
-HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vector3d& stretch, double length_s)
+HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vector3d& stretch, double length_s,
+                   const std::array<double, 3>& position_weight)
     : options_(options) {
   const auto random = [seed](std::uint64_t stream, std::uint64_t index, double low, double high) {
     return low + (high - low) * unit_interval(mix_key(mix_key(mix_key(seed, kPurpose), stream), index));
@@ -52,7 +52,7 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double factor = stretch[static_cast<Eigen::Index>(axis)];
     const FrequencyBand stretched{factor * options.position_hz.low_hz, factor * options.position_hz.high_hz};
-    position_[axis] = sines(Stream::position + axis, stretched, kPositionWeight[axis]);
+    position_[axis] = sines(Stream::position + axis, stretched, position_weight[axis]);
     angles_[axis] = sines(Stream::angle + axis, options.rotation_hz, kAngleWeight[axis]);
     shake_position_[axis] =
         sines(Stream::shake_position + axis, options.shake_hz, kShakePositionWeight[axis]);

@@ -68,6 +68,10 @@ struct RowOfRays {
   }
 };
 
+bool is_nearer(const RayHit& a, const RayHit& b) {
+  return a.triangle != RayHit::kNothing && (b.triangle == RayHit::kNothing || a.distance < b.distance);
+}
+
 /// fill(row) for all rows.
 template <class Fill>
 void for_rows(const Workers& workers, int height, const Fill& fill) {
@@ -159,14 +163,18 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::add_light_of_row(const RayField& rays, int row, const SE3& T_world_camera,
                                 const Vector2d& offset_px, float footprint_px, float weight,
-                                std::span<Eigen::Vector3f> light) const {
+                                std::span<Eigen::Vector3f> light, const Foreground* foreground) const {
   RowOfRays line(rays.camera().width_px);
   line.cast(state_->caster, rays, row, T_world_camera, offset_px);
+  RowOfRays before(foreground != nullptr ? rays.camera().width_px : 0);
+  if (foreground != nullptr)
+    before.cast(foreground->thing.state_->caster, rays, row, foreground->T_thing_camera, offset_px);
   const float footprint = footprint_px / static_cast<float>(rays.camera().fx_px);
   for (std::size_t i = 0; i < light.size(); ++i) {
-    const RayHit& hit = line.hits[i];
-    if (hit.triangle != RayHit::kNothing)
-      light[i] += weight * state_->light_of(hit, footprint * hit.distance);
+    const bool hidden = foreground != nullptr && is_nearer(before.hits[i], line.hits[i]);
+    const RayHit& hit = hidden ? before.hits[i] : line.hits[i];
+    const State& seen = hidden ? *foreground->thing.state_ : *state_;
+    if (hit.triangle != RayHit::kNothing) light[i] += weight * seen.light_of(hit, footprint * hit.distance);
   }
 }
 

@@ -26,6 +26,14 @@ struct RowPoses {
   }
 };
 
+class Renderer;
+
+/// A thing that moves before the scene, as it is at one instant.
+struct Foreground {
+  const Renderer& thing;
+  SE3 T_thing_camera;
+};
+
 /// A ray caster over a scene. Rays are independent, so the number of threads never shows in a result.
 class Renderer {
  public:
@@ -41,9 +49,10 @@ class Renderer {
 
   /// Adds the light of one row (as above, times weight) to `light`, which has the camera's width.
   /// footprint_px: the side of the square that the sample stands for; less than 1 where samples of a pixel
-  /// are averaged.
+  /// are averaged. A foreground hides what is behind it.
   void add_light_of_row(const RayField& rays, int row, const SE3& T_world_camera, const Vector2d& offset_px,
-                        float footprint_px, float weight, std::span<Eigen::Vector3f> light) const;
+                        float footprint_px, float weight, std::span<Eigen::Vector3f> light,
+                        const Foreground* foreground = nullptr) const;
 
   /// What a ray meets, for depth sensors.
   struct Surface {

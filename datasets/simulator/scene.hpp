@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/types.hpp"
@@ -32,6 +33,9 @@ struct SimulatedScene {
   Eigen::AlignedBox3d free_space;
   /// Where the things worth looking at are.
   Eigen::AlignedBox3d look_at;
+  /// Level direction from the free space to what the scene is about (about z, 0 looks along x); empty: all
+  /// around.
+  std::optional<double> heading_rad;
 };
 
 /// Gives the vertices of textured triangles the colour that they show (mesh.colors), for whoever looks at the

@@ -14,6 +14,7 @@
 #include "core/toml_document.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/room.hpp"
+#include "datasets/simulator/storage_room.hpp"
 #include "datasets/simulator/write_images.hpp"
 #include "datasets/simulator/write_lists.hpp"
 
@@ -28,6 +29,9 @@ constexpr double kLongest_s = 3600;
 // With half of the longest read-out, depth is still within the motion, which goes on for
 // MotionSpan::kTail_ns.
 constexpr double kLongestDelay_s = 0.05;
+// A reader that takes a late clock for a true one looks for samples later than there would be otherwise; with
+// the tail above, they are within MotionSpan::kTail_ns.
+constexpr double kMostUntold_s = 0.04;
 constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate need more than the frames'
 
 /// Readers of some formats refuse other rates (zr300) or count frames (icl).
@@ -52,7 +56,8 @@ Result<void> check_options(const SimulationOptions& o) {
         std::tuple{"color readout_s", o.rig.color.timing.color_readout_s, 0.0, 0.1},
         std::tuple{"depth readout_s", o.rig.color.timing.depth_readout_s, 0.0, 0.1},
         std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kLongestDelay_s, kLongestDelay_s},
-        std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0}}) {
+        std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0},
+        std::tuple{"untold_time_offset_s", o.untold_time_offset_s, -kMostUntold_s, kMostUntold_s}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
                   fmt::format("{} = {} (allowed {} .. {})", name, value, low, high));
@@ -61,6 +66,7 @@ Result<void> check_options(const SimulationOptions& o) {
   if (!o.rig.imu)
     return fail(ErrorCode::configuration, "the calibration has no IMU", "start from the defaults");
   if (auto valid = check_rate(o); !valid) return valid;
+  if (auto valid = check_calibration_error(o.calibration_error); !valid) return valid;
   return check_file_motion(o.file_motion);
 }
 
@@ -73,7 +79,7 @@ struct Drive {
 
 Result<SimulatedScene> make_scene(const SimulationOptions& options) {
   if (!options.scene_file.empty()) return read_scene(options.scene_file, options.scene);
-  return make_room(options.seed);
+  return options.room == RoomKind::storage ? make_storage_room(options.seed) : make_room(options.seed);
 }
 
 Result<std::optional<FilePath>> read_path(const SimulationOptions& options) {
@@ -148,10 +154,16 @@ Result<void> write_rest(const SimulationOptions& options, const Shooting& shooti
   SimulatedData data;
   data.rig = options.rig;
   data.rig.imu->time_offset_s = options.imu.time_offset_s;
+  data.rig.imu->T_imu_camera =
+      miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
   data.frame_ns = shooting.frame_ns;
+  data.dropped = dropped_frames(options.faults, shooting.frame_ns);
   data.truth = true_poses(shooting);
-  data.imu = simulate_imu(shooting.body, span.begin_ns, span.last_frame_ns + kImuTail_ns, options.imu_rate_hz,
-                          options.imu, options.seed);
+  ImuErrors errors = options.imu;
+  errors.time_offset_s += options.untold_time_offset_s;
+  const std::int64_t late_ns = std::llround(1e9 * std::max(0.0, -options.untold_time_offset_s));
+  data.imu = simulate_imu(shooting.body, span.begin_ns, span.last_frame_ns + kImuTail_ns + late_ns,
+                          options.imu_rate_hz, errors, options.seed);
   data.scene = std::move(scene);
   report.imu_samples = data.imu.samples.size();
   if (auto written = write_layout(options.layout, folder, data); !written) return written;
@@ -199,6 +211,8 @@ Result<SimulationOptions> simulation_defaults(RecordingLayout layout, MotionPres
   options.layout = layout;
   options.preset = preset;
   options.motion = motion_preset(preset);
+  // What is near enough to be swept over, with room for it before.
+  if (preset == MotionPreset::sweep) options.room = RoomKind::storage;
   options.rig = std::move(*rig);
   options.depth_noise = describe(layout).depth_noise;
   options.imu.sensor.noise = options.rig.imu->noise;
@@ -231,17 +245,21 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   if (!path) return tl::unexpected(path.error());
   auto frame_ns = choose_times(options, *path);
   if (!frame_ns) return tl::unexpected(frame_ns.error());
+  if (const auto valid = check_faults(options.faults, *frame_ns); !valid)
+    return tl::unexpected(valid.error());
   auto scene = make_scene(options);
   if (!scene) return tl::unexpected(scene.error());
   const MotionSpan span{frame_ns->front() - describe(options.layout).imu_lead_ns, frame_ns->front(),
                         frame_ns->back()};
-  const Renderer renderer(*scene);
-  const auto drive = choose_motion(options, *path, span, scene->free_space,
-                                   look_around(renderer, scene->free_space, workers));
+  const Scenery scenery(*scene, options.rig.color.pinhole, options.faults, options.seed);
+  HeadingTexture texture = look_around(scenery.scene, scene->free_space, workers);
+  texture.only_rad = scene->heading_rad;
+  const auto drive = choose_motion(options, *path, span, scene->free_space, texture);
   if (!drive) return tl::unexpected(drive.error());
   const SE3& T_body_color = options.rig.imu->T_imu_camera;
   const Shooting shooting{body_motion(drive->camera, T_body_color), T_body_color, std::move(*frame_ns)};
-  report.frames = shooting.frame_ns.size();
+  report.frames =
+      static_cast<std::size_t>(std::ranges::count(dropped_frames(options.faults, shooting.frame_ns), false));
   report.trajectory_shrunk = drive->shrunk;
   report.trajectory_turned_rad = drive->turned_rad;
   if (*path) report.warnings = (*path)->warnings;
@@ -249,7 +267,7 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
 
   auto staged = StagedFolder::create(folder);
   if (!staged) return tl::unexpected(staged.error());
-  if (auto written = write_images(options, shooting, renderer, staged->path(), workers, control); !written)
+  if (auto written = write_images(options, shooting, scenery, staged->path(), workers, control); !written)
     return tl::unexpected(written.error());
   if (auto written = write_rest(options, shooting, span, std::move(scene->mesh), staged->path(), report);
       !written)

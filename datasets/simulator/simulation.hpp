@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "datasets/rig_calibration.hpp"
+#include "datasets/simulator/calibration_error.hpp"
+#include "datasets/simulator/fault.hpp"
 #include "datasets/simulator/image_sensors.hpp"
 #include "datasets/simulator/imu_sensor.hpp"
 #include "datasets/simulator/layout.hpp"
@@ -19,6 +22,11 @@
 
 namespace fusebench {
 
+enum class RoomKind {
+  furnished,  ///< room.hpp
+  storage,    ///< storage_room.hpp
+};
+
 /// Everything that decides the bytes of a recording; simulation_defaults() fills it in.
 struct SimulationOptions {
   RecordingLayout layout = RecordingLayout::zr300;
@@ -26,16 +34,16 @@ struct SimulationOptions {
   double duration_s = 10;  ///< 0: the whole trajectory file
   double rate_hz = 30;     ///< of the images
 
-  std::filesystem::path scene_file;  ///< PLY or OBJ; empty: the furnished room of the seed
-  SceneFileOptions scene;            ///< its axes and unit
+  std::filesystem::path scene_file;  ///< PLY or OBJ; empty: the room of the seed
+  RoomKind room = RoomKind::furnished;
+  SceneFileOptions scene;  ///< its axes and unit
 
   MotionPreset preset = MotionPreset::slow;  ///< what `motion` started from
   MotionOptions motion;
   std::filesystem::path trajectory_file;  ///< drives the camera instead of `motion`; empty: none
   FileMotionOptions file_motion;
 
-  RigCalibration
-      rig;  ///< what calibration.toml says: cameras with their read-out times, extrinsics, IMU densities
+  RigCalibration rig;  ///< the true one: cameras with their read-out times, extrinsics, IMU densities
   double exposure_s = 0.008;
   int blur_samples = 8;
   double gain_drift = 0.03;  ///< these four: see ColorSensor
@@ -45,6 +53,10 @@ struct SimulationOptions {
   DepthNoise depth_noise = DepthNoise::zr300;
   double imu_rate_hz = 200;
   ImuErrors imu;
+
+  std::vector<SimulatedFault> faults;  ///< of the images
+  CalibrationError calibration_error;  ///< what calibration.toml is wrong about
+  double untold_time_offset_s = 0;     ///< added to imu.time_offset_s, and calibration.toml does not say so
 };
 
 /// The sensors and effects of a layout with the motion of a preset: motion blur, image noise, the depth noise

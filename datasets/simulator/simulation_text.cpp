@@ -43,10 +43,11 @@ std::string motion_text(const SimulationOptions& o) {
   return fmt::format(
       "[motion]\npreset = {}\npeak_speed_mps = {}\npeak_rate_radps = {}\nposition_hz = [{}, {}]\n"
       "rotation_hz = [{}, {}]\npan_share = {}\nshake_share = {}\nshake_hz = [{}, {}]\ntremor_m = {}\n"
-      "from_rest = {}\nrest_s = {}\nstart_s = {}\n",
+      "from_rest = {}\nrest_s = {}\nstart_s = {}\n{}",
       toml_text(to_string(o.preset)), m.peak_speed_mps, m.peak_rate_radps, m.position_hz.low_hz,
       m.position_hz.high_hz, m.rotation_hz.low_hz, m.rotation_hz.high_hz, m.pan_share, m.shake_share,
-      m.shake_hz.low_hz, m.shake_hz.high_hz, m.tremor_m, m.from_rest, m.rest_s, m.start_s);
+      m.shake_hz.low_hz, m.shake_hz.high_hz, m.tremor_m, m.from_rest, m.rest_s, m.start_s,
+      m.sideways ? "sideways = true\n" : "");  // only then, so that other recordings keep their identity
 }
 
 std::string sensors_text(const SimulationOptions& o) {
@@ -70,16 +71,36 @@ std::string sensors_text(const SimulationOptions& o) {
 }
 
 std::string scene_text(const SimulationOptions& o) {
-  if (o.scene_file.empty()) return "[scene]\nkind = \"furnished room of the seed\"\n";
+  if (o.scene_file.empty()) {
+    return fmt::format("[scene]\nkind = \"{} room of the seed\"\n",
+                       o.room == RoomKind::storage ? "storage" : "furnished");
+  }
   return fmt::format("[scene]\nkind = \"file\"\nfile = {}\ny_up = {}\nmetres_per_unit = {}\n",
                      toml_text(o.scene_file.filename().string()), o.scene.y_up, o.scene.metres_per_unit);
 }
 
+/// Nothing if there are none, so that recordings without faults keep their identity.
+std::string faults_text(const SimulationOptions& o) {
+  std::string text;
+  if (!o.faults.empty()) {
+    std::vector<std::string> list;
+    for (const SimulatedFault& fault : o.faults) list.push_back(toml_text(to_string(fault)));
+    text += fmt::format("\n[faults]  # seconds from the first frame\nlist = [{}]\n", fmt::join(list, ", "));
+  }
+  if (!o.calibration_error.is_zero() || o.untold_time_offset_s != 0) {
+    text += fmt::format(
+        "\n[untold]  # what calibration.toml is wrong about\nrotation_deg = {}\nshift_cm = {}\n"
+        "time_offset_s = {}\n",
+        o.calibration_error.rotation_deg, o.calibration_error.shift_cm, o.untold_time_offset_s);
+  }
+  return text;
+}
+
 /// All options but the calibration, which has a file of its own.
 std::string options_text(const SimulationOptions& o) {
-  return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}",
+  return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}{}",
                      kSimulatorVersion, toml_text(to_string(o.layout)), o.seed, o.duration_s, scene_text(o),
-                     motion_text(o), sensors_text(o));
+                     motion_text(o), sensors_text(o), faults_text(o));
 }
 
 }  // namespace

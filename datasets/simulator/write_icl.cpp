@@ -34,8 +34,10 @@ Result<void> write_icl_lists(const std::filesystem::path& folder, const Simulate
   std::string pairs;
   std::string truth;
   for (std::size_t k = 0; k < data.frame_ns.size(); ++k) {
-    fmt::format_to(std::back_inserter(pairs), "{} {} {} {}\n", k, icl_depth_name(k, 0), k,
-                   icl_color_name(k, 0));
+    if (data.has_frame(k)) {
+      fmt::format_to(std::back_inserter(pairs), "{} {} {} {}\n", k, icl_depth_name(k, 0), k,
+                     icl_color_name(k, 0));
+    }
     if (k == 0) continue;  // the published trajectories begin with frame 1
     const SE3 T = icl_reflect(T_file_scene * pose_at(data.truth, data.frame_ns[k]));
     const Vector3d& t = T.translation;

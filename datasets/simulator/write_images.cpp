@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -16,15 +17,26 @@ namespace fusebench {
 
 namespace {
 
-ColorSensor color_sensor(const SimulationOptions& options) {
+constexpr int kMostFaultSamples = 64;
+
+/// A longer exposure is made of more instants, so that the steps between them stay as small.
+int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
+  if (options.exposure_s <= 0 || exposure_s <= options.exposure_s) return options.blur_samples;
+  const double samples = std::ceil(options.blur_samples * exposure_s / options.exposure_s);
+  return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMostFaultSamples})));
+}
+
+ColorSensor color_sensor(const SimulationOptions& options, const FrameFaults& faults) {
   ColorSensor sensor;
   sensor.camera = options.rig.color;
-  sensor.exposure_s = options.exposure_s;
+  sensor.exposure_s = faults.exposure_s.value_or(options.exposure_s);
   sensor.gain_drift = options.gain_drift;
   sensor.vignetting = options.vignetting;
   sensor.read_noise_grey = options.read_noise_grey;
   sensor.shot_noise = options.shot_noise;
-  sensor.blur_samples = options.blur_samples;
+  sensor.blur_samples = samples_of_exposure(options, sensor.exposure_s);
+  sensor.gain = faults.brightness;
+  sensor.covered = faults.black;
   return sensor;
 }
 
@@ -38,24 +50,58 @@ DepthSensor depth_sensor(const SimulationOptions& options) {
   return sensor;
 }
 
-Result<void> write_frame(const SimulationOptions& options, const Shooting& shooting, const Renderer& renderer,
-                         std::size_t k, const std::filesystem::path& folder) {
-  const LayoutDescription& layout = describe(options.layout);
-  const RigCalibration& rig = options.rig;
-  const Workers alone(1);  // frames are what runs in parallel
-  const std::int64_t time_ns = shooting.frame_ns[k];
-  const SE3& T_body_color = shooting.T_body_color;
-  const ColorImage image = expose_color(renderer, color_sensor(options), shooting.body, T_body_color, time_ns,
-                                        options.seed, k, alone);
-  if (auto written = write_png(folder / layout.color_name(k, time_ns), image); !written) return written;
+/// The hand before a camera that is placed by T_color_camera.
+std::optional<MovingThing> hand_before(const Scenery& scenery, const Shooting& shooting,
+                                       const FrameFaults& faults, const SE3& T_color_camera) {
+  if (!faults.hand) return std::nullopt;
+  const Scenery::MovingHand& moving = *scenery.hands[*faults.hand];
+  return MovingThing{moving.surface, [&, T_color_camera](std::int64_t t_ns) {
+                       const double time_s = seconds_between(shooting.frame_ns.front(), t_ns);
+                       return moving.hand.T_color_hand(time_s).inverse() * T_color_camera;
+                     }};
+}
 
-  const SE3 T_body_depth = rig.depth ? T_body_color * rig.depth->T_color_depth : T_body_color;
-  const std::int64_t depth_ns = time_ns + std::llround(1e9 * rig.color.timing.depth_delay_s);
-  Image<std::uint16_t> depth = sense_depth(renderer, depth_sensor(options), shooting.body, T_body_depth,
-                                           depth_ns, options.seed, k, alone);
-  // Registered depth has the pixels of the colour image, which are distorted.
-  if (!rig.depth && !rig.color.distortion.is_zero()) depth = distort_depth(depth, rig.color);
-  return write_png(folder / layout.depth_name(k, time_ns), depth);
+/// What is the same for all frames.
+struct Studio {
+  const SimulationOptions& options;
+  const Shooting& shooting;
+  const Scenery& scenery;
+  Workers alone{1};  // frames are what runs in parallel
+
+  [[nodiscard]] const Renderer& scene(const FrameFaults& faults) const {
+    return faults.no_texture ? *scenery.matt : scenery.scene;
+  }
+
+  [[nodiscard]] ColorImage color(std::size_t k, const FrameFaults& faults) const {
+    const auto hand = hand_before(scenery, shooting, faults, SE3{});
+    return expose_color(scene(faults), color_sensor(options, faults), shooting.body, shooting.T_body_color,
+                        shooting.frame_ns[k], options.seed, k, alone, hand ? &*hand : nullptr);
+  }
+
+  [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const FrameFaults& faults) const {
+    const RigCalibration& rig = options.rig;
+    const DepthSensor sensor = depth_sensor(options);
+    if (faults.no_depth) return {sensor.camera.width_px, sensor.camera.height_px, std::uint16_t{0}};
+    const SE3 T_color_depth = rig.depth ? rig.depth->T_color_depth : SE3{};
+    const auto hand = hand_before(scenery, shooting, faults, T_color_depth);
+    const std::int64_t depth_ns = shooting.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
+    Image<std::uint16_t> depth =
+        sense_depth(scene(faults), sensor, shooting.body, shooting.T_body_color * T_color_depth, depth_ns,
+                    options.seed, k, alone, hand ? &*hand : nullptr);
+    // Registered depth has the pixels of the colour image, which are distorted.
+    if (!rig.depth && !rig.color.distortion.is_zero()) depth = distort_depth(depth, rig.color);
+    return depth;
+  }
+};
+
+Result<void> write_frame(const Studio& studio, std::size_t k, const std::filesystem::path& folder) {
+  const LayoutDescription& layout = describe(studio.options.layout);
+  const std::vector<std::int64_t>& frame_ns = studio.shooting.frame_ns;
+  const FrameFaults faults = faults_at(studio.options.faults, frame_ns[k] - frame_ns.front());
+  if (faults.dropped) return {};
+  const auto color = write_png(folder / layout.color_name(k, frame_ns[k]), studio.color(k, faults));
+  if (!color) return color;
+  return write_png(folder / layout.depth_name(k, frame_ns[k]), studio.depth(k, faults));
 }
 
 Result<void> create_folders(const LayoutDescription& layout, const std::filesystem::path& folder) {
@@ -72,10 +118,11 @@ Result<void> create_folders(const LayoutDescription& layout, const std::filesyst
 
 }  // namespace
 
-Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
-                          const Renderer& renderer, const std::filesystem::path& folder,
-                          const Workers& workers, const SimulationControl& control) {
+Result<void> write_images(const SimulationOptions& options, const Shooting& shooting, const Scenery& scenery,
+                          const std::filesystem::path& folder, const Workers& workers,
+                          const SimulationControl& control) {
   if (auto created = create_folders(describe(options.layout), folder); !created) return created;
+  const Studio studio{options, shooting, scenery};
   const std::size_t count = shooting.frame_ns.size();
   std::vector<std::optional<Error>> errors(count);
   std::atomic<bool> failed = false;
@@ -83,7 +130,7 @@ Result<void> write_images(const SimulationOptions& options, const Shooting& shoo
   std::size_t done = 0;
   workers.for_chunks(count, 1, [&](std::size_t k, std::size_t) {
     if (failed || (control.stop != nullptr && *control.stop)) return;
-    if (const auto written = write_frame(options, shooting, renderer, k, folder); !written) {
+    if (const auto written = write_frame(studio, k, folder); !written) {
       errors[k] = written.error();
       failed = true;
       return;

@@ -9,7 +9,7 @@
 #include "core/parallel.hpp"
 #include "datasets/pose_spline.hpp"
 #include "datasets/simulator/layout.hpp"
-#include "datasets/simulator/renderer.hpp"
+#include "datasets/simulator/scenery.hpp"
 #include "datasets/simulator/simulation.hpp"
 
 namespace fusebench {
@@ -21,10 +21,11 @@ struct Shooting {
   std::vector<std::int64_t> frame_ns;  ///< stamps, and middles of the exposures (depth: its delay later)
 };
 
-/// Renders and writes all colour and depth images below the folder, frames in parallel. Errors: io;
+/// Renders and writes all colour and depth images below the folder, frames in parallel, with the faults of
+/// the options. Errors: io;
 /// run_failed (stopped). The error is that of the first frame that has one, whatever the threads.
 [[nodiscard]] Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
-                                        const Renderer& renderer, const std::filesystem::path& folder,
+                                        const Scenery& scenery, const std::filesystem::path& folder,
                                         const Workers& workers, const SimulationControl& control);
 
 }  // namespace fusebench

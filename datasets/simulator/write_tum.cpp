@@ -31,6 +31,7 @@ Result<void> write_tum_lists(const std::filesystem::path& folder, const Simulate
   std::string depth = "# depth maps\n# simulated\n# timestamp filename\n";
   std::string both;
   for (std::size_t k = 0; k < data.frame_ns.size(); ++k) {
+    if (!data.has_frame(k)) continue;
     const std::int64_t time_ns = data.frame_ns[k];
     const std::string color_row = fmt::format("{} {}", stamp(time_ns), tum_color_name(k, time_ns));
     const std::string depth_row = fmt::format("{} {}", stamp(time_ns), tum_depth_name(k, time_ns));

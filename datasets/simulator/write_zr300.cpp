@@ -26,8 +26,9 @@ std::string zr300_depth_name(std::size_t, std::int64_t frame_ns) {
 
 Result<void> write_zr300_lists(const std::filesystem::path& folder, const SimulatedData& data) {
   std::string images = "#timestamp(us) colorname depthname\n";
-  for (const std::int64_t time_ns : data.frame_ns) {
-    const std::int64_t time_us = microseconds(time_ns);
+  for (std::size_t k = 0; k < data.frame_ns.size(); ++k) {
+    if (!data.has_frame(k)) continue;
+    const std::int64_t time_us = microseconds(data.frame_ns[k]);
     fmt::format_to(std::back_inserter(images), "{},{}.png,{}.png\n", time_us, time_us, time_us);
   }
   std::string imu = "#timestamp(us) gx gy gz ax ay az\n";
