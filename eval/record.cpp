@@ -2,173 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <type_traits>
+#include <stdexcept>
 
 #include "eval/json_text.hpp"
+#include "eval/record_metrics.hpp"
 
 namespace fusebench {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// NaN is dumped as null; null is read as NaN.
-double number_at(const Json& json, const char* key) {
-  const Json& value = json.at(key);
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-}
-
-// ---- statistics and alignment
-
-Json json_of(const Statistics& stats) {
-  if (stats.count == 0) return nullptr;
-  return {{"rmse", stats.rmse}, {"mean", stats.mean}, {"median", stats.median}, {"std", stats.std},
-          {"min", stats.min},   {"max", stats.max},   {"sse", stats.sse},       {"count", stats.count}};
-}
-
-Statistics statistics_of(const Json& json) {
-  if (json.is_null()) return {};
-  return {number_at(json, "rmse"),   number_at(json, "mean"),
-          number_at(json, "median"), number_at(json, "std"),
-          number_at(json, "min"),    number_at(json, "max"),
-          number_at(json, "sse"),    json.at("count").get<std::size_t>()};
-}
-
-Json json_of(const Alignment& alignment) {
-  return {{"mode", alignment.mode}, {"matrix", matrix_of(alignment.T_reference_estimate)}};
-}
-
-Alignment alignment_of(const Json& json) {
-  const auto m = json.at("matrix").get<std::array<double, 16>>();
-  Matrix3d rotation;
-  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-  return {json.at("mode"), {Quaterniond(rotation), {m[3], m[7], m[11]}}};
-}
-
-// ---- metrics
-
-Json json_of(const AteResult& ate) {
-  return {{"protocol", ate.protocol},
-          {"relation", ate.relation},
-          {"unit", ate.unit},
-          {"pairs", ate.pairs},
-          {"possible", ate.possible},
-          {"coverage", ate.coverage},
-          {"max_difference_s", ate.max_difference_s},
-          {"alignment", json_of(ate.alignment)},
-          {"stats", json_of(ate.stats)}};
-}
-
-void read(const Json& json, AteResult& ate) {
-  ate.protocol = json.at("protocol");
-  ate.relation = json.at("relation");
-  ate.unit = json.at("unit");
-  ate.pairs = json.at("pairs");
-  ate.possible = json.at("possible");
-  ate.coverage = json.at("coverage");
-  ate.max_difference_s = json.at("max_difference_s");
-  ate.alignment = alignment_of(json.at("alignment"));
-  ate.stats = statistics_of(json.at("stats"));
-}
-
-Json json_of(const RpeResult& rpe) {
-  return {{"protocol", rpe.protocol},
-          {"delta", rpe.delta},
-          {"delta_unit", to_string(rpe.unit)},
-          {"pairs", rpe.pairs},
-          {"possible", rpe.possible},
-          {"coverage", rpe.coverage},
-          {"max_difference_s", rpe.max_difference_s},
-          {"alignment", json_of(rpe.alignment)},
-          {"translation", {{"unit", "m"}, {"stats", json_of(rpe.translation)}}},
-          {"rotation", {{"unit", "rad"}, {"stats", json_of(rpe.rotation)}}}};
-}
-
-void read(const Json& json, RpeResult& rpe) {
-  rpe.protocol = json.at("protocol");
-  rpe.delta = json.at("delta");
-  rpe.unit = json.at("delta_unit") == to_string(DeltaUnit::frames) ? DeltaUnit::frames : DeltaUnit::seconds;
-  rpe.pairs = json.at("pairs");
-  rpe.possible = json.at("possible");
-  rpe.coverage = json.at("coverage");
-  rpe.max_difference_s = json.at("max_difference_s");
-  rpe.alignment = alignment_of(json.at("alignment"));
-  rpe.translation = statistics_of(json.at("translation").at("stats"));
-  rpe.rotation = statistics_of(json.at("rotation").at("stats"));
-}
-
-Json json_of(const IntensitySummary& summary) {
-  return {{"aie", summary.aie_grey},
-          {"rms", summary.rms_grey},
-          {"pixels", summary.pixels},
-          {"frames", summary.frames},
-          {"frames_excluded", summary.frames_excluded},
-          {"stats", json_of(summary.stats)}};
-}
-
-IntensitySummary summary_of(const Json& json) {
-  return {number_at(json, "aie"),
-          number_at(json, "rms"),
-          json.at("pixels").get<std::size_t>(),
-          json.at("frames").get<std::size_t>(),
-          json.at("frames_excluded").get<std::size_t>(),
-          statistics_of(json.at("stats"))};
-}
-
-Json json_of(const IntensityResult& aie) {
-  Json json = {{"protocol", "mean over frames of the mean over visible pixels of tracked patches"},
-               {"unit", "grey levels 0-255"}};
-  json.update(json_of(aie.all));
-  json["accepted"] = json_of(aie.accepted);
-  return json;
-}
-
-void read(const Json& json, IntensityResult& aie) {
-  aie.all = summary_of(json);
-  aie.accepted = summary_of(json.at("accepted"));
-}
-
-template <class T>
-Json json_of(const Outcome<T>& outcome) {
-  if (outcome.value) return json_of(*outcome.value);
-  return {{"stats", nullptr}, {"reason", outcome.reason}};
-}
-
-template <class T>
-Outcome<T> outcome_of(const Json& json) {
-  if (json.contains("reason")) return {std::nullopt, json.at("reason")};
-  Outcome<T> outcome{T{}, {}};
-  read(json, *outcome.value);
-  return outcome;
-}
-
-Json json_of_metrics(const RunRecord& record) {
-  const double share = record.frames.total == 0 ? 0.0
-                                                : static_cast<double>(record.frames.tracked) /
-                                                      static_cast<double>(record.frames.total);
-  return {
-      {"ate", json_of(record.metrics.ate)},
-      {"rpe", {{"frame", json_of(record.metrics.rpe_frame)}, {"second", json_of(record.metrics.rpe_second)}}},
-      {"aie", json_of(record.metrics.aie)},
-      {"coverage",
-       {{"protocol", "tracked frames / frames of the recording"},
-        {"tracked", record.frames.tracked},
-        {"total", record.frames.total},
-        {"share", share}}}};
-}
-
-void read_metrics(const Json& json, RecordedMetrics& metrics) {
-  metrics.ate = outcome_of<AteResult>(json.at("ate"));
-  metrics.rpe_frame = outcome_of<RpeResult>(json.at("rpe").at("frame"));
-  metrics.rpe_second = outcome_of<RpeResult>(json.at("rpe").at("second"));
-  metrics.aie = outcome_of<IntensityResult>(json.at("aie"));
-}
-
-// ---- what was asked, and what made it
 
 Json json_of(const RecordedRecording& recording) {
   return {{"name", recording.name},

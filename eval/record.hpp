@@ -1,6 +1,7 @@
 // The record of one run: what was asked, what came out, and what made it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +13,10 @@
 
 #include "core/error.hpp"
 #include "core/options.hpp"
+#include "eval/consistency_metrics.hpp"
 #include "eval/intensity_metrics.hpp"
+#include "eval/mesh_metrics.hpp"
+#include "eval/residual_metrics.hpp"
 #include "eval/trajectory_metrics.hpp"
 
 namespace fusebench {
@@ -57,11 +61,32 @@ struct RecordedRecording {
   std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
 };
 
+/// In the order of kStateParts.
+using RecordedNees = std::array<Outcome<NeesResult>, kStateParts.size()>;
+
+/// The model against the true scene, under three alignments.
+struct RecordedMesh {
+  MeshSampling reconstruction_sampling;
+  MeshSampling truth_sampling;
+  std::size_t reconstruction_samples = 0;
+  std::size_t truth_samples = 0;
+  std::size_t truth_observed = 0;  ///< those of them that completeness is of
+  std::size_t views = 0;           ///< true poses that observe
+  double min_depth_m = 0;          ///< in which they do
+  double max_depth_m = 0;
+  MeshErrorResult poses;                     ///< by all poses of the trajectory: the main result
+  MeshErrorResult first_camera;              ///< by the true pose of the first camera
+  std::optional<MeshErrorResult> positions;  ///< by ATE's alignment, which sees positions only
+};
+
 struct RecordedMetrics {
   Outcome<AteResult> ate;
   Outcome<RpeResult> rpe_frame;   ///< over one frame
   Outcome<RpeResult> rpe_second;  ///< over one second
   Outcome<IntensityResult> aie;
+  Outcome<RecordedMesh> mesh;
+  RecordedNees nees;
+  Outcome<ResidualSummary> residuals;
 };
 
 struct RecordedFrames {

@@ -17,6 +17,8 @@
 #include "eval/frame_table.hpp"
 #include "eval/intensity_file.hpp"
 #include "eval/process_meter.hpp"
+#include "eval/run_evaluation.hpp"
+#include "eval/state_table.hpp"
 
 namespace fusebench {
 
@@ -28,9 +30,9 @@ struct Progress {
   std::string reason;
   RecordedFrames frames;
   std::size_t lost_in_a_row = 0;
-  Trajectory trajectory;  ///< frames that were tracked; a predicted pose is no estimate
-  IntensityAccumulator intensity;
+  RunOutput output;
   std::string frame_table = frame_table_header();
+  std::string state_table = state_table_header();
   std::string log;
   double decode_ms = 0;
   std::array<double, kStageNames.size()> stage_ms{};
@@ -105,20 +107,32 @@ RunRecord record_of_question(const PreparedRun& run) {
   return record;
 }
 
+FrameResiduals residuals_of(const FrameReport& report) {
+  FrameResiduals residuals;
+  if (report.pixels_photometric > 0) residuals.chi2_photometric = report.chi2_photometric;
+  if (report.pixels_geometric > 0) residuals.chi2_geometric = report.chi2_geometric;
+  residuals.patches_tracked = report.patches_tracked;
+  residuals.patches_accepted = report.patches_accepted;
+  return residuals;
+}
+
 /// Takes one frame's report into the progress; ends the run when too many frames are lost in a row.
 void take_report(Progress& progress, std::size_t frame, const FrameReport& report, const PreparedRun& run,
                  double decode_ms) {
   progress.frame_table += frame_table_row(frame, report, decode_ms);
+  progress.state_table += state_table_row(report);
   progress.decode_ms += decode_ms;
   for (std::size_t stage = 0; stage < report.stage_ms.size(); ++stage) {
     progress.stage_ms[stage] += report.stage_ms[stage];
   }
   // The first frame has nothing to be compared with: it is no frame without tracked pixels.
-  if (report.status != FrameStatus::initialised) progress.intensity.add_frame(report.intensity);
+  if (report.status != FrameStatus::initialised) progress.output.intensity.add_frame(report.intensity);
   if (report.status != FrameStatus::lost) {
     progress.lost_in_a_row = 0;
     ++progress.frames.tracked;
-    progress.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
+    progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
+    progress.output.states.push_back({report.capture_ns, report.estimate});
+    if (report.status == FrameStatus::tracked) progress.output.residuals.add_frame(residuals_of(report));
     return;
   }
   ++progress.frames.lost;
@@ -181,28 +195,6 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
   return progress;
 }
 
-RecordedMetrics metrics_of(const Progress& progress, const Recording& recording) {
-  RecordedMetrics metrics;
-  metrics.aie = {progress.intensity.result(), {}};
-  if (metrics.aie.value->all.frames == 0) metrics.aie = {std::nullopt, "no frame has tracked pixels"};
-  if (recording.ground_truth.empty()) {
-    metrics.ate.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
-        "the recording has no ground truth";
-    return metrics;
-  }
-  std::vector<std::int64_t> expected;
-  for (const FrameEntry& frame : recording.frames) expected.push_back(frame.timestamp_ns);
-  AteOptions ate;
-  ate.expected_ns = expected;
-  metrics.ate =
-      Outcome<AteResult>::from(absolute_trajectory_error(recording.ground_truth, progress.trajectory, ate));
-  metrics.rpe_frame = Outcome<RpeResult>::from(relative_pose_error(
-      recording.ground_truth, progress.trajectory, {.delta = 1, .unit = DeltaUnit::frames}));
-  metrics.rpe_second = Outcome<RpeResult>::from(relative_pose_error(
-      recording.ground_truth, progress.trajectory, {.delta = 1, .unit = DeltaUnit::seconds}));
-  return metrics;
-}
-
 RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, double mesh_ms) {
   RecordedTiming timing;
   timing.wall_s = cost.wall_s;
@@ -217,14 +209,6 @@ RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, doub
   }
   timing.stages_ms.emplace_back("mesh_once", mesh_ms);
   return timing;
-}
-
-Result<RecordedModel> write_model(const TsdfVolume& model, double min_weight, const Workers& workers,
-                                  const StagedFolder& folder) {
-  const Mesh mesh = extract_mesh(model, min_weight, workers);
-  if (auto written = write_ply(mesh, folder.file("mesh.ply")); !written)
-    return tl::unexpected(written.error());
-  return RecordedModel{mesh.vertices.size(), mesh.triangles.size(), model.block_count()};
 }
 
 }  // namespace
@@ -270,22 +254,26 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   auto progress = process_frames(run, pipeline, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
   const Stopwatch mesh_time;
-  const auto model = write_model(pipeline.model(), config.tsdf.min_mesh_weight, workers, *folder);
-  if (!model) return tl::unexpected(model.error());
+  Mesh& mesh = progress->output.mesh;
+  mesh = extract_mesh(pipeline.model(), config.tsdf.min_mesh_weight, workers);
+  if (auto written = write_ply(mesh, folder->file("mesh.ply")); !written) {
+    return tl::unexpected(written.error());
+  }
   const double mesh_ms = mesh_time.milliseconds();
   const ProcessCost cost = meter.cost();
 
   record.status = progress->status;
   record.reason = progress->reason;
   record.frames = progress->frames;
-  record.model = *model;
-  record.metrics = metrics_of(*progress, run.recording);
+  record.model = {mesh.vertices.size(), mesh.triangles.size(), pipeline.model().block_count()};
+  record.metrics = metrics_of(progress->output, run.recording, config.depth, workers);
   record.timing = timing_of(*progress, cost, mesh_ms);
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);
-  const std::array<std::pair<std::string_view, std::string>, 4> texts = {
-      {{"trajectory.tum", tum_text(progress->trajectory)},
+  const std::array<std::pair<std::string_view, std::string>, 5> texts = {
+      {{"trajectory.tum", tum_text(progress->output.trajectory)},
        {"frames.csv", progress->frame_table},
+       {"states.csv", progress->state_table},
        {"log.txt", progress->log},
        {"record.json", to_json(record)}}};
   for (const auto& [name, text] : texts) {

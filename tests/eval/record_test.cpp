@@ -43,6 +43,29 @@ RunRecord sample_record() {
   intensity.add_frame(
       std::vector<IntensityResidual>{{1, 2.5F, false}, {2, 3.75F, false}});  // nothing accepted
   record.metrics.aie = {intensity.result(), {}};
+  NeesResult nees;
+  nees.part = kStateParts[1];
+  nees.possible = 239;
+  nees.stats = statistics(errors);
+  nees.last = 0.7;
+  record.metrics.nees[1] = {nees, {}};
+  record.metrics.nees[2] = {std::nullopt, "no truth of it"};
+  RecordedMesh mesh;
+  mesh.truth_sampling = {MeshSamples::vertices, 12, 3};
+  mesh.truth_samples = 40;
+  mesh.truth_observed = 30;
+  mesh.views = 2;
+  mesh.max_depth_m = 4.5;
+  mesh.poses.alignment = {"poses", {so3_exp({0.2, 0.1, -0.3}), {1, 2, 3}}};
+  mesh.poses.accuracy = {statistics(errors), 0.3, 0.32};
+  mesh.poses.thresholds = {{0.01, 0.25, 0.75, 0.375}};
+  mesh.first_camera.chamfer_m = 0.125;
+  record.metrics.mesh = {mesh, {}};
+  ResidualSummary residuals;
+  residuals.chi2_photometric = 0.9;
+  residuals.patches_tracked = 81.5;
+  residuals.frames = 237;
+  record.metrics.residuals = {residuals, {}};
   record.frames = {240, 238, 2};
   record.model = {1000, 2000, 30};
   record.timing = {1.5, 2.5, 123456789, 160.0, {{"decode", 1.25}, {"update", 3.5}}};
@@ -95,6 +118,28 @@ TEST(Record, HasTheKeysThatReadersRelyOn) {
                                  "/metrics/aie/protocol",
                                  "/metrics/aie/stats/mean",
                                  "/metrics/aie/pixels",
+                                 "/metrics/mesh/protocol",
+                                 "/metrics/mesh/unit",
+                                 "/metrics/mesh/samples/truth/seed",
+                                 "/metrics/mesh/observed/share",
+                                 "/metrics/mesh/alignment/matrix/15",
+                                 "/metrics/mesh/accuracy/rmse",
+                                 "/metrics/mesh/accuracy/p95",
+                                 "/metrics/mesh/completeness",
+                                 "/metrics/mesh/thresholds/0/fscore",
+                                 "/metrics/mesh/first_camera/chamfer_m",
+                                 "/metrics/mesh/positions",
+                                 "/metrics/nees/protocol",
+                                 "/metrics/nees/position/dof",
+                                 "/metrics/nees/position/frames",
+                                 "/metrics/nees/position/mean",
+                                 "/metrics/nees/position/median",
+                                 "/metrics/nees/position/max",
+                                 "/metrics/nees/position/final",
+                                 "/metrics/nees/position/final_bounds_95/1",
+                                 "/metrics/nees/pose/reason",
+                                 "/metrics/residuals/chi2_photometric",
+                                 "/metrics/residuals/accepted_share",
                                  "/metrics/coverage/tracked",
                                  "/frames/total",
                                  "/frames/tracked",
@@ -114,6 +159,19 @@ TEST(Record, HasTheKeysThatReadersRelyOn) {
     EXPECT_TRUE(record.contains(json::json_pointer(path))) << path;
   }
   EXPECT_EQ(record.at("/config/iekf.max_iterations/origin"_json_pointer), "--set");
+}
+
+TEST(Record, OlderRecordsAreStillRead) {
+  json record = json::parse(to_json(sample_record()));
+  record["metrics"].erase("mesh");
+  record["metrics"].erase("nees");
+  record["metrics"].erase("residuals");
+  const auto back = parse_record(record.dump(), "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(back->metrics.nees[1].reason, "the record is older than this metric");
+  EXPECT_EQ(back->metrics.mesh.reason, "the record is older than this metric");
+  EXPECT_EQ(back->metrics.residuals.reason, "the record is older than this metric");
+  EXPECT_EQ(back->metrics.ate.value->pairs, 239U);
 }
 
 TEST(Record, NumbersThatDoNotExistAreNull) {

@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
+#include "core/mesh_file.hpp"
+#include "core/text_table.hpp"
+#include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "eval/batch.hpp"
@@ -44,8 +49,8 @@ TEST_F(RunTest, WritesAWholeFolder) {
   EXPECT_EQ(record->status, RunStatus::ok) << record->reason;
   EXPECT_EQ(frames_seen, 5U);
   EXPECT_EQ(record->frames.total, 5U);
-  for (const char* const name :
-       {"record.json", "trajectory.tum", "mesh.ply", "frames.csv", "intensity.bin", "log.txt"}) {
+  for (const char* const name : {"record.json", "trajectory.tum", "mesh.ply", "frames.csv", "states.csv",
+                                 "intensity.bin", "log.txt"}) {
     EXPECT_TRUE(std::filesystem::exists(prepared->folder / name)) << name;
   }
   EXPECT_EQ(testing::read_bytes(prepared->folder / "record.json"), to_json(*record));
@@ -64,11 +69,104 @@ TEST_F(RunTest, SameBytesWithAnyThreadCount) {
   const auto three = prepare_run(spec("no-imu", 3));
   ASSERT_TRUE(one && three && execute_run(*one) && execute_run(*three));
   EXPECT_EQ(one->folder.filename(), three->folder.filename());
-  for (const char* const name : {"trajectory.tum", "mesh.ply", "intensity.bin", "log.txt"}) {
+  for (const char* const name : {"trajectory.tum", "states.csv", "mesh.ply", "intensity.bin", "log.txt"}) {
     EXPECT_EQ(testing::read_bytes(one->folder / name), testing::read_bytes(three->folder / name)) << name;
   }
   EXPECT_EQ(reproducible_part(testing::read_bytes(one->folder / "record.json")),
             reproducible_part(testing::read_bytes(three->folder / "record.json")));
+}
+
+TEST_F(RunTest, StatesHaveARowAFrame) {
+  const auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared && execute_run(*prepared));
+  std::istringstream table(testing::read_bytes(prepared->folder / "states.csv"));
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string_view> fields;
+  for (std::string line; std::getline(table, line);) {
+    split_fields(line, fields);
+    ASSERT_EQ(fields.size(), 2U + 19U + 120U);
+    if (rows.empty() && fields[0] == "capture_timestamp") continue;
+    rows.emplace_back();
+    for (std::size_t i = 2; i < fields.size(); ++i) rows.back().push_back(parse_number(fields[i]).value());
+  }
+  ASSERT_EQ(rows.size(), 5U);
+  for (const std::vector<double>& row : rows) {
+    EXPECT_NEAR(Eigen::Map<const Eigen::Vector4d>(&row[3]).norm(), 1, 1e-12);
+    EXPECT_NEAR(Eigen::Map<const Vector3d>(&row[16]).norm(), 1, 1e-12);
+  }
+  EXPECT_EQ(rows[0][19], 0);  // the first pose is known
+  EXPECT_GT(rows[4][19], 0);
+}
+
+TEST_F(RunTest, NeesNeedsTrueStates) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  const auto without = execute_run(*prepared);
+  ASSERT_TRUE(without.has_value());
+  for (const auto& part : without->metrics.nees) {
+    EXPECT_FALSE(part.value.has_value());
+    EXPECT_EQ(part.reason, "the recording has no true states");
+  }
+  EXPECT_EQ(without->metrics.residuals.value->frames, 4U);
+  EXPECT_GT(without->metrics.residuals.value->chi2_photometric, 0);
+
+  // This recording's camera is its IMU frame.
+  for (const StampedPose& pose : prepared->recording.ground_truth) {
+    StampedState state;
+    state.timestamp_ns = pose.timestamp_ns;
+    state.state.T_world_imu = pose.T_world_camera;
+    prepared->recording.state_truth.push_back(state);
+  }
+  const auto with = execute_run(*prepared);
+  ASSERT_TRUE(with.has_value());
+  const auto& position = with->metrics.nees[1].value;
+  ASSERT_TRUE(position.has_value()) << with->metrics.nees[1].reason;
+  EXPECT_EQ(position->part.name, "position");
+  EXPECT_EQ(position->stats.count, 4U);
+  EXPECT_TRUE(std::isfinite(position->stats.mean));
+
+  prepared->recording.imu_source = ImuSource::synthetic;  // of another body
+  EXPECT_NE(execute_run(*prepared)->metrics.nees[1].reason.find("synthetic"), std::string::npos);
+}
+
+TEST_F(RunTest, TheMeshIsComparedInTheWorldOfTheTruth) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  const auto without = execute_run(*prepared);
+  ASSERT_TRUE(without.has_value());
+  EXPECT_EQ(without->metrics.mesh.reason, "the recording has no true mesh");
+
+  // A truth that the run meets exactly: its own mesh, moved to the true first camera.
+  auto scene = read_ply(prepared->folder / "mesh.ply");
+  ASSERT_TRUE(scene.has_value());
+  const Recording& recording = prepared->recording;
+  const auto first = interpolate_pose(recording.ground_truth, recording.frames[0].capture_ns, 100'000'000);
+  ASSERT_TRUE(first.has_value());
+  for (Eigen::Vector3f& vertex : scene->vertices) {
+    vertex = (*first * Vector3d(vertex.cast<double>())).cast<float>();
+  }
+  ASSERT_TRUE(write_ply(*scene, folder_ / "scene.ply").has_value());
+  prepared->recording.truth_mesh_file = folder_ / "scene.ply";
+  const auto with = execute_run(*prepared);
+  ASSERT_TRUE(with.has_value());
+  const auto& mesh = with->metrics.mesh.value;
+  ASSERT_TRUE(mesh.has_value()) << with->metrics.mesh.reason;
+  EXPECT_EQ(mesh->first_camera.alignment.mode, "first_camera");
+  EXPECT_LT(mesh->first_camera.accuracy.stats.max, 1e-5);
+  EXPECT_LT(mesh->first_camera.completeness.stats.max, 1e-5);
+  EXPECT_EQ(mesh->poses.alignment.mode, "poses");
+  EXPECT_LT(mesh->poses.accuracy.stats.mean, 0.03);  // the real truth's own noise, over five frames
+  EXPECT_GT(mesh->truth_observed, mesh->truth_samples / 2);
+  EXPECT_EQ(mesh->views, 1U);
+  const auto back = read_record(prepared->folder / "record.json");
+  ASSERT_TRUE(back && back->metrics.mesh.value);
+  EXPECT_EQ(back->metrics.mesh.value->poses.accuracy.p95, mesh->poses.accuracy.p95);
+  EXPECT_EQ(back->metrics.mesh.value->truth_observed, mesh->truth_observed);
+
+  write("scene.ply", "ply\nnonsense");
+  const auto damaged = execute_run(*prepared);
+  ASSERT_TRUE(damaged.has_value());
+  EXPECT_EQ(damaged->metrics.mesh.reason, "scene.ply is not a usable mesh");
 }
 
 TEST_F(RunTest, AVariantThatNeedsAnImuSaysHowToGetOne) {
@@ -195,7 +293,10 @@ TEST_F(RunTest, BlackFramesAreLost) {
 
 TEST_F(RunTest, ResumeLeavesFinishedRunsAlone) {
   RunSpec wanted = spec("no-imu");
-  const BatchJob job{kGolden, "no-imu", wanted};
+  BatchJob job;
+  job.recording = kGolden;
+  job.variant = "no-imu";
+  job.spec = wanted;
   const std::vector<BatchJob> jobs = {job};
   ASSERT_FALSE(run_batch(jobs, true)->front().resumed);
   const auto again = run_batch(jobs, true);

@@ -1,0 +1,84 @@
+// Does a filter know how wrong it is? Normalised estimation error squared (NEES) against true states
+// (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 5.4.2).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/stamped_state.hpp"
+#include "eval/statistics.hpp"
+
+namespace fusebench {
+
+/// A part of the error state (core/filter_state.hpp) whose consistency is told apart.
+struct StatePart {
+  std::string_view name;
+  int offset = 0;
+  int dof = 0;
+};
+inline constexpr std::array<StatePart, 6> kStateParts = {{{"orientation", kRotation, 3},
+                                                          {"position", kPosition, 3},
+                                                          {"velocity", kVelocity, 3},
+                                                          {"gyroscope_bias", kGyroscopeBias, 3},
+                                                          {"accelerometer_bias", kAccelerometerBias, 3},
+                                                          {"pose", kRotation, 6}}};
+
+/// The state between two stamps, by a cubic through four of them in the tangent space (fewer at the ends).
+/// Nothing before the first and after the last state, or between two that are more than 0.1 s apart.
+[[nodiscard]] std::optional<FilterState> interpolate_state(std::span<const StampedState> states,
+                                                           std::int64_t timestamp_ns);
+
+/// e^T P^-1 e of one part; nothing where its covariance is singular (of what is known by definition, such as
+/// the pose of the first frame) or is not finite.
+[[nodiscard]] std::optional<double> normalised_error_squared(const StateVector& error,
+                                                             const StateMatrix& covariance,
+                                                             const StatePart& part);
+
+/// Of one part in one run. All numbers are NEES / dof: 1 is what a consistent filter has on average, more is
+/// too sure of itself, less too cautious.
+struct NeesResult {
+  StatePart part;
+  std::vector<double> nees_per_dof;  ///< in order of time
+  std::size_t possible = 0;          ///< estimates with a truth around them
+  Statistics stats;                  ///< of nees_per_dof; count is the number of frames
+  double last = std::numeric_limits<double>::quiet_NaN();
+};
+using ConsistencyResult = std::array<NeesResult, kStateParts.size()>;
+
+/// The world of the estimates is the camera at the first of them, whose true pose moves the truth there;
+/// nothing is fitted. The error is truth (-) estimate in the tangent space at the estimate. A part whose
+/// covariance is singular in all frames has count 0. Errors data_corrupt: no estimates, or no truth around
+/// the first one or any later one.
+[[nodiscard]] Result<ConsistencyResult> consistency(std::span<const StampedState> truth,
+                                                    std::span<const StampedEstimate> estimates,
+                                                    const SE3& T_imu_camera);
+
+/// x with P(chi-square of `dof` degrees of freedom <= x) = probability, to 1e-12 of x. dof >= 1, probability
+/// in (0, 1).
+[[nodiscard]] double chi_square_quantile(double probability, double dof);
+
+/// Within which the average of NEES / dof over independent runs, at one instant, lies with probability 0.95
+/// if the filter is consistent: that sum is chi-square distributed with runs * dof degrees of freedom. Frames
+/// of one run share their errors and must not be counted as runs.
+struct NeesBounds {
+  double lower = 0;
+  double upper = 0;
+};
+[[nodiscard]] NeesBounds nees_bounds_95(std::size_t runs, int dof);
+
+/// A part over independent runs at one instant of each (their last frame, say).
+struct AverageNees {
+  std::size_t runs = 0;
+  double mean_per_dof = std::numeric_limits<double>::quiet_NaN();
+  NeesBounds bounds_95;
+  bool consistent = false;  ///< within the bounds
+};
+[[nodiscard]] AverageNees average_nees(std::span<const double> nees_per_dof_of_runs, int dof);
+
+}  // namespace fusebench

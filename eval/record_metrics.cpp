@@ -1,0 +1,331 @@
+#include "eval/record_metrics.hpp"
+
+#include <array>
+#include <limits>
+#include <string>
+
+namespace fusebench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// NaN is dumped as null; null is read as NaN.
+double number_at(const Json& json, const char* key) {
+  const Json& value = json.at(key);
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+Json json_of(const Statistics& stats) {
+  if (stats.count == 0) return nullptr;
+  return {{"rmse", stats.rmse}, {"mean", stats.mean}, {"median", stats.median}, {"std", stats.std},
+          {"min", stats.min},   {"max", stats.max},   {"sse", stats.sse},       {"count", stats.count}};
+}
+
+Statistics statistics_of(const Json& json) {
+  if (json.is_null()) return {};
+  return {number_at(json, "rmse"),   number_at(json, "mean"),
+          number_at(json, "median"), number_at(json, "std"),
+          number_at(json, "min"),    number_at(json, "max"),
+          number_at(json, "sse"),    json.at("count").get<std::size_t>()};
+}
+
+Json json_of(const Alignment& alignment) {
+  return {{"mode", alignment.mode}, {"matrix", matrix_of(alignment.T_reference_estimate)}};
+}
+
+Alignment alignment_of(const Json& json) {
+  const auto m = json.at("matrix").get<std::array<double, 16>>();
+  Matrix3d rotation;
+  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  return {json.at("mode"), {Quaterniond(rotation), {m[3], m[7], m[11]}}};
+}
+
+Json json_of(const AteResult& ate) {
+  return {{"protocol", ate.protocol},
+          {"relation", ate.relation},
+          {"unit", ate.unit},
+          {"pairs", ate.pairs},
+          {"possible", ate.possible},
+          {"coverage", ate.coverage},
+          {"max_difference_s", ate.max_difference_s},
+          {"alignment", json_of(ate.alignment)},
+          {"stats", json_of(ate.stats)}};
+}
+
+void read(const Json& json, AteResult& ate) {
+  ate.protocol = json.at("protocol");
+  ate.relation = json.at("relation");
+  ate.unit = json.at("unit");
+  ate.pairs = json.at("pairs");
+  ate.possible = json.at("possible");
+  ate.coverage = json.at("coverage");
+  ate.max_difference_s = json.at("max_difference_s");
+  ate.alignment = alignment_of(json.at("alignment"));
+  ate.stats = statistics_of(json.at("stats"));
+}
+
+Json json_of(const RpeResult& rpe) {
+  return {{"protocol", rpe.protocol},
+          {"delta", rpe.delta},
+          {"delta_unit", to_string(rpe.unit)},
+          {"pairs", rpe.pairs},
+          {"possible", rpe.possible},
+          {"coverage", rpe.coverage},
+          {"max_difference_s", rpe.max_difference_s},
+          {"alignment", json_of(rpe.alignment)},
+          {"translation", {{"unit", "m"}, {"stats", json_of(rpe.translation)}}},
+          {"rotation", {{"unit", "rad"}, {"stats", json_of(rpe.rotation)}}}};
+}
+
+void read(const Json& json, RpeResult& rpe) {
+  rpe.protocol = json.at("protocol");
+  rpe.delta = json.at("delta");
+  rpe.unit = json.at("delta_unit") == to_string(DeltaUnit::frames) ? DeltaUnit::frames : DeltaUnit::seconds;
+  rpe.pairs = json.at("pairs");
+  rpe.possible = json.at("possible");
+  rpe.coverage = json.at("coverage");
+  rpe.max_difference_s = json.at("max_difference_s");
+  rpe.alignment = alignment_of(json.at("alignment"));
+  rpe.translation = statistics_of(json.at("translation").at("stats"));
+  rpe.rotation = statistics_of(json.at("rotation").at("stats"));
+}
+
+Json json_of(const IntensitySummary& summary) {
+  return {{"aie", summary.aie_grey},
+          {"rms", summary.rms_grey},
+          {"pixels", summary.pixels},
+          {"frames", summary.frames},
+          {"frames_excluded", summary.frames_excluded},
+          {"stats", json_of(summary.stats)}};
+}
+
+IntensitySummary summary_of(const Json& json) {
+  return {number_at(json, "aie"),
+          number_at(json, "rms"),
+          json.at("pixels").get<std::size_t>(),
+          json.at("frames").get<std::size_t>(),
+          json.at("frames_excluded").get<std::size_t>(),
+          statistics_of(json.at("stats"))};
+}
+
+Json json_of(const IntensityResult& aie) {
+  Json json = {{"protocol", "mean over frames of the mean over visible pixels of tracked patches"},
+               {"unit", "grey levels 0-255"}};
+  json.update(json_of(aie.all));
+  json["accepted"] = json_of(aie.accepted);
+  return json;
+}
+
+void read(const Json& json, IntensityResult& aie) {
+  aie.all = summary_of(json);
+  aie.accepted = summary_of(json.at("accepted"));
+}
+
+Json json_of(const NeesResult& nees) {
+  const NeesBounds bounds = nees_bounds_95(1, nees.part.dof);
+  return {{"dof", nees.part.dof},        {"frames", nees.stats.count},
+          {"possible", nees.possible},   {"mean", nees.stats.mean},
+          {"median", nees.stats.median}, {"std", nees.stats.std},
+          {"min", nees.stats.min},       {"max", nees.stats.max},
+          {"final", nees.last},          {"final_bounds_95", {bounds.lower, bounds.upper}}};
+}
+
+void read(const Json& json, NeesResult& nees) {
+  nees.possible = json.at("possible");
+  nees.stats.count = json.at("frames");
+  nees.stats.mean = number_at(json, "mean");
+  nees.stats.median = number_at(json, "median");
+  nees.stats.std = number_at(json, "std");
+  nees.stats.min = number_at(json, "min");
+  nees.stats.max = number_at(json, "max");
+  nees.last = number_at(json, "final");
+}
+
+Json json_of(const ResidualSummary& summary) {
+  return {{"protocol", "mean over tracked frames; chi2: mean squared whitened residual of a frame"},
+          {"frames", summary.frames},
+          {"chi2_photometric", summary.chi2_photometric},
+          {"chi2_geometric", summary.chi2_geometric},
+          {"patches_tracked", summary.patches_tracked},
+          {"patches_accepted", summary.patches_accepted},
+          {"accepted_share", summary.accepted_share}};
+}
+
+void read(const Json& json, ResidualSummary& summary) {
+  summary.frames = json.at("frames");
+  summary.chi2_photometric = number_at(json, "chi2_photometric");
+  summary.chi2_geometric = number_at(json, "chi2_geometric");
+  summary.patches_tracked = number_at(json, "patches_tracked");
+  summary.patches_accepted = number_at(json, "patches_accepted");
+  summary.accepted_share = number_at(json, "accepted_share");
+}
+
+Json json_of(const MeshDistances& distances) {
+  Json json = json_of(distances.stats);
+  if (!json.is_null()) {
+    json["p90"] = distances.p90;
+    json["p95"] = distances.p95;
+  }
+  return json;
+}
+
+MeshDistances distances_of(const Json& json) {
+  if (json.is_null()) return {};
+  return {statistics_of(json), number_at(json, "p90"), number_at(json, "p95")};
+}
+
+Json json_of(const MeshErrorResult& mesh) {
+  Json thresholds = Json::array();
+  for (const MeshThreshold& at : mesh.thresholds) {
+    thresholds.push_back(
+        {{"tau_m", at.tau_m}, {"precision", at.precision}, {"recall", at.recall}, {"fscore", at.fscore}});
+  }
+  return {{"alignment", json_of(mesh.alignment)},
+          {"accuracy", json_of(mesh.accuracy)},
+          {"completeness", json_of(mesh.completeness)},
+          {"chamfer_m", mesh.chamfer_m},
+          {"thresholds", std::move(thresholds)}};
+}
+
+MeshErrorResult mesh_error_of(const Json& json) {
+  MeshErrorResult mesh;
+  mesh.alignment = alignment_of(json.at("alignment"));
+  mesh.accuracy = distances_of(json.at("accuracy"));
+  mesh.completeness = distances_of(json.at("completeness"));
+  mesh.chamfer_m = number_at(json, "chamfer_m");
+  for (const Json& at : json.at("thresholds")) {
+    mesh.thresholds.push_back({at.at("tau_m"), at.at("precision"), at.at("recall"), at.at("fscore")});
+  }
+  return mesh;
+}
+
+Json json_of(const MeshSampling& sampling, std::size_t points) {
+  return {{"from", to_string(sampling.from)},
+          {"count", sampling.count},
+          {"seed", sampling.seed},
+          {"points", points}};
+}
+
+MeshSampling sampling_of(const Json& json) {
+  const bool vertices = json.at("from") == to_string(MeshSamples::vertices);
+  return {vertices ? MeshSamples::vertices : MeshSamples::area, json.at("count"), json.at("seed")};
+}
+
+Json json_of(const RecordedMesh& mesh) {
+  const double observed = mesh.truth_samples == 0 ? 0.0
+                                                  : static_cast<double>(mesh.truth_observed) /
+                                                        static_cast<double>(mesh.truth_samples);
+  Json json = {{"protocol",
+                "exact distances to triangles; accuracy: reconstruction to truth; completeness: truth that "
+                "the true pose of any tenth frame sees (frustum, range of depth, not occluded) to "
+                "reconstruction; aligned by all poses of the trajectory, and beside it by the first true "
+                "camera and by positions alone"},
+               {"unit", "m"},
+               {"samples",
+                {{"reconstruction", json_of(mesh.reconstruction_sampling, mesh.reconstruction_samples)},
+                 {"truth", json_of(mesh.truth_sampling, mesh.truth_samples)}}},
+               {"observed",
+                {{"points", mesh.truth_observed},
+                 {"share", observed},
+                 {"views", mesh.views},
+                 {"min_depth_m", mesh.min_depth_m},
+                 {"max_depth_m", mesh.max_depth_m}}}};
+  json.update(json_of(mesh.poses));
+  json["first_camera"] = json_of(mesh.first_camera);
+  json["positions"] = mesh.positions ? json_of(*mesh.positions) : Json(nullptr);
+  return json;
+}
+
+void read(const Json& json, RecordedMesh& mesh) {
+  const Json& samples = json.at("samples");
+  mesh.reconstruction_sampling = sampling_of(samples.at("reconstruction"));
+  mesh.truth_sampling = sampling_of(samples.at("truth"));
+  mesh.reconstruction_samples = samples.at("reconstruction").at("points");
+  mesh.truth_samples = samples.at("truth").at("points");
+  const Json& observed = json.at("observed");
+  mesh.truth_observed = observed.at("points");
+  mesh.views = observed.at("views");
+  mesh.min_depth_m = number_at(observed, "min_depth_m");
+  mesh.max_depth_m = number_at(observed, "max_depth_m");
+  mesh.poses = mesh_error_of(json);
+  mesh.first_camera = mesh_error_of(json.at("first_camera"));
+  if (const Json& positions = json.at("positions"); !positions.is_null()) {
+    mesh.positions = mesh_error_of(positions);
+  }
+}
+
+template <class T>
+Json json_of(const Outcome<T>& outcome) {
+  if (outcome.value) return json_of(*outcome.value);
+  return {{"stats", nullptr}, {"reason", outcome.reason}};
+}
+
+template <class T>
+Outcome<T> outcome_of(const Json& json) {
+  if (json.contains("reason")) return {std::nullopt, json.at("reason")};
+  Outcome<T> outcome{T{}, {}};
+  read(json, *outcome.value);
+  return outcome;
+}
+
+// The reason of what a record of an earlier version does not have.
+constexpr const char* kOlderRecord = "the record is older than this metric";
+
+template <class T>
+Outcome<T> newer_outcome_of(const Json& json, const std::string& key) {
+  if (!json.contains(key)) return {std::nullopt, kOlderRecord};
+  return outcome_of<T>(json.at(key));
+}
+
+Json json_of_nees(const RecordedNees& nees) {
+  Json json = {{"protocol",
+                "(truth - estimate)^T P^-1 (truth - estimate) / dof, of tracked frames after the first; the "
+                "truth is moved by the first camera's true pose; 1 is consistent"}};
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    json[std::string(kStateParts[i].name)] = json_of(nees[i]);
+  }
+  return json;
+}
+
+RecordedNees nees_of(const Json& metrics) {
+  RecordedNees nees;
+  const Json json = metrics.value("nees", Json::object());
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    nees[i] = newer_outcome_of<NeesResult>(json, std::string(kStateParts[i].name));
+    if (nees[i].value) nees[i].value->part = kStateParts[i];
+  }
+  return nees;
+}
+
+}  // namespace
+
+Json json_of_metrics(const RunRecord& record) {
+  const double share = record.frames.total == 0 ? 0.0
+                                                : static_cast<double>(record.frames.tracked) /
+                                                      static_cast<double>(record.frames.total);
+  return {
+      {"ate", json_of(record.metrics.ate)},
+      {"rpe", {{"frame", json_of(record.metrics.rpe_frame)}, {"second", json_of(record.metrics.rpe_second)}}},
+      {"aie", json_of(record.metrics.aie)},
+      {"mesh", json_of(record.metrics.mesh)},
+      {"nees", json_of_nees(record.metrics.nees)},
+      {"residuals", json_of(record.metrics.residuals)},
+      {"coverage",
+       {{"protocol", "tracked frames / frames of the recording"},
+        {"tracked", record.frames.tracked},
+        {"total", record.frames.total},
+        {"share", share}}}};
+}
+
+void read_metrics(const Json& json, RecordedMetrics& metrics) {
+  metrics.ate = outcome_of<AteResult>(json.at("ate"));
+  metrics.rpe_frame = outcome_of<RpeResult>(json.at("rpe").at("frame"));
+  metrics.rpe_second = outcome_of<RpeResult>(json.at("rpe").at("second"));
+  metrics.aie = outcome_of<IntensityResult>(json.at("aie"));
+  metrics.mesh = newer_outcome_of<RecordedMesh>(json, "mesh");
+  metrics.nees = nees_of(json);
+  metrics.residuals = newer_outcome_of<ResidualSummary>(json, "residuals");
+}
+
+}  // namespace fusebench

@@ -1,0 +1,142 @@
+#include "eval/run_evaluation.hpp"
+
+#include <fmt/format.h>
+
+#include "core/mesh_file.hpp"
+#include "core/trajectory.hpp"
+#include "eval/pose_alignment.hpp"
+
+namespace fusebench {
+
+namespace {
+
+void add_trajectory_metrics(RecordedMetrics& metrics, const RunOutput& output, const Recording& recording) {
+  if (recording.ground_truth.empty()) {
+    metrics.ate.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
+        "the recording has no ground truth";
+    return;
+  }
+  std::vector<std::int64_t> expected;
+  for (const FrameEntry& frame : recording.frames) expected.push_back(frame.timestamp_ns);
+  AteOptions ate;
+  ate.expected_ns = expected;
+  metrics.ate =
+      Outcome<AteResult>::from(absolute_trajectory_error(recording.ground_truth, output.trajectory, ate));
+  metrics.rpe_frame = Outcome<RpeResult>::from(relative_pose_error(recording.ground_truth, output.trajectory,
+                                                                   {.delta = 1, .unit = DeltaUnit::frames}));
+  metrics.rpe_second = Outcome<RpeResult>::from(relative_pose_error(
+      recording.ground_truth, output.trajectory, {.delta = 1, .unit = DeltaUnit::seconds}));
+}
+
+RecordedNees nees_of(const RunOutput& output, const Recording& recording) {
+  const auto none = [](const std::string& reason) {
+    RecordedNees nees;
+    nees.fill({std::nullopt, reason});
+    return nees;
+  };
+  if (recording.state_truth.empty()) return none("the recording has no true states");
+  if (recording.imu_source == ImuSource::synthetic) {
+    return none("the true states are of the recorded IMU, and the run used a synthetic one");
+  }
+  auto parts = consistency(recording.state_truth, output.states, recording.rig.T_imu_camera);
+  if (!parts) return none(parts.error().message);
+  RecordedNees nees;
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    NeesResult& part = (*parts)[i];
+    if (part.stats.count == 0) {
+      nees[i] = {std::nullopt, fmt::format("the covariance of the {} is singular in all frames: the variant "
+                                           "does not estimate it",
+                                           part.part.name)};
+    } else {
+      nees[i] = {std::move(part), {}};
+    }
+  }
+  return nees;
+}
+
+constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
+constexpr std::size_t kViewEveryFrames = 10;
+constexpr std::size_t kReconstructionSamples = 50'000;
+constexpr std::size_t kTruthSamples = 200'000;  // of the whole scene, of which a run may see a corner
+
+/// The true colour cameras of every tenth frame, the first among them.
+MeshViews views_of(const Recording& recording, const DepthConfig& depth) {
+  MeshViews views{recording.rig.camera, depth.min_m, depth.max_m, {}};
+  for (std::size_t frame = 0; frame < recording.frames.size(); frame += kViewEveryFrames) {
+    const auto pose =
+        interpolate_pose(recording.ground_truth, recording.frames[frame].capture_ns, kMaxTruthGap_ns);
+    if (pose) views.T_truth_camera.push_back(*pose);
+  }
+  return views;
+}
+
+/// Of the tracked cameras to the true ones at the same instants.
+Result<SE3> pose_alignment(const RunOutput& output, const Recording& recording) {
+  std::vector<SE3> reference;
+  std::vector<SE3> estimate;
+  for (std::size_t i = 0; i < output.trajectory.size(); ++i) {
+    const auto pose =
+        interpolate_pose(recording.ground_truth, output.states[i].timestamp_ns, kMaxTruthGap_ns);
+    if (!pose) continue;
+    reference.push_back(*pose);
+    estimate.push_back(output.trajectory[i].T_world_camera);
+  }
+  return align_poses(reference, estimate);
+}
+
+Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& recording,
+                                   const Outcome<AteResult>& ate, const DepthConfig& depth,
+                                   const Workers& workers) {
+  if (recording.truth_mesh_file.empty()) {
+    return fail(ErrorCode::data_missing, "the recording has no true mesh");
+  }
+  const auto first =
+      interpolate_pose(recording.ground_truth, recording.frames.front().capture_ns, kMaxTruthGap_ns);
+  if (!first) {
+    return fail(ErrorCode::data_missing, "the first frame has no ground truth to align the mesh by");
+  }
+  const auto truth = read_ply(recording.truth_mesh_file);
+  if (!truth) {
+    // The place of the recording on this disk is not part of its record.
+    return fail(truth.error().code,
+                fmt::format("{} is not a usable mesh", recording.truth_mesh_file.filename().string()));
+  }
+  const MeshViews views = views_of(recording, depth);
+  MeshErrorOptions options;
+  options.reconstruction.count = kReconstructionSamples;
+  options.truth.count = kTruthSamples;
+  const auto comparison = MeshComparison::create(output.mesh, *truth, views, options, workers);
+  if (!comparison) return tl::unexpected(comparison.error());
+  const auto aligned = pose_alignment(output, recording);
+  if (!aligned) return tl::unexpected(aligned.error());
+  RecordedMesh mesh;
+  mesh.reconstruction_sampling = options.reconstruction;
+  mesh.truth_sampling = options.truth;
+  mesh.reconstruction_samples = comparison->reconstruction_samples();
+  mesh.truth_samples = comparison->truth_samples();
+  mesh.truth_observed = comparison->truth_observed();
+  mesh.views = views.T_truth_camera.size();
+  mesh.min_depth_m = depth.min_m;
+  mesh.max_depth_m = depth.max_m;
+  mesh.poses = comparison->evaluate({"poses", *aligned}, workers);
+  mesh.first_camera = comparison->evaluate({"first_camera", *first}, workers);
+  if (ate.value) mesh.positions = comparison->evaluate(ate.value->alignment, workers);
+  return mesh;
+}
+
+}  // namespace
+
+RecordedMetrics metrics_of(const RunOutput& output, const Recording& recording, const DepthConfig& depth,
+                           const Workers& workers) {
+  RecordedMetrics metrics;
+  metrics.aie = {output.intensity.result(), {}};
+  if (metrics.aie.value->all.frames == 0) metrics.aie = {std::nullopt, "no frame has tracked pixels"};
+  metrics.residuals = {output.residuals.result(), {}};
+  if (metrics.residuals.value->frames == 0) metrics.residuals = {std::nullopt, "no frame was tracked"};
+  add_trajectory_metrics(metrics, output, recording);
+  metrics.nees = nees_of(output, recording);
+  metrics.mesh = Outcome<RecordedMesh>::from(mesh_error_of(output, recording, metrics.ate, depth, workers));
+  return metrics;
+}
+
+}  // namespace fusebench
