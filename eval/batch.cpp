@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "core/staged_folder.hpp"
 
@@ -15,23 +18,14 @@ namespace {
 
 constexpr std::string_view kNotStarted = "not-started";
 
-Result<std::vector<fs::path>> recordings_of(const Suite& suite, const BatchOptions& options) {
-  if (suite.all) {
-    if (options.data.empty()) {
-      return fail(ErrorCode::data_missing,
-                  fmt::format("suite '{}' runs over all recordings, and no folder is given", suite.name),
-                  "--data or FUSEBENCH_DATA names the folder of recordings");
-    }
-    return recordings_under(options.data);
-  }
-  std::vector<fs::path> folders;
-  for (const std::string& name : suite.recordings) {
-    auto folder = find_recording(name, options.data);
-    if (!folder) return tl::unexpected(folder.error());
-    folders.push_back(std::move(*folder));
-  }
-  return folders;
-}
+/// A recording of the suite with what its jobs need to know.
+struct Planned {
+  fs::path folder;
+  std::string group;
+  std::string half;
+  std::vector<std::string> variants;
+  std::optional<SimulationRequest> simulation = {};
+};
 
 /// Whether a job is among those asked for.
 Result<bool> wanted(const std::vector<std::string>& only, const std::string& recording,
@@ -50,7 +44,79 @@ Result<bool> wanted(const std::vector<std::string>& only, const std::string& rec
   return true;
 }
 
-Result<BatchJob> job_of(const Suite& suite, const BatchOptions& options, const fs::path& recording,
+/// Whether --only can leave something of a recording that the suite calls by that name ("begin*" as well).
+bool may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
+  if (name.ends_with('*')) name.remove_suffix(1);
+  return std::all_of(only.begin(), only.end(), [&](const std::string& filter) {
+    constexpr std::string_view key = "recording=";
+    return !filter.starts_with(key) || name.find(filter.substr(key.size())) != std::string_view::npos;
+  });
+}
+
+Result<std::vector<Planned>> existing_recordings(const Suite& suite, const BatchOptions& options) {
+  std::vector<Planned> planned;
+  if (suite.all) {
+    if (options.data.empty()) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("suite '{}' runs over all recordings, and no folder is given", suite.name),
+                  "--data or FUSEBENCH_DATA names the folder of recordings");
+    }
+    const auto folders = recordings_under(options.data);
+    if (!folders) return tl::unexpected(folders.error());
+    for (const fs::path& folder : *folders) {
+      planned.push_back({folder, folder.filename().string(), std::string(kHeldOutHalf), suite.variants});
+    }
+  }
+  for (const SuiteRecording& recording : suite.recordings) {
+    const auto folders = find_recordings(recording.name, options.data);
+    if (!folders) {
+      if (!may_be_wanted(options.only, recording.name)) continue;
+      return tl::unexpected(folders.error());
+    }
+    for (const fs::path& folder : *folders) {
+      planned.push_back({folder, recording.group.empty() ? folder.filename().string() : recording.group,
+                         recording.half, recording.variants.empty() ? suite.variants : recording.variants});
+    }
+  }
+  return planned;
+}
+
+Result<Planned> simulated_recording(const SuiteSimulation& simulation, const BatchOptions& options) {
+  SimulationRequest request = simulation.request;
+  if (!request.trajectory.empty() && request.trajectory.is_relative()) {
+    if (options.data.empty()) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("{}: the trajectory {} is under --data, which is not given", simulation.place,
+                              request.trajectory.string()),
+                  "--data or FUSEBENCH_DATA names the folder of recordings");
+    }
+    request.trajectory = options.data / request.trajectory;
+  }
+  return Planned{options.simulated / simulation.name, simulation.group, simulation.half, simulation.variants,
+                 std::move(request)};
+}
+
+Result<std::vector<Planned>> recordings_of(const Suite& suite, const BatchOptions& options) {
+  auto planned = existing_recordings(suite, options);
+  if (!planned) return planned;
+  for (const SuiteSimulation& simulation : suite.simulations) {
+    if (!may_be_wanted(options.only, simulation.name)) continue;
+    auto recording = simulated_recording(simulation, options);
+    if (!recording) return tl::unexpected(recording.error());
+    planned->push_back(std::move(*recording));
+  }
+  // Runs go by the names of recordings: two of one name would overwrite each other's.
+  std::set<std::string> names;
+  for (const Planned& recording : *planned) {
+    const std::string name = recording.folder.filename().string();
+    if (names.insert(name).second || suite.all) continue;
+    return fail(ErrorCode::configuration,
+                fmt::format("suite '{}' has two recordings of the name '{}'", suite.name, name));
+  }
+  return planned;
+}
+
+Result<BatchJob> job_of(const Suite& suite, const BatchOptions& options, const Planned& recording,
                         const std::string& variant_name) {
   const auto variant = find_variant(variant_name);
   if (!variant) return tl::unexpected(variant.error());
@@ -61,38 +127,37 @@ Result<BatchJob> job_of(const Suite& suite, const BatchOptions& options, const f
   }
   if (auto related = check_relations(config->values); !related) return tl::unexpected(related.error());
   RunSpec spec;
-  spec.recording = recording;
+  spec.recording = recording.folder;
   spec.imu = suite.imu;
   spec.variant = variant_name;
   spec.config = std::move(*config);
   spec.threads = options.threads;
   spec.out = options.out;
-  return BatchJob{recording, variant_name, std::move(spec), suite.all};
+  const bool optional = suite.all && !recording.simulation;
+  return BatchJob{recording.folder, variant_name,   std::move(spec),     optional,
+                  recording.group,  recording.half, recording.simulation};
 }
 
-/// A run that could not start still has to appear in tables: a record that says so, in the place of a run.
-void record_not_started(const BatchJob& job, const BatchOutcome& outcome) {
-  RunRecord record;
-  record.reason = outcome.reason;
-  record.recording.name = outcome.recording;
-  record.variant = outcome.variant;
-  record.config_hash = config_hash(job.spec.config.values);
-  // If even this cannot be written the outcome still says what happened.
-  auto folder = StagedFolder::create(job.spec.out / outcome.recording / outcome.variant / kNotStarted);
-  if (folder && folder->write("record.json", to_json(record))) static_cast<void>(folder->commit());
-}
-
-BatchOutcome run_job(const BatchJob& job, bool resume, const BatchControl& control) {
+BatchOutcome outcome_of(const BatchJob& job) {
   BatchOutcome outcome;
   outcome.recording = job.recording.filename().string();
   outcome.variant = job.variant;
+  outcome.group = job.group;
+  outcome.half = job.half;
+  return outcome;
+}
+
+BatchOutcome run_job(const BatchJob& job, bool resume, const BatchControl& control) {
   const auto run = prepare_run(job.spec);
   if (!run) {
+    if (!job.optional || run.error().code != ErrorCode::configuration)
+      return not_started(job, run.error().message);
+    BatchOutcome outcome = outcome_of(job);
     outcome.reason = run.error().message;
-    outcome.skipped = job.optional && run.error().code == ErrorCode::configuration;
-    if (!outcome.skipped) record_not_started(job, outcome);
+    outcome.skipped = true;
     return outcome;
   }
+  BatchOutcome outcome = outcome_of(job);
   std::error_code ignored;
   fs::remove_all(run->folder.parent_path() / kNotStarted, ignored);
   outcome.folder = run->folder;
@@ -120,9 +185,9 @@ Result<std::vector<BatchJob>> plan_batch(const Suite& suite, const BatchOptions&
   const auto recordings = recordings_of(suite, options);
   if (!recordings) return tl::unexpected(recordings.error());
   std::vector<BatchJob> jobs;
-  for (const fs::path& recording : *recordings) {
-    for (const std::string& variant : suite.variants) {
-      const auto take = wanted(options.only, recording.filename().string(), variant);
+  for (const Planned& recording : *recordings) {
+    for (const std::string& variant : recording.variants) {
+      const auto take = wanted(options.only, recording.folder.filename().string(), variant);
       if (!take) return tl::unexpected(take.error());
       if (!*take) continue;
       auto job = job_of(suite, options, recording, variant);
@@ -135,6 +200,20 @@ Result<std::vector<BatchJob>> plan_batch(const Suite& suite, const BatchOptions&
                 "recording=TEXT keeps the recordings whose name contains it, variant=NAME one variant");
   }
   return jobs;
+}
+
+BatchOutcome not_started(const BatchJob& job, std::string reason) {
+  BatchOutcome outcome = outcome_of(job);
+  outcome.reason = std::move(reason);
+  RunRecord& record = outcome.record;
+  record.reason = outcome.reason;
+  record.recording.name = outcome.recording;
+  record.variant = outcome.variant;
+  record.config_hash = config_hash(job.spec.config.values);
+  // If even this cannot be written the outcome still says what happened.
+  auto folder = StagedFolder::create(job.spec.out / outcome.recording / outcome.variant / kNotStarted);
+  if (folder && folder->write("record.json", to_json(record))) static_cast<void>(folder->commit());
+  return outcome;
 }
 
 Result<std::vector<BatchOutcome>> run_batch(const std::vector<BatchJob>& jobs, bool resume,

@@ -1,10 +1,11 @@
-// Runs a suite: every recording with every variant, one after the other, in a fixed order.
+// Runs a suite: every recording with its variants, one after the other, in a fixed order.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ namespace fusebench {
 struct BatchOptions {
   std::filesystem::path data;
   std::filesystem::path out;
+  std::filesystem::path simulated = "results/simulated";  ///< where the suite's simulated recordings are
   int threads = 1;
   std::vector<std::string> sets;  ///< key=value, after the suite's own edits
   /// "recording=TEXT" (name contains it) or "variant=NAME" (exactly); all must hold.
@@ -32,10 +34,15 @@ struct BatchJob {
   std::string variant;
   RunSpec spec;
   bool optional = false;  ///< from `all = true`: skipped if its format or camera is unknown
+  std::string group;      ///< of the recording, for summaries
+  std::string half;       ///< "tuning" or "held-out"
+  std::optional<SimulationRequest> simulation = {};  ///< that makes the recording if it is not there
 };
 
-/// The jobs in order: by recording, then by variant as the suite lists them. Errors: data_missing (a
-/// recording that is not there), configuration (--set), usage (--only that names no key or leaves nothing).
+/// The jobs in order: by recording (those of the suite, then the simulated ones), then by variant as they are
+/// listed. What --only leaves out need not be there. Errors: data_missing (a recording or a trajectory that
+/// is not there), configuration (--set, a recording named twice), usage (--only that names no key or leaves
+/// nothing).
 [[nodiscard]] Result<std::vector<BatchJob>> plan_batch(const Suite& suite, const BatchOptions& options);
 
 /// How a job ended. One that did not even start has no folder, the status failed, and a record under
@@ -43,6 +50,8 @@ struct BatchJob {
 struct BatchOutcome {
   std::string recording;
   std::string variant;
+  std::string group;
+  std::string half;
   RunStatus status = RunStatus::failed;
   std::string reason;
   bool resumed = false;  ///< was there already
@@ -62,5 +71,8 @@ struct BatchControl {
 /// stopped.
 [[nodiscard]] Result<std::vector<BatchOutcome>> run_batch(const std::vector<BatchJob>& jobs, bool resume,
                                                           const BatchControl& control = {});
+
+/// How a job ends that could not even start: a record says so in the place of a run, for tables.
+[[nodiscard]] BatchOutcome not_started(const BatchJob& job, std::string reason);
 
 }  // namespace fusebench

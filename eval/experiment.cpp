@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "core/nearest_name.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/recording_catalogue.hpp"
+#include "eval/suite_entries.hpp"
 
 namespace fusebench {
 
@@ -18,54 +19,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kSuiteKeys = {"name",     "recordings", "all",
-                                                        "variants", "imu",        "config"};
+constexpr std::array<std::string_view, 8> kSuiteKeys = {"name", "recordings", "all",         "variants",
+                                                        "imu",  "config",     "simulations", "bars"};
+constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "half", "variants"};
 constexpr std::string_view kConfigPrefix = "config.";
 
-tl::unexpected<Error> wrong(const TomlEntry& entry, std::string_view expected) {
-  return fail(ErrorCode::configuration, fmt::format("{}: {} must be {}", entry.place, entry.key, expected));
-}
-
-template <class T>
-std::optional<T> plain(const TomlEntry& entry) {
-  const auto* value = std::get_if<OptionValue>(&entry.value);
-  const T* typed = value == nullptr ? nullptr : std::get_if<T>(value);
-  return typed == nullptr ? std::nullopt : std::optional<T>(*typed);
-}
-
-/// A non-empty list of texts, each once.
-Result<std::vector<std::string>> names(const TomlEntry& entry) {
-  const auto* list = std::get_if<TomlList>(&entry.value);
-  if (list == nullptr || list->empty()) return wrong(entry, "a list of names that is not empty");
-  std::vector<std::string> result;
-  for (const OptionValue& value : *list) {
-    const auto* name = std::get_if<std::string>(&value);
-    if (name == nullptr) return wrong(entry, "a list of names");
-    if (std::find(result.begin(), result.end(), *name) != result.end()) {
-      return fail(ErrorCode::configuration,
-                  fmt::format("{}: {} lists \"{}\" twice", entry.place, entry.key, *name));
-    }
-    result.push_back(*name);
-  }
-  return result;
-}
-
-Result<void> read_variants(const TomlEntry& entry, Suite& suite) {
-  auto list = names(entry);
-  if (!list) return tl::unexpected(list.error());
-  for (const std::string& name : *list) {
-    if (const auto variant = find_variant(name); !variant) {
-      return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, variant.error().message),
-                  variant.error().hint);
-    }
-  }
-  suite.variants = std::move(*list);
-  return {};
+tl::unexpected<Error> unknown_suite_key(const std::string& place, const std::string& key) {
+  return unknown_key(place, key, kSuiteKeys, "a suite");
 }
 
 Result<void> read_imu(const TomlEntry& entry, Suite& suite) {
-  const auto text = plain<std::string>(entry);
-  if (!text) return wrong(entry, "\"recorded\", \"synthetic\" or \"auto\"");
+  const auto text = plain_entry<std::string>(entry);
+  if (!text) return wrong_entry(entry, "\"recorded\", \"synthetic\" or \"auto\"");
   const auto choice = parse_imu_choice(*text);
   if (!choice)
     return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, choice.error().message));
@@ -73,38 +38,100 @@ Result<void> read_imu(const TomlEntry& entry, Suite& suite) {
   return {};
 }
 
-tl::unexpected<Error> unknown_key(const std::string& place, const std::string& key) {
-  return fail(ErrorCode::configuration,
-              fmt::format("{}: unknown key '{}' (nearest: {})", place, key, nearest_name(key, kSuiteKeys)),
-              fmt::format("keys of a suite are {}", fmt::join(kSuiteKeys, ", ")));
-}
-
 Result<void> read_entry(const TomlEntry& entry, Suite& suite) {
-  if (entry.key == "name") {
-    const auto name = plain<std::string>(entry);
-    if (!name || name->empty()) return wrong(entry, "a text");
-    suite.name = *name;
+  const auto store = [](auto value, auto& target) -> Result<void> {
+    if (!value) return tl::unexpected(value.error());
+    target = std::move(*value);
     return {};
-  }
-  if (entry.key == "all") {
-    const auto all = plain<bool>(entry);
-    if (!all) return wrong(entry, "true or false");
-    suite.all = *all;
-    return {};
-  }
-  if (entry.key == "recordings") {
-    auto list = names(entry);
-    if (!list) return tl::unexpected(list.error());
-    suite.recordings = std::move(*list);
-    return {};
-  }
-  if (entry.key == "variants") return read_variants(entry, suite);
+  };
+  if (entry.key == "name") return store(text_entry(entry), suite.name);
+  if (entry.key == "all") return store(flag_entry(entry), suite.all);
+  if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
   if (entry.key == "imu") return read_imu(entry, suite);
+  if (entry.key == "recordings") {
+    const auto list = names_entry(entry);
+    if (!list) return tl::unexpected(list.error());
+    for (const std::string& name : *list) suite.recordings.push_back({.name = name});
+    return {};
+  }
   if (entry.key.starts_with(kConfigPrefix)) {
     suite.config.push_back({entry.key.substr(kConfigPrefix.size()), entry.value, entry.place});
     return {};
   }
-  return unknown_key(entry.place, entry.key);
+  if (list_of_key(entry.key)) return {};  // read table by table
+  return unknown_suite_key(entry.place, entry.key);
+}
+
+Result<void> read_recording(const EntryTable& table, Suite& suite) {
+  SuiteRecording recording;
+  for (const TomlEntry& entry : table.entries) {
+    if (entry.key == "variants") {
+      auto list = variants_entry(entry);
+      if (!list) return tl::unexpected(list.error());
+      recording.variants = std::move(*list);
+      continue;
+    }
+    const std::array<std::pair<std::string_view, std::string*>, 3> texts = {
+        {{"name", &recording.name}, {"group", &recording.group}, {"half", &recording.half}}};
+    const auto* const target =
+        std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.first == entry.key; });
+    if (target == texts.end()) return unknown_key(entry.place, entry.key, kRecordingKeys, "a recording");
+    auto text = text_entry(entry);
+    if (!text) return tl::unexpected(text.error());
+    *target->second = std::move(*text);
+    if (recording.half != kTuningHalf && recording.half != kHeldOutHalf)
+      return wrong_entry(entry, "\"tuning\" or \"held-out\"");
+  }
+  if (recording.name.empty())
+    return fail(ErrorCode::configuration, fmt::format("{}: the key 'name' is missing", table.place));
+  suite.recordings.push_back(std::move(recording));
+  return {};
+}
+
+Result<void> read_tables(const TomlDocument& document, Suite& suite) {
+  for (const EntryTable& table : entry_tables(document, "recordings")) {
+    if (auto read = read_recording(table, suite); !read) return read;
+  }
+  auto simulations = read_simulations(entry_tables(document, "simulations"), suite.variants);
+  if (!simulations) return tl::unexpected(simulations.error());
+  suite.simulations = std::move(*simulations);
+  auto bars = read_bars(entry_tables(document, "bars"));
+  if (!bars) return tl::unexpected(bars.error());
+  suite.bars = std::move(*bars);
+  return {};
+}
+
+/// The suite's variants, and those of its recordings.
+std::vector<std::string> variants_of(const Suite& suite) {
+  std::vector<std::string> all = suite.variants;
+  const auto add = [&](const std::vector<std::string>& more) {
+    for (const std::string& name : more) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+  };
+  for (const SuiteRecording& recording : suite.recordings) add(recording.variants);
+  for (const SuiteSimulation& simulation : suite.simulations) add(simulation.variants);
+  return all;
+}
+
+/// A bar on a group that no recording is in would never decide anything.
+Result<void> check_groups(const Suite& suite) {
+  std::vector<std::string> groups;
+  for (const SuiteSimulation& simulation : suite.simulations) groups.push_back(simulation.group);
+  for (const SuiteRecording& recording : suite.recordings) {
+    // Without a group, recordings go by the names of their folders.
+    if (recording.group.empty()) return {};
+    groups.push_back(recording.group);
+  }
+  const std::vector<std::string_view> known(groups.begin(), groups.end());
+  for (const Bar& bar : suite.bars) {
+    for (const std::string& group : bar.groups) {
+      if (suite.all || std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
+      return fail(ErrorCode::configuration, fmt::format("{}: no recording is in the group '{}' (nearest: {})",
+                                                        bar.place, group, nearest_name(group, known)));
+    }
+  }
+  return {};
 }
 
 Result<void> check_suite(const Suite& suite, const fs::path& file) {
@@ -113,9 +140,12 @@ Result<void> check_suite(const Suite& suite, const fs::path& file) {
   };
   if (suite.name.empty()) return lacks("the key 'name' is missing");
   if (suite.variants.empty()) return lacks("the key 'variants' is missing");
-  if (suite.all == !suite.recordings.empty()) return lacks("either 'recordings' or 'all = true' is needed");
+  const bool simulates = !suite.simulations.empty();
+  if (suite.all ? !suite.recordings.empty() : suite.recordings.empty() && !simulates)
+    return lacks("either 'recordings' or 'all = true' is needed, or [[simulations]]");
+  if (auto good = check_groups(suite); !good) return good;
   // Each edit must be one that a configuration takes, before hours are spent on the runs before it.
-  for (const std::string& name : suite.variants) {
+  for (const std::string& name : variants_of(suite)) {
     const auto config = suite_config(suite, *find_variant(name));
     if (!config) return tl::unexpected(config.error());
     if (auto related = check_relations(config->values); !related) {
@@ -171,14 +201,19 @@ Result<fs::path> find_folder_named(const std::string& name, const fs::path& data
 Result<Suite> read_suite(const fs::path& file) {
   const auto document = read_toml(file);
   if (!document) return tl::unexpected(document.error());
+  constexpr std::array<std::string_view, 3> lists = {"recordings", "simulations", "bars"};
   for (const TomlTable& table : document->tables) {
-    if (table.key != "config" && !table.key.starts_with(kConfigPrefix))
-      return unknown_key(table.place, table.key);
+    const auto list = list_of_key(table.key);
+    const bool known =
+        list ? std::find(lists.begin(), lists.end(), *list) != lists.end() && table.key.ends_with(']')
+             : table.key == "config" || table.key.starts_with(kConfigPrefix);
+    if (!known) return unknown_suite_key(table.place, table.key);
   }
   Suite suite;
   for (const TomlEntry& entry : document->entries) {
     if (auto read = read_entry(entry, suite); !read) return tl::unexpected(read.error());
   }
+  if (auto read = read_tables(*document, suite); !read) return tl::unexpected(read.error());
   if (auto complete = check_suite(suite, file); !complete) return tl::unexpected(complete.error());
   return suite;
 }
@@ -187,7 +222,7 @@ Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant)
   EffectiveConfig config = variant_config(variant);
   for (const TomlEntry& entry : suite.config) {
     const auto* value = std::get_if<OptionValue>(&entry.value);
-    if (value == nullptr) return wrong(entry, "one value, not a list");
+    if (value == nullptr) return wrong_entry(entry, "one value, not a list");
     if (auto set = config.set(entry.key, *value, entry.place); !set) return tl::unexpected(set.error());
   }
   return config;
@@ -224,6 +259,25 @@ Result<std::vector<fs::path>> recordings_under(const fs::path& data) {
   }
   std::sort(folders.begin(), folders.end());
   return folders;
+}
+
+Result<std::vector<fs::path>> find_recordings(const std::string& name, const fs::path& data) {
+  if (!name.ends_with('*')) {
+    auto folder = find_recording(name, data);
+    if (!folder) return tl::unexpected(folder.error());
+    return std::vector<fs::path>{std::move(*folder)};
+  }
+  const std::string beginning = name.substr(0, name.size() - 1);
+  std::vector<fs::path> found;
+  if (const auto folders = recordings_under(data)) {
+    for (const fs::path& folder : *folders) {
+      if (folder.filename().string().starts_with(beginning)) found.push_back(folder);
+    }
+  }
+  if (!found.empty()) return found;
+  return fail(ErrorCode::data_missing,
+              fmt::format("no recording whose name begins with '{}' under '{}'", beginning, data.string()),
+              "--data or FUSEBENCH_DATA names the folder of recordings");
 }
 
 Result<fs::path> find_recording(const std::string& name, const fs::path& data) {

@@ -11,25 +11,45 @@
 #include "core/toml_document.hpp"
 #include "core/variants.hpp"
 #include "eval/run.hpp"
+#include "eval/suite_bars.hpp"
+#include "eval/suite_simulations.hpp"
 
 namespace fusebench {
+
+/// A recording that exists, as a suite names it.
+///
+///     [[recordings]]                      # or, at the top of the file: recordings = ["fr1_rpy", ...]
+///     name = "rgbd_dataset_freiburg1_*"   # a final * takes all folders under --data that begin so
+///     group = "fr1"                       # default: the recording's own name
+///     half = "tuning"                     # or "held-out" (default)
+///     variants = ["full"]                 # default: those of the suite
+struct SuiteRecording {
+  std::string name;
+  std::string group = {};  ///< empty: the recording's name
+  std::string half = std::string(kHeldOutHalf);
+  std::vector<std::string> variants = {};
+};
 
 /// A suite runs every variant over every recording.
 ///
 ///     name = "quickstart"             # required
-///     recordings = ["fr1_rpy", ...]   # folders, names of folders under --data or of the catalogue; this, or
-///     all = true                      # every recording under --data
+///     recordings = ["fr1_rpy", ...]   # folders, names of folders under --data or of the catalogue; or
+///     all = true                      # every recording under --data; or simulated ones (SuiteSimulation)
 ///     variants = ["full", "dm"]       # required
 ///     imu = "synthetic"               # or "auto", "recorded" (default): see ImuChoice
 ///     [config]                        # edits for all runs, as in a configuration file
 ///     iekf.max_iterations = 8
+///     [[simulations]]                 # see SuiteSimulation
+///     [[bars]]                        # what the runs must reach: see Bar
 struct Suite {
   std::string name;
   bool all = false;
-  std::vector<std::string> recordings;
+  std::vector<SuiteRecording> recordings;
+  std::vector<SuiteSimulation> simulations;
   std::vector<std::string> variants;
   ImuChoice imu = ImuChoice::recorded;
   std::vector<TomlEntry> config;  ///< keys without "config."
+  std::vector<Bar> bars;
 };
 
 /// Errors name file:line: data_missing (no such file), configuration (unknown key or variant, wrong type, a
@@ -47,6 +67,11 @@ struct Suite {
 /// how to fetch a recording of the catalogue, or what is under `data`, with the nearest name.
 [[nodiscard]] Result<std::filesystem::path> find_recording(const std::string& name,
                                                            const std::filesystem::path& data);
+
+/// The same; a name that ends with * stands for all folders under `data` that begin so, by path. Error
+/// data_missing.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(const std::string& name,
+                                                                         const std::filesystem::path& data);
 
 /// The folders under `data` that hold a recording of any format, directly or one level deeper
 /// (<scene>/<sequence>), by path. Errors: data_missing if `data` is no folder or has none.

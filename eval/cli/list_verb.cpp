@@ -90,6 +90,15 @@ Result<Listing> list_recordings(const std::filesystem::path& data) {
   return listing;
 }
 
+/// The names, or how many there are where simulations are multiplied out.
+std::string recordings_of(const Suite& suite) {
+  std::string text = suite.all ? "all" : "";
+  for (const SuiteRecording& recording : suite.recordings)
+    text += fmt::format("{}{}", text.empty() ? "" : " ", recording.name);
+  if (suite.simulations.empty()) return text;
+  return fmt::format("{}{}{} simulated", text, text.empty() ? "" : " ", suite.simulations.size());
+}
+
 Result<Listing> list_suites(const std::filesystem::path& configs) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
@@ -109,7 +118,7 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
     const auto suite = read_suite(file);
     if (!suite) return tl::unexpected(suite.error());
     listing.rows.push_back({suite->name, file.string(), fmt::format("{}", fmt::join(suite->variants, " ")),
-                            suite->all ? "all" : fmt::format("{}", fmt::join(suite->recordings, " "))});
+                            recordings_of(*suite)});
   }
   return listing;
 }

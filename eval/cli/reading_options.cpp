@@ -3,10 +3,14 @@
 #include <CLI/CLI.hpp>
 
 #include "datasets/camera_presets.hpp"
+#include "datasets/rig_calibration.hpp"
 
 namespace fusebench {
 
 void add_reading_options(CLI::App& verb, ReadingOptions& options) {
+  verb.add_option("--calibration", options.calibration,
+                  "Calibration of all sensors (docs/datasets.md), in place of the recording's own")
+      ->type_name("FILE.toml");
   verb.add_option("--camera", options.camera,
                   "Calibration of the colour camera: a preset's name, or fx,fy,cx,cy[,k1,k2,p1,p2,k3]")
       ->type_name("CAMERA");
@@ -32,6 +36,11 @@ void add_reading_options(CLI::App& verb, ReadingOptions& options) {
 Result<OpenOptions> open_options(const ReadingOptions& options) {
   OpenOptions open;
   open.format = options.format;
+  if (!options.calibration.empty()) {
+    auto calibration = read_calibration(options.calibration);
+    if (!calibration) return tl::unexpected(calibration.error());
+    open.read.calibration = std::move(*calibration);
+  }
   if (!options.camera.empty()) {
     const auto camera = parse_camera(options.camera);
     if (!camera) return tl::unexpected(camera.error());

@@ -1,6 +1,7 @@
 // How a recording is to be read, as verbs that open one take it.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,7 @@ namespace fusebench {
 
 /// As typed; see ReadOptions.
 struct ReadingOptions {
+  std::filesystem::path calibration;
   std::string camera;
   std::string format;
   std::optional<double> depth_units_per_metre;
@@ -24,10 +26,12 @@ struct ReadingOptions {
   bool filtered_depth = false;
 };
 
-/// --camera, --format, --depth-units, --max-difference, --frame-rate, --published-stamps, --filtered-depth.
+/// --calibration, --camera, --format, --depth-units, --max-difference, --frame-rate, --published-stamps,
+/// --filtered-depth.
 void add_reading_options(CLI::App& verb, ReadingOptions& options);
 
-/// Error configuration: an unknown camera. Ranges are checked by the reader.
+/// Errors: an unknown camera (configuration), and those of read_calibration. Ranges are checked by the
+/// reader.
 [[nodiscard]] Result<OpenOptions> open_options(const ReadingOptions& options);
 
 }  // namespace fusebench

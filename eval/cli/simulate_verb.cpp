@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/json_text.hpp"
+#include "eval/simulation_request.hpp"
 
 namespace fusebench {
 
@@ -18,74 +18,31 @@ namespace {
 
 struct SimulateOptions {
   std::filesystem::path out;
+  SimulationRequest request;
   std::string preset = "slow";
   std::string layout = "zr300";
-  std::uint64_t seed = 1;
-  double duration_s = 10;
-  double rate_hz = 30;
   std::string size = "640x480";
   bool from_rest = false;
   bool in_motion = false;
-  std::filesystem::path trajectory;
-  double speed = 1;
-  std::filesystem::path scene;
-  SceneFileOptions scene_options;
-  double exposure_s = 0.008;
-  int blur_samples = 8;
-  double rolling_shutter_s = 0;
-  double time_offset_s = 0;
-  bool no_noise = false;
   int threads = 1;
   bool json = false;
 };
 
-// The parser has checked the names.
-MotionPreset preset_of(const std::string& name) {
-  if (name == "fast") return MotionPreset::fast;
-  return name == "shake" ? MotionPreset::shake : MotionPreset::slow;
-}
-
-RecordingLayout layout_of(const std::string& name) {
-  if (name == "tum") return RecordingLayout::tum;
-  return name == "icl" ? RecordingLayout::icl : RecordingLayout::zr300;
-}
-
-Result<ImageSize> parse_size(const std::string& text) {
-  ImageSize size;
-  const char* const end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size.width_px);
-  const bool cross = width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x';
-  const auto height = cross ? std::from_chars(width.ptr + 1, end, size.height_px) : width;
-  if (!cross || height.ec != std::errc{} || height.ptr != end) {
-    return fail(ErrorCode::usage, fmt::format("--size {} (allowed: WIDTHxHEIGHT)", text),
-                "e.g. --size 640x480");
-  }
-  return size;
-}
-
 Result<SimulationOptions> simulation_of(const SimulateOptions& chosen) {
-  const auto size = parse_size(chosen.size);
-  if (!size) return tl::unexpected(size.error());
-  auto options = simulation_defaults(layout_of(chosen.layout), preset_of(chosen.preset), *size);
-  if (!options) return options;
-  options->seed = chosen.seed;
-  options->duration_s = chosen.duration_s;
-  options->rate_hz = chosen.rate_hz;
-  options->scene_file = chosen.scene;
-  options->scene = chosen.scene_options;
-  // A preset starts from rest unless told otherwise, a trajectory as it begins.
-  options->motion.from_rest = !chosen.in_motion;
-  options->trajectory_file = chosen.trajectory;
-  options->file_motion.speed = chosen.speed;
-  options->file_motion.from_rest = chosen.from_rest;
-  // In a scene of the user's own, the poses say where the camera is; in the furnished room they cannot.
-  options->file_motion.in_place = !chosen.scene.empty();
-  options->exposure_s = chosen.exposure_s;
-  options->blur_samples = chosen.blur_samples;
-  options->rig.color.timing.color_readout_s = chosen.rolling_shutter_s;
-  options->imu.time_offset_s = chosen.time_offset_s;
-  if (chosen.no_noise) remove_noise(*options);
-  return options;
+  SimulationRequest request = chosen.request;
+  const auto size = parse_image_size(chosen.size);
+  if (!size) {
+    return fail(size.error().code, fmt::format("--{}", size.error().message), "e.g. --size 640x480");
+  }
+  const auto preset = parse_motion_preset(chosen.preset);
+  if (!preset) return tl::unexpected(preset.error());
+  const auto layout = parse_recording_layout(chosen.layout);
+  if (!layout) return tl::unexpected(layout.error());
+  request.size = *size;
+  request.preset = *preset;
+  request.layout = *layout;
+  if (chosen.from_rest || chosen.in_motion) request.from_rest = chosen.from_rest;
+  return simulation_options(request);
 }
 
 std::string json_of(const SimulateOptions& chosen, const SimulationReport& report) {
@@ -145,47 +102,75 @@ Result<int> simulate_recording(const SimulateOptions& chosen) {
 void add_motion_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--preset", options.preset,
                   "Hand-held motion: slow (up to 0.4 m/s, 0.6 rad/s), fast (2 m/s, 3 rad/s), shake (1.2 m/s, "
-                  "2.5 rad/s, at 2 to 4 Hz)")
-      ->check(CLI::IsMember({"slow", "fast", "shake"}))
+                  "2.5 rad/s, at 2 to 4 Hz), sweep (sideways before a cluttered shelf: 2 m/s, 1 rad/s)")
+      ->check(CLI::IsMember({"slow", "fast", "shake", "sweep"}))
       ->capture_default_str();
   auto* in_motion = verb.add_flag("--in-motion", options.in_motion,
                                   "The first frame is in full motion; default for --trajectory");
   verb.add_flag("--from-rest", options.from_rest, "Still for 1 s, then a smooth start; default for --preset")
       ->excludes(in_motion);
   auto* trajectory =
-      verb.add_option("--trajectory", options.trajectory,
+      verb.add_option("--trajectory", options.request.trajectory,
                       "Camera path instead of a preset: TUM text (world z up), or a trajectory of ICL-NUIM")
           ->type_name("FILE");
-  verb.add_option("--speed", options.speed, "Drives the path of --trajectory that much faster")
+  verb.add_option("--speed", options.request.speed, "Drives the path of --trajectory that much faster")
       ->type_name("X")
       ->needs(trajectory)
       ->capture_default_str();
-  verb.add_option("--duration", options.duration_s, "Length; 0: all of --trajectory")
+  verb.add_option("--duration", options.request.duration_s, "Length; 0: all of --trajectory")
       ->type_name("S")
       ->capture_default_str();
 }
 
 void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
-  verb.add_option("--rate", options.rate_hz, "Images a second (icl: 30, zr300: 4 to 200)")
+  verb.add_option("--rate", options.request.rate_hz, "Images a second (icl: 30, zr300: 4 to 200)")
       ->type_name("HZ")
       ->capture_default_str();
   verb.add_option("--size", options.size, "Pixels of the images")->type_name("WxH")->capture_default_str();
-  verb.add_option("--exposure", options.exposure_s, "Exposure time, which blurs motion")
+  verb.add_option("--exposure", options.request.exposure_s, "Exposure time, which blurs motion")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option("--blur-samples", options.blur_samples, "Instants that an exposure is made of")
+  verb.add_option("--blur-samples", options.request.blur_samples, "Instants that an exposure is made of")
       ->type_name("N")
       ->capture_default_str();
-  verb.add_option("--rolling-shutter", options.rolling_shutter_s,
+  verb.add_option("--rolling-shutter", options.request.rolling_shutter_s,
                   "Time between the first and the last row of colour images")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option("--time-offset", options.time_offset_s,
+  verb.add_option("--time-offset", options.request.time_offset_s,
                   "What the IMU's stamps are ahead of the images'; calibration.toml says it")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_flag("--no-noise", options.no_noise,
+  verb.add_flag("--no-noise", options.request.no_noise,
                 "Without noise of images, depth and IMU, biases, vignetting and exposure drift");
+}
+
+std::string kinds_of_faults() {
+  std::string text;
+  for (const FaultDescription& kind : fault_kinds()) {
+    text += fmt::format("{}{} ({}", text.empty() ? "" : "; ", kind.name, kind.sentence);
+    if (!kind.amount.empty()) text += fmt::format("; AMOUNT: {}, else {}", kind.amount, kind.usual);
+    text += ")";
+  }
+  return text;
+}
+
+void add_fault_options(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option(
+          "--fault", options.request.faults,
+          "What goes wrong from BEGIN to END, seconds from the first frame; may be given several times: " +
+              kinds_of_faults())
+      ->type_name("KIND=BEGIN:END[:AMOUNT]")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--calibration-error", options.request.calibration_error,
+                  "calibration.toml is wrong about where the camera sits on the IMU, by so many degrees and "
+                  "centimetres")
+      ->type_name("DEG:CM");
+  verb.add_option("--untold-time-offset", options.request.untold_time_offset_s,
+                  "What the IMU's stamps are ahead of the images' besides; calibration.toml does not say it")
+      ->type_name("S")
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -199,19 +184,22 @@ Verb add_simulate_verb(CLI::App& app) {
                    "Layout and sensors: zr300 (as FMDataset), tum (RGB-D) or icl (ICL-NUIM)")
       ->check(CLI::IsMember({"zr300", "tum", "icl"}))
       ->capture_default_str();
-  verb->add_option("--seed", options->seed, "Of the room, the motion and all noise")
+  verb->add_option("--seed", options->request.seed, "Of the room, the motion and all noise")
       ->type_name("N")
       ->capture_default_str();
   add_motion_options(*verb, *options);
-  auto* scene = verb->add_option("--scene", options->scene, "PLY or OBJ (z up) instead of the furnished room")
-                    ->type_name("FILE");
-  verb->add_flag("--scene-y-up", options->scene_options.y_up, "The y axis of --scene points up")
+  auto* scene =
+      verb->add_option("--scene", options->request.scene, "PLY or OBJ (z up) instead of the furnished room")
+          ->type_name("FILE");
+  verb->add_flag("--scene-y-up", options->request.scene_options.y_up, "The y axis of --scene points up")
       ->needs(scene);
-  verb->add_option("--scene-unit", options->scene_options.metres_per_unit, "Metres that a unit of --scene is")
+  verb->add_option("--scene-unit", options->request.scene_options.metres_per_unit,
+                   "Metres that a unit of --scene is")
       ->type_name("M")
       ->needs(scene)
       ->capture_default_str();
   add_sensor_options(*verb, *options);
+  add_fault_options(*verb, *options);
   add_threads_option(*verb, options->threads);
   add_json_flag(*verb, options->json);
   verb->footer(

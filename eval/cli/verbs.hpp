@@ -24,5 +24,7 @@ struct Verb {
 [[nodiscard]] Verb add_config_verb(CLI::App& app);
 [[nodiscard]] Verb add_simulate_verb(CLI::App& app);
 [[nodiscard]] Verb add_inspect_verb(CLI::App& app);
+[[nodiscard]] Verb add_calibrate_verb(CLI::App& app);
+[[nodiscard]] Verb add_smooth_verb(CLI::App& app);
 
 }  // namespace fusebench

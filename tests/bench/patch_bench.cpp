@@ -71,20 +71,24 @@ void linearise(benchmark::State& state) {
   const auto patches = refresh_patches({pyramid, depth_m, scene.camera, scene.T_world_camera}, scene.model,
                                        {}, scene.config, workers);
   const ObservedFrame observed{pyramid, depth_m};
-  PatchMeasurement measurement(scene.config, rig, observed, patches, workers);
+  PatchMeasurement measurement(scene.config, rig, observed, patches, {}, workers);
   const SE3 start{scene.T_world_camera.rotation * so3_exp({0.002, -0.001, 0.001}),
                   scene.T_world_camera.translation + Vector3d(0.003, 0.002, -0.002)};
   const int finest = measurement.stages() - 1;
-  const auto once = [&] { return measurement.linearise(start, finest, true); };
+  const auto once = [&] { return measurement.linearise({start, start}, finest, true); };
 
   // The Gauss-Newton step lowers the cost that was linearised, and leads back to the true pose.
-  const PoseQuadratic quadratic = once();
+  const MeasurementQuadratic parts = once();
+  PoseQuadratic quadratic = parts.by_reference;
+  quadratic.add(parts.by_model, 1.0);
   const Vector6d step = -quadratic.information.ldlt().solve(quadratic.gradient);
   const SE3 stepped{start.rotation * so3_exp(step.head<3>()), start.translation + step.tail<3>()};
   const auto distance_m = [&](const SE3& pose) {
     return (pose.translation - scene.T_world_camera.translation).norm();
   };
-  if (!(measurement.trial_cost(stepped, step, 1.0) < quadratic.cost) ||
+  MeasuredVector steps;
+  steps << step, step;
+  if (!(measurement.trial_cost({stepped, stepped}, steps, 1.0) < quadratic.cost) ||
       !(distance_m(stepped) < 0.5 * distance_m(start))) {
     return state.SkipWithError("the step does not lead to the true pose");
   }

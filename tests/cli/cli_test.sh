@@ -177,6 +177,13 @@ check_bad_usage() {
   printf 'name = "s"\nrecordings = ["absent"]\nvariants = ["no-imu"]\n' >suite.toml
   refused "unknown recording of a suite" 3 'absent' -- bench suite.toml --data . --out out
 
+  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\npreset = "quick"\n' >suite.toml
+  refused "unknown preset of a suite" 2 'suite.toml:5' 'slow' -- bench suite.toml --out out
+  printf 'name = "s"\nall = true\nvariants = ["full"]\n[[bars]]\ntitle = "t"\nvariant = "full"\nmetric = "ate_rmse"\n' >suite.toml
+  refused "unknown metric of a bar" 2 'suite.toml:7' 'ate_rmse_m' -- bench suite.toml --data . --out out
+  printf 'name = "s"\nrecordings = ["freiburg1_copy"]\nvariants = ["no-imu"]\n' >suite.toml
+  refused "no such job" 2 'job 2' '1 .. 1' -- bench suite.toml --data . --out out --job 2
+
   # An unwritable place; a file in the way serves root as well, who may write everywhere.
   printf 'in the way' >obstacle
   refused "unwritable folder" 4 'obstacle' 'hint:--out' -- run freiburg1_copy --variant no-imu --out obstacle/out
@@ -248,6 +255,7 @@ check_interrupt() {
   stopped INT run data/freiburg1_copy --variant no-imu
   stopped TERM run data/freiburg1_copy --variant no-imu
   stopped INT bench suite.toml --data data
+  stopped INT bench suite.toml --data data -j 2
 }
 
 # The part of a record that repeats: all before the timing, and no thread count (the provenance comes after it).
@@ -278,6 +286,30 @@ check_determinism() {
       complain "$threads threads: record.json differs before its timing"
     [[ $(reproducible_part "$folder/record.json" | wc -l) -gt 50 ]] || complain "there is hardly a record to compare"
   done
+
+  # Runs side by side are the same runs, in the same order.
+  mkdir -p data && mv freiburg1_copy data
+  printf 'name = "s"\nall = true\nvariants = ["no-imu", "dm-no-imu"]\n' >suite.toml
+  checks=$((checks + 1))
+  "$binary" bench suite.toml --data data --out one --json >one.json 2>stderr || complain "bench"
+  "$binary" bench suite.toml --data data --out one_more --json -j 2 >two.json 2>stderr || complain "bench -j 2"
+  cmp -s one.json <(sed 's/one_more/one/' two.json) || complain "bench -j 2: other outcomes"
+  while read -r name; do
+    cmp -s <(reproducible_part "one/$name") <(reproducible_part "one_more/$name") || complain "bench -j 2: $name differs"
+  done < <(cd one && find . -name record.json -o -name trajectory.tum -o -name intensity.bin)
+  [[ $(find one_more -name record.json | wc -l) == 2 ]] || complain "bench -j 2: not two runs"
+
+  # A bar decides the exit code.
+  printf '[[bars]]\ntitle = "t"\nvariant = "no-imu"\nmetric = "lost_frames"\nstatistic = "worst"\nat_most = 0\n' >>suite.toml
+  checks=$((checks + 1))
+  "$binary" bench suite.toml --data data --out one --resume --summary sums/s.json --summary-page s.html >stdout 2>stderr ||
+    complain "a bar that passes: exit code $?"
+  grep -q '1 of 1 bars passed' stdout || complain "a bar that passes is not told"
+  grep -q '"verdict": "PASS"' sums/s.json || complain "a bar that passes is not in the summary"
+  grep -q '<canvas' s.html || grep -q '<table>' s.html || complain "the summary's page has no table"
+  sed -i 's/^at_most.*/at_least = 1/' suite.toml
+  "$binary" bench suite.toml --data data --out one --resume >stdout 2>stderr
+  (($? == 1)) || complain "a bar that fails: not exit code 1"
 }
 
 case "$group" in

@@ -32,7 +32,10 @@ TEST_F(SuiteTest, ReadsEveryKey) {
   const auto suite = read(kGood);
   ASSERT_TRUE(suite.has_value()) << suite.error().message;
   EXPECT_EQ(suite->name, "demo");
-  EXPECT_EQ(suite->recordings, (std::vector<std::string>{"a", "b"}));
+  ASSERT_EQ(suite->recordings.size(), 2U);
+  EXPECT_EQ(suite->recordings[0].name, "a");
+  EXPECT_EQ(suite->recordings[1].name, "b");
+  EXPECT_EQ(suite->recordings[1].half, "held-out");
   EXPECT_EQ(suite->variants, (std::vector<std::string>{"full", "dm"}));
   EXPECT_EQ(suite->imu, ImuChoice::synthetic);
   const auto config = suite_config(*suite, *find_variant("dm"));

@@ -1,0 +1,57 @@
+// Programs that run beside this one: started, watched without waiting, and asked to stop.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace fusebench {
+
+/// How a child ended, with all that it wrote.
+struct ChildEnd {
+  std::optional<int> exit_code;  ///< nothing if a signal ended it
+  int signal = 0;
+  std::string output;  ///< standard output
+  std::string errors;  ///< standard error
+
+  /// "exit code 3", "signal 9 (Killed)".
+  [[nodiscard]] std::string how() const;
+};
+
+/// One running program. It gets an interrupt (SIGINT) and is waited for when it is destroyed.
+class ChildProcess {
+ public:
+  /// command[0] is the program's file. What the child writes goes to files without a name, so that nothing is
+  /// left of them. Error io.
+  [[nodiscard]] static Result<ChildProcess> start(const std::vector<std::string>& command);
+
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&&) = delete;
+  ~ChildProcess();
+
+  /// Nothing while it runs; afterwards its end, once.
+  [[nodiscard]] std::optional<ChildEnd> poll();
+  void interrupt() const;
+
+ private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+  };
+  using File = std::unique_ptr<std::FILE, CloseFile>;
+
+  ChildProcess(pid_t process, File output, File errors)
+      : process_(process), output_(std::move(output)), errors_(std::move(errors)) {}
+  [[nodiscard]] ChildEnd end_of(int status);
+
+  pid_t process_ = -1;  // -1: ended
+  File output_;
+  File errors_;
+};
+
+}  // namespace fusebench

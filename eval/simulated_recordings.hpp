@@ -1,0 +1,28 @@
+// Makes the simulated recordings that a suite's jobs need and that are not there yet.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "datasets/simulator/simulation.hpp"
+#include "eval/batch.hpp"
+
+namespace fusebench {
+
+struct SimulatingControl {
+  std::function<void(const std::string& recording, std::size_t index, std::size_t count)> started = {};
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+  std::function<void(const SimulationReport& report)> finished = {};
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Each recording once, in the order of the jobs; one that is there is left as it is. Errors: those of
+/// simulate(), with the recording's name; the recordings before it stay.
+[[nodiscard]] Result<void> make_simulated_recordings(const std::vector<BatchJob>& jobs, int threads,
+                                                     const SimulatingControl& control = {});
+
+}  // namespace fusebench

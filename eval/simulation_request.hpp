@@ -1,0 +1,50 @@
+// What a user may say about a simulated recording, on the command line or in a suite, and the simulator's
+// options that it means.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "datasets/simulator/simulation.hpp"
+
+namespace fusebench {
+
+struct SimulationRequest {
+  RecordingLayout layout = RecordingLayout::zr300;
+  MotionPreset preset = MotionPreset::slow;
+  std::uint64_t seed = 1;
+  double duration_s = 10;
+  double rate_hz = 30;
+  ImageSize size{640, 480};
+  std::optional<bool> from_rest;     ///< default: a preset starts from rest, a trajectory as it begins
+  std::filesystem::path trajectory;  ///< instead of the preset; empty: none
+  double speed = 1;                  ///< of the trajectory
+  std::filesystem::path scene;       ///< instead of the furnished room; empty: none
+  SceneFileOptions scene_options;
+  double exposure_s = 0.008;
+  int blur_samples = 8;
+  double rolling_shutter_s = 0;
+  double time_offset_s = 0;
+  bool no_noise = false;
+  std::vector<std::string> faults;  ///< as parse_fault takes them
+  std::string calibration_error;    ///< as parse_calibration_error takes it; empty: none
+  double untold_time_offset_s = 0;
+};
+
+/// Errors: configuration (the image size), usage (the form of a fault); everything else is checked by
+/// simulate().
+[[nodiscard]] Result<SimulationOptions> simulation_options(const SimulationRequest& request);
+
+/// "slow", "fast", "shake", "sweep". Error configuration.
+[[nodiscard]] Result<MotionPreset> parse_motion_preset(std::string_view text);
+/// "zr300", "tum", "icl". Error configuration.
+[[nodiscard]] Result<RecordingLayout> parse_recording_layout(std::string_view text);
+/// "640x480". Error usage.
+[[nodiscard]] Result<ImageSize> parse_image_size(std::string_view text);
+
+}  // namespace fusebench

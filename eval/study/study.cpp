@@ -1,0 +1,63 @@
+#include "eval/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fusebench {
+
+namespace {
+
+/// The frames of the pair, with the motion that the reference saw.
+Result<std::vector<SharedFrame>> compared(const StudyRun& reference, const StudyRun& run) {
+  auto frames = shared_frames(reference.folder / "intensity.bin", run.folder / "intensity.bin");
+  if (!frames) return frames;
+  const auto motion = read_patch_motion(reference.folder / "frames.csv");
+  if (!motion) return tl::unexpected(motion.error());
+  for (SharedFrame& frame : *frames) {
+    const auto found = motion->find(frame.timestamp_ns);
+    if (found != motion->end()) frame.motion_px = found->second;
+  }
+  return frames;
+}
+
+}  // namespace
+
+Study gather_study(std::vector<StudyRun> runs) {
+  Study study{std::move(runs), {}};
+  for (StudyRun& run : study.runs) {
+    if (run.variant == kReferenceVariant || run.record.status != RunStatus::ok) continue;
+    const StudyRun* reference = sibling(study, run, kReferenceVariant);
+    if (reference == nullptr || reference->record.status != RunStatus::ok) continue;
+    auto frames = compared(*reference, run);
+    if (frames) {
+      run.shared = std::move(*frames);
+    } else {
+      study.notes.push_back(fmt::format("{}, {}: no AIE on common pixels: {}", run.recording, run.variant,
+                                        frames.error().message));
+    }
+  }
+  return study;
+}
+
+const StudyRun* sibling(const Study& study, const StudyRun& run, std::string_view variant) {
+  const auto found = std::find_if(study.runs.begin(), study.runs.end(), [&](const StudyRun& other) {
+    return other.variant == variant && other.recording == run.recording;
+  });
+  return found == study.runs.end() ? nullptr : &*found;
+}
+
+std::optional<double> value_of(const Study& study, const StudyRun& run, const StudyValue& value,
+                               std::string_view partner) {
+  if (run.record.status != RunStatus::ok && !value.of_every_run) return std::nullopt;
+  if (value.of != nullptr) return value.of(run.record);
+  const bool is_reference = run.variant == kReferenceVariant;
+  const StudyRun* pair = is_reference ? sibling(study, run, partner) : &run;
+  if (pair == nullptr) return std::nullopt;
+  const SharedMeans means = shared_means(pair->shared);
+  if (means.frames == 0) return std::nullopt;
+  return is_reference ? means.reference_grey : means.variant_grey;
+}
+
+}  // namespace fusebench

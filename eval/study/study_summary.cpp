@@ -1,0 +1,128 @@
+#include "eval/study/study_summary.hpp"
+
+#include <algorithm>
+
+#include "core/variants.hpp"
+#include "eval/statistics.hpp"
+#include "eval/suite_simulations.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// Each text once, in the order in which they come.
+std::vector<std::string> distinct(const Study& study, std::string StudyRun::*text) {
+  std::vector<std::string> result;
+  for (const StudyRun& run : study.runs) {
+    if (std::find(result.begin(), result.end(), run.*text) == result.end()) result.push_back(run.*text);
+  }
+  return result;
+}
+
+std::vector<std::string> variants_in_order(const Study& study) {
+  std::vector<std::string> present = distinct(study, &StudyRun::variant);
+  std::vector<std::string> ordered;
+  for (const Variant& variant : all_variants()) {
+    if (std::find(present.begin(), present.end(), variant.name) != present.end())
+      ordered.emplace_back(variant.name);
+  }
+  return ordered;
+}
+
+ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& runs, const StudyValue& value) {
+  ValueSpread spread;
+  std::vector<double> values;
+  std::vector<double> partners;
+  for (const StudyRun* run : runs) {
+    const auto number = value_of(study, *run, value, kDirectMethod);
+    if (!number) continue;
+    const bool worse =
+        values.empty() || (value.higher_is_better ? *number < spread.worst : *number > spread.worst);
+    if (worse) {
+      spread.worst = *number;
+      spread.worst_recording = run->recording;
+    }
+    values.push_back(*number);
+    if (value.of != nullptr) continue;
+    spread.partner = run->variant == kReferenceVariant ? kDirectMethod : kReferenceVariant;
+    const auto partner = value_of(study, *sibling(study, *run, spread.partner), value, run->variant);
+    if (partner) partners.push_back(*partner);
+  }
+  spread.count = values.size();
+  if (values.empty()) return spread;
+  const Statistics stats = statistics(values);
+  spread.mean = stats.mean;
+  spread.median = stats.median;
+  if (!partners.empty()) spread.partner_mean = statistics(partners).mean;
+  if (value.nees_dof > 0) spread.bounds_95 = nees_bounds_95(values.size(), value.nees_dof);
+  return spread;
+}
+
+std::optional<SummaryRow> row_of(const Study& study, const std::string& half, const std::string& group,
+                                 const std::string& variant) {
+  SummaryRow row{.half = half, .group = group, .variant = variant, .values = {}};
+  std::vector<const StudyRun*> runs;
+  for (const StudyRun& run : study.runs) {
+    if (run.half != half || run.group != group || run.variant != variant) continue;
+    runs.push_back(&run);
+    ++row.total;
+    if (run.record.status == RunStatus::ok) ++row.ok;
+    if (run.record.status == RunStatus::lost) ++row.lost;
+    row.lost_frames += run.record.frames.lost;
+    row.frames += run.record.frames.total;
+  }
+  if (runs.empty()) return std::nullopt;
+  for (const StudyValue& value : study_values()) row.values.push_back(spread_of(study, runs, value));
+  return row;
+}
+
+/// Nothing if no frame of these has a motion.
+std::optional<MotionCurve> curve_of(const Study& study, const std::string& half, std::string_view group) {
+  MotionCurve curve{half, std::string(group), {}};
+  bool any = false;
+  for (std::size_t i = 0; i < kMotionEdges_px.size(); ++i) {
+    MotionBin bin;
+    bin.from_px = kMotionEdges_px[i];
+    if (i + 1 < kMotionEdges_px.size()) bin.to_px = kMotionEdges_px[i + 1];
+    std::vector<SharedFrame> frames;
+    for (const StudyRun& run : study.runs) {
+      if (run.half != half || run.variant != kDirectMethod) continue;
+      if (group != kAllGroups && run.group != group) continue;
+      for (const SharedFrame& frame : run.shared) {
+        const bool inside =
+            frame.motion_px && *frame.motion_px >= bin.from_px && *frame.motion_px < bin.to_px;
+        if (inside) frames.push_back(frame);
+      }
+    }
+    bin.means = shared_means(frames);
+    any = any || bin.means.frames > 0;
+    curve.bins.push_back(bin);
+  }
+  return any ? std::optional(std::move(curve)) : std::nullopt;
+}
+
+}  // namespace
+
+StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars) {
+  StudySummary summary;
+  summary.suite = suite;
+  summary.notes = study.notes;
+  const std::vector<std::string> groups = distinct(study, &StudyRun::group);
+  const std::vector<std::string> variants = variants_in_order(study);
+  for (const std::string_view half_name : {kHeldOutHalf, kTuningHalf}) {
+    const std::string half(half_name);
+    for (const std::string& group : groups) {
+      for (const std::string& variant : variants) {
+        if (auto row = row_of(study, half, group, variant)) summary.rows.push_back(std::move(*row));
+      }
+    }
+    if (auto curve = curve_of(study, half, kAllGroups)) summary.curves.push_back(std::move(*curve));
+    for (const std::string& group : groups) {
+      if (auto curve = curve_of(study, half, group)) summary.curves.push_back(std::move(*curve));
+    }
+  }
+  summary.bars = check_bars(study, bars);
+  return summary;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,72 @@
+// What a study's runs say together: by half, group and variant, against the motion in the image, and bar by
+// bar.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/consistency_metrics.hpp"
+#include "eval/study/bar_check.hpp"
+#include "eval/study/study.hpp"
+
+namespace fusebench {
+
+/// One number over the recordings of a row.
+struct ValueSpread {
+  std::size_t count = 0;  ///< runs that have it; the numbers below are 0 without any
+  double mean = 0;
+  double median = 0;
+  double worst = 0;
+  std::string worst_recording;
+  std::optional<NeesBounds> bounds_95;  ///< of the mean over so many runs, for NEES
+  /// On common pixels: with which variant they are shared, and its mean on the same pixels.
+  std::string partner;
+  double partner_mean = 0;
+};
+
+struct SummaryRow {
+  std::string half;
+  std::string group;
+  std::string variant;
+  std::size_t total = 0;
+  std::size_t ok = 0;
+  std::size_t lost = 0;  ///< runs; total - ok - lost failed
+  std::size_t lost_frames = 0;
+  std::size_t frames = 0;
+  std::vector<ValueSpread> values;  ///< in the order of study_values()
+};
+
+/// Edges of the bins of image motion, px between two frames; the last bin is open.
+inline constexpr std::array<double, 6> kMotionEdges_px = {0, 2, 5, 10, 20, 30};
+
+/// AIE on the pixels that the direct method and the reference share, where patches moved that far.
+struct MotionBin {
+  double from_px = 0;
+  double to_px = std::numeric_limits<double>::infinity();
+  SharedMeans means;  ///< of the variant dm
+};
+struct MotionCurve {
+  std::string half;
+  std::string group;  ///< "all": of all groups
+  std::vector<MotionBin> bins;
+};
+
+struct StudySummary {
+  std::string suite;
+  std::vector<SummaryRow> rows;  ///< held-out half first; groups as the suite has them; variants as listed
+  std::vector<MotionCurve> curves;
+  std::vector<BarResult> bars;
+  std::vector<std::string> notes;
+};
+
+inline constexpr std::string_view kDirectMethod = "dm";
+inline constexpr std::string_view kAllGroups = "all";
+
+[[nodiscard]] StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars);
+
+}  // namespace fusebench

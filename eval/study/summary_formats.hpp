@@ -1,0 +1,34 @@
+// A study's summary as a document to keep, as tables for a terminal, and as a page.
+#pragma once
+
+#include <string>
+
+#include "eval/study/study.hpp"
+#include "eval/study/study_summary.hpp"
+
+namespace fusebench {
+
+/// JSON in SI units with keys in a fixed order: rows, curves, bars, and every run. No times but frames a
+/// second; what does not exist is null.
+[[nodiscard]] std::string summary_json(const StudySummary& summary, const Study& study);
+
+/// Markdown: the bars, then a table a half, then AIE against motion.
+[[nodiscard]] std::string summary_text(const StudySummary& summary);
+/// The bars alone.
+[[nodiscard]] std::string bars_text(const std::vector<BarResult>& bars);
+
+/// One HTML file that needs no network: the same tables, and charts.
+[[nodiscard]] std::string summary_page(const StudySummary& summary, const Study& study);
+
+/// Cells that the text and the page share.
+struct SummaryTable {
+  std::string title;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+[[nodiscard]] SummaryTable bar_table(const std::vector<BarResult>& bars);
+/// Mean, median and worst of the trajectory, AIE and model; then NEES. Empty tables are left out.
+[[nodiscard]] std::vector<SummaryTable> value_tables(const StudySummary& summary);
+[[nodiscard]] std::vector<SummaryTable> motion_tables(const StudySummary& summary);
+
+}  // namespace fusebench

@@ -1,0 +1,119 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "eval/json_text.hpp"
+#include "eval/study/bars_json.hpp"
+#include "eval/study/summary_formats.hpp"
+
+namespace fusebench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const ValueSpread& spread, const StudyValue& value) {
+  Json json = {{"runs", spread.count}};
+  if (spread.count == 0) return json;
+  json["mean"] = spread.mean;
+  json["median"] = spread.median;
+  json["worst"] = spread.worst;
+  json["worst_recording"] = spread.worst_recording;
+  if (spread.bounds_95)
+    json["bounds_95"] = {{"lower", spread.bounds_95->lower}, {"upper", spread.bounds_95->upper}};
+  if (value.of == nullptr) {
+    json["partner"] = spread.partner;
+    json["partner_mean"] = spread.partner_mean;
+  }
+  return json;
+}
+
+Json json_of(const SummaryRow& row) {
+  Json json = {
+      {"half", row.half},     {"group", row.group}, {"variant", row.variant},         {"n_ok", row.ok},
+      {"n_total", row.total}, {"n_lost", row.lost}, {"lost_frames", row.lost_frames}, {"frames", row.frames}};
+  Json values = Json::object();
+  for (std::size_t i = 0; i < study_values().size(); ++i) {
+    const StudyValue& value = study_values()[i];
+    values[std::string(value.name)] = json_of(row.values[i], value);
+  }
+  json["values"] = std::move(values);
+  return json;
+}
+
+Json json_of(const MotionCurve& curve) {
+  Json bins = Json::array();
+  for (const MotionBin& bin : curve.bins) {
+    const SharedMeans& means = bin.means;
+    const bool any = means.frames > 0;
+    bins.push_back({{"from_px", bin.from_px},
+                    {"to_px", number(bin.to_px)},
+                    {"frames", means.frames},
+                    {"pixels", means.pixels},
+                    {"full", any ? Json(means.reference_grey) : Json(nullptr)},
+                    {"dm", any ? Json(means.variant_grey) : Json(nullptr)},
+                    {"ratio", any ? number(means.variant_grey / means.reference_grey) : Json(nullptr)}});
+  }
+  return {{"half", curve.half}, {"group", curve.group}, {"bins", bins}};
+}
+
+Json json_of(const BarMeasurement& measurement) {
+  return {{"half", measurement.half},
+          {"verdict", to_string(measurement.verdict)},
+          {"measured", number(measurement.measured)},
+          {"limit", measurement.limit},
+          {"recordings", measurement.recordings},
+          {"note", measurement.note}};
+}
+
+Json json_of(const BarResult& result) {
+  Json json = {{"title", result.bar.title},
+               {"groups", result.bar.groups},
+               {"variant", result.bar.variant},
+               {"against", result.bar.against},
+               {"metric", result.bar.metric}};
+  json.update(json_of(result.decided));
+  json["beside"] = json_of(result.beside);
+  return json;
+}
+
+Json json_of(const Study& study, const StudyRun& run) {
+  Json json = {{"recording", run.recording},
+               {"variant", run.variant},
+               {"group", run.group},
+               {"half", run.half},
+               {"status", to_string(run.record.status)},
+               {"reason", run.record.reason},
+               {"config_hash", run.record.config_hash},
+               {"fingerprint", run.record.recording.fingerprint}};
+  Json values = Json::object();
+  for (const StudyValue& value : study_values())
+    values[std::string(value.name)] = number(value_of(study, run, value));
+  json["values"] = std::move(values);
+  return json;
+}
+
+template <class T>
+Json list_of(const std::vector<T>& items) {
+  Json list = Json::array();
+  for (const T& item : items) list.push_back(json_of(item));
+  return list;
+}
+
+}  // namespace
+
+Json bars_json(const std::vector<BarResult>& bars) { return list_of(bars); }
+
+std::string summary_json(const StudySummary& summary, const Study& study) {
+  Json runs = Json::array();
+  for (const StudyRun& run : study.runs) runs.push_back(json_of(study, run));
+  const Json document = {{"suite", summary.suite},        {"bars", bars_json(summary.bars)},
+                         {"rows", list_of(summary.rows)}, {"motion", list_of(summary.curves)},
+                         {"notes", summary.notes},        {"runs", runs}};
+  return json_text(document) + "\n";
+}
+
+}  // namespace fusebench

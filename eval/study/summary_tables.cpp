@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "eval/study/summary_formats.hpp"
+#include "eval/suite_simulations.hpp"
+
+namespace fusebench {
+
+namespace {
+
+using Cells = std::vector<std::string>;
+
+/// "1.20 / 1.18 / 1.90": mean, median, worst.
+std::string spread_cell(const ValueSpread& spread, const StudyValue& value) {
+  if (spread.count == 0) return "-";
+  const auto shown = [&](double number) {
+    return fmt::format("{:.{}f}", number * value.shown_factor, value.decimals);
+  };
+  return fmt::format("{} / {} / {}", shown(spread.mean), shown(spread.median), shown(spread.worst));
+}
+
+std::string nees_cell(const ValueSpread& spread) {
+  if (spread.count == 0 || !spread.bounds_95) return "-";
+  const bool within = spread.mean >= spread.bounds_95->lower && spread.mean <= spread.bounds_95->upper;
+  return fmt::format("{:.2f}{} ({:.2f} .. {:.2f})", spread.mean, within ? "" : " !", spread.bounds_95->lower,
+                     spread.bounds_95->upper);
+}
+
+std::string common_cell(const ValueSpread& spread) {
+  if (spread.count == 0) return "-";
+  return fmt::format("{:.2f} ({} {:.2f})", spread.mean, spread.partner, spread.partner_mean);
+}
+
+std::string counts_cell(const SummaryRow& row) {
+  std::string text = fmt::format("{}/{}", row.ok, row.total);
+  if (row.lost > 0) text += fmt::format(", {} lost", row.lost);
+  return text;
+}
+
+bool any_value(const std::vector<const SummaryRow*>& rows, std::size_t index) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const SummaryRow* row) { return row->values[index].count > 0; });
+}
+
+std::vector<const SummaryRow*> rows_of(const StudySummary& summary, std::string_view half) {
+  std::vector<const SummaryRow*> rows;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.half == half) rows.push_back(&row);
+  }
+  return rows;
+}
+
+SummaryTable value_table(std::string_view half, const std::vector<const SummaryRow*>& rows) {
+  SummaryTable table{fmt::format("Runs, {} half: mean / median / worst over recordings", half),
+                     {"group", "variant", "ok", "lost frames"},
+                     {}};
+  for (const SummaryRow* row : rows) {
+    table.rows.push_back(
+        {row->group, row->variant, counts_cell(*row), fmt::format("{}/{}", row->lost_frames, row->frames)});
+  }
+  const auto values = study_values();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool told = values[i].name == "runs_not_ok" || values[i].name == "lost_frames";
+    if (told || values[i].nees_dof > 0 || !any_value(rows, i)) continue;
+    table.header.emplace_back(values[i].label);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const ValueSpread& spread = rows[k]->values[i];
+      table.rows[k].push_back(values[i].of == nullptr ? common_cell(spread) : spread_cell(spread, values[i]));
+    }
+  }
+  return table;
+}
+
+SummaryTable nees_table(std::string_view half, const std::vector<const SummaryRow*>& rows) {
+  SummaryTable table{
+      fmt::format("NEES / dof, {} half: mean over runs (95 % bounds of that mean); ! is outside", half),
+      {"group", "variant"},
+      {}};
+  const auto values = study_values();
+  for (const SummaryRow* row : rows) {
+    Cells cells = {row->group, row->variant};
+    bool any = false;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i].nees_dof == 0) continue;
+      cells.push_back(nees_cell(row->values[i]));
+      any = any || row->values[i].count > 0;
+    }
+    if (any) table.rows.push_back(std::move(cells));
+  }
+  for (const StudyValue& value : values) {
+    if (value.nees_dof > 0) table.header.emplace_back(value.label);
+  }
+  return table;
+}
+
+std::string number_cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4g}", *value) : "-";
+}
+
+}  // namespace
+
+SummaryTable bar_table(const std::vector<BarResult>& bars) {
+  SummaryTable table{
+      "Bars", {"verdict", "bar", "groups", "measured", "limit", "recordings", "other half", "remarks"}, {}};
+  for (const BarResult& result : bars) {
+    std::string groups;
+    for (const std::string& group : result.bar.groups) groups += (groups.empty() ? "" : " ") + group;
+    table.rows.push_back(
+        {std::string(to_string(result.decided.verdict)), result.bar.title,
+         groups.empty() ? std::string(kAllGroups) : groups, number_cell(result.decided.measured),
+         result.decided.limit, fmt::format("{}", result.decided.recordings),
+         fmt::format("{}: {} ({} of {})", result.beside.half, number_cell(result.beside.measured),
+                     to_string(result.beside.verdict), result.beside.recordings),
+         result.decided.note});
+  }
+  return table;
+}
+
+std::vector<SummaryTable> value_tables(const StudySummary& summary) {
+  std::vector<SummaryTable> tables;
+  for (const std::string_view half : {kHeldOutHalf, kTuningHalf}) {
+    const std::vector<const SummaryRow*> rows = rows_of(summary, half);
+    if (rows.empty()) continue;
+    tables.push_back(value_table(half, rows));
+    SummaryTable nees = nees_table(half, rows);
+    if (!nees.rows.empty()) tables.push_back(std::move(nees));
+  }
+  return tables;
+}
+
+std::vector<SummaryTable> motion_tables(const StudySummary& summary) {
+  std::vector<SummaryTable> tables;
+  for (const std::string_view half : {kHeldOutHalf, kTuningHalf}) {
+    SummaryTable table{
+        fmt::format("AIE on common pixels against the motion of patches between two frames, {} half", half),
+        {"group", "motion [px]", "frames", "pixels", std::string(kReferenceVariant),
+         std::string(kDirectMethod), fmt::format("{} / {}", kDirectMethod, kReferenceVariant)},
+        {}};
+    for (const MotionCurve& curve : summary.curves) {
+      if (curve.half != half) continue;
+      for (const MotionBin& bin : curve.bins) {
+        const SharedMeans& means = bin.means;
+        if (means.frames == 0) continue;
+        table.rows.push_back({curve.group,
+                              std::isfinite(bin.to_px) ? fmt::format("{:g} to {:g}", bin.from_px, bin.to_px)
+                                                       : fmt::format("{:g} and more", bin.from_px),
+                              fmt::format("{}", means.frames), fmt::format("{}", means.pixels),
+                              fmt::format("{:.2f}", means.reference_grey),
+                              fmt::format("{:.2f}", means.variant_grey),
+                              fmt::format("{:.2f}", means.variant_grey / means.reference_grey)});
+      }
+    }
+    if (!table.rows.empty()) tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace fusebench

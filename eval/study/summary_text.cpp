@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "eval/study/summary_formats.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// Aligned for a terminal.
+std::string markdown(const SummaryTable& table) {
+  std::vector<std::size_t> widths;
+  for (const std::string& cell : table.header) widths.push_back(std::max<std::size_t>(cell.size(), 3));
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  const auto line_of = [&](const std::vector<std::string>& cells) {
+    std::string line = "|";
+    for (std::size_t i = 0; i < cells.size(); ++i) line += fmt::format(" {:<{}} |", cells[i], widths[i]);
+    return line + "\n";
+  };
+  std::string text = fmt::format("## {}\n\n{}|", table.title, line_of(table.header));
+  for (const std::size_t width : widths) text += fmt::format(" {:-<{}} |", "", width);
+  text += "\n";
+  for (const auto& row : table.rows) text += line_of(row);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string bars_text(const std::vector<BarResult>& bars) {
+  const auto count = [&](Verdict verdict) {
+    return std::count_if(bars.begin(), bars.end(),
+                         [&](const BarResult& result) { return result.decided.verdict == verdict; });
+  };
+  return markdown(bar_table(bars)) + fmt::format("{} of {} bars passed, {} failed, {} not applicable.\n\n",
+                                                 count(Verdict::passed), bars.size(), count(Verdict::failed),
+                                                 count(Verdict::not_applicable));
+}
+
+std::string summary_text(const StudySummary& summary) {
+  std::string text;
+  for (const SummaryTable& table : value_tables(summary)) text += markdown(table);
+  for (const SummaryTable& table : motion_tables(summary)) text += markdown(table);
+  for (const std::string& note : summary.notes) text += fmt::format("- {}\n", note);
+  if (!summary.bars.empty()) text += bars_text(summary.bars);
+  return text;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,25 @@
+#include "eval/text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <system_error>
+
+namespace fusebench {
+
+Result<void> write_text_file(const std::filesystem::path& file, std::string_view text) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  const fs::path temporary = file.parent_path() / fmt::format(".{}.tmp", file.filename().string());
+  std::ofstream stream(temporary, std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (stream) fs::rename(temporary, file, error);
+  if (stream && !error) return {};
+  fs::remove(temporary, error);
+  return fail(ErrorCode::io, fmt::format("{}: cannot be written", file.string()),
+              "choose a file in a folder that can be written");
+}
+
+}  // namespace fusebench

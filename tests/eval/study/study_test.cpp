@@ -1,0 +1,286 @@
+#include "eval/study/study.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/trajectory_file.hpp"
+#include "eval/intensity_file.hpp"
+#include "eval/report/common_pixels.hpp"
+#include "eval/study/bar_check.hpp"
+#include "eval/study/study_summary.hpp"
+#include "eval/study/summary_formats.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+namespace {
+
+using Pixels = std::vector<IntensityResidual>;
+
+/// Made-up runs; recordings named "t..." are the tuning half.
+class StudyTest : public testing::InTemporaryFolder {
+ protected:
+  StudyRun& add(const std::string& recording, const std::string& group, const std::string& variant,
+                double ate_m, RunStatus status = RunStatus::ok) {
+    StudyRun run{recording, group, recording.starts_with('t') ? "tuning" : "held-out", variant, {}, {}};
+    run.record.status = status;
+    run.record.reason = status == RunStatus::ok ? "" : "why";
+    run.record.frames = {100, status == RunStatus::ok ? 100U : 40U, status == RunStatus::ok ? 0U : 6U};
+    AteResult ate;
+    ate.stats = statistics(std::vector<double>{ate_m});
+    run.record.metrics.ate = {ate, {}};
+    runs_.push_back(run);
+    return runs_.back();
+  }
+
+  /// Frames of a run: the first has no pixels, as in a run.
+  void add_frames(StudyRun& run, const std::vector<Pixels>& frames, const std::vector<double>& motion_px) {
+    const std::filesystem::path folder = std::filesystem::path(run.recording) / run.variant;
+    std::string csv = "frame,timestamp,reason,patch_motion_px\n0," + stamp_text(1) + ",,\n";
+    for (std::size_t i = 0; i < motion_px.size(); ++i) {
+      csv += std::to_string(i + 1) + "," + stamp_text(static_cast<std::int64_t>(i) + 2) + ",a; b," +
+             std::to_string(motion_px[i]) + "\n";
+    }
+    write(folder / "frames.csv", csv);
+    auto writer = IntensityWriter::create(folder_ / folder / "intensity.bin", 4, 4);
+    ASSERT_TRUE(writer && writer->write_frame(1, {}));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      ASSERT_TRUE(writer->write_frame(static_cast<std::int64_t>(i) + 2, frames[i]).has_value());
+    }
+    ASSERT_TRUE(writer->finish().has_value());
+    run.folder = folder_ / folder;
+  }
+
+  [[nodiscard]] Study study() { return gather_study(runs_); }
+
+  [[nodiscard]] BarMeasurement check(Bar bar) {
+    bar.title = "t";
+    if (bar.half.empty()) bar.half = "held-out";
+    return check_bars(study(), std::vector<Bar>{bar}).front().decided;
+  }
+
+  static Bar ate_bar(BarStatistic statistic, const std::string& variant = "full") {
+    Bar bar;
+    bar.variant = variant;
+    bar.metric = "ate_rmse_m";
+    bar.statistic = statistic;
+    return bar;
+  }
+
+  std::vector<StudyRun> runs_;
+};
+
+TEST_F(StudyTest, WorstAgainstALimit) {
+  add("a", "slow", "full", 0.008);
+  add("b", "slow", "full", 0.009);
+  add("c", "fast", "full", 0.5);
+  add("t1", "slow", "full", 0.7);
+  Bar bar = ate_bar(BarStatistic::worst);
+  bar.groups = {"slow"};
+  bar.at_most = 0.009;
+  BarMeasurement measured = check(bar);
+  EXPECT_EQ(measured.verdict, Verdict::passed);
+  EXPECT_DOUBLE_EQ(*measured.measured, 0.009);
+  EXPECT_EQ(measured.recordings, 2U);
+  EXPECT_EQ(measured.limit, "<= 0.009");
+  EXPECT_EQ(measured.note, "worst: b");
+  bar.at_most.reset();
+  bar.below = 0.009;
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);  // below is strict
+  bar.below.reset();
+  bar.at_least = 0.0085;
+  measured = check(bar);
+  EXPECT_DOUBLE_EQ(*measured.measured, 0.008);  // the smallest is the worst over a lower limit
+  EXPECT_EQ(measured.verdict, Verdict::failed);
+}
+
+TEST_F(StudyTest, TheOtherHalfStandsBeside) {
+  add("a", "slow", "full", 0.01);
+  add("t1", "slow", "full", 0.03);
+  Bar bar = ate_bar(BarStatistic::worst);
+  bar.half = "held-out";
+  bar.at_most = 0.02;
+  const BarResult result = check_bars(study(), std::vector<Bar>{bar}).front();
+  EXPECT_EQ(result.decided.verdict, Verdict::passed);
+  EXPECT_EQ(result.beside.half, "tuning");
+  EXPECT_EQ(result.beside.verdict, Verdict::failed);
+  EXPECT_DOUBLE_EQ(*result.beside.measured, 0.03);
+}
+
+TEST_F(StudyTest, ALostRunFailsABarAndNoRunDecidesNothing) {
+  add("a", "slow", "full", 0.001);
+  add("b", "slow", "full", 0.001, RunStatus::lost);
+  Bar bar = ate_bar(BarStatistic::worst);
+  bar.at_most = 1;
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+  EXPECT_EQ(check(bar).note, "not ok: b");
+  bar.metric = "runs_not_ok";
+  EXPECT_DOUBLE_EQ(*check(bar).measured, 1);
+  bar.metric = "ate_rmse_m";
+  bar.groups = {"fast"};
+  EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
+  bar.groups = {};
+  bar.metric = "nees_pose";  // no run has it, but one was lost
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+  runs_.pop_back();
+  EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
+}
+
+TEST_F(StudyTest, ARunWithoutTheNumberFailsWhereOthersHaveIt) {
+  add("a", "slow", "full", 0.001);
+  add("b", "slow", "full", 0.001).record.metrics.ate = {};
+  Bar bar = ate_bar(BarStatistic::mean);
+  bar.at_most = 1;
+  const BarMeasurement measured = check(bar);
+  EXPECT_EQ(measured.verdict, Verdict::failed);
+  EXPECT_EQ(measured.note, "without the number: b");
+}
+
+TEST_F(StudyTest, ComparisonsAreByRecordingOrOfMeans) {
+  add("a", "slow", "full", 0.01);
+  add("a", "slow", "no-imu", 0.04);
+  add("b", "slow", "full", 0.03);
+  add("b", "slow", "no-imu", 0.03);
+  add("c", "slow", "full", 0.5);
+  add("c", "slow", "no-imu", 0.5, RunStatus::lost);
+  Bar bar = ate_bar(BarStatistic::mean);
+  bar.against = "no-imu";
+  bar.at_most = 1;
+  BarMeasurement measured = check(bar);
+  EXPECT_DOUBLE_EQ(*measured.measured, (0.25 + 1.0) / 2);
+  EXPECT_EQ(measured.recordings, 2U);
+  EXPECT_EQ(measured.note, "left out, no-imu is not ok: c");
+  EXPECT_EQ(measured.verdict, Verdict::passed);
+  bar.of_means = true;
+  EXPECT_DOUBLE_EQ(*check(bar).measured, 0.04 / 0.07);
+  bar.of_means = false;
+  bar.compare = BarComparison::difference;
+  EXPECT_NEAR(*check(bar).measured, -0.015, 1e-15);
+}
+
+TEST_F(StudyTest, SharesCountLostRunsWhereTheBarSaysSo) {
+  for (const char* name : {"a", "b", "c", "d"}) add(name, "fast", "full", 0.01);
+  add("a", "fast", "no-imu", 0.049);
+  add("b", "fast", "no-imu", 0.051);
+  add("c", "fast", "no-imu", 0, RunStatus::lost);
+  add("d", "fast", "no-imu", 0.01);
+  Bar bar = ate_bar(BarStatistic::share, "no-imu");
+  bar.against = "full";
+  bar.each_at_least = 5;
+  bar.lost_counts = true;
+  bar.at_least = 0.5;
+  BarMeasurement measured = check(bar);
+  EXPECT_DOUBLE_EQ(*measured.measured, 0.5);
+  EXPECT_EQ(measured.recordings, 4U);
+  EXPECT_EQ(measured.verdict, Verdict::passed);
+  bar.lost_counts = false;
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+}
+
+TEST_F(StudyTest, NeesIsHeldAgainstTheBoundsOfSoManyRuns) {
+  for (const auto& [name, nees] : {std::pair("a", 0.9), std::pair("b", 1.2), std::pair("c", 1.1)}) {
+    NeesResult result;
+    result.stats = statistics(std::vector<double>{nees});
+    add(name, "slow", "full", 0.01).record.metrics.nees[0] = {result, {}};
+  }
+  Bar bar = ate_bar(BarStatistic::mean);
+  bar.metric = "nees_orientation";
+  bar.within_bounds = true;
+  BarMeasurement measured = check(bar);
+  EXPECT_NEAR(*measured.measured, 3.2 / 3, 1e-15);
+  // Chi-square with 9 degrees of freedom: 2.700 and 19.023, divided by 9.
+  EXPECT_EQ(measured.limit, "0.3 .. 2.11 (95 % of 3 runs)");
+  EXPECT_EQ(measured.verdict, Verdict::passed);
+  runs_[0].record.metrics.nees[0].value->stats.mean = 5;
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+}
+
+class SharedPixelsTest : public StudyTest {
+ protected:
+  void SetUp() override {
+    // Frame 1: pixels 1 and 2 are shared; the second 2 of dm lies in an overlapping patch and does not count.
+    // Frame 2: pixel 5. Frame 3: nothing.
+    runs_.reserve(4);
+    add_frames(add("a", "fast", "full", 0.01),
+               {{{1, 2.0F, true}, {2, 4.0F, true}, {9, 50.0F, true}}, {{5, 10.0F, true}}, {{3, 1.0F, true}}},
+               {1.5, 35, 8});
+    add_frames(add("a", "fast", "dm", 0.01),
+               {{{2, 6.0F, true}, {1, 8.0F, false}, {2, 90.0F, true}, {7, 9.0F, true}},
+                {{5, 30.0F, true}},
+                {{4, 1.0F, true}}},
+               {99, 99, 99});
+  }
+};
+
+TEST_F(SharedPixelsTest, AgreeWithTheTablesCommonPixels) {
+  const Study study = this->study();
+  ASSERT_TRUE(study.notes.empty()) << study.notes.front();
+  const auto expected = common_pixel_error(std::vector<std::filesystem::path>{
+      runs_[0].folder / "intensity.bin", runs_[1].folder / "intensity.bin"});
+  ASSERT_TRUE(expected.has_value());
+  const StudyValue& value = *find_study_value("aie_common_grey");
+  EXPECT_DOUBLE_EQ(*value_of(study, study.runs[0], value), (*expected)[0].aie_grey);
+  EXPECT_DOUBLE_EQ(*value_of(study, study.runs[1], value), (*expected)[1].aie_grey);
+  EXPECT_DOUBLE_EQ(*value_of(study, study.runs[0], value), (3.0 + 10.0) / 2);
+  EXPECT_DOUBLE_EQ(*value_of(study, study.runs[1], value), (7.0 + 30.0) / 2);
+  ASSERT_EQ(study.runs[1].shared.size(), 2U);
+  EXPECT_EQ(study.runs[1].shared[0].pixels, 2U);
+  EXPECT_DOUBLE_EQ(*study.runs[1].shared[1].motion_px, 35);  // as full saw it
+}
+
+TEST_F(SharedPixelsTest, BarsTakeFramesAboveAMotion) {
+  Bar bar;
+  bar.variant = "dm";
+  bar.against = "full";
+  bar.metric = "aie_common_grey";
+  bar.statistic = BarStatistic::mean;
+  bar.of_means = true;
+  bar.at_least = 1.75;
+  EXPECT_DOUBLE_EQ(*check(bar).measured, 37.0 / 13);
+  bar.frames_above_px = 30;
+  EXPECT_DOUBLE_EQ(*check(bar).measured, 3);
+  bar.frames_above_px = 35;
+  EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
+  std::swap(bar.variant, bar.against);
+  bar.frames_above_px = 30;
+  EXPECT_DOUBLE_EQ(*check(bar).measured, 1.0 / 3);
+}
+
+TEST_F(SharedPixelsTest, TheSummaryHasRowsAndCurves) {
+  const StudySummary summary = summarise("demo", study(), {});
+  ASSERT_EQ(summary.rows.size(), 2U);
+  EXPECT_EQ(summary.rows[0].variant, "full");
+  EXPECT_EQ(summary.rows[0].ok, 1U);
+  ASSERT_EQ(summary.curves.size(), 2U);  // all groups, and the one
+  EXPECT_EQ(summary.curves[0].group, "all");
+  const auto& bins = summary.curves[1].bins;
+  EXPECT_EQ(bins[0].means.frames, 1U);
+  EXPECT_EQ(bins[0].means.pixels, 2U);
+  EXPECT_DOUBLE_EQ(bins[0].means.variant_grey, 7);
+  EXPECT_EQ(bins[5].means.frames, 1U);
+  EXPECT_EQ(bins[3].means.frames, 0U);
+
+  const auto json = nlohmann::json::parse(summary_json(summary, study()));
+  EXPECT_EQ(json["motion"][1]["bins"][5]["ratio"], 3.0);
+  EXPECT_TRUE(json["motion"][1]["bins"][5]["to_px"].is_null());
+  EXPECT_TRUE(json["motion"][1]["bins"][3]["full"].is_null());
+  EXPECT_EQ(json["rows"][1]["values"]["aie_common_grey"]["partner"], "full");
+  EXPECT_EQ(json["rows"][1]["values"]["aie_common_grey"]["partner_mean"], 6.5);
+  EXPECT_EQ(json["runs"][0]["values"]["ate_rmse_m"], 0.01);
+  EXPECT_NE(summary_text(summary).find("| all   | 30 and more | 1"), std::string::npos)
+      << summary_text(summary);
+  const std::string page = summary_page(summary, study());
+  EXPECT_NE(page.find("dm / full"), std::string::npos);
+  EXPECT_EQ(page.find("https://"), page.find("https://www.chartjs.org"));  // nothing is loaded from elsewhere
+}
+
+TEST_F(SharedPixelsTest, WhatCannotBeComparedIsANote) {
+  write("a/full/frames.csv", "frame,timestamp\n");
+  const Study study = this->study();
+  ASSERT_EQ(study.notes.size(), 1U);
+  EXPECT_NE(study.notes[0].find("patch_motion_px"), std::string::npos);
+  EXPECT_TRUE(study.runs[1].shared.empty());
+}
+
+}  // namespace
+}  // namespace fusebench
