@@ -2,8 +2,8 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS fusebench fusebench_core fusebench_datasets fusebench_simulator fusebench_inspection fusebench_metrics
-  fusebench_runs fusebench_inspection_report EXPORT fusebench_targets
+install(TARGETS fusebench fusebench_core fusebench_smoother fusebench_datasets fusebench_simulator fusebench_inspection fusebench_metrics
+  fusebench_runs fusebench_suites fusebench_inspection_report EXPORT fusebench_targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(folder core datasets eval)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION include/fusebench FILES_MATCHING PATTERN "*.hpp"
