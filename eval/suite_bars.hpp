@@ -37,7 +37,7 @@ enum class BarComparison { ratio, difference };  ///< variant / against, variant
 ///     recordings'
 ///                                       # frames together; for aie_common_grey with of_means
 ///     each_at_least = 5                 # or each_at_most: for statistic = "share"
-///     lost_counts = true                # a run that is lost or failed counts into the share
+///     lost_counts = true                # a run that is lost counts into the share
 ///     within_bounds = true              # for nees_*: the 95 % bounds of the mean over so many runs
 struct Bar {
   std::string title;

@@ -40,7 +40,7 @@ Result<PreparedRun> prepare(const SmoothVerbOptions& options) {
   if (!needs_imu(config->values)) {
     return fail(ErrorCode::usage,
                 fmt::format("variant '{}' uses no IMU, and the batch estimate needs one", options.variant),
-                "take --variant full, with --imu synthetic where nothing is recorded");
+                "take --variant full");
   }
   const auto window = parse_frames(options.frames);
   if (!window) return tl::unexpected(window.error());
@@ -78,6 +78,13 @@ Result<int> run(const SmoothVerbOptions& options) {
   const auto prepared = prepare(options);
   if (!prepared) return tl::unexpected(prepared.error());
   const Recording& recording = prepared->recording;
+  if (recording.imu_source == ImuSource::synthetic) {
+    return fail(
+        ErrorCode::usage,
+        fmt::format("the IMU of '{}' is made from its ground truth, which would become part of the reference",
+                    recording.name),
+        "a reference trajectory needs recorded inertial samples");
+  }
   for (const std::string& warning : recording.warnings) print_progress(fmt::format("warning: {}", warning));
   ProgressBar bar(recording.name + " smooth");
   const RunControl control = {

@@ -44,7 +44,7 @@ bool is_meant(const Bar& bar, const StudyRun& run, std::string_view half) {
 void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items) {
   const StudyValue& value = *find_study_value(bar.metric);
   if (run.record.status != RunStatus::ok && !value.of_every_run) {
-    if (bar.lost_counts) {
+    if (bar.lost_counts && run.record.status == RunStatus::lost) {
       ++items.counted_as_lost;
     } else {
       items.not_ok.push_back(run.recording);
@@ -54,7 +54,8 @@ void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items)
   Item item{&run};
   if (!bar.against.empty()) {
     const StudyRun* other = sibling(study, run, bar.against);
-    if (other == nullptr || (other->record.status != RunStatus::ok && !value.of_every_run)) {
+    if (other == nullptr) return;  // the suite does not run that variant here
+    if (other->record.status != RunStatus::ok && !value.of_every_run) {
       items.left_out.push_back(run.recording);
       return;
     }
