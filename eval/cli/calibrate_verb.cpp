@@ -1,76 +1,41 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <memory>
 #include <utility>
 
 #include "core/variants.hpp"
 #include "eval/calibration.hpp"
 #include "eval/cli/console.hpp"
-#include "eval/cli/reading_options.hpp"
+#include "eval/cli/run_request.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
-#include "eval/experiment.hpp"
 #include "eval/run.hpp"
+#include "eval/text_file.hpp"
 
 namespace fusebench {
 
 namespace {
 
 struct CalibrateVerbOptions {
-  std::string recording;
-  std::filesystem::path data;
-  std::string variant = "full";
-  std::string imu = "recorded";
-  ReadingOptions reading;
-  std::filesystem::path config;
-  std::vector<std::string> sets;
-  std::string frames;
+  RunRequest request;
   std::filesystem::path out;
   double rotation_prior_deg = 10;
   double translation_prior_cm = 10;
   double offset_prior_ms = 50;
   int rounds = 3;
-  int threads = 1;
   bool json = false;
 };
 
 Result<PreparedRun> prepare(const CalibrateVerbOptions& options) {
-  RunSpec spec;
-  auto config = effective_config(options.variant, options.config, options.sets);
-  if (!config) return tl::unexpected(config.error());
-  if (!needs_imu(config->values)) {
+  auto spec = spec_of(options.request);
+  if (!spec) return tl::unexpected(spec.error());
+  if (!needs_imu(spec->config.values)) {
     return fail(ErrorCode::usage,
-                fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.variant),
+                fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.request.variant),
                 "take --variant full: the IMU only helps to find the poses, which are the images' own");
   }
-  const auto window = parse_frames(options.frames);
-  if (!window) return tl::unexpected(window.error());
-  const auto imu = parse_imu_choice(options.imu);
-  if (!imu) return tl::unexpected(imu.error());
-  const auto folder = find_recording(options.recording, options.data);
-  if (!folder) return tl::unexpected(folder.error());
-  auto open = open_options(options.reading);
-  if (!open) return tl::unexpected(open.error());
-  spec.recording = *folder;
-  spec.open = std::move(*open);
-  spec.imu = *imu;
-  spec.variant = options.variant;
-  spec.config = std::move(*config);
-  spec.frames = *window;
-  spec.threads = options.threads;
-  return prepare_run(std::move(spec));
-}
-
-Result<void> write_file(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream)
-    return fail(ErrorCode::io, fmt::format("{}: cannot be written", file.string()),
-                "choose another place for --out");
-  return {};
+  return prepare_run(std::move(*spec));
 }
 
 Result<int> run(const CalibrateVerbOptions& options) {
@@ -86,12 +51,12 @@ Result<int> run(const CalibrateVerbOptions& options) {
                                .translation_prior_m = 0.01 * options.translation_prior_cm,
                                .time_offset_prior_s = 1e-3 * options.offset_prior_ms,
                                .max_rounds = options.rounds};
-  const Workers workers(options.threads);
+  const Workers workers(options.request.threads);
   const auto calibration = calibrate(recording, prepared->spec.config.values, how, workers, control);
   bar.clear();
   if (!calibration) return tl::unexpected(calibration.error());
   if (!options.out.empty()) {
-    const auto written = write_file(options.out, to_toml(calibrated_rig(recording, *calibration)));
+    const auto written = write_text_file(options.out, to_toml(calibrated_rig(recording, *calibration)));
     if (!written) return tl::unexpected(written.error());
   }
   print_output(options.json ? to_json(*calibration, recording) : to_text(*calibration, recording));
@@ -105,16 +70,11 @@ Verb add_calibrate_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "calibrate",
       "Finds from a recording where the camera sits on the IMU and how far their clocks are apart");
-  verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
-      ->required();
+  add_run_request(*verb, options->request);
   verb->add_option("--out", options->out,
                    "Writes the calibration of all sensors, for --calibration of other verbs or as the "
                    "recording's calibration.toml")
       ->type_name("FILE.toml");
-  add_variant_option(*verb, options->variant);
-  verb->add_option("--imu", options->imu, "Inertial samples: recorded, synthetic or auto, as for `run`")
-      ->check(CLI::IsMember({"recorded", "synthetic", "auto"}))
-      ->capture_default_str();
   verb->add_option(
           "--rotation-prior", options->rotation_prior_deg,
           "How far off the recording's calibration may be: standard deviation of the rotation, degrees")
@@ -133,12 +93,6 @@ Verb add_calibrate_verb(CLI::App& app) {
       ->check(CLI::Range(1, 20))
       ->type_name("N")
       ->capture_default_str();
-  add_set_option(*verb, options->sets);
-  add_config_option(*verb, options->config);
-  add_threads_option(*verb, options->threads);
-  verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
-  add_reading_options(*verb, options->reading);
-  add_data_option(*verb, options->data);
   add_json_flag(*verb, options->json);
   verb->footer("How to move, what the numbers mean and what they do not: docs/calibration.md.");
   return {verb, [options] { return run(*options); }};
