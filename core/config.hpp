@@ -27,6 +27,7 @@ struct TermsConfig {
   Deformation deformation = Deformation::pixelwise;
   bool visibility_test = true;
   bool motion_compensation = true;
+  bool relocalisation = true;
   double photometric_weight = 1.0;
   double geometric_weight = 1.0;
 
@@ -42,6 +43,10 @@ struct TermsConfig {
            "bring all rows of colour and depth to one instant by the estimated velocity (rolling shutter, "
            "depth delay; "
            "not in the paper)");
+    v.flag(
+        "relocalisation", self.relocalisation,
+        "a lost tracker looks for the frame's place among the frames that it fused (ORB features and their "
+        "3D points; Mur-Artal & Tardos 2017; not in the paper)");
     v.number("photometric_weight", self.photometric_weight, 0.0, 1e3,
              "factor on the information of the photometric residuals (Eq. 3); 0 switches the term off");
     v.number("geometric_weight", self.geometric_weight, 0.0, 1e3,
@@ -81,8 +86,8 @@ struct MotionConfig {
   double acceleration_noise_mps2_sqrthz = 1.5;
   double angular_acceleration_noise_radps2_sqrthz = 3.0;
   double gravity_noise_rad_sqrthz = 1e-5;
-  double drift_factor_rotation = 3.3;
-  double drift_factor_position = 5.5;
+  double drift_factor_rotation = 5.5;
+  double drift_factor_position = 9.0;
   double exposure_s = 0.01;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -245,18 +250,23 @@ struct GeometricConfig {
 struct IekfConfig {
   int max_iterations = 10;
   int coarse_iterations = 2;
+  bool prior_in_every_iteration = true;
   double converged_rotation_rad = 1e-4;
   double converged_translation_m = 1e-4;
   double max_chi2_per_measurement = 9.0;
   double scatter_prior_freedom = 1.0;
   double scale_share = 0.2;
   int min_patches = 5;
-  int max_lost_frames = 10;
+  int max_lost_frames = 30;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_iterations", self.max_iterations, 1, 200, "iterations of one update; 1 is the plain EKF");
     v.number("coarse_iterations", self.coarse_iterations, 0, 100,
              "of these, at most this many on each coarser pyramid level before the finer ones join");
+    v.flag("prior_in_every_iteration", self.prior_in_every_iteration,
+           "each iteration weighs the distance to the prediction (the MAP estimate, Bell & Cathey 1993); "
+           "false is "
+           "Eq. 22 to the letter, which forgets it after the first one");
     v.number("converged_rotation_rad", self.converged_rotation_rad, 0.0, 1.0,
              "converged when the last step rotates less than this");
     v.number("converged_translation_m", self.converged_translation_m, 0.0, 1.0,
@@ -273,8 +283,10 @@ struct IekfConfig {
         "keeps photometric.noise_grey and the depth noise as they are");
     v.number("min_patches", self.min_patches, 1, 1000,
              "with fewer accepted patches the prediction is kept and the frame counts as lost");
-    v.number("max_lost_frames", self.max_lost_frames, 0, 100000,
-             "more lost frames in a row end the run with status lost");
+    v.number(
+        "max_lost_frames", self.max_lost_frames, 0, 100000,
+        "more lost frames in a row end the run with status lost; an IMU bridges about a second, after which "
+        "the place can only be found again by relocalisation");
   }
 };
 

@@ -4,9 +4,7 @@ namespace fusebench {
 
 FilterState plus(const FilterState& state, const StateVector& delta) {
   FilterState result = state;
-  result.T_world_imu.rotation =
-      (state.T_world_imu.rotation * so3_exp(delta.segment<3>(kRotation))).normalized();
-  result.T_world_imu.translation += delta.segment<3>(kPosition);
+  result.T_world_imu = pose_plus(state.T_world_imu, delta.head<kPoseSize>());
   result.velocity_world_mps += delta.segment<3>(kVelocity);
   result.gyroscope_bias_radps += delta.segment<3>(kGyroscopeBias);
   result.accelerometer_bias_mps2 += delta.segment<3>(kAccelerometerBias);
@@ -20,8 +18,7 @@ FilterState plus(const FilterState& state, const StateVector& delta) {
 
 StateVector minus(const FilterState& to, const FilterState& from) {
   StateVector delta;
-  delta.segment<3>(kRotation) = so3_log(from.T_world_imu.rotation.conjugate() * to.T_world_imu.rotation);
-  delta.segment<3>(kPosition) = to.T_world_imu.translation - from.T_world_imu.translation;
+  delta.head<kPoseSize>() = pose_minus(to.T_world_imu, from.T_world_imu);
   delta.segment<3>(kVelocity) = to.velocity_world_mps - from.velocity_world_mps;
   delta.segment<3>(kGyroscopeBias) = to.gyroscope_bias_radps - from.gyroscope_bias_radps;
   delta.segment<3>(kAccelerometerBias) = to.accelerometer_bias_mps2 - from.accelerometer_bias_mps2;

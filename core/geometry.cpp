@@ -45,6 +45,16 @@ double rotation_angle_rad(const Quaterniond& a, const Quaterniond& b) {
   return so3_log(a.conjugate() * b).norm();
 }
 
+SE3 pose_plus(const SE3& pose, const Vector6d& tangent) {
+  return {(pose.rotation * so3_exp(tangent.head<3>())).normalized(), pose.translation + tangent.tail<3>()};
+}
+
+Vector6d pose_minus(const SE3& to, const SE3& from) {
+  Vector6d tangent;
+  tangent << so3_log(from.rotation.conjugate() * to.rotation), to.translation - from.translation;
+  return tangent;
+}
+
 SE3 interpolate(const SE3& a, const SE3& b, double fraction) {
   return {(a.rotation * so3_exp(fraction * so3_log(a.rotation.conjugate() * b.rotation))).normalized(),
           a.translation + fraction * (b.translation - a.translation)};

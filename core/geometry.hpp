@@ -52,6 +52,12 @@ struct SE3 {
 /// Shortest rotation angle between two orientations, radians in [0, pi].
 [[nodiscard]] double rotation_angle_rad(const Quaterniond& a, const Quaterniond& b);
 
+/// A pose moved along its tangent (right rotation in rad, then position of its origin in m).
+[[nodiscard]] SE3 pose_plus(const SE3& pose, const Vector6d& tangent);
+
+/// Inverse of pose_plus: the tangent that moves `from` to `to`.
+[[nodiscard]] Vector6d pose_minus(const SE3& to, const SE3& from);
+
 /// Geodesic interpolation: a at fraction 0, b at fraction 1 (rotation and translation apart).
 [[nodiscard]] SE3 interpolate(const SE3& a, const SE3& b, double fraction);
 

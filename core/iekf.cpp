@@ -17,11 +17,6 @@ struct Iterate {
   PoseHypothesis poses;
 };
 
-SE3 moved(const SE3& T_world_imu, const Vector6d& tangent) {
-  return {(T_world_imu.rotation * so3_exp(tangent.head<3>())).normalized(),
-          T_world_imu.translation + tangent.tail<3>()};
-}
-
 class Update {
  public:
   Update(const GaussianState& prior, PoseMeasurement& measurement, const IekfConfig& config)
@@ -65,13 +60,14 @@ class Update {
     iterate.measured = measured_covariance_ * y;
     iterate.state = plus(prior_.mean, iterate.delta);
     iterate.tangents = iterate.measured + known_;
-    iterate.poses = {moved(prior_.mean.T_world_imu, iterate.tangents.head<kPoseSize>()),
-                     moved(prior_.mean.T_world_imu, iterate.tangents.tail<kPoseSize>())};
+    iterate.poses = {pose_plus(prior_.mean.T_world_imu, iterate.tangents.head<kPoseSize>()),
+                     pose_plus(prior_.mean.T_world_imu, iterate.tangents.tail<kPoseSize>())};
     return iterate;
   }
 
   double map_cost(const Iterate& iterate, double measurement_cost) const {
-    return 0.5 * iterate.y.dot(iterate.measured) + measurement_cost;
+    const double prior_cost = config_.prior_in_every_iteration ? 0.5 * iterate.y.dot(iterate.measured) : 0.0;
+    return prior_cost + measurement_cost;
   }
 
   /// Derivative of the poses' tangents at the iterate by the chart coordinates at the prior.
@@ -122,10 +118,7 @@ class Update {
 
   /// Both parts around the posterior: the one by reference was taken at another pose.
   static PoseQuadratic at_posterior(const Iterate& now, const MeasurementQuadratic& quadratic) {
-    const SE3& from = now.poses.T_world_imu_by_reference;
-    const SE3& to = now.state.T_world_imu;
-    Vector6d step;
-    step << so3_log(from.rotation.conjugate() * to.rotation), to.translation - from.translation;
+    const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     PoseQuadratic sum = quadratic.by_model;
     sum.add(quadratic.by_reference, 1.0);
     const Vector6d change = quadratic.by_reference.information * step;
@@ -138,11 +131,15 @@ class Update {
   bool step(Iterate& now, const MeasurementQuadratic& quadratic) {
     const MeasuredMatrix chart = chart_jacobian(now);
     const ChartQuadratic local = in_chart(quadratic, chart);
-    // Stationarity of J in y: (I + Lambda S) y = Lambda S y_now - g, with S = B P B^T.
+    // Stationarity of J in y: (I + Lambda S) y = Lambda S y_now - g, with S = B P B^T. Eq. 22 of the paper
+    // takes each iterate for a new prediction: (I + Lambda S) (y - y_now) = -g.
     const MeasuredMatrix system = MeasuredMatrix::Identity() + local.information * measured_covariance_;
-    const MeasuredVector target =
-        system.partialPivLu().solve(local.information * now.measured - local.gradient);
-    const MeasuredVector full = target - now.y;
+    MeasuredVector full;
+    if (config_.prior_in_every_iteration) {
+      full = system.partialPivLu().solve(local.information * now.measured - local.gradient) - now.y;
+    } else {
+      full = -system.partialPivLu().solve(local.gradient);
+    }
     const MeasuredVector tangent_step = chart * (measured_covariance_ * full);
     const double cost_now = map_cost(now, quadratic.cost());
     for (double fraction = 1.0; fraction > 0.05; fraction *= 0.5) {

@@ -28,8 +28,9 @@ struct PoseQuadratic {
   }
 };
 
-/// Where the IMU is, if the frame that the patches were cut from, or the model, is where it was thought to
-/// be. The two differ by what the update learns about these.
+/// Where the IMU is, if the frame
+/// that the patches were cut from, or the model, is where it was thought to be. The two differ by what the
+/// update learns about these.
 struct PoseHypothesis {
   SE3 T_world_imu_by_reference;
   SE3 T_world_imu_by_model;

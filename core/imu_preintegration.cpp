@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/smoothed_sample.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -12,6 +14,9 @@ namespace {
 // A recording may stop its IMU a little before its camera; holding a sample that long adds less error than a
 // frame's worth of constant velocity would.
 constexpr std::int64_t kMaxHoldNs = 50'000'000;
+
+// Half the window of smoothed samples: takes away four fifths of the noise at 200 Hz.
+constexpr double kSmoothedS = 0.1;
 
 bool earlier(const ImuSample& sample, std::int64_t timestamp_ns) {
   return sample.timestamp_ns < timestamp_ns;
@@ -100,14 +105,15 @@ void integrate_step(PreintegratedImu& sum, const ImuSample& a, const ImuSample& 
 
 /// How the increments change when both instants shift together. With R_begin_s the orientation since the
 /// beginning, d/dt_begin R_begin_s = -[w_begin]x R_begin_s, and the end adds what the integrand is there.
-void differentiate_by_time_offset(PreintegratedImu& sum, const std::vector<ImuSample>& window) {
-  const ImuSample& first = window.front();
-  const ImuSample& last = window.back();
+///
+/// begin and end are smoothed: where a camera moves slowly single samples are mostly noise, the same noise is
+/// in the increments, and an estimate of the offset that trusts them is biased and too sure of itself.
+void differentiate_by_time_offset(PreintegratedImu& sum, const ImuSample& begin, const ImuSample& end) {
   const Matrix3d R = sum.delta_rotation.toRotationMatrix();
-  const Vector3d& rate = first.angular_velocity_radps;
-  const Vector3d& force = first.specific_force_mps2;
-  sum.rotation_by_time_offset = last.angular_velocity_radps - R.transpose() * rate;
-  sum.velocity_by_time_offset = R * last.specific_force_mps2 - force - rate.cross(sum.delta_velocity_mps);
+  const Vector3d& rate = begin.angular_velocity_radps;
+  const Vector3d& force = begin.specific_force_mps2;
+  sum.rotation_by_time_offset = end.angular_velocity_radps - R.transpose() * rate;
+  sum.velocity_by_time_offset = R * end.specific_force_mps2 - force - rate.cross(sum.delta_velocity_mps);
   sum.position_by_time_offset =
       sum.delta_velocity_mps - sum.duration_s * force - rate.cross(sum.delta_position_m);
 }
@@ -131,14 +137,17 @@ Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::i
         "check that images and IMU share a clock, or choose the frames with --frames A:B");
   }
   std::vector<ImuSample> window = cut(samples, begin_ns, end_ns);
-  for (ImuSample& sample : window) {
+  const auto without_bias = [&](ImuSample sample) {
     sample.angular_velocity_radps -= gyroscope_bias_radps;
     sample.specific_force_mps2 -= accelerometer_bias_mps2;
-  }
+    return sample;
+  };
+  for (ImuSample& sample : window) sample = without_bias(sample);
   PreintegratedImu sum;
   sum.duration_s = seconds_between(begin_ns, end_ns);
   for (std::size_t i = 1; i < window.size(); ++i) integrate_step(sum, window[i - 1], window[i], noise);
-  differentiate_by_time_offset(sum, window);
+  differentiate_by_time_offset(sum, without_bias(smoothed_sample(samples, begin_ns, kSmoothedS)),
+                               without_bias(smoothed_sample(samples, end_ns, kSmoothedS)));
   const ImuSample& before = window[window.size() - 2];
   sum.angular_velocity_end_radps = window.back().angular_velocity_radps;
   sum.angular_acceleration_end_radps2 =

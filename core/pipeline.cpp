@@ -6,15 +6,18 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/depth_gates.hpp"
 #include "core/iekf.hpp"
 #include "core/initialisation.hpp"
+#include "core/keyframes.hpp"
 #include "core/motion_compensation.hpp"
 #include "core/motion_prior.hpp"
 #include "core/patch_measurement.hpp"
 #include "core/patches.hpp"
 #include "core/pose_anchors.hpp"
+#include "core/resumption.hpp"
 
 namespace fusebench {
 
@@ -42,6 +45,20 @@ class StageClock {
   std::chrono::steady_clock::time_point begin_;
 };
 
+/// As the filter wants it: of the IMU.
+RecognisedPlace recognised_place(const FoundPlace& found, const Keyframe& keyframe, const SE3& T_imu_camera) {
+  const SE3 T_camera_imu = T_imu_camera.inverse();
+  RecognisedPlace place{found.T_world_camera * T_camera_imu, keyframe.T_world_camera * T_camera_imu};
+  const Matrix6d to_imu = pose_transport(place.T_world_imu, found.T_world_camera);
+  place.covariance = to_imu * found.covariance * to_imu.transpose();
+  // What the model has moved since the frame was fused into it.
+  constexpr double kRotation_rad = 0.005;
+  constexpr double kPosition_m = 0.005;
+  place.reference_covariance.diagonal() << Vector3d::Constant(kRotation_rad * kRotation_rad),
+      Vector3d::Constant(kPosition_m * kPosition_m);
+  return place;
+}
+
 }  // namespace
 
 std::string_view to_string(FrameStatus status) {
@@ -50,6 +67,8 @@ std::string_view to_string(FrameStatus status) {
       return "initialised";
     case FrameStatus::tracked:
       return "tracked";
+    case FrameStatus::relocalised:
+      return "relocalised";
     case FrameStatus::lost:
       break;
   }
@@ -59,7 +78,12 @@ std::string_view to_string(FrameStatus status) {
 struct Pipeline::State {
   State(const Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
         const Workers& workers_in)
-      : config(config_in), rig(rig_in), imu(imu_in), workers(workers_in), model(config_in.tsdf) {
+      : config(config_in),
+        rig(rig_in),
+        imu(imu_in),
+        workers(workers_in),
+        model(config_in.tsdf),
+        keyframes(rig_in.camera) {
     // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
     if (config.terms.prior == Prior::constant_velocity) rig.T_imu_camera = SE3{};
   }
@@ -73,7 +97,8 @@ struct Pipeline::State {
   PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
   IekfResult update(const GaussianState& prior, PatchMeasurement& measurement, FrameReport& report) const;
-  bool track(const GaussianState& prior, const PreparedFrame& prepared, FrameReport& report);
+  bool track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap, FrameReport& report);
+  bool relocalise(const GaussianState& prediction, const PreparedFrame& prepared, FrameReport& report);
   Result<void> fuse(const PreparedFrame& prepared, FrameReport& report);
   void refresh(const PreparedFrame& prepared, FrameReport& report);
   void describe(const PatchMeasurement& measurement, const IekfResult& result, FrameReport& report) const;
@@ -84,12 +109,14 @@ struct Pipeline::State {
   std::span<const ImuSample> imu;
   const Workers& workers;
   TsdfVolume model;
+  Keyframes keyframes;                    ///< fused frames, by which a lost tracker finds its place
   std::optional<GaussianState> estimate;  ///< after the last frame
   std::int64_t timestamp_ns = 0;          ///< instant of the last frame
   std::optional<RgbdFrame> first_frame;   ///< until the second one has told how fast it was
   std::optional<FilterState> initial_motion;
   std::vector<Patch> patches;            ///< cut from the last fused frame
   int occluded_frames = 0;               ///< in a row
+  int lost_frames = 0;                   ///< in a row, before the current one
   ResidualScale residual_scale;          ///< what the residuals of the frames so far showed
   std::int64_t reference_ns = 0;         ///< the instant that they were cut at
   std::vector<TrackedCentre> survivors;  ///< where the good ones of them are in the current frame
@@ -113,6 +140,7 @@ Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second) 
   initial_motion = estimate->mean;
   estimate.reset();
   model = TsdfVolume(config.tsdf);
+  keyframes = Keyframes(rig.camera);
   survivors.clear();
   residual_scale = {};
   const Result<FrameReport> first = process_once(*first_frame);
@@ -133,8 +161,11 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   if (!predicted) return tl::unexpected(predicted.error());
   PreparedFrame prepared = prepare(frame, predicted->mean, report);
 
-  const bool tracked = first || track(*predicted, prepared, report);  // Eqs. 1-5 and 15-23
-  if (!tracked || first) estimate = *predicted;                       // a lost frame keeps the prediction
+  bool tracked = first || track(*predicted, prepared, lost_frames > 0, report);  // Eqs. 1-5 and 15-23
+  const bool relocalised = !tracked && relocalise(*predicted, prepared, report);
+  tracked = tracked || relocalised;
+  if (!tracked || first) estimate = *predicted;  // a lost frame keeps the prediction
+  lost_frames = tracked ? 0 : lost_frames + 1;
   timestamp_ns = frame.capture_ns();
   // What has come to stand before many patches is no part of the scene, and patches cut from it would lead
   // astray; what stays there for a second is.
@@ -142,12 +173,17 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   occluded_frames = report.health == FrameHealth::occluded ? occluded_frames + 1 : 0;
   const bool trusted = tracked && (occluded_frames == 0 || occluded_frames > kMostOccludedFrames);
   if (trusted && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
-  report.status = first ? FrameStatus::initialised : tracked ? FrameStatus::tracked : FrameStatus::lost;
+  report.status = first         ? FrameStatus::initialised
+                  : relocalised ? FrameStatus::relocalised
+                  : tracked     ? FrameStatus::tracked
+                                : FrameStatus::lost;
 
   if (trusted) {
     const Result<void> fused = fuse(prepared, report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(prepared, report);  // Sec. 2.3: patch update
+    keyframes.offer(prepared.frame.grey, prepared.frame.depth_m, T_world_camera(), timestamp_ns,
+                    report.blur_px);
   }
   report.T_world_camera = T_world_camera();
   report.estimate = in_first_camera_world(*estimate);
@@ -218,7 +254,9 @@ Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport&
   return predict_by_imu(*estimate, *increments, rig.imu_noise, config.motion).state;
 }
 
-bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& prepared, FrameReport& report) {
+/// after_gap: the prediction may be so far off that patches settle on the wrong corners.
+bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap,
+                            FrameReport& report) {
   const StageClock clock(report, Stage::update);
   const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
   PatchMeasurement measurement(config, rig, observed, patches, residual_scale, workers);
@@ -227,7 +265,8 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
   report.blur_px = predicted_blur_px(prior.mean);
   report.health = judge_health(observed, measurement.outcomes(), report.blur_px, config);
 
-  if (report.patches_accepted < config.iekf.min_patches) {
+  const bool astray = after_gap && report.health == FrameHealth::inconsistent;
+  if (report.patches_accepted < config.iekf.min_patches || astray) {
     report.reason =
         fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
                     report.patches_accepted, report.patches, config.iekf.min_patches);
@@ -247,6 +286,39 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
       survivors.push_back({outcome.centre_px, patches[p].age + 1});
     }
   }
+  return true;
+}
+
+/// Looks for the frame among those seen before, and tracks it from there with their patches.
+bool Pipeline::State::relocalise(const GaussianState& prediction, const PreparedFrame& prepared,
+                                 FrameReport& report) {
+  if (!config.terms.relocalisation || report.health == FrameHealth::dark) return false;
+  const StageClock clock(report, Stage::update);
+  const std::optional<FoundPlace> found = keyframes.find(prepared.frame.grey);
+  if (!found) return false;
+
+  const Keyframe& keyframe = keyframes[found->keyframe];
+  const RecognisedPlace place = recognised_place(*found, keyframe, rig.T_imu_camera);
+  // Repeating texture looks like another place: what the motion so far rules out is none. The longer the
+  // tracker is lost, the less it rules out.
+  constexpr double kMostContradiction = 25;  // five standard deviations
+  if (contradiction(prediction, place) > kMostContradiction) return false;
+
+  const std::vector<GreyImage> pyramid = build_pyramid(keyframe.grey, config.patches.levels);
+  const ReferenceFrame reference{pyramid, keyframe.depth_m, rig.camera, keyframe.T_world_camera};
+  std::vector<Patch> patches_before =
+      std::exchange(patches, refresh_patches(reference, model, {}, config, workers));
+  const std::int64_t reference_before_ns = std::exchange(reference_ns, keyframe.timestamp_ns);
+  FrameReport again;
+  again.timestamp_ns = report.timestamp_ns;
+  again.capture_ns = report.capture_ns;
+  again.stage_ms = report.stage_ms;
+  if (!track(resumed(prediction, place), prepared, true, again)) {
+    patches = std::move(patches_before);
+    reference_ns = reference_before_ns;
+    return false;
+  }
+  report = std::move(again);
   return true;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -14,9 +13,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// "<name><suffix of this process>" beside a path; the dot keeps it out of listings.
-fs::path hidden_sibling(const fs::path& path, std::string_view suffix) {
-  return path.parent_path() / fmt::format(".{}.{}.{}", path.filename().string(), getpid(), suffix);
+// Others work beside us only now and then, so that a few attempts in a row do not all meet them.
+constexpr int kAttempts = 100;
+
+/// ".<name>.<process>[-<attempt>].tmp" beside a path; the dot keeps it out of listings. Processes of other
+/// machines can have the same number.
+fs::path hidden_sibling(const fs::path& path, int attempt) {
+  const std::string again = attempt == 0 ? "" : fmt::format("-{}", attempt);
+  return path.parent_path() / fmt::format(".{}.{}{}.tmp", path.filename().string(), getpid(), again);
 }
 
 tl::unexpected<Error> io_error(const fs::path& path, const std::error_code& error) {
@@ -24,28 +28,42 @@ tl::unexpected<Error> io_error(const fs::path& path, const std::error_code& erro
               "choose another folder with --out");
 }
 
+/// The folders above a path that are not there; those that it made are added, outermost first.
+std::error_code create_parents(const fs::path& path, std::vector<fs::path>& created) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path parent = path.parent_path(); !parent.empty() && !fs::exists(parent, error);
+       parent = parent.parent_path()) {
+    missing.push_back(parent);
+  }
+  error.clear();
+  for (auto parent = missing.rbegin(); parent != missing.rend() && !error; ++parent) {
+    // Another process may have made it in the meantime: that is not an error, and it is not ours to remove.
+    if (fs::create_directory(*parent, error)) created.push_back(*parent);
+  }
+  return error;
+}
+
 }  // namespace
 
 Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
   StagedFolder folder;
-  folder.final_ = final_folder;
+  folder.final_ = final_folder.has_filename() ? final_folder : final_folder.parent_path();  // "folder/"
   std::error_code error;
-  std::vector<fs::path> missing;
-  for (fs::path parent = final_folder.parent_path(); !parent.empty() && !fs::exists(parent, error);
-       parent = parent.parent_path()) {
-    missing.push_back(parent);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const fs::path temporary = hidden_sibling(folder.final_, attempt);
+    error = create_parents(folder.final_, folder.created_);
+    if (!error && fs::create_directory(temporary, error)) {
+      folder.temporary_ = temporary;
+      if (fs::create_directory(folder.path(), error)) return folder;
+    }
+    // Others may have removed a parent that was theirs, or the folder of this name, just now.
+    const bool met_another =
+        !error || error == std::errc::no_such_file_or_directory || error == std::errc::file_exists;
+    if (!met_another) break;
   }
-  std::reverse(missing.begin(), missing.end());
-  for (const fs::path& parent : missing) {
-    // Another process may have made it in the meantime: that is not an error, and it is not ours to remove.
-    if (fs::create_directory(parent, error)) folder.created_.push_back(parent);
-    if (error) return io_error(parent, error);
-  }
-  const fs::path temporary = hidden_sibling(final_folder, "tmp");
-  fs::remove_all(temporary, error);
-  if (!fs::create_directory(temporary, error)) return io_error(temporary, error);
-  folder.temporary_ = temporary;
-  return folder;
+  if (!error) error = std::make_error_code(std::errc::file_exists);
+  return io_error(folder.final_, error);
 }
 
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept
@@ -69,23 +87,27 @@ Result<void> StagedFolder::write(std::string_view name, std::string_view text) c
 }
 
 Result<void> StagedFolder::commit() {
+  const fs::path old = temporary_ / "old";
   std::error_code error;
-  const fs::path old = hidden_sibling(final_, "old");
-  const bool replaces = fs::exists(final_, error);
-  if (replaces) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     fs::rename(final_, old, error);
-    if (error) return io_error(final_, error);
-  }
-  fs::rename(temporary_, final_, error);
-  if (error) {
+    if (error && error != std::errc::no_such_file_or_directory) break;
+    fs::rename(path(), final_, error);
     std::error_code ignored;
-    if (replaces) fs::rename(old, final_, ignored);
-    return io_error(final_, error);
+    if (!error) {
+      fs::remove_all(std::exchange(temporary_, {}), ignored);
+      created_.clear();
+      return {};
+    }
+    // Another one was committed in between. It is replaced in its turn; what it replaced is out of date.
+    const bool met_another = error == std::errc::directory_not_empty || error == std::errc::file_exists;
+    if (!met_another) {
+      fs::rename(old, final_, ignored);  // if there is one
+      break;
+    }
+    fs::remove_all(old, ignored);
   }
-  temporary_.clear();
-  created_.clear();
-  if (replaces) fs::remove_all(old, error);
-  return {};
+  return io_error(final_, error);
 }
 
 }  // namespace fusebench

@@ -1,5 +1,6 @@
 // A folder that appears whole or not at all: it is filled under a temporary name beside its place and then
-// renamed.
+// renamed. Several for one place, also of other processes and machines, do not disturb each other: the last
+// one that is committed stays.
 #pragma once
 
 #include <filesystem>
@@ -21,9 +22,9 @@ class StagedFolder {
   /// Removes everything that was created, unless commit() succeeded.
   ~StagedFolder();
 
-  /// Where to write: the temporary folder, and a file in it.
-  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
-  [[nodiscard]] std::filesystem::path file(std::string_view name) const { return temporary_ / name; }
+  /// Where to write: a folder in the temporary one, and a file in it.
+  [[nodiscard]] std::filesystem::path path() const { return temporary_ / "new"; }
+  [[nodiscard]] std::filesystem::path file(std::string_view name) const { return path() / name; }
   /// Writes a whole text file. Error io.
   [[nodiscard]] Result<void> write(std::string_view name, std::string_view text) const;
   /// Puts the folder into its place; a folder that is there is moved away first and then removed. Error io.
@@ -33,7 +34,8 @@ class StagedFolder {
   StagedFolder() = default;
 
   std::filesystem::path final_;
-  std::filesystem::path temporary_;             // empty once committed
+  // Nobody else's: holds "new" and, on commit, "old", the folder that is replaced. Empty once committed.
+  std::filesystem::path temporary_;
   std::vector<std::filesystem::path> created_;  // parents that were not there before, outermost first
 };
 

@@ -138,29 +138,18 @@ Result<BatchJob> job_of(const Suite& suite, const BatchOptions& options, const P
                   recording.group,  recording.half, recording.simulation};
 }
 
-BatchOutcome outcome_of(const BatchJob& job) {
-  BatchOutcome outcome;
-  outcome.recording = job.recording.filename().string();
-  outcome.variant = job.variant;
-  outcome.group = job.group;
-  outcome.half = job.half;
-  return outcome;
-}
-
 BatchOutcome run_job(const BatchJob& job, bool resume, const BatchControl& control) {
   const auto run = prepare_run(job.spec);
   if (!run) {
     if (!job.optional || run.error().code != ErrorCode::configuration)
       return not_started(job, run.error().message);
-    BatchOutcome outcome = outcome_of(job);
-    outcome.reason = run.error().message;
+    BatchOutcome outcome = without_results(job, run.error().message);
     outcome.skipped = true;
     return outcome;
   }
-  BatchOutcome outcome = outcome_of(job);
+  BatchOutcome outcome = without_results(job, "");
   std::error_code ignored;
   fs::remove_all(run->folder.parent_path() / kNotStarted, ignored);
-  outcome.folder = run->folder;
   if (resume) {
     auto existing = read_record(run->folder / "record.json");
     outcome.resumed = existing && existing->status != RunStatus::failed;
@@ -169,11 +158,14 @@ BatchOutcome run_job(const BatchJob& job, bool resume, const BatchControl& contr
   if (!outcome.resumed) {
     auto record = execute_run(*run, {control.progress, control.stop});
     if (!record) {
-      outcome.reason = record.error().message;
-      return outcome;
+      // What lies in the run's folder then is of an earlier run.
+      const bool stopped = control.stop != nullptr && control.stop->load();
+      return stopped ? without_results(job, record.error().message)
+                     : not_started(job, record.error().message);
     }
     outcome.record = std::move(*record);
   }
+  outcome.folder = run->folder;
   outcome.status = outcome.record.status;
   outcome.reason = outcome.record.reason;
   return outcome;
@@ -202,17 +194,25 @@ Result<std::vector<BatchJob>> plan_batch(const Suite& suite, const BatchOptions&
   return jobs;
 }
 
-BatchOutcome not_started(const BatchJob& job, std::string reason) {
-  BatchOutcome outcome = outcome_of(job);
+BatchOutcome without_results(const BatchJob& job, std::string reason) {
+  BatchOutcome outcome;
+  outcome.recording = job.recording.filename().string();
+  outcome.variant = job.variant;
+  outcome.group = job.group;
+  outcome.half = job.half;
   outcome.reason = std::move(reason);
-  RunRecord& record = outcome.record;
-  record.reason = outcome.reason;
-  record.recording.name = outcome.recording;
-  record.variant = outcome.variant;
-  record.config_hash = config_hash(job.spec.config.values);
+  outcome.record.reason = outcome.reason;
+  outcome.record.recording.name = outcome.recording;
+  outcome.record.variant = outcome.variant;
+  outcome.record.config_hash = config_hash(job.spec.config.values);
+  return outcome;
+}
+
+BatchOutcome not_started(const BatchJob& job, std::string reason) {
+  BatchOutcome outcome = without_results(job, std::move(reason));
   // If even this cannot be written the outcome still says what happened.
   auto folder = StagedFolder::create(job.spec.out / outcome.recording / outcome.variant / kNotStarted);
-  if (folder && folder->write("record.json", to_json(record))) static_cast<void>(folder->commit());
+  if (folder && folder->write("record.json", to_json(outcome.record))) static_cast<void>(folder->commit());
   return outcome;
 }
 

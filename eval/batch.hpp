@@ -45,8 +45,8 @@ struct BatchJob {
 /// nothing).
 [[nodiscard]] Result<std::vector<BatchJob>> plan_batch(const Suite& suite, const BatchOptions& options);
 
-/// How a job ended. One that did not even start has no folder, the status failed, and a record under
-/// <out>/<recording>/<variant>/not-started/, so that tables show it.
+/// How a job ended. One that did not even start, or whose results could not be written, has no folder, the
+/// status failed, and a record under <out>/<recording>/<variant>/not-started/, so that tables show it.
 struct BatchOutcome {
   std::string recording;
   std::string variant;
@@ -57,7 +57,7 @@ struct BatchOutcome {
   bool resumed = false;  ///< was there already
   bool skipped = false;  ///< an optional job whose recording nothing here can open; not a failure, and no row
   std::filesystem::path folder;
-  RunRecord record;
+  RunRecord record;  ///< without a folder: names the recording, the variant and the configuration alone
 };
 
 struct BatchControl {
@@ -72,7 +72,10 @@ struct BatchControl {
 [[nodiscard]] Result<std::vector<BatchOutcome>> run_batch(const std::vector<BatchJob>& jobs, bool resume,
                                                           const BatchControl& control = {});
 
-/// How a job ends that could not even start: a record says so in the place of a run, for tables.
+/// How a job ends that left nothing; writes no file.
+[[nodiscard]] BatchOutcome without_results(const BatchJob& job, std::string reason);
+
+/// The same, with a record that says so in the place of a run, for tables.
 [[nodiscard]] BatchOutcome not_started(const BatchJob& job, std::string reason);
 
 }  // namespace fusebench

@@ -28,21 +28,23 @@ std::string error_line(const std::string& errors) {
   return errors.substr(begin + mark.size(), errors.find('\n', begin) - begin - mark.size());
 }
 
-/// What the process printed of its run; nothing if it printed something else.
-std::optional<BatchOutcome> reported(const BatchJob& job, const std::string& text) {
+/// What the process printed of its run, without the record; nothing if it printed something else, or ended as
+/// none does that did its job.
+std::optional<BatchOutcome> reported(const BatchJob& job, const ChildEnd& end) {
   using Json = nlohmann::json;
-  const Json document = Json::parse(text, nullptr, false);
+  if (end.signal != 0) return std::nullopt;
+  if (end.exit_code.value_or(0) != 0 && end.exit_code != exit_code(ErrorCode::run_failed))
+    return std::nullopt;
+  const Json document = Json::parse(end.output, nullptr, false);
   const auto runs = document.is_object() ? document.find("runs") : document.end();
   if (document.is_discarded() || runs == document.end() || !runs->is_array() || runs->size() != 1)
     return std::nullopt;
   try {
     const Json& run = runs->front();
-    BatchOutcome outcome;
-    outcome.recording = job.recording.filename().string();
-    outcome.variant = job.variant;
-    outcome.group = job.group;
-    outcome.half = job.half;
-    outcome.reason = run.at("reason").get<std::string>();
+    BatchOutcome outcome = without_results(job, run.at("reason").get<std::string>());
+    const auto status = parse_run_status(run.at("status").get<std::string>());
+    if (!status) return std::nullopt;
+    outcome.status = *status;
     outcome.resumed = run.at("resumed").get<bool>();
     outcome.skipped = run.at("skipped").get<bool>();
     outcome.folder = run.at("folder").get<std::string>();
@@ -52,24 +54,40 @@ std::optional<BatchOutcome> reported(const BatchJob& job, const std::string& tex
   }
 }
 
+/// Whether a record is the one that the process wrote for this job, and not of an earlier run or another
+/// question.
+bool belongs(const RunRecord& record, const BatchOutcome& told) {
+  return record.recording.name == told.recording && record.variant == told.variant &&
+         record.config_hash == told.record.config_hash && record.status == told.status &&
+         record.reason == told.reason;
+}
+
 BatchOutcome outcome_of(const BatchJob& job, const ChildEnd& end) {
-  auto outcome = reported(job, end.output);
-  if (!outcome) {
+  auto told = reported(job, end);
+  if (!told) {
     const std::string why = error_line(end.errors);
     return not_started(
         job, fmt::format("the run's process ended with {}{}{}", end.how(), why.empty() ? "" : ": ", why));
   }
-  if (outcome->folder.empty()) return std::move(*outcome);
-  auto record = read_record(outcome->folder / "record.json");
-  if (!record) {
-    // A run that ended by an error of its own, such as a full disk, leaves no record.
-    if (outcome->reason.empty()) outcome->reason = record.error().message;
-    return std::move(*outcome);
+  if (told->folder.empty()) {
+    told->status = RunStatus::failed;
+    return std::move(*told);
   }
-  outcome->record = std::move(*record);
-  outcome->status = outcome->record.status;
-  outcome->reason = outcome->record.reason;
-  return std::move(*outcome);
+  const std::filesystem::path file = told->folder / "record.json";
+  auto record = read_record(file);
+  if (!record) return not_started(job, record.error().message);
+  if (!belongs(*record, *told)) {
+    return not_started(job, fmt::format("{}: is not the record of this run: {}, {}, configuration {}, {}",
+                                        file.string(), record->recording.name, record->variant,
+                                        record->config_hash, to_string(record->status)));
+  }
+  told->record = std::move(*record);
+  return std::move(*told);
+}
+
+/// All of them end at the same time, so that it takes no longer than the slowest; whoever drops them waits.
+void interrupt_all(std::vector<RunningJob>& running) {
+  for (RunningJob& job : running) job.process.interrupt();
 }
 
 }  // namespace
@@ -81,12 +99,16 @@ Result<std::vector<BatchOutcome>> run_batch_in_processes(const std::vector<Batch
   std::vector<BatchOutcome> outcomes(jobs.size());
   std::vector<RunningJob> running;
   for (std::size_t next = 0; next < jobs.size() || !running.empty();) {
-    // Leaving asks the processes to stop and waits for them.
-    if (control.stop != nullptr && control.stop->load())
+    if (control.stop != nullptr && control.stop->load()) {
+      interrupt_all(running);
       return fail(ErrorCode::run_failed, "stopped by the user");
+    }
     while (next < jobs.size() && running.size() < static_cast<std::size_t>(at_once)) {
       auto process = ChildProcess::start(command(next));
-      if (!process) return tl::unexpected(process.error());
+      if (!process) {
+        interrupt_all(running);
+        return tl::unexpected(process.error());
+      }
       running.push_back({next, std::move(*process)});
       ++next;
     }

@@ -23,8 +23,9 @@ struct ProcessControl {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// As run_batch(), with the outcomes in the order of the jobs. `at_once` is 1 or more. Errors: io (no process
-/// can be started), run_failed (stopped); the processes are then asked to stop, too, and waited for.
+/// As run_batch(), with the outcomes in the order of the jobs. A record counts only if it is of the job's
+/// recording, variant and configuration and ended as the process says. `at_once` is 1 or more. Errors: io (no
+/// process can be started), run_failed (stopped); all processes are then asked to stop, too, and waited for.
 [[nodiscard]] Result<std::vector<BatchOutcome>> run_batch_in_processes(const std::vector<BatchJob>& jobs,
                                                                        int at_once, const JobCommand& command,
                                                                        const ProcessControl& control = {});

@@ -95,6 +95,7 @@ void describe(const BatchEstimate& estimate, const CalibrationOptions& options,
 Result<CameraImuCalibration> calibrate(Recording recording, const Config& config,
                                        const CalibrationOptions& options, const Workers& workers,
                                        const RunControl& control) {
+  check(options.max_rounds >= 2, "the first round is no result");
   CameraImuCalibration result;
   result.T_imu_camera_before = recording.rig.T_imu_camera;
   if (recording.imu_source == ImuSource::recorded && recording.calibration && recording.calibration->imu)

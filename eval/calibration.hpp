@@ -24,7 +24,7 @@ struct CalibrationOptions {
   double rotation_prior_rad = radians(10.0);  ///< standard deviations around the recording's calibration
   double translation_prior_m = 0.1;
   double time_offset_prior_s = 0.05;
-  int max_rounds = 3;
+  int max_rounds = 3;  ///< 2 or more: the first one is loose on purpose, and never the result
 };
 
 /// A value with its standard deviation.

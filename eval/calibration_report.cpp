@@ -68,6 +68,8 @@ std::string to_text(const CameraImuCalibration& c, const Recording& recording) {
   const Vector3d turn = so3_log(c.T_imu_camera.rotation);
   std::string text = fmt::format("{}: {} of {} frames tracked, {} rounds, {}\n", recording.name, c.tracked,
                                  c.frames, c.rounds.size(), c.converged ? "converged" : "still moving");
+  if (recording.imu_source == ImuSource::synthetic)
+    text += "synthetic IMU: made from the ground truth; this says nothing about any sensor\n";
   text += line("rotation imu from camera", turn / kDegree, sigma.head<3>() / kDegree,
                c.rotation_change_rad / kDegree, "deg");
   text += line("camera in the imu's axes", 1e3 * c.T_imu_camera.translation, 1e3 * sigma.tail<3>(),

@@ -1,5 +1,6 @@
 #include "eval/child_processes.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -8,7 +9,10 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace fusebench {
@@ -25,18 +29,31 @@ std::string content(std::FILE* file) {
   return text;
 }
 
+/// A file without a name. Whatever else this process starts does not inherit it.
+std::FILE* nameless_file() {
+  std::error_code error;
+  std::string name = (std::filesystem::temp_directory_path(error) / "fusebench-XXXXXX").string();
+  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) return nullptr;
+  unlink(name.c_str());
+  std::FILE* const file = fdopen(descriptor, "w+b");
+  if (file == nullptr) close(descriptor);
+  return file;
+}
+
 }  // namespace
 
 std::string ChildEnd::how() const {
   if (exit_code) return fmt::format("exit code {}", *exit_code);
+  if (signal == 0) return "an unknown state";
   const char* const name = strsignal(signal);
   return fmt::format("signal {} ({})", signal, name == nullptr ? "unknown" : name);
 }
 
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command) {
   check(!command.empty(), "a command has a program");
-  File output(std::tmpfile());
-  File errors(std::tmpfile());
+  File output(nameless_file());
+  File errors(nameless_file());
   if (!output || !errors) {
     return fail(ErrorCode::io, fmt::format("no temporary file: {}", std::strerror(errno)),
                 "is there space in the folder for temporary files?");
@@ -61,6 +78,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : process_(std::exchange(other.process_, -1)),
+      interrupted_(other.interrupted_),
       output_(std::move(other.output_)),
       errors_(std::move(other.errors_)) {}
 
@@ -75,20 +93,22 @@ ChildProcess::~ChildProcess() {
 std::optional<ChildEnd> ChildProcess::poll() {
   check(process_ >= 0, "a child that ended is not polled again");
   int status = 0;
-  if (waitpid(process_, &status, WNOHANG) != process_) return std::nullopt;
+  const pid_t ended = waitpid(process_, &status, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
   process_ = -1;
-  return end_of(status);
+  ChildEnd end;
+  if (ended > 0 && WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (ended > 0 && WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  return with_output(std::move(end));
 }
 
-void ChildProcess::interrupt() const { kill(process_, SIGINT); }
+void ChildProcess::interrupt() {
+  if (process_ < 0 || interrupted_) return;
+  interrupted_ = true;
+  kill(process_, SIGINT);
+}
 
-ChildEnd ChildProcess::end_of(int status) {
-  ChildEnd end;
-  if (WIFEXITED(status)) {
-    end.exit_code = WEXITSTATUS(status);
-  } else {
-    end.signal = WTERMSIG(status);
-  }
+ChildEnd ChildProcess::with_output(ChildEnd end) {
   end.output = content(output_.get());
   end.errors = content(errors_.get());
   return end;

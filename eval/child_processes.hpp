@@ -15,16 +15,17 @@ namespace fusebench {
 
 /// How a child ended, with all that it wrote.
 struct ChildEnd {
-  std::optional<int> exit_code;  ///< nothing if a signal ended it
-  int signal = 0;
-  std::string output;  ///< standard output
-  std::string errors;  ///< standard error
+  std::optional<int> exit_code;  ///< nothing if a signal ended it, or if nobody can know any more
+  int signal = 0;                ///< 0: none
+  std::string output;            ///< standard output
+  std::string errors;            ///< standard error
 
-  /// "exit code 3", "signal 9 (Killed)".
+  /// "exit code 3", "signal 9 (Killed)", "an unknown state".
   [[nodiscard]] std::string how() const;
 };
 
-/// One running program. It gets an interrupt (SIGINT) and is waited for when it is destroyed.
+/// One running program. It gets an interrupt (SIGINT), unless it had one, and is waited for when it is
+/// destroyed.
 class ChildProcess {
  public:
   /// command[0] is the program's file. What the child writes goes to files without a name, so that nothing is
@@ -35,9 +36,10 @@ class ChildProcess {
   ChildProcess& operator=(ChildProcess&&) = delete;
   ~ChildProcess();
 
-  /// Nothing while it runs; afterwards its end, once.
+  /// Nothing while it runs; afterwards its end, once. The state is unknown if somebody else waited for it.
   [[nodiscard]] std::optional<ChildEnd> poll();
-  void interrupt() const;
+  /// Once: a second interrupt may end a program that is about to tidy up.
+  void interrupt();
 
  private:
   struct CloseFile {
@@ -47,9 +49,10 @@ class ChildProcess {
 
   ChildProcess(pid_t process, File output, File errors)
       : process_(process), output_(std::move(output)), errors_(std::move(errors)) {}
-  [[nodiscard]] ChildEnd end_of(int status);
+  [[nodiscard]] ChildEnd with_output(ChildEnd end);
 
   pid_t process_ = -1;  // -1: ended
+  bool interrupted_ = false;
   File output_;
   File errors_;
 };

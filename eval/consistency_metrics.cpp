@@ -156,15 +156,4 @@ NeesBounds nees_bounds_95(std::size_t runs, int dof) {
   return {chi_square_quantile(0.025, all) / all, chi_square_quantile(0.975, all) / all};
 }
 
-AverageNees average_nees(std::span<const double> nees_per_dof_of_runs, int dof) {
-  AverageNees result;
-  result.runs = nees_per_dof_of_runs.size();
-  if (result.runs == 0) return result;
-  result.mean_per_dof = statistics(nees_per_dof_of_runs).mean;
-  result.bounds_95 = nees_bounds_95(result.runs, dof);
-  result.consistent =
-      result.mean_per_dof >= result.bounds_95.lower && result.mean_per_dof <= result.bounds_95.upper;
-  return result;
-}
-
 }  // namespace fusebench

@@ -1,5 +1,10 @@
 // Does a filter know how wrong it is? Normalised estimation error squared (NEES) against true states
 // (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 5.4.2).
+//
+// How it is judged: errors of a run's frames are correlated over the whole run, so that a run is one sample,
+// whatever its length. The mean over its frames is averaged over N independent runs and held against the 95 %
+// bounds of N * dof degrees of freedom. These are exact for one instant of each run; a mean over time
+// scatters no more than that, so that for it they are rather too wide, and small faults may pass unnoticed.
 #pragma once
 
 #include <array>
@@ -63,22 +68,12 @@ using ConsistencyResult = std::array<NeesResult, kStateParts.size()>;
 /// in (0, 1).
 [[nodiscard]] double chi_square_quantile(double probability, double dof);
 
-/// Within which the average of NEES / dof over independent runs, at one instant, lies with probability 0.95
-/// if the filter is consistent: that sum is chi-square distributed with runs * dof degrees of freedom. Frames
-/// of one run share their errors and must not be counted as runs.
+/// Within which the average of NEES / dof over independent runs lies with probability 0.95 if the filter is
+/// consistent: at one instant of each, that sum is chi-square distributed with runs * dof degrees of freedom.
 struct NeesBounds {
   double lower = 0;
   double upper = 0;
 };
 [[nodiscard]] NeesBounds nees_bounds_95(std::size_t runs, int dof);
-
-/// A part over independent runs at one instant of each (their last frame, say).
-struct AverageNees {
-  std::size_t runs = 0;
-  double mean_per_dof = std::numeric_limits<double>::quiet_NaN();
-  NeesBounds bounds_95;
-  bool consistent = false;  ///< within the bounds
-};
-[[nodiscard]] AverageNees average_nees(std::span<const double> nees_per_dof_of_runs, int dof);
 
 }  // namespace fusebench

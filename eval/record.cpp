@@ -26,6 +26,7 @@ Json json_of(const RecordedRecording& recording) {
           {"fingerprint", recording.fingerprint},
           {"imu", recording.imu},
           {"imu_note", recording.imu_note},
+          {"truth", recording.truth},
           {"notes", recording.notes}};
 }
 
@@ -39,6 +40,7 @@ void read(const Json& json, RecordedRecording& recording) {
   recording.fingerprint = json.at("fingerprint");
   recording.imu = json.at("imu");
   recording.imu_note = json.at("imu_note");
+  recording.truth = json.value("truth", std::string());
   recording.notes = json.at("notes").get<std::vector<std::string>>();
 }
 
@@ -102,9 +104,7 @@ void read(const Json& json, RecordedProvenance& provenance) {
 }
 
 RunStatus status_of(const std::string& text) {
-  for (const RunStatus status : {RunStatus::ok, RunStatus::lost, RunStatus::failed}) {
-    if (text == to_string(status)) return status;
-  }
+  if (const auto status = parse_run_status(text)) return *status;
   throw std::invalid_argument(fmt::format("status = {} (allowed: ok | lost | failed)", text));
 }
 
@@ -143,6 +143,13 @@ std::string_view to_string(RunStatus status) {
       return "ok";
   }
   return "unknown";
+}
+
+std::optional<RunStatus> parse_run_status(std::string_view text) {
+  for (const RunStatus status : {RunStatus::ok, RunStatus::lost, RunStatus::failed}) {
+    if (text == to_string(status)) return status;
+  }
+  return std::nullopt;
 }
 
 std::string to_json(const RunRecord& record) {

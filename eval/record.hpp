@@ -23,12 +23,16 @@ namespace fusebench {
 
 inline constexpr int kRecordSchema = 1;
 
+/// The word for a ground truth that `fusebench smooth` made from the recording itself.
+inline constexpr std::string_view kPseudoTruthWord = "pseudo ground truth";
+
 enum class RunStatus {
   failed,  ///< ended by an error
   lost,    ///< too many lost frames in a row
   ok,
 };
 [[nodiscard]] std::string_view to_string(RunStatus status);
+[[nodiscard]] std::optional<RunStatus> parse_run_status(std::string_view text);
 
 /// A metric's result, or why there is none.
 template <class T>
@@ -58,6 +62,8 @@ struct RecordedRecording {
   std::string fingerprint;
   std::string imu = "none";  ///< that the run used: "none", "recorded", "synthetic IMU"
   std::string imu_note;
+  /// What trajectories are compared with: "none", "given", kPseudoTruthWord; empty in a record that is older.
+  std::string truth = "none";
   std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
 };
 

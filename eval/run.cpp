@@ -77,6 +77,11 @@ std::vector<std::string> reading_notes(const Recording& recording, const std::fi
   return notes;
 }
 
+std::string_view truth_word(const Recording& recording) {
+  if (recording.ground_truth.empty()) return "none";
+  return recording.truth_label.empty() ? "given" : kPseudoTruthWord;
+}
+
 RunRecord record_of_question(const PreparedRun& run) {
   const Recording& recording = run.recording;
   RunRecord record;
@@ -90,6 +95,7 @@ RunRecord record_of_question(const PreparedRun& run) {
                       .fingerprint = recording.fingerprint,
                       .imu = std::string(to_string(recording.imu_source)),
                       .imu_note = recording.imu_note,
+                      .truth = std::string(truth_word(recording)),
                       .notes = reading_notes(recording, run.spec.recording)};
   record.variant = run.spec.variant;
   for (const OptionRow& row : describe_options(run.spec.config.values)) {

@@ -19,7 +19,7 @@ struct SmoothedRecording {
   std::vector<std::int64_t> stamps_ns;    ///< what outputs call the frames
   std::vector<std::int64_t> instants_ns;  ///< that the states are of
   Trajectory trajectory;                  ///< of the camera; all frames, also those that were lost
-  Trajectory filter_trajectory;           ///< of the run that the measurements are from
+  Trajectory measuring_trajectory;        ///< of the run that measured, with the IMU's noise exaggerated
   BatchEstimate estimate;
   std::size_t tracked = 0;
 };
@@ -28,6 +28,9 @@ struct SmoothedRecording {
 /// (initialisation.imu_time_offset_sigma_s). Errors: those of measure_motion() and estimate_batch().
 [[nodiscard]] Result<SmoothedRecording> smooth(const Recording& recording, const Config& config,
                                                const Workers& workers, const RunControl& control);
+
+/// What to beware of: that it did not converge, frames that were lost. Empty if all is well.
+[[nodiscard]] std::vector<std::string> smoothing_remarks(const SmoothedRecording& smoothed);
 
 /// trajectory.tum: its first line is kPseudoGroundTruth, by which a reader knows it.
 [[nodiscard]] std::string pseudo_truth_text(const SmoothedRecording& smoothed);

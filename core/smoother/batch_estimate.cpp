@@ -11,7 +11,6 @@
 #include "core/imu_preintegration.hpp"
 #include "core/smoother/batch_problem.hpp"
 #include "core/smoother/selected_inverse.hpp"
-#include "core/smoother/smoothed_sample.hpp"
 
 namespace fusebench {
 
@@ -78,15 +77,6 @@ BatchUnknowns initial_unknowns(const BatchInput& input) {
   return x;
 }
 
-/// Rates and forces at an instant, biases removed, as derivatives by time need them.
-ImuSample motion_at(const BatchInput& input, std::int64_t imu_ns, const Vector6d& bias) {
-  constexpr double kHalfWindowS = 0.1;
-  ImuSample sample = smoothed_sample(input.imu, imu_ns, kHalfWindowS);
-  sample.angular_velocity_radps -= bias.head<3>();
-  sample.specific_force_mps2 -= bias.tail<3>();
-  return sample;
-}
-
 Result<std::vector<PreintegratedImu>> integrate(const BatchInput& input, const BatchUnknowns& x) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.time_offset_s));
   std::vector<PreintegratedImu> increments;
@@ -94,8 +84,6 @@ Result<std::vector<PreintegratedImu>> integrate(const BatchInput& input, const B
     auto imu = preintegrate(input.imu, input.instants_ns[k] + offset_ns, input.instants_ns[k + 1] + offset_ns,
                             x.bias[k].head<3>(), x.bias[k].tail<3>(), input.imu_noise);
     if (!imu) return tl::unexpected(imu.error());
-    differentiate_by_time_offset(*imu, motion_at(input, input.instants_ns[k] + offset_ns, x.bias[k]),
-                                 motion_at(input, input.instants_ns[k + 1] + offset_ns, x.bias[k]));
     increments.push_back(*imu);
   }
   return increments;

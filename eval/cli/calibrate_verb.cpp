@@ -42,6 +42,13 @@ Result<int> run(const CalibrateVerbOptions& options) {
   const auto prepared = prepare(options);
   if (!prepared) return tl::unexpected(prepared.error());
   const Recording& recording = prepared->recording;
+  if (recording.imu_source == ImuSource::synthetic && !options.out.empty()) {
+    return fail(ErrorCode::usage,
+                fmt::format("the IMU of '{}' is made from its ground truth, so that a calibration file would "
+                            "say nothing about any sensor",
+                            recording.name),
+                "a calibration needs recorded inertial samples; without --out the result is only shown");
+  }
   for (const std::string& warning : recording.warnings) print_progress(fmt::format("warning: {}", warning));
   ProgressBar bar(recording.name + " calibrate");
   const RunControl control = {
@@ -89,8 +96,9 @@ Verb add_calibrate_verb(CLI::App& app) {
       ->check(CLI::Range(0.01, 1000.0))
       ->type_name("MS")
       ->capture_default_str();
-  verb->add_option("--rounds", options->rounds, "At most so many runs, each from the last one's calibration")
-      ->check(CLI::Range(1, 20))
+  verb->add_option("--rounds", options->rounds,
+                   "At most so many runs, each from the last one's calibration; the first is a first guess")
+      ->check(CLI::Range(2, 20))
       ->type_name("N")
       ->capture_default_str();
   add_json_flag(*verb, options->json);

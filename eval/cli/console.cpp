@@ -18,7 +18,7 @@ std::atomic<bool>& stop_flag() {
 }
 
 extern "C" void on_stop_signal(int signal) {
-  // The second one ends the process at once.
+  // After a second one, which a parent may have passed on, the next ends the process at once.
   if (stop_flag().exchange(true)) std::signal(signal, SIG_DFL);
 }
 

@@ -70,6 +70,8 @@ Result<int> run(const SmoothVerbOptions& options) {
   const auto smoothed = smooth(recording, prepared->spec.config.values, workers, control);
   bar.clear();
   if (!smoothed) return tl::unexpected(smoothed.error());
+  for (const std::string& remark : smoothing_remarks(*smoothed))
+    print_progress(fmt::format("warning: {}", remark));
   const std::string json = to_json(*smoothed, recording);
   if (auto written = write_results(options.out, *smoothed, json); !written)
     return tl::unexpected(written.error());

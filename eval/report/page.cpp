@@ -59,11 +59,15 @@ std::string_view style_name(SeriesStyle style) {
 
 Json json_of(const Chart& chart) {
   Json series = Json::array();
-  for (const ChartSeries& s : chart.series) {
+  for (std::size_t place = 0; place < chart.series.size(); ++place) {
+    const ChartSeries& s = chart.series[place];
     Json points = Json::array();
     for (const Vector2d& point : s.points) points.push_back({number(point.x()), number(point.y())});
-    series.push_back(
-        {{"label", s.label}, {"style", style_name(s.style)}, {"right", s.right}, {"points", points}});
+    series.push_back({{"label", s.label},
+                      {"style", style_name(s.style)},
+                      {"colour", s.colour.value_or(place)},
+                      {"right", s.right},
+                      {"points", points}});
   }
   return {{"x", chart.x_label},
           {"left", chart.left_label},

@@ -1,6 +1,8 @@
 // A page of tables, charts and images in one HTML file that needs no network.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -24,7 +26,8 @@ struct ChartSeries {
   std::string label;  ///< with the unit if the axes' labels do not tell
   std::vector<Vector2d> points;
   SeriesStyle style = SeriesStyle::line;
-  bool right = false;  ///< belongs to the axis on the right
+  bool right = false;                      ///< belongs to the axis on the right
+  std::optional<std::size_t> colour = {};  ///< of the style's; by default the series' place in its chart
 };
 
 struct Chart {

@@ -16,8 +16,8 @@ function axis(title, extra) {
   }, extra);
 }
 
-function dataset(series, index) {
-  const stroke = colour("--series-" + (index % 5));
+function dataset(series) {
+  const stroke = colour("--series-" + (series.colour % 5));
   return {
     label: series.label,
     data: series.points.map(([x, y]) => ({ x: x, y: y })),

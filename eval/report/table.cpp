@@ -13,6 +13,7 @@
 #include "eval/intensity_file.hpp"
 #include "eval/intensity_metrics.hpp"
 #include "eval/report/common_pixels.hpp"
+#include "eval/report/data_labels.hpp"
 
 namespace fusebench {
 
@@ -74,6 +75,7 @@ TableRow row_of(const FoundRun& run) {
   row.recording = record.recording.name;
   row.data = record.recording.data;
   row.imu = record.recording.imu;
+  row.truth = record.recording.truth;
   row.variant = record.variant;
   row.run = run.folder.filename().string();
   row.status = record.status;
@@ -130,19 +132,9 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "tracked frames "
       "have a pose, so read it with the column tracked.",
       "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
-  const auto synthetic = [](const TableRow& row) { return row.imu == "synthetic IMU"; };
-  if (std::any_of(table.rows.begin(), table.rows.end(), synthetic)) {
-    footer.emplace_back(
-        "synthetic IMU: made from the ground truth with sensor noise, since the recording has no gyroscope. "
-        "Such rows "
-        "compare variants; they are no evidence of accuracy without ground truth.");
-  }
-  const auto simulated = [](const TableRow& row) { return row.data == "simulated"; };
-  if (std::any_of(table.rows.begin(), table.rows.end(), simulated)) {
-    footer.emplace_back(
-        "simulated: images, IMU and ground truth were made by `fusebench simulate`; such rows say nothing "
-        "about real sensors beyond what the simulation models.");
-  }
+  std::vector<DataWords> words;
+  for (const TableRow& row : table.rows) words.push_back({row.data, row.imu, row.truth});
+  for (std::string& footnote : data_footnotes(words)) footer.push_back(std::move(footnote));
   return footer;
 }
 

@@ -16,8 +16,9 @@ namespace fusebench {
 /// One run. Numbers that do not exist are absent, never 0 or NaN.
 struct TableRow {
   std::string recording;
-  std::string data;  ///< "recorded", "simulated"
-  std::string imu;   ///< "none", "recorded", "synthetic IMU"
+  std::string data;   ///< "recorded", "simulated"
+  std::string imu;    ///< "none", "recorded", "synthetic IMU"
+  std::string truth;  ///< "none", "given", kPseudoTruthWord
   std::string variant;
   std::string run;  ///< folder name, hash8
   RunStatus status = RunStatus::failed;

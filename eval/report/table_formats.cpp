@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "eval/json_text.hpp"
-
+#include "eval/report/data_labels.hpp"
 #include "eval/report/table.hpp"
 
 namespace fusebench {
@@ -36,7 +36,7 @@ bool repeated(const ResultTable& table, const TableRow& row) {
 
 Cells shown_cells(const ResultTable& table, const TableRow& row) {
   return {row.recording,
-          row.data,
+          data_cell({row.data, row.imu, row.truth}),
           row.imu,
           repeated(table, row) ? fmt::format("{} ({})", row.variant, row.run) : row.variant,
           std::string(to_string(row.status)),
@@ -129,18 +129,19 @@ std::string csv_cell(const std::string& text) {
 
 std::string csv(const ResultTable& table) {
   std::string text =
-      "recording,data,imu,variant,run,status,reason,aie_grey,aie_common_grey,ate_rmse_m,rpe_1s_m,rpe_1s_rad,"
+      "recording,data,imu,truth,variant,run,status,reason,aie_grey,aie_common_grey,ate_rmse_m,rpe_1s_m,rpe_"
+      "1s_rad,"
       "tracked,total,"
       "vertices,fps\n";
   const auto number = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "";
   };
   for (const TableRow& row : table.rows) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.recording),
-                        row.data, csv_cell(row.imu), csv_cell(row.variant), row.run, to_string(row.status),
-                        csv_cell(row.reason), number(row.aie_grey), number(row.aie_common_grey),
-                        number(row.ate_rmse_m), number(row.rpe_second_m), number(row.rpe_second_rad),
-                        row.tracked, row.total, row.vertices, row.fps);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.recording),
+                        row.data, csv_cell(row.imu), csv_cell(row.truth), csv_cell(row.variant), row.run,
+                        to_string(row.status), csv_cell(row.reason), number(row.aie_grey),
+                        number(row.aie_common_grey), number(row.ate_rmse_m), number(row.rpe_second_m),
+                        number(row.rpe_second_rad), row.tracked, row.total, row.vertices, row.fps);
   }
   return text;
 }
@@ -153,6 +154,7 @@ std::string json(const ResultTable& table) {
     rows.push_back({{"recording", row.recording},
                     {"data", row.data},
                     {"imu", row.imu},
+                    {"truth", row.truth},
                     {"variant", row.variant},
                     {"run", row.run},
                     {"status", to_string(row.status)},

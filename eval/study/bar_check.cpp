@@ -61,14 +61,14 @@ void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items)
     }
     const auto number = value_of(study, *other, value, bar.variant);
     if (!number) {
-      items.valueless.push_back(run.recording);
+      (other->record.status == RunStatus::ok ? items.valueless : items.left_out).push_back(run.recording);
       return;
     }
     item.other = *number;
   }
   const auto number = value_of(study, run, value, bar.against);
   if (!number) {
-    items.valueless.push_back(run.recording);
+    (run.record.status == RunStatus::ok ? items.valueless : items.not_ok).push_back(run.recording);
     return;
   }
   item.own = *number;

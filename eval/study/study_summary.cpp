@@ -1,8 +1,12 @@
 #include "eval/study/study_summary.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "core/variants.hpp"
+#include "eval/report/data_labels.hpp"
 #include "eval/statistics.hpp"
 #include "eval/suite_simulations.hpp"
 
@@ -101,12 +105,27 @@ std::optional<MotionCurve> curve_of(const Study& study, const std::string& half,
   return any ? std::optional(std::move(curve)) : std::nullopt;
 }
 
+/// Footnotes of where the data come from, each with the groups that it is about.
+std::vector<std::string> data_notes(const Study& study) {
+  std::vector<std::string> notes;
+  for (const DataLabel& label : data_labels()) {
+    std::vector<std::string> groups;
+    for (const StudyRun& run : study.runs) {
+      const bool known = std::find(groups.begin(), groups.end(), run.group) != groups.end();
+      if (!known && label.applies(words_of(run.record.recording))) groups.push_back(run.group);
+    }
+    if (!groups.empty()) notes.push_back(fmt::format("{} ({})", label.footnote(), fmt::join(groups, ", ")));
+  }
+  return notes;
+}
+
 }  // namespace
 
 StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars) {
   StudySummary summary;
   summary.suite = suite;
-  summary.notes = study.notes;
+  summary.notes = data_notes(study);
+  summary.notes.insert(summary.notes.end(), study.notes.begin(), study.notes.end());
   const std::vector<std::string> groups = distinct(study, &StudyRun::group);
   const std::vector<std::string> variants = variants_in_order(study);
   for (const std::string_view half_name : {kHeldOutHalf, kTuningHalf}) {

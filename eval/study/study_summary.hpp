@@ -61,7 +61,7 @@ struct StudySummary {
   std::vector<SummaryRow> rows;  ///< held-out half first; groups as the suite has them; variants as listed
   std::vector<MotionCurve> curves;
   std::vector<BarResult> bars;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes;  ///< where the data of which groups come from; what was not compared
 };
 
 inline constexpr std::string_view kDirectMethod = "dm";

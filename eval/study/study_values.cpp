@@ -17,7 +17,10 @@ std::optional<double> finite(double value) {
 
 std::optional<double> not_ok(const RunRecord& record) { return record.status == RunStatus::ok ? 0.0 : 1.0; }
 
-std::optional<double> lost_frames(const RunRecord& record) { return static_cast<double>(record.frames.lost); }
+std::optional<double> lost_frames(const RunRecord& record) {
+  if (record.frames.total == 0) return std::nullopt;  // it did not start
+  return static_cast<double>(record.frames.lost);
+}
 
 std::optional<double> coverage(const RunRecord& record) {
   if (record.frames.total == 0) return 0.0;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -26,15 +27,27 @@ double place_px(const MotionBin& bin) {
   return std::isfinite(bin.to_px) ? (bin.from_px + bin.to_px) / 2 : bin.from_px + 5;
 }
 
+/// The variants that charts show; each has its own colour wherever it occurs.
+constexpr std::array<std::string_view, 3> kChartedVariants = {kReferenceVariant, kDirectMethod, "no-imu"};
+
+ChartSeries series_of(std::string_view variant, SeriesStyle style) {
+  const auto* const found = std::find(kChartedVariants.begin(), kChartedVariants.end(), variant);
+  return {.label = std::string(variant),
+          .points = {},
+          .style = style,
+          .colour = static_cast<std::size_t>(found - kChartedVariants.begin())};
+}
+
 Chart motion_chart(const MotionCurve& curve) {
   Chart chart;
   chart.title = curve.group == kAllGroups ? "all groups" : curve.group;
   chart.x_label = "motion of patches between two frames [px]";
   chart.left_label = "AIE [grey levels]";
   chart.right_label = "dm / full";
-  ChartSeries full{.label = "full", .points = {}};
-  ChartSeries direct{.label = "dm", .points = {}};
+  ChartSeries full = series_of(kReferenceVariant, SeriesStyle::line);
+  ChartSeries direct = series_of(kDirectMethod, SeriesStyle::line);
   ChartSeries ratio{.label = "dm / full", .points = {}, .style = SeriesStyle::dots, .right = true};
+  ratio.colour = kChartedVariants.size();
   std::size_t frames = 0;
   for (const MotionBin& bin : curve.bins) {
     const SharedMeans& means = bin.means;
@@ -49,21 +62,31 @@ Chart motion_chart(const MotionCurve& curve) {
   return chart;
 }
 
-/// A dot for each ok run; recordings are numbered as the suite has them.
+/// In the order in which the suite has them.
+std::vector<std::string_view> recordings_of(const Study& study, std::string_view group) {
+  std::vector<std::string_view> recordings;
+  for (const StudyRun& run : study.runs) {
+    const bool known = std::find(recordings.begin(), recordings.end(), run.recording) != recordings.end();
+    if (run.group == group && !known) recordings.emplace_back(run.recording);
+  }
+  return recordings;
+}
+
+/// A dot for each ok run, above the number of its recording.
 Chart value_chart(const StudySummary& summary, const Study& study, std::string_view group,
                   const StudyValue& value) {
   Chart chart;
   chart.title = fmt::format("{}: {}", group, value.label);
   chart.x_label = "recording";
   chart.left_label = value.label;
-  for (const std::string_view variant : {"full", "dm", "no-imu"}) {
-    ChartSeries series{.label = std::string(variant), .points = {}, .style = SeriesStyle::dots};
-    std::size_t place = 0;
+  const std::vector<std::string_view> recordings = recordings_of(study, group);
+  for (const std::string_view variant : kChartedVariants) {
+    ChartSeries series = series_of(variant, SeriesStyle::dots);
     for (const StudyRun& run : study.runs) {
       if (run.group != group || run.variant != variant) continue;
-      ++place;
       const auto number = value_of(study, run, value);
-      if (number) series.points.emplace_back(static_cast<double>(place), *number * value.shown_factor);
+      const auto place = std::find(recordings.begin(), recordings.end(), run.recording) - recordings.begin();
+      if (number) series.points.emplace_back(static_cast<double>(place + 1), *number * value.shown_factor);
     }
     if (!series.points.empty()) chart.series.push_back(std::move(series));
   }
@@ -112,6 +135,11 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
   if (!charts.empty()) page.sections.push_back({"Each recording", "", std::move(charts)});
   for (const auto& tables : {value_tables(summary), motion_tables(summary)}) {
     for (const SummaryTable& table : tables) page.sections.push_back({table.title, "", page_table(table)});
+  }
+  if (!summary.notes.empty()) {
+    PageTable notes;
+    for (const std::string& note : summary.notes) notes.rows.push_back({{note}, ""});
+    page.sections.push_back({"Remarks", "", std::move(notes)});
   }
   return to_html(page);
 }

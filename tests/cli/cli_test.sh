@@ -157,6 +157,11 @@ check_bad_usage() {
 
   refused "unknown variant" 2 'no_imu' 'no-imu' -- run freiburg1_copy --variant no_imu --out out
   refused "IMU needed" 2 "'full'" 'hint:--imu synthetic' -- run freiburg1_copy --variant full --out out
+  refused "a calibration from the truth" 2 'made from its ground truth' 'hint:recorded' -- \
+    calibrate freiburg1_copy --imu synthetic --out out
+  refused "a calibration from the truth, automatic" 2 'made from its ground truth' -- \
+    calibrate freiburg1_copy --imu auto --out out
+  refused "one round" 2 'rounds' '2 (-|to) 20' -- calibrate freiburg1_copy --imu synthetic --rounds 1
   refused "frames backwards" 2 '4:2' -- "${run[@]}" --frames 4:2
   refused "frames beyond the end" 2 '3:9' -- "${run[@]}" --frames 3:9
   refused "unknown camera" 2 'freiburg9' -- "${run[@]}" --camera freiburg9

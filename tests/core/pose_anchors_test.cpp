@@ -10,25 +10,15 @@
 namespace fusebench {
 namespace {
 
-SE3 moved(const SE3& T, const Vector6d& d) {
-  return {(T.rotation * so3_exp(d.head<3>())).normalized(), T.translation + d.tail<3>()};
-}
-
-Vector6d pose_error(const SE3& to, const SE3& from) {
-  Vector6d d;
-  d << so3_log(from.rotation.conjugate() * to.rotation), to.translation - from.translation;
-  return d;
-}
-
 const SE3 kFrom{so3_exp({0.3, -0.2, 0.5}), {0.4, -0.3, 1.2}};
 const SE3 kTo{so3_exp({-0.1, 0.6, 0.2}), {0.9, 0.2, 0.7}};
 
 TEST(PoseAnchors, TransportEqualsTheErrorOfARigidlyAttachedPose) {
   Vector6d d;
   d << 1e-6, -2e-6, 3e-6, 4e-6, 5e-6, -6e-6;
-  const SE3 displaced = moved(kFrom, d);
+  const SE3 displaced = pose_plus(kFrom, d);
   const SE3 T_from_to = kFrom.inverse() * kTo;
-  EXPECT_LT((pose_error(displaced * T_from_to, kTo) - pose_transport(kTo, kFrom) * d).norm(), 1e-10);
+  EXPECT_LT((pose_minus(displaced * T_from_to, kTo) - pose_transport(kTo, kFrom) * d).norm(), 1e-10);
   EXPECT_LT((pose_transport(kFrom, kTo) * pose_transport(kTo, kFrom) - Matrix6d::Identity()).norm(), 1e-12);
 }
 
@@ -85,7 +75,7 @@ class KnownMeasurement final : public PoseMeasurement {
  private:
   static double information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 0.0; }
   static PoseQuadratic quadratic(const SE3& at, const SE3& measured, double weight) {
-    const Vector6d error = pose_error(at, measured);
+    const Vector6d error = pose_minus(at, measured);
     return {weight * Matrix6d::Identity(), weight * error, 0.5 * weight * error.squaredNorm()};
   }
   SE3 by_reference_, by_model_;
@@ -109,8 +99,8 @@ TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
         Vector6d noise;
         for (int i = 0; i < kPoseSize; ++i) noise[i] = normal(random);
         // The truth stands still at identity; the patches were cut at the estimate.
-        const SE3 seen = moved(state.mean.T_world_imu_reference * reference_truth.inverse(), noise);
-        KnownMeasurement measurement(seen, moved(SE3{}, noise), by_model ? 0.0 : kSigma,
+        const SE3 seen = pose_plus(state.mean.T_world_imu_reference * reference_truth.inverse(), noise);
+        KnownMeasurement measurement(seen, pose_plus(SE3{}, noise), by_model ? 0.0 : kSigma,
                                      by_model ? kSigma : 0.0);
         state = anchored(iekf_update(state, measurement, IekfConfig{}).posterior, {});
       }
@@ -131,7 +121,7 @@ TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
   state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
   Vector6d off;
   off << 2e-4, -1e-4, 3e-4, 1e-3, -2e-3, 1e-3;
-  const SE3 by_model = moved(kTo, off);
+  const SE3 by_model = pose_plus(kTo, off);
   KnownMeasurement first(kTo, by_model, 1e-3, 1e-3);
   state = iekf_update(state, first, IekfConfig{}).posterior;
   EXPECT_GT(state.mean.reference_offset.norm(), 1e-6);
@@ -143,7 +133,7 @@ TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
   once.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
   KnownMeasurement both(kTo, by_model, 1e-3 / std::sqrt(2.0), 1e-3 / std::sqrt(2.0));
   once = iekf_update(once, both, IekfConfig{}).posterior;
-  EXPECT_LT(pose_error(again.mean.T_world_imu, once.mean.T_world_imu).norm(), 1e-7);
+  EXPECT_LT(pose_minus(again.mean.T_world_imu, once.mean.T_world_imu).norm(), 1e-7);
   EXPECT_LT((again.covariance - once.covariance).norm() / once.covariance.norm(), 1e-3);
 }
 

@@ -4,10 +4,10 @@
 #include <random>
 #include <vector>
 
+#include "core/smoothed_sample.hpp"
 #include "core/smoother/manifolds.hpp"
 #include "core/smoother/relative_motion.hpp"
 #include "core/smoother/selected_inverse.hpp"
-#include "core/smoother/smoothed_sample.hpp"
 #include "tests/support/numeric_jacobian.hpp"
 
 namespace fusebench {

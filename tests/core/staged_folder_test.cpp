@@ -1,6 +1,12 @@
 #include "core/staged_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -61,6 +67,69 @@ TEST_F(StagedFolderTest, APlaceThatCannotBeWrittenIsAnIoError) {
   ASSERT_FALSE(run.has_value());
   EXPECT_EQ(run.error().code, ErrorCode::io);
   EXPECT_EQ(entries(folder_), 1U);
+}
+
+TEST_F(StagedFolderTest, TwoOfOnePlaceDoNotDisturbEachOther) {
+  auto first = StagedFolder::create(folder_ / "0123");
+  auto second = StagedFolder::create(folder_ / "0123");
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(first->path(), second->path());
+  ASSERT_TRUE(first->write("record.json", "first") && second->write("record.json", "second"));
+  ASSERT_TRUE(second->commit() && first->commit());
+  EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), "first");
+  EXPECT_EQ(entries(folder_), 2U);
+}
+
+/// A machine that shares the disk has a process of the same number.
+TEST_F(StagedFolderTest, ANameThatIsTakenIsLeftAlone) {
+  const std::string process = std::to_string(getpid());
+  write(".0123." + process + ".tmp/record.json", "theirs");
+  write(".0123." + process + "-1.tmp/new/record.json", "theirs, too");
+  auto run = StagedFolder::create(folder_ / "0123");
+  ASSERT_TRUE(run && run->write("record.json", "ours") && run->commit());
+  EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), "ours");
+  EXPECT_EQ(testing::read_bytes(folder_ / (".0123." + process + ".tmp") / "record.json"), "theirs");
+  EXPECT_EQ(testing::read_bytes(folder_ / (".0123." + process + "-1.tmp") / "new" / "record.json"),
+            "theirs, too");
+}
+
+/// How many of many threads failed, each with many calls of `once`.
+template <class Once>
+int failures_of(const Once& once) {
+  std::atomic<int> failures = 0;
+  std::vector<std::thread> threads;
+  for (int thread = 0; thread < 4; ++thread) {
+    threads.emplace_back([&, name = std::to_string(thread)] {
+      for (int i = 0; i < 200; ++i) failures += once(name) ? 0 : 1;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return failures;
+}
+
+/// Just when others need these.
+TEST_F(StagedFolderTest, AbandonedFoldersTakeTheirEmptyParentsWithThem) {
+  const int failures = failures_of([&](const std::string& name) {
+    const auto run = StagedFolder::create(folder_ / "out" / "recording" / name);
+    return run && run->write("record.json", "{}");
+  });
+  EXPECT_EQ(failures, 0);
+}
+
+TEST_F(StagedFolderTest, CommitsToOnePlaceAllSucceed) {
+  const int failures = failures_of([&](const std::string& name) {
+    auto run = StagedFolder::create(folder_ / "0123");
+    return run && run->write("record.json", name) && run->write("log.txt", name) && run->commit();
+  });
+  EXPECT_EQ(failures, 0);
+  EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), testing::read_bytes(folder_ / "0123/log.txt"));
+  EXPECT_EQ(entries(folder_), 3U);
+}
+
+TEST_F(StagedFolderTest, ASlashAtTheEndIsTheSamePlace) {
+  auto run = StagedFolder::create(folder_ / "0123" / "");
+  ASSERT_TRUE(run && run->write("record.json", "{}") && run->commit());
+  EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), "{}");
 }
 
 }  // namespace

@@ -61,6 +61,13 @@ TEST(Calibration, RecoversWhatWasDisturbed) {
   EXPECT_GT(along, 0.9);
 }
 
+TEST(Calibration, SaysThatAnImuIsMadeOfTheTruth) {
+  Recording recording;
+  EXPECT_EQ(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
+  recording.imu_source = ImuSource::synthetic;
+  EXPECT_NE(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
+}
+
 TEST(Calibration, WritesAFileThatReadsBack) {
   const testing::SimulatedRun run = testing::simulate(2);
   const Recording recording = recording_of(run);
@@ -93,7 +100,24 @@ TEST(Smoothing, FollowsTheTruthAndIsLabelled) {
   EXPECT_TRUE(pseudo_truth_text(*smoothed).starts_with("# pseudo ground truth"));
   const auto document = nlohmann::json::parse(to_json(*smoothed, recording));
   EXPECT_EQ(document["label"], kPseudoGroundTruth);
-  EXPECT_TRUE(document.contains("against_ground_truth"));
+  EXPECT_TRUE(document["against_ground_truth"].contains("smoothed"));
+  EXPECT_TRUE(document["against_ground_truth"].contains("measuring_run"));
+  EXPECT_TRUE(smoothing_remarks(*smoothed).empty());
+}
+
+TEST(Smoothing, SaysWhatToBewareOf) {
+  SmoothedRecording smoothed;
+  smoothed.stamps_ns = {1, 2, 3};
+  smoothed.tracked = 3;
+  smoothed.estimate.rounds = 12;
+  std::vector<std::string> remarks = smoothing_remarks(smoothed);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("still moving after 12 rounds"), std::string::npos) << remarks[0];
+  smoothed.tracked = 2;
+  smoothed.estimate.converged = true;
+  remarks = smoothing_remarks(smoothed);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("1 of 3 frames were lost"), std::string::npos) << remarks[0];
 }
 
 /// A truth that was smoothed from the recording is nothing to compare with.

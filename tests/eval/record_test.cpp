@@ -15,9 +15,17 @@ RunRecord sample_record() {
   RunRecord record;
   record.status = RunStatus::ok;
   record.reason.clear();
-  record.recording = {
-      "fr1 \"rpy\"", "tum",  "simulated",     240,      3,
-      7.9671,        "00ff", "synthetic IMU", "seed 1", {"stamps made \"regular\"", "warning: a gap"}};
+  record.recording = {"fr1 \"rpy\"",
+                      "tum",
+                      "simulated",
+                      240,
+                      3,
+                      7.9671,
+                      "00ff",
+                      "synthetic IMU",
+                      "seed 1",
+                      "pseudo ground truth",
+                      {"stamps made \"regular\"", "warning: a gap"}};
   record.variant = "full";
   record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},
                    {"depth.max_m", 1.0, "default"},
@@ -84,6 +92,7 @@ TEST(Record, ReadsBackWhatItWrote) {
   EXPECT_EQ(std::get<double>(back->config[1].value), 1.0);
   EXPECT_FALSE(back->metrics.rpe_second.value.has_value());
   EXPECT_EQ(back->recording.notes, sample_record().recording.notes);
+  EXPECT_EQ(back->recording.truth, kPseudoTruthWord);
   EXPECT_EQ(back->metrics.rpe_second.reason, "shorter than 1 s");
 }
 
@@ -99,6 +108,7 @@ TEST(Record, HasTheKeysThatReadersRelyOn) {
                                  "/recording/fingerprint",
                                  "/recording/imu",
                                  "/recording/imu_note",
+                                 "/recording/truth",
                                  "/recording/notes/1",
                                  "/variant",
                                  "/config",
@@ -166,12 +176,14 @@ TEST(Record, OlderRecordsAreStillRead) {
   record["metrics"].erase("mesh");
   record["metrics"].erase("nees");
   record["metrics"].erase("residuals");
+  record["recording"].erase("truth");
   const auto back = parse_record(record.dump(), "record.json");
   ASSERT_TRUE(back.has_value()) << back.error().message;
   EXPECT_EQ(back->metrics.nees[1].reason, "the record is older than this metric");
   EXPECT_EQ(back->metrics.mesh.reason, "the record is older than this metric");
   EXPECT_EQ(back->metrics.residuals.reason, "the record is older than this metric");
   EXPECT_EQ(back->metrics.ate.value->pairs, 239U);
+  EXPECT_EQ(back->recording.truth, "");  // nobody knows
 }
 
 TEST(Record, NumbersThatDoNotExistAreNull) {

@@ -46,6 +46,12 @@ SE3 truth_at(const Recording& recording, std::int64_t timestamp_ns) {
   return found->T_world_camera;
 }
 
+/// What is shown to whom: frames of the recording in another order, at the times of the first ones.
+struct Playback {
+  std::string variant = "full";
+  std::vector<std::size_t> order;  ///< empty: as they are
+};
+
 class Robustness : public testing::InTemporaryFolder {
  protected:
   /// Two seconds of careful scanning that begin in motion, in a quarter of a ZR300's pixels.
@@ -59,23 +65,27 @@ class Robustness : public testing::InTemporaryFolder {
     return options;
   }
 
-  RunResult run(const SimulationOptions& options) {
+  RunResult run(const SimulationOptions& options, const Playback& playback = {}) {
     const Workers workers(1);
     const std::filesystem::path folder = folder_ / std::to_string(count_++);
     const auto made = simulate(options, folder, workers);
     EXPECT_TRUE(made) << (made ? "" : made.error().message);
     const auto recording = open_recording(folder);
     EXPECT_TRUE(recording) << (recording ? "" : recording.error().message);
-    Pipeline pipeline(variant_config(find_variant("full").value()).values, recording->rig, recording->imu,
-                      workers);
+    Pipeline pipeline(variant_config(find_variant(playback.variant).value()).values, recording->rig,
+                      recording->imu, workers);
     const std::int64_t first_ns = recording->frames.front().timestamp_ns;
     const SE3 T_first_truth = truth_at(*recording, first_ns).inverse();
     RunResult results;
-    for (std::size_t k = 0; k < recording->frames.size(); ++k) {
-      auto report = pipeline.process(recording->load_frame(k).value());
+    const std::int64_t period_ns = recording->frames[1].timestamp_ns - first_ns;
+    const std::size_t count = playback.order.empty() ? recording->frames.size() : playback.order.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      RgbdFrame frame = recording->load_frame(playback.order.empty() ? k : playback.order[k]).value();
+      const SE3 truth = T_first_truth * truth_at(*recording, frame.timestamp_ns);
+      if (!playback.order.empty()) frame.timestamp_ns = first_ns + static_cast<std::int64_t>(k) * period_ns;
+      auto report = pipeline.process(frame);
       EXPECT_TRUE(report) << (report ? "" : report.error().message);
       if (!report) break;
-      const SE3 truth = T_first_truth * truth_at(*recording, report->timestamp_ns);
       FrameResult result;
       result.time_s = seconds_between(first_ns, report->timestamp_ns);
       result.error_m = (report->T_world_camera.translation - truth.translation).norm();
@@ -155,6 +165,23 @@ void expect_bridged(const RunResult& results, FrameHealth health) {
 
 TEST_F(Robustness, BlackImagesAreBridgedByTheImu) {
   expect_bridged(run(scanning({"black=0.8:1.29"})), FrameHealth::dark);
+}
+
+TEST_F(Robustness, APlaceIsFoundAgainAfterAJump) {
+  // The camera is carried back to where it was 1.4 seconds ago, half a metre and some forty degrees away.
+  Playback playback{"no-imu", {}};
+  for (std::size_t k = 0; k < 45; ++k) playback.order.push_back(k);
+  for (std::size_t k = 3; k < 30; ++k) playback.order.push_back(k);
+  const RunResult results = run(scanning(), playback);
+  ASSERT_EQ(results.size(), 72U);
+  const auto found = std::ranges::find_if(
+      results, [](const FrameResult& r) { return r.report.status == FrameStatus::relocalised; });
+  ASSERT_NE(found, results.end());
+  EXPECT_TRUE(results[45].lost());  // nothing moves like that: it has to be lost for a while to be believed
+  EXPECT_LT(found - results.begin(), 65);
+  EXPECT_GT(found->report.patches_accepted, 20);
+  expect_tracked({found, results.end()});
+  expect_no_confident_error(results, 0.02, 0.5);
 }
 
 TEST_F(Robustness, SurfacesWithoutTextureAreBridgedByTheImu) {

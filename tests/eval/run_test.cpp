@@ -2,9 +2,11 @@
 #include "eval/run.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <sstream>
 
 #include "core/mesh_file.hpp"
@@ -62,6 +64,27 @@ TEST_F(RunTest, WritesAWholeFolder) {
   // World is the first camera frame.
   EXPECT_EQ((*trajectory)[0].T_world_camera.translation, Vector3d(0, 0, 0));
   EXPECT_EQ((*trajectory)[0].timestamp_ns, prepared->recording.frames[0].timestamp_ns);
+}
+
+TEST_F(RunTest, TheRecordSaysWhatTheTruthIs) {
+  std::filesystem::copy(kGolden, folder_ / "freiburg1_walk", std::filesystem::copy_options::recursive);
+  RunSpec wanted = spec("no-imu");
+  wanted.recording = folder_ / "freiburg1_walk";
+  wanted.frames = FrameWindow{0, 2};
+  const auto truth_of = [&] {
+    const auto prepared = prepare_run(wanted);
+    const auto record = prepared ? execute_run(*prepared) : Result<RunRecord>(RunRecord{});
+    return record ? record->recording.truth : record.error().message;
+  };
+  EXPECT_EQ(truth_of(), "given");
+  const std::filesystem::path file = wanted.recording / "groundtruth.txt";
+  const std::string given = testing::read_bytes(file);
+  std::filesystem::permissions(file, std::filesystem::perms::owner_write, std::filesystem::perm_options::add);
+  std::ofstream(file) << "# " << kPseudoGroundTruth << "\n" << given;
+  EXPECT_TRUE(kPseudoGroundTruth.starts_with(kPseudoTruthWord));
+  EXPECT_EQ(truth_of(), kPseudoTruthWord);
+  std::filesystem::remove(file);
+  EXPECT_EQ(truth_of(), "none");
 }
 
 TEST_F(RunTest, SameBytesWithAnyThreadCount) {
@@ -289,6 +312,49 @@ TEST_F(RunTest, BlackFramesAreLost) {
   EXPECT_EQ(read_tum_trajectory(prepared->folder / "trajectory.tum", warnings)->size(),
             record->frames.tracked);
   EXPECT_LT(record->frames.tracked, 5U);
+}
+
+/// While it lives, no file can grow beyond 8 kB.
+class FullDisk {
+ public:
+  FullDisk() {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{8192, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = SIG_DFL;
+};
+
+/// What an earlier run left in the place of one that could not be written is not its result.
+TEST_F(RunTest, ARunWhoseResultsCannotBeWrittenHasNone) {
+  BatchJob job;
+  job.recording = kGolden;
+  job.variant = "no-imu";
+  job.spec = spec("no-imu");
+  const BatchOutcome good = run_batch({job}, false)->front();
+  ASSERT_EQ(good.status, RunStatus::ok);
+  ASSERT_FALSE(good.folder.empty());
+  const FullDisk full_disk;
+  const BatchOutcome bad = run_batch({job}, false)->front();
+  EXPECT_EQ(bad.status, RunStatus::failed);
+  EXPECT_NE(bad.reason.find("cannot be written"), std::string::npos) << bad.reason;
+  EXPECT_TRUE(bad.folder.empty());
+  EXPECT_EQ(bad.record.status, RunStatus::failed);
+  EXPECT_EQ(bad.record.variant, "no-imu");
+  EXPECT_EQ(bad.record.config_hash, good.record.config_hash);
+  const auto shown = read_record(good.folder.parent_path() / "not-started" / "record.json");
+  ASSERT_TRUE(shown.has_value()) << shown.error().message;
+  EXPECT_EQ(shown->reason, bad.reason);
 }
 
 TEST_F(RunTest, ResumeLeavesFinishedRunsAlone) {

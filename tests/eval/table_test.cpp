@@ -89,6 +89,36 @@ TEST_F(TableTest, SimulatedDataIsLabelled) {
     EXPECT_NE(render_table(table, format).find("simulated"), std::string::npos);
 }
 
+TEST_F(TableTest, APseudoGroundTruthIsMarkedAndExplained) {
+  RunRecord record;
+  record.recording.name = "walk";
+  for (const char* const truth : {"none", "given"}) {
+    record.recording.truth = truth;
+    write("runs/walk/full/01234567/record.json", to_json(record));
+    const auto without = collect_table(folder_ / "runs");
+    ASSERT_TRUE(without.has_value()) << without.error().message;
+    for (const TableFormat format :
+         {TableFormat::markdown, TableFormat::csv, TableFormat::json, TableFormat::latex})
+      EXPECT_EQ(render_table(*without, format).find("pseudo"), std::string::npos);
+  }
+  record.recording.truth = kPseudoTruthWord;
+  write("runs/walk/full/01234567/record.json", to_json(record));
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  const std::string mark = "recorded, pseudo ground truth";
+  const std::string footnote = "pseudo ground truth: the reference is a batch estimate of the same recording";
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find("| walk      | " + mark + " |"),
+            std::string::npos)
+      << render_table(*table, TableFormat::markdown);
+  EXPECT_NE(render_table(*table, TableFormat::latex).find("& " + mark + " &"), std::string::npos);
+  EXPECT_NE(render_table(*table, TableFormat::csv).find("walk,recorded,none,pseudo ground truth,"),
+            std::string::npos);
+  const auto document = nlohmann::json::parse(render_table(*table, TableFormat::json));
+  EXPECT_EQ(document.at("rows").at(0).at("truth"), kPseudoTruthWord);
+  EXPECT_TRUE(document.at("protocol").back().get<std::string>().starts_with(footnote));
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find(footnote), std::string::npos);
+}
+
 TEST_F(TableTest, MarkdownLinesAreAligned) {
   add_three_runs();
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::markdown);

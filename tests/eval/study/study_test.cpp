@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/trajectory_file.hpp"
@@ -126,6 +127,26 @@ TEST_F(StudyTest, ALostRunFailsABarAndNoRunDecidesNothing) {
   EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
 }
 
+TEST_F(StudyTest, ARunThatDidNotStartHasNoLostFrames) {
+  add("a", "slow", "full", 0.001);
+  StudyRun& absent = add("b", "slow", "full", 0.001, RunStatus::failed);
+  absent.record.frames = {};
+  const StudyValue& value = *find_study_value("lost_frames");
+  EXPECT_FALSE(value_of(study(), runs_[1], value).has_value());
+  EXPECT_EQ(value_of(study(), runs_[0], value), 0.0);
+  Bar bar = ate_bar(BarStatistic::worst);
+  bar.metric = "lost_frames";
+  bar.at_most = 0;
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+  EXPECT_EQ(check(bar).note, "not ok: b");
+  EXPECT_DOUBLE_EQ(*check(bar).measured, 0);
+  const StudySummary summary = summarise("demo", study(), {});
+  EXPECT_EQ(summary.rows[0].values[1].count, 1U);  // lost_frames, of the one that ran
+  runs_.erase(runs_.begin());
+  EXPECT_EQ(check(bar).verdict, Verdict::failed);  // none ran: no evidence
+  EXPECT_FALSE(check(bar).measured.has_value());
+}
+
 TEST_F(StudyTest, ARunWithoutTheNumberFailsWhereOthersHaveIt) {
   add("a", "slow", "full", 0.001);
   add("b", "slow", "full", 0.001).record.metrics.ate = {};
@@ -193,6 +214,57 @@ TEST_F(StudyTest, NeesIsHeldAgainstTheBoundsOfSoManyRuns) {
   EXPECT_EQ(measured.verdict, Verdict::passed);
   runs_[0].record.metrics.nees[0].value->stats.mean = 5;
   EXPECT_EQ(check(bar).verdict, Verdict::failed);
+}
+
+/// As tables have it, with the groups that it is about.
+TEST_F(StudyTest, WhereTheDataComeFromIsSaid) {
+  add("a", "walk", "full", 0.01).record.recording.truth = kPseudoTruthWord;
+  add("b", "walk", "full", 0.01).record.recording.truth = kPseudoTruthWord;
+  add("c", "room", "full", 0.01).record.recording.data = "simulated";
+  add("d", "desk", "full", 0.01);
+  const Study all = study();
+  const StudySummary summary = summarise("demo", all, {});
+  ASSERT_EQ(summary.notes.size(), 2U);
+  EXPECT_TRUE(summary.notes[0].starts_with("simulated: ")) << summary.notes[0];
+  EXPECT_TRUE(summary.notes[0].ends_with("(room)")) << summary.notes[0];
+  EXPECT_TRUE(summary.notes[1].starts_with("pseudo ground truth: ")) << summary.notes[1];
+  EXPECT_TRUE(summary.notes[1].ends_with("(walk)")) << summary.notes[1];
+  EXPECT_NE(summary_text(summary).find("- pseudo ground truth: "), std::string::npos);
+  EXPECT_NE(summary_json(summary, all).find("pseudo ground truth: "), std::string::npos);
+  EXPECT_NE(summary_page(summary, all).find("<td>pseudo ground truth: "), std::string::npos);
+}
+
+/// The JSON that a page draws its charts from.
+nlohmann::json charts_of(const std::string& page) {
+  const std::string mark = R"(id="charts">)";
+  const std::size_t begin = page.find(mark) + mark.size();
+  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+TEST_F(StudyTest, ColoursAreByVariantAndPlacesByRecording) {
+  add("a", "slow", "full", 0.01);
+  add("a", "slow", "dm", 0.02);
+  add("b", "slow", "full", 0.03);
+  add("b", "slow", "no-imu", 0.05);  // the second recording, and the first of this variant
+  add("c", "fast", "full", 0.01, RunStatus::lost);
+  add("c", "fast", "no-imu", 0.04);  // alone in its chart
+  const Study all = study();
+  const nlohmann::json charts = charts_of(summary_page(summarise("demo", all, {}), all));
+  ASSERT_EQ(charts.size(), 2U);
+  std::map<std::string, int> colours;
+  for (const auto& chart : charts) {
+    for (const auto& series : chart.at("series")) {
+      const auto [known, fresh] = colours.emplace(series.at("label"), series.at("colour"));
+      EXPECT_EQ(known->second, series.at("colour")) << known->first;
+    }
+  }
+  EXPECT_EQ(colours.size(), 3U);
+  EXPECT_NE(colours["full"], colours["no-imu"]);
+  EXPECT_NE(colours["full"], colours["dm"]);
+  EXPECT_NE(colours["dm"], colours["no-imu"]);
+  const auto& third = charts[0].at("series").at(2);
+  EXPECT_EQ(third.at("label"), "no-imu");
+  EXPECT_EQ(third.at("points"), nlohmann::json::parse("[[2.0, 5.0]]"));  // cm
 }
 
 class SharedPixelsTest : public StudyTest {
@@ -270,7 +342,12 @@ TEST_F(SharedPixelsTest, TheSummaryHasRowsAndCurves) {
   EXPECT_NE(summary_text(summary).find("| all   | 30 and more | 1"), std::string::npos)
       << summary_text(summary);
   const std::string page = summary_page(summary, study());
-  EXPECT_NE(page.find("dm / full"), std::string::npos);
+  const nlohmann::json motion = charts_of(page)[0].at("series");
+  ASSERT_EQ(motion.size(), 3U);
+  EXPECT_EQ(motion[2].at("label"), "dm / full");
+  EXPECT_EQ(motion[0].at("colour"), 0);  // full and dm as in all charts, and their ratio as no variant
+  EXPECT_EQ(motion[1].at("colour"), 1);
+  EXPECT_EQ(motion[2].at("colour"), 3);
   EXPECT_EQ(page.find("https://"), page.find("https://www.chartjs.org"));  // nothing is loaded from elsewhere
 }
 

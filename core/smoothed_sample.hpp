@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 
-#include "core/imu_preintegration.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {
@@ -14,11 +13,5 @@ namespace fusebench {
 /// one. There must be a sample.
 [[nodiscard]] ImuSample smoothed_sample(std::span<const ImuSample> samples, std::int64_t instant_ns,
                                         double half_window_s);
-
-/// Replaces the derivatives of an increment by the offset of the clock, which preintegrate() takes from
-/// single samples at both ends. Where a camera moves slowly these are mostly noise, and since the same noise
-/// is in the increments, an estimate of the offset that trusts them is biased and too sure of itself. begin
-/// and end: smoothed, biases removed.
-void differentiate_by_time_offset(PreintegratedImu& imu, const ImuSample& begin, const ImuSample& end);
 
 }  // namespace fusebench

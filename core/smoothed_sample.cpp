@@ -1,4 +1,4 @@
-#include "core/smoother/smoothed_sample.hpp"
+#include "core/smoothed_sample.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -38,16 +38,6 @@ ImuSample smoothed_sample(std::span<const ImuSample> samples, std::int64_t insta
   }
   const Eigen::Matrix<double, 3, 6> parabola = information.ldlt().solve(sum);
   return {instant_ns, parabola.row(0).head<3>(), parabola.row(0).tail<3>()};
-}
-
-void differentiate_by_time_offset(PreintegratedImu& imu, const ImuSample& begin, const ImuSample& end) {
-  const Matrix3d R = imu.delta_rotation.toRotationMatrix();
-  const Vector3d& rate = begin.angular_velocity_radps;
-  const Vector3d& force = begin.specific_force_mps2;
-  imu.rotation_by_time_offset = end.angular_velocity_radps - R.transpose() * rate;
-  imu.velocity_by_time_offset = R * end.specific_force_mps2 - force - rate.cross(imu.delta_velocity_mps);
-  imu.position_by_time_offset =
-      imu.delta_velocity_mps - imu.duration_s * force - rate.cross(imu.delta_position_m);
 }
 
 }  // namespace fusebench

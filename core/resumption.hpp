@@ -1,0 +1,25 @@
+// How the filter goes on from a place that was found again (keyframes.hpp).
+#pragma once
+
+#include "core/filter_state.hpp"
+
+namespace fusebench {
+
+/// Where the IMU was found, and where it was when the frame was taken that told it.
+struct RecognisedPlace {
+  SE3 T_world_imu;
+  SE3 T_world_imu_reference;                         ///< the frame that the patches are cut from now
+  Matrix6d covariance = Matrix6d::Zero();            ///< of T_world_imu against that frame, in its tangent
+  Matrix6d reference_covariance = Matrix6d::Zero();  ///< of that frame against the model, in its own tangent
+};
+
+/// How much a place contradicts the prediction: the normalised innovation squared over its mean; 1 if both
+/// are right.
+[[nodiscard]] double contradiction(const GaussianState& prediction, const RecognisedPlace& place);
+
+/// The state after the place has been heard: a Kalman update, which tells velocity, gravity and biases as
+/// well what their correlations with the pose let it. A filter that lost its way was usually too sure of
+/// itself: the variance of pose, velocities and gravity grows first by as much as the place contradicts them.
+[[nodiscard]] GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place);
+
+}  // namespace fusebench
