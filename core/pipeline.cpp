@@ -309,11 +309,15 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
   std::vector<Patch> patches_before =
       std::exchange(patches, refresh_patches(reference, model, {}, config, workers));
   const std::int64_t reference_before_ns = std::exchange(reference_ns, keyframe.timestamp_ns);
+  const InitialisationConfig& initial = config.initialisation;
+  const bool gyroscope = config.terms.prior == Prior::imu;
+  const UnknownMotion unknown{initial.moving_velocity_sigma_mps,
+                              gyroscope ? 0.0 : initial.angular_velocity_sigma_radps};
   FrameReport again;
   again.timestamp_ns = report.timestamp_ns;
   again.capture_ns = report.capture_ns;
   again.stage_ms = report.stage_ms;
-  if (!track(resumed(prediction, place), prepared, true, again)) {
+  if (!track(resumed(prediction, place, unknown), prepared, true, again)) {
     patches = std::move(patches_before);
     reference_ns = reference_before_ns;
     return false;

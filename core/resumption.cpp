@@ -10,14 +10,36 @@ namespace fusebench {
 
 namespace {
 
-/// Standard deviations of all that follows from the motion, times a factor; biases and the clock stay
-/// as they are.
+/// Standard deviations of all that follows from the motion, times a factor; biases and the clock stay as they
+/// are.
 StateMatrix motion_inflated(const StateMatrix& covariance, double factor) {
   StateVector scale = StateVector::Ones();
   for (const auto& [offset, size] :
        {std::pair{kRotation, 9}, std::pair{kGravity, 2}, std::pair{kAngularVelocity, 3}})
     scale.segment(offset, size).setConstant(factor);
   return scale.asDiagonal() * covariance * scale.asDiagonal();
+}
+
+/// What was known of three components is forgotten.
+void forget(StateMatrix& covariance, int offset, double sigma) {
+  covariance.middleRows<3>(offset).setZero();
+  covariance.middleCols<3>(offset).setZero();
+  covariance.block<3, 3>(offset, offset).diagonal().setConstant(sigma * sigma);
+}
+
+/// The prediction as it may be trusted, now that it is contradicted.
+GaussianState distrusted(const GaussianState& prediction, double contradiction,
+                         const UnknownMotion& unknown) {
+  GaussianState state{prediction.mean,
+                      motion_inflated(prediction.covariance, std::sqrt(std::max(1.0, contradiction)))};
+  if (contradiction <= kSurprise) return state;
+  state.mean.velocity_world_mps.setZero();
+  forget(state.covariance, kVelocity, unknown.velocity_sigma_mps);
+  if (unknown.angular_velocity_sigma_radps > 0) {
+    state.mean.angular_velocity_imu_radps.setZero();
+    forget(state.covariance, kAngularVelocity, unknown.angular_velocity_sigma_radps);
+  }
+  return state;
 }
 
 /// Of the found pose against the model.
@@ -34,20 +56,19 @@ double contradiction(const GaussianState& prediction, const RecognisedPlace& pla
   return innovation.dot(expected.ldlt().solve(innovation)) / kPoseSize;
 }
 
-GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place) {
-  const Vector6d innovation = pose_minus(place.T_world_imu, prediction.mean.T_world_imu);
-  const double factor = std::sqrt(std::max(1.0, contradiction(prediction, place)));
-  const StateMatrix covariance = motion_inflated(prediction.covariance, factor);
-
-  const Eigen::Matrix<double, kStateSize, kPoseSize> crossed = covariance.leftCols<kPoseSize>();
+GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place,
+                      const UnknownMotion& unknown) {
+  const GaussianState prior = distrusted(prediction, contradiction(prediction, place), unknown);
+  const Vector6d innovation = pose_minus(place.T_world_imu, prior.mean.T_world_imu);
+  const Eigen::Matrix<double, kStateSize, kPoseSize> crossed = prior.covariance.leftCols<kPoseSize>();
   const Matrix6d expected = crossed.topRows<kPoseSize>() + place_noise(place);
   const Eigen::Matrix<double, kStateSize, kPoseSize> gain =
       expected.ldlt().solve(crossed.transpose()).transpose();
   const StateVector delta = gain * innovation;
-  GaussianState result{plus(prediction.mean, delta), covariance - gain * crossed.transpose()};
+  GaussianState result{plus(prior.mean, delta), prior.covariance - gain * crossed.transpose()};
 
   // The patches are of another frame now: its error is told by nothing else in the state.
-  StateMatrix anchor = chart_transport(prediction.mean, delta);
+  StateMatrix anchor = chart_transport(prior.mean, delta);
   anchor.middleRows<kPoseSize>(kReferencePose).setZero();
   const Matrix6d carried = pose_transport(place.T_world_imu_reference, prediction.mean.T_world_imu_reference);
   anchor.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;

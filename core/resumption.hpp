@@ -17,9 +17,21 @@ struct RecognisedPlace {
 /// are right.
 [[nodiscard]] double contradiction(const GaussianState& prediction, const RecognisedPlace& place);
 
+/// Velocities where the motion before is of no use: zero, with these standard deviations.
+struct UnknownMotion {
+  double velocity_sigma_mps = 1;
+  double angular_velocity_sigma_radps = 0;  ///< 0: a gyroscope knows it all the same
+};
+
 /// The state after the place has been heard: a Kalman update, which tells velocity, gravity and biases as
-/// well what their correlations with the pose let it. A filter that lost its way was usually too sure of
-/// itself: the variance of pose, velocities and gravity grows first by as much as the place contradicts them.
-[[nodiscard]] GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place);
+/// well what their correlations with the pose let it. Pose and gravity of a filter that lost its way were
+/// usually too sure: their variance grows first by as much as the place contradicts them. If it contradicts
+/// them clearly (kSurprise), the camera has not moved as the filter thinks, and its velocities are unknown.
+[[nodiscard]] GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place,
+                                    const UnknownMotion& unknown);
+
+/// A contradiction of this much happens by chance once in two thousand (chi-square of six degrees of
+/// freedom).
+inline constexpr double kSurprise = 4;
 
 }  // namespace fusebench

@@ -42,7 +42,7 @@ TEST(Resumption, AnExactPlaceIsTakenAndTellsTheVelocity) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.10, -0.05, 0.02;
   const SE3 found = pose_plus(kPredicted, off);
-  const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place_at(found, 1e-6));
+  const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place_at(found, 1e-6), {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 2e-3);  // the reference may be off by that
   // The position was wrong because the velocity was, for half a second.
   EXPECT_LT((state.mean.velocity_world_mps - Vector3d(0.5, -0.2, 0.1) - off.tail<3>() / 0.5).norm(), 1e-4);
@@ -55,7 +55,7 @@ TEST(Resumption, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
   const GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
   RecognisedPlace place = place_at(pose_plus(kPredicted, off), 0.01);
   place.reference_covariance.setZero();
-  const GaussianState state = resumed(prediction, place);
+  const GaussianState state = resumed(prediction, place, {});
 
   const Matrix6d P = prediction.covariance.topLeftCorner<kPoseSize, kPoseSize>();
   const Matrix6d expected = P * (P + place.covariance).inverse();
@@ -81,14 +81,17 @@ TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
   Vector6d off;
   off << 0.3, -0.2, 0.4, 2.0, -1.0, 0.5;  // tens of standard deviations
   const SE3 found = pose_plus(kPredicted, off);
-  const GaussianState state = resumed(lost_at(kPredicted, 0.01, 0.5), place_at(found, 0.01));
+  const GaussianState state = resumed(lost_at(kPredicted, 0.01, 0.5), place_at(found, 0.01), {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 0.1);
   EXPECT_EQ(state.covariance(kGyroscopeBias, kGyroscopeBias), 1e-6);  // not contradicted by a place
+  // Nothing moves like that: how fast it was tells nothing of how fast it is.
+  EXPECT_EQ(state.mean.velocity_world_mps, Vector3d::Zero());
+  EXPECT_NEAR(state.covariance(kVelocity, kVelocity), 1.0, 1e-12);
 }
 
 TEST(Resumption, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
   const RecognisedPlace place = place_at(kPredicted, 0.01);
-  const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place);
+  const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place, {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu_reference, kReference).norm(), 1e-15);
   EXPECT_EQ(state.mean.reference_offset.norm(), 0);
   const auto combinations = measured_combinations(state.mean);
