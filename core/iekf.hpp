@@ -3,9 +3,10 @@
 //   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
-// every one. A measurement sees two combinations B d of the error state only (pose_anchors.hpp), so the
-// optimum is x_prior (+) P B^T y for some y in R^12: the update iterates on y, never inverts P (which may be
-// singular), and carries velocity, biases and gravity along by their correlations.
+// every one (iekf.prior_in_every_iteration). A measurement sees two combinations B d of the error state only
+// (pose_anchors.hpp), so the optimum is x_prior (+) P B^T y for some y in R^12: the update iterates on y,
+// never inverts P (which may be singular), and carries velocity, biases and gravity along by their
+// correlations.
 #pragma once
 
 #include "core/config.hpp"
@@ -28,9 +29,8 @@ struct PoseQuadratic {
   }
 };
 
-/// Where the IMU is, if the frame
-/// that the patches were cut from, or the model, is where it was thought to be. The two differ by what the
-/// update learns about these.
+/// Where the IMU is, if the frame that the patches were cut from, or the model, is where it was thought to
+/// be. The two differ by what the update learns about these.
 struct PoseHypothesis {
   SE3 T_world_imu_by_reference;
   SE3 T_world_imu_by_model;

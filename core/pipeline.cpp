@@ -96,11 +96,11 @@ struct Pipeline::State {
   [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
   PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
-  IekfResult update(const GaussianState& prior, PatchMeasurement& measurement, FrameReport& report) const;
   bool track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap, FrameReport& report);
   bool relocalise(const GaussianState& prediction, const PreparedFrame& prepared, FrameReport& report);
   Result<void> fuse(const PreparedFrame& prepared, FrameReport& report);
   void refresh(const PreparedFrame& prepared, FrameReport& report);
+  void keep_place(const PreparedFrame& prepared, FrameReport& report);
   void describe(const PatchMeasurement& measurement, const IekfResult& result, FrameReport& report) const;
   [[nodiscard]] SE3 T_world_camera() const { return estimate->mean.T_world_imu * rig.T_imu_camera; }
 
@@ -131,7 +131,7 @@ Result<FrameReport> Pipeline::State::process(const RgbdFrame& frame) {
     return process_once(frame);
   }
   Result<FrameReport> report = process_once(frame);
-  if (first_frame && report && report->status == FrameStatus::tracked) report = restart_in_motion(frame);
+  if (first_frame && report && report->status != FrameStatus::lost) report = restart_in_motion(frame);
   first_frame.reset();
   return report;
 }
@@ -182,8 +182,7 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
     const Result<void> fused = fuse(prepared, report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(prepared, report);  // Sec. 2.3: patch update
-    keyframes.offer(prepared.frame.grey, prepared.frame.depth_m, T_world_camera(), timestamp_ns,
-                    report.blur_px);
+    keep_place(prepared, report);
   }
   report.T_world_camera = T_world_camera();
   report.estimate = in_first_camera_world(*estimate);
@@ -265,11 +264,16 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
   report.blur_px = predicted_blur_px(prior.mean);
   report.health = judge_health(observed, measurement.outcomes(), report.blur_px, config);
 
-  const bool astray = after_gap && report.health == FrameHealth::inconsistent;
-  if (report.patches_accepted < config.iekf.min_patches || astray) {
+  const bool too_few = report.patches_accepted < config.iekf.min_patches;
+  const bool astray =
+      after_gap && config.terms.relocalisation && 2 * report.patches_accepted < report.patches_tracked;
+  if (too_few || astray) {
     report.reason =
-        fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
-                    report.patches_accepted, report.patches, config.iekf.min_patches);
+        too_few ? fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})",
+                              to_string(report.health), report.patches_accepted, report.patches,
+                              config.iekf.min_patches)
+                : fmt::format("after a gap, {} of {} patches contradict the pose",
+                              report.patches_tracked - report.patches_accepted, report.patches_tracked);
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     residual_scale = {std::max(1.0, residual_scale.photometric), std::max(1.0, residual_scale.geometric)};
     return false;
@@ -289,11 +293,19 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
   return true;
 }
 
+/// The frame may be one that a lost tracker is found by.
+void Pipeline::State::keep_place(const PreparedFrame& prepared, FrameReport& report) {
+  if (!config.terms.relocalisation) return;
+  const StageClock clock(report, Stage::refresh);
+  keyframes.offer(prepared.frame.grey, prepared.frame.depth_m, T_world_camera(), timestamp_ns,
+                  predicted_blur_px(estimate->mean));
+}
+
 /// Looks for the frame among those seen before, and tracks it from there with their patches.
 bool Pipeline::State::relocalise(const GaussianState& prediction, const PreparedFrame& prepared,
                                  FrameReport& report) {
   if (!config.terms.relocalisation || report.health == FrameHealth::dark) return false;
-  const StageClock clock(report, Stage::update);
+  std::optional<StageClock> clock(std::in_place, report, Stage::update);
   const std::optional<FoundPlace> found = keyframes.find(prepared.frame.grey);
   if (!found) return false;
 
@@ -301,7 +313,7 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
   const RecognisedPlace place = recognised_place(*found, keyframe, rig.T_imu_camera);
   // Repeating texture looks like another place: what the motion so far rules out is none. The longer the
   // tracker is lost, the less it rules out.
-  constexpr double kMostContradiction = 25;  // five standard deviations
+  constexpr double kMostContradiction = 25;  // five standard deviations, root mean square of six axes
   if (contradiction(prediction, place) > kMostContradiction) return false;
 
   const std::vector<GreyImage> pyramid = build_pyramid(keyframe.grey, config.patches.levels);
@@ -309,6 +321,8 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
   std::vector<Patch> patches_before =
       std::exchange(patches, refresh_patches(reference, model, {}, config, workers));
   const std::int64_t reference_before_ns = std::exchange(reference_ns, keyframe.timestamp_ns);
+  clock.reset();  // track() has its own
+
   const InitialisationConfig& initial = config.initialisation;
   const bool gyroscope = config.terms.prior == Prior::imu;
   const UnknownMotion unknown{initial.moving_velocity_sigma_mps,
@@ -323,6 +337,7 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
     return false;
   }
   report = std::move(again);
+  report.intensity.clear();  // the intensity error is one against the frame before
   return true;
 }
 

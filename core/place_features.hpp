@@ -2,11 +2,13 @@
 //
 // ORB (Rublee et al., ICCV 2011): FAST corners over scales, described by 256 comparisons of grey levels that
 // turn with the image; two descriptors are as different as they have different bits. Pixels are of level 0,
-// to a fraction. Everything is decided by integers or in a fixed order, so that neither the number of threads
-// nor an earlier call shows in a result. Errors: none; an image with nothing to see has no features.
+// to a fraction. Corners are ranked by integers and in a fixed order, so that neither the number of threads
+// nor an earlier call shows in a result; the turn of a descriptor is floating point, as OpenCV computes it.
+// Errors: none; an image with nothing to see has no features.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -1,6 +1,7 @@
 #include "core/pose_from_points.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/pose_anchors.hpp"
 
@@ -42,43 +43,48 @@ GaussianState distrusted(const GaussianState& prediction, double contradiction,
   return state;
 }
 
-/// Of the found pose against the model.
-Matrix6d place_noise(const RecognisedPlace& place) {
-  const Matrix6d carried = pose_transport(place.T_world_imu, place.T_world_imu_reference);
-  return place.covariance + carried * place.reference_covariance * carried.transpose();
+/// The patches are of another frame from now on, whose error nothing else in the state tells.
+GaussianState referred(const GaussianState& state, const RecognisedPlace& place) {
+  const Matrix6d carried = pose_transport(place.T_world_imu_reference, state.mean.T_world_imu_reference);
+  StateMatrix refer = StateMatrix::Identity();
+  refer.middleRows<kPoseSize>(kReferencePose).setZero();
+  refer.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
+  GaussianState result{state.mean, symmetrised(refer * state.covariance * refer.transpose())};
+  result.covariance.block<kPoseSize, kPoseSize>(kReferencePose, kReferencePose) = place.reference_covariance;
+  result.mean.model_offset = carried * state.mean.model_offset;
+  result.mean.T_world_imu_reference = place.T_world_imu_reference;
+  result.mean.reference_offset.setZero();
+  return result;
 }
 
 }  // namespace
 
 double contradiction(const GaussianState& prediction, const RecognisedPlace& place) {
+  const Matrix6d carried = pose_transport(place.T_world_imu, place.T_world_imu_reference);
+  const Matrix6d expected = prediction.covariance.topLeftCorner<kPoseSize, kPoseSize>() + place.covariance +
+                            carried * place.reference_covariance * carried.transpose();
   const Vector6d innovation = pose_minus(place.T_world_imu, prediction.mean.T_world_imu);
-  const Matrix6d expected = prediction.covariance.topLeftCorner<kPoseSize, kPoseSize>() + place_noise(place);
   return innovation.dot(expected.ldlt().solve(innovation)) / kPoseSize;
 }
 
 GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place,
                       const UnknownMotion& unknown) {
-  const GaussianState prior = distrusted(prediction, contradiction(prediction, place), unknown);
+  const GaussianState prior =
+      referred(distrusted(prediction, contradiction(prediction, place), unknown), place);
+  // The match tells the pose against that frame, wherever the frame is.
+  Eigen::Matrix<double, kPoseSize, kStateSize> matched = Eigen::Matrix<double, kPoseSize, kStateSize>::Zero();
+  matched.leftCols<kPoseSize>().setIdentity();
+  matched.block<kPoseSize, kPoseSize>(0, kReferencePose) =
+      -pose_transport(place.T_world_imu, place.T_world_imu_reference);
   const Vector6d innovation = pose_minus(place.T_world_imu, prior.mean.T_world_imu);
-  const Eigen::Matrix<double, kStateSize, kPoseSize> crossed = prior.covariance.leftCols<kPoseSize>();
-  const Matrix6d expected = crossed.topRows<kPoseSize>() + place_noise(place);
+  const Eigen::Matrix<double, kStateSize, kPoseSize> crossed = prior.covariance * matched.transpose();
+  const Matrix6d expected = matched * crossed + place.covariance;
   const Eigen::Matrix<double, kStateSize, kPoseSize> gain =
       expected.ldlt().solve(crossed.transpose()).transpose();
   const StateVector delta = gain * innovation;
-  GaussianState result{plus(prior.mean, delta), prior.covariance - gain * crossed.transpose()};
-
-  // The patches are of another frame now: its error is told by nothing else in the state.
-  StateMatrix anchor = chart_transport(prior.mean, delta);
-  anchor.middleRows<kPoseSize>(kReferencePose).setZero();
-  const Matrix6d carried = pose_transport(place.T_world_imu_reference, prediction.mean.T_world_imu_reference);
-  anchor.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
-  result.covariance = anchor * result.covariance * anchor.transpose();
-  result.covariance.block<kPoseSize, kPoseSize>(kReferencePose, kReferencePose) = place.reference_covariance;
-  result.covariance = symmetrised(result.covariance);
-  result.mean.model_offset = carried * result.mean.model_offset;
-  result.mean.T_world_imu_reference = place.T_world_imu_reference;
-  result.mean.reference_offset.setZero();
-  return result;
+  const StateMatrix transport = chart_transport(prior.mean, delta);
+  const StateMatrix covariance = prior.covariance - gain * crossed.transpose();
+  return {plus(prior.mean, delta), symmetrised(transport * covariance * transport.transpose())};
 }
 
 }  // namespace fusebench

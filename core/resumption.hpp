@@ -23,10 +23,11 @@ struct UnknownMotion {
   double angular_velocity_sigma_radps = 0;  ///< 0: a gyroscope knows it all the same
 };
 
-/// The state after the place has been heard: a Kalman update, which tells velocity, gravity and biases as
-/// well what their correlations with the pose let it. Pose and gravity of a filter that lost its way were
-/// usually too sure: their variance grows first by as much as the place contradicts them. If it contradicts
-/// them clearly (kSurprise), the camera has not moved as the filter thinks, and its velocities are unknown.
+/// The state after the place has been heard: a Kalman update by the match, with the error of the frame that
+/// told it as the reference pose of the state. Velocity, gravity and biases learn what their correlations
+/// with the pose let them. A filter that lost its way was usually too sure of itself: the variance of pose,
+/// velocities and gravity grows first by as much as the place contradicts it. If it contradicts it clearly
+/// (kSurprise), the camera has not moved as the filter thinks, and its velocities are unknown.
 [[nodiscard]] GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place,
                                     const UnknownMotion& unknown);
 

@@ -22,7 +22,10 @@ ImuSample smoothed_sample(std::span<const ImuSample> samples, std::int64_t insta
   const auto half_window_ns = static_cast<std::int64_t>(std::llround(1e9 * half_window_s));
   const auto begin = std::lower_bound(samples.begin(), samples.end(), instant_ns - half_window_ns, earlier);
   const auto end = std::lower_bound(begin, samples.end(), instant_ns + half_window_ns + 1, earlier);
-  if (end - begin < 4) {
+  // A parabola beyond its points, or across a gap, makes noise much larger.
+  constexpr std::ptrdiff_t kLeastOnASide = 2;
+  const auto middle = std::lower_bound(begin, end, instant_ns, earlier);
+  if (middle - begin < kLeastOnASide || end - middle < kLeastOnASide) {
     return *std::ranges::min_element(
         samples, {}, [&](const ImuSample& sample) { return std::abs(sample.timestamp_ns - instant_ns); });
   }

@@ -9,8 +9,8 @@
 namespace fusebench {
 
 /// The value at the instant of the parabola that fits the samples within half_window_s best (Savitzky & Golay
-/// 1964); over 0.1 s it follows motion of 3 Hz to a sixth. With fewer than four samples there, the nearest
-/// one. There must be a sample.
+/// 1964); over 0.1 s it follows motion of 3 Hz to a sixth. With fewer than two samples on either side,
+/// the nearest one. There must be a sample.
 [[nodiscard]] ImuSample smoothed_sample(std::span<const ImuSample> samples, std::int64_t instant_ns,
                                         double half_window_s);
 

@@ -27,9 +27,7 @@ double offset_variance(const BatchEstimate& estimate) {
 
 bool moved_little(const BatchEstimate& estimate, const SE3& T_imu_camera, double time_offset_s) {
   constexpr double kShare = 0.5;  // of the standard deviation
-  Vector6d change;
-  change << so3_log(T_imu_camera.rotation.conjugate() * estimate.T_imu_camera.rotation),
-      estimate.T_imu_camera.translation - T_imu_camera.translation;
+  const Vector6d change = pose_minus(estimate.T_imu_camera, T_imu_camera);
   const Vector6d sigma = extrinsic_covariance(estimate).diagonal().cwiseSqrt();
   return (change.cwiseAbs().array() <= kShare * sigma.array()).all() &&
          std::abs(estimate.time_offset_s - time_offset_s) <= kShare * std::sqrt(offset_variance(estimate));

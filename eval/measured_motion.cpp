@@ -62,7 +62,10 @@ Result<MeasuredMotion> measure_motion(const Recording& recording, const Config& 
   measured.input.imu_noise = recording.rig.imu_noise;
   measured.input.T_imu_camera = recording.rig.T_imu_camera;
   MotionCollector collector(measured, recording.rig.T_imu_camera);
-  Pipeline pipeline(config, recording.rig, recording.imu, workers);
+  // With an IMU that is hardly heard nothing would hold against a place that only looks like another.
+  Config measuring = config;
+  measuring.terms.relocalisation = false;
+  Pipeline pipeline(measuring, recording.rig, recording.imu, workers);
   FrameSource source(recording, workers.threads() > 1);
   int lost_in_a_row = 0;
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {

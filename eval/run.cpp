@@ -134,11 +134,14 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
   // The first frame has nothing to be compared with: it is no frame without tracked pixels.
   if (report.status != FrameStatus::initialised) progress.output.intensity.add_frame(report.intensity);
   if (report.status != FrameStatus::lost) {
+    if (report.status == FrameStatus::relocalised)
+      progress.log +=
+          fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
     progress.lost_in_a_row = 0;
     ++progress.frames.tracked;
     progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
     progress.output.states.push_back({report.capture_ns, report.estimate});
-    if (report.status == FrameStatus::tracked) progress.output.residuals.add_frame(residuals_of(report));
+    if (report.status != FrameStatus::initialised) progress.output.residuals.add_frame(residuals_of(report));
     return;
   }
   ++progress.frames.lost;

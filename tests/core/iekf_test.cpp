@@ -54,6 +54,21 @@ class PositionMeasurement final : public PoseMeasurement {
   double information_;
 };
 
+TEST(Iekf, WithoutThePriorInEveryIterationTheMeasurementHasTheLastWord) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const Vector3d z(0.13, -0.68, 0.47);
+  PositionMeasurement measurement(z, 0.2);  // much less certain than the prediction
+  IekfConfig config;
+  config.prior_in_every_iteration = false;
+  config.max_iterations = 200;
+  config.converged_rotation_rad = config.converged_translation_m = 0;
+  const IekfResult result = iekf_update(prior, measurement, config);
+  EXPECT_LT((result.posterior.mean.T_world_imu.translation - z).norm(), 1e-3);
+  config.prior_in_every_iteration = true;
+  const IekfResult weighed = iekf_update(prior, measurement, config);
+  EXPECT_GT((weighed.posterior.mean.T_world_imu.translation - z).norm(), 1e-2);
+}
+
 TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);

@@ -98,9 +98,12 @@ TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
   offer(keyframes, right, 30);
   ASSERT_EQ(keyframes.size(), 3U);
   const SE3 aside{so3_exp({0.03, 0.05, 0}), {0.05, 0, 0}};
-  EXPECT_EQ(keyframes.find(seen_from(front * aside).grey)->keyframe, 0U);
-  EXPECT_EQ(keyframes.find(seen_from(left * aside).grey)->keyframe, 1U);
-  EXPECT_EQ(keyframes.find(seen_from(right * aside).grey)->keyframe, 2U);
+  std::size_t expected = 0;
+  for (const SE3& base : {front, left, right}) {
+    const auto found = keyframes.find(seen_from(base * aside).grey);
+    ASSERT_TRUE(found) << expected;
+    EXPECT_EQ(found->keyframe, expected++);
+  }
   EXPECT_EQ(keyframes[1].timestamp_ns, 20);
 }
 

@@ -54,7 +54,7 @@ TEST_P(EveryVariant, TracksAnEasyRecording) {
 
 INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
                          ::testing::Values("full", "dm", "no-imu", "dm-no-imu", "planar", "photometric-only",
-                                           "geometric-only", "single-iteration"));
+                                           "geometric-only", "single-iteration", "literal"));
 
 TEST(Pipeline, EachVariantDiffersFromFull) {
   const auto full = track(shared_run(), config_of("full"));

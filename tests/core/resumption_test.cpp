@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "core/iekf.hpp"
 #include "core/pose_anchors.hpp"
 
 namespace fusebench {
@@ -90,16 +90,22 @@ TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
 }
 
 TEST(Resumption, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
-  const RecognisedPlace place = place_at(kPredicted, 0.01);
+  const RecognisedPlace place = place_at(kPredicted, 0.001);
   const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place, {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu_reference, kReference).norm(), 1e-15);
-  EXPECT_EQ(state.mean.reference_offset.norm(), 0);
+  EXPECT_EQ(state.mean.reference_offset.norm(), 0);  // the place was where the filter thought
+  // Against that frame the pose is as certain as the match, whatever the frame's own error.
   const auto combinations = measured_combinations(state.mean);
-  const Matrix6d by_reference =
-      (combinations * state.covariance * combinations.transpose()).topLeftCorner<kPoseSize, kPoseSize>();
-  // Never surer of the way from there than the match was, together with what was known before.
-  const Matrix6d pose = state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
-  EXPECT_GT(by_reference.trace(), pose.trace());
+  const MeasuredMatrix measured = combinations * state.covariance * combinations.transpose();
+  const Matrix6d by_reference = measured.topLeftCorner<kPoseSize, kPoseSize>();
+  EXPECT_LT(by_reference.trace(), place.covariance.trace());
+  EXPECT_GT(by_reference.trace(), 0.9 * place.covariance.trace());
+  // Against the model that error comes on top.
+  const Matrix6d carried = pose_transport(kPredicted, kReference);
+  const Matrix6d both = place.covariance + carried * place.reference_covariance * carried.transpose();
+  const Matrix6d by_model = measured.bottomRightCorner<kPoseSize, kPoseSize>();
+  EXPECT_GT(by_model.trace(), 0.9 * both.trace());
+  EXPECT_LT(by_model.trace(), both.trace());
   const Eigen::SelfAdjointEigenSolver<StateMatrix> eigen(state.covariance);
   EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-15);
 }

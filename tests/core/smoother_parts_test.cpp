@@ -114,6 +114,9 @@ TEST(SmoothedSample, KeepsAParabolaAndTakesAwayNoise) {
   EXPECT_LT((smoothed.specific_force_mps2 - Vector3d(9.81 - t * t, t, 2.0)).norm(), 1e-12);
   const ImuSample less_noisy = smoothed_sample(noisy, instant_ns, 0.1);
   EXPECT_LT((less_noisy.angular_velocity_radps - smoothed.angular_velocity_radps).norm(), 1.2);
+  // Where the samples end, a parabola would make the noise larger: the nearest one.
+  EXPECT_EQ(smoothed_sample(noisy, 1'215'000'000, 0.1).angular_velocity_radps,
+            noisy.back().angular_velocity_radps);
   // Too few samples: the nearest one.
   EXPECT_EQ(smoothed_sample(exact, 1'000'400'000, 0.001).timestamp_ns, 1'000'000'000);
 }
