@@ -61,20 +61,6 @@ RecognisedPlace recognised_place(const FoundPlace& found, const Keyframe& keyfra
 
 }  // namespace
 
-std::string_view to_string(FrameStatus status) {
-  switch (status) {
-    case FrameStatus::initialised:
-      return "initialised";
-    case FrameStatus::tracked:
-      return "tracked";
-    case FrameStatus::relocalised:
-      return "relocalised";
-    case FrameStatus::lost:
-      break;
-  }
-  return "lost";
-}
-
 struct Pipeline::State {
   State(const Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
         const Workers& workers_in)
@@ -101,7 +87,6 @@ struct Pipeline::State {
   Result<void> fuse(const PreparedFrame& prepared, FrameReport& report);
   void refresh(const PreparedFrame& prepared, FrameReport& report);
   void keep_place(const PreparedFrame& prepared, FrameReport& report);
-  void describe(const PatchMeasurement& measurement, const IekfResult& result, FrameReport& report) const;
   [[nodiscard]] SE3 T_world_camera() const { return estimate->mean.T_world_imu * rig.T_imu_camera; }
 
   Config config;
@@ -260,7 +245,7 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
   const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
   PatchMeasurement measurement(config, rig, observed, patches, residual_scale, workers);
   const IekfResult result = iekf_update(prior, measurement, config.iekf);
-  describe(measurement, result, report);
+  describe_update(measurement, result, patches, report);
   report.blur_px = predicted_blur_px(prior.mean);
   report.health = judge_health(observed, measurement.outcomes(), report.blur_px, config);
 
@@ -339,40 +324,6 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
   report = std::move(again);
   report.intensity.clear();  // the intensity error is one against the frame before
   return true;
-}
-
-void Pipeline::State::describe(const PatchMeasurement& measurement, const IekfResult& result,
-                               FrameReport& report) const {
-  double chi2_photometric = 0;
-  double chi2_geometric = 0;
-  std::vector<double> motion_px;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    const Patch& patch = patches[p];
-    const PatchOutcome& outcome = measurement.outcomes()[p];
-    report.patches += outcome.in_view ? 1 : 0;
-    report.patches_tracked += outcome.tracked ? 1 : 0;
-    report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
-    report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
-    if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());
-    if (!outcome.accepted) continue;
-    ++report.patches_accepted;
-    report.pixels_photometric += outcome.photometric_residuals;
-    report.pixels_geometric += outcome.geometric_residuals;
-    chi2_photometric += outcome.chi2_photometric;
-    chi2_geometric += outcome.chi2_geometric;
-  }
-  if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
-  if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
-  if (!motion_px.empty()) {
-    const auto middle = motion_px.begin() + static_cast<std::ptrdiff_t>(motion_px.size() / 2);
-    std::nth_element(motion_px.begin(), middle, motion_px.end());
-    report.patch_motion_px = *middle;
-  }
-  report.variance_photometric = measurement.photometric_variance();
-  report.variance_geometric = measurement.geometric_variance();
-  report.iterations = result.iterations;
-  report.converged = result.converged;
-  report.intensity = measurement.intensity_residuals();
 }
 
 Result<void> Pipeline::State::fuse(const PreparedFrame& prepared, FrameReport& report) {

@@ -1,81 +1,17 @@
 // The system of the paper, frame by frame: predict, deform and track patches, fuse, refresh patches.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/config.hpp"
 #include "core/error.hpp"
-#include "core/filter_state.hpp"
-#include "core/frame_health.hpp"
-#include "core/iekf.hpp"
-#include "core/intensity_residual.hpp"
+#include "core/frame_report.hpp"
 #include "core/parallel.hpp"
 #include "core/tsdf_volume.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {
-
-enum class FrameStatus {
-  initialised,  ///< the first frame
-  tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
-  relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
-  lost,         ///< too few honest patches, or after a gap more that contradict the pose, and no place was
-                ///< found again: the prediction was kept, the frame not fused
-};
-[[nodiscard]] std::string_view to_string(FrameStatus status);
-
-/// Stages whose time is reported.
-enum class Stage { preprocess, predict, update, fuse, refresh };
-inline constexpr std::array<std::string_view, 5> kStageNames = {"preprocess", "predict", "update", "fuse",
-                                                                "refresh"};
-
-/// What the images alone say about the pose of a frame, given the frame that its patches were cut from and
-/// the model: cost(T_world_imu * d) = information and gradient around the pose. Batch estimators use it.
-struct PoseEvidence {
-  std::int64_t reference_ns = 0;  ///< capture instant of the frame that the patches were cut from
-  SE3 T_world_imu_reference;      ///< the pose that they were cut at
-  SE3 T_world_imu;                ///< where the quadratic was taken: the posterior
-  PoseQuadratic quadratic;
-};
-
-/// What happened in one frame.
-struct FrameReport {
-  std::int64_t timestamp_ns = 0;
-  FrameStatus status = FrameStatus::lost;
-  std::string reason;  ///< why it is lost; empty otherwise
-  FrameHealth health = FrameHealth::good;
-  std::int64_t capture_ns = 0;  ///< the instant that the pose is of
-  SE3 T_world_camera;
-  GaussianState estimate;                ///< the whole state and its covariance, after the frame
-  std::optional<PoseEvidence> evidence;  ///< of tracked frames but the first
-  Vector3d velocity_world_mps = Vector3d::Zero();
-  Vector3d angular_velocity_radps = Vector3d::Zero();  ///< body frame
-  int patches = 0;                                     ///< projected into this frame
-  int patches_tracked = 0;                             ///< with enough usable pixels at the final pose
-  int patches_accepted = 0;    ///< that also passed the chi-square gate: those the update used
-  int patches_shrunk = 0;      ///< lost pixels to occlusion (shrink effect)
-  int patches_extended = 0;    ///< bounding box larger than the square (extend effect)
-  int pixels_photometric = 0;  ///< residuals of all levels in the update
-  int pixels_geometric = 0;
-  int iterations = 0;
-  bool converged = false;
-  double chi2_photometric = 0;  ///< mean squared whitened residual of accepted patches
-  double chi2_geometric = 0;
-  double variance_photometric = 1;  ///< factor on the claimed variance (patch_scatter.hpp)
-  double variance_geometric = 1;
-  std::size_t model_blocks = 0;
-  double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
-  double blur_px = 0;          ///< predicted length of motion blur at the image centre
-  std::vector<IntensityResidual> intensity;           ///< of all tracked patches, by patch, then pixel
-  std::array<double, kStageNames.size()> stage_ms{};  ///< wall time; the only part that is not reproducible
-};
 
 /// One run of the estimator over one recording.
 class Pipeline {
