@@ -22,7 +22,7 @@ enum class FrameStatus {
   initialised,  ///< the first frame
   tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
   relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
-  lost,         ///< too few honest patches, or after a gap more that contradict the pose, and no place was
+  lost,         ///< too few honest patches, or after a gap ones that do not fit, and no place was
                 ///< found again: the prediction was kept, the frame not fused
 };
 [[nodiscard]] std::string_view to_string(FrameStatus status);

@@ -80,6 +80,7 @@ struct Pipeline::State {
   [[nodiscard]] CameraVelocity camera_velocity(const FilterState& motion) const;
   [[nodiscard]] double predicted_blur_px(const FilterState& motion) const;
   [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
+  [[nodiscard]] bool settled_wrongly(const FrameReport& report) const;
   PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
   bool track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap, FrameReport& report);
@@ -146,7 +147,9 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   if (!predicted) return tl::unexpected(predicted.error());
   PreparedFrame prepared = prepare(frame, predicted->mean, report);
 
-  bool tracked = first || track(*predicted, prepared, lost_frames > 0, report);  // Eqs. 1-5 and 15-23
+  // As after a gap, nobody knows how fast a recording begins.
+  const bool after_gap = lost_frames > 0 || first_frame.has_value();
+  bool tracked = first || track(*predicted, prepared, after_gap, report);  // Eqs. 1-5 and 15-23
   const bool relocalised = !tracked && relocalise(*predicted, prepared, report);
   tracked = tracked || relocalised;
   if (!tracked || first) estimate = *predicted;  // a lost frame keeps the prediction
@@ -238,6 +241,15 @@ Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport&
   return predict_by_imu(*estimate, *increments, rig.imu_noise, config.motion).state;
 }
 
+/// The patches found something else than themselves.
+bool Pipeline::State::settled_wrongly(const FrameReport& report) const {
+  // Of well aligned patches it is about 1 at most: photometric.noise_grey is generous, and a lost frame makes
+  // the learnt noise no less than that. Of those on wrong corners it is 3 to 4. How many patches agree says
+  // less: until the noise is learnt, a sensor's depth alone may fail the gate.
+  constexpr double kMostChi2 = 2.5;
+  return config.terms.photometric_weight > 0 && report.chi2_photometric > kMostChi2;
+}
+
 /// after_gap: the prediction may be so far off that patches settle on the wrong corners.
 bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap,
                             FrameReport& report) {
@@ -250,15 +262,14 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
   report.health = judge_health(observed, measurement.outcomes(), report.blur_px, config);
 
   const bool too_few = report.patches_accepted < config.iekf.min_patches;
-  const bool astray =
-      after_gap && config.terms.relocalisation && 2 * report.patches_accepted < report.patches_tracked;
+  const bool astray = after_gap && config.terms.relocalisation && settled_wrongly(report);
   if (too_few || astray) {
     report.reason =
         too_few ? fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})",
                               to_string(report.health), report.patches_accepted, report.patches,
                               config.iekf.min_patches)
-                : fmt::format("after a gap, {} of {} patches contradict the pose",
-                              report.patches_tracked - report.patches_accepted, report.patches_tracked);
+                : fmt::format("after a gap the patches do not fit: {:.1f} times the variance of their noise",
+                              report.chi2_photometric);
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     residual_scale = {std::max(1.0, residual_scale.photometric), std::max(1.0, residual_scale.geometric)};
     return false;

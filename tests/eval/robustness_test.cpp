@@ -1,5 +1,6 @@
 // The whole estimator on simulated recordings in which something goes wrong for half a second, or all the
 // time: it may lose its way, but it must say so, keep what it has, and find back.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -182,6 +183,24 @@ TEST_F(Robustness, APlaceIsFoundAgainAfterAJump) {
   EXPECT_GT(found->report.patches_accepted, 20);
   expect_tracked({found, results.end()});
   expect_no_confident_error(results, 0.02, 0.5);
+}
+
+TEST_F(Robustness, ARecordingMayBeginInTheMiddleOfAMotion) {
+  // Two metres a second close to clutter, and nobody says so: patches alone settle on other corners.
+  for (const char* variant : {"full", "no-imu"}) {
+    for (const std::uint64_t seed : {1U, 3U}) {
+      SCOPED_TRACE(fmt::format("{}, seed {}", variant, seed));
+      SimulationOptions options =
+          simulation_defaults(RecordingLayout::zr300, MotionPreset::sweep, {640, 480}).value();
+      options.motion.from_rest = false;
+      options.seed = seed;
+      options.duration_s = 0.2;
+      options.blur_samples = 4;
+      const RunResult results = run(options, {variant, {}});
+      expect_tracked(results);
+      expect_no_confident_error(results, 0.01, 0.3);
+    }
+  }
 }
 
 TEST_F(Robustness, SurfacesWithoutTextureAreBridgedByTheImu) {
