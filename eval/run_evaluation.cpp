@@ -84,16 +84,25 @@ Result<SE3> pose_alignment(const RunOutput& output, const Recording& recording) 
   return align_poses(reference, estimate);
 }
 
+/// By the first camera whose true pose is known (ICL-NUIM's truth begins with its second image).
+std::optional<SE3> first_camera_alignment(const RunOutput& output, const Recording& recording) {
+  for (std::size_t i = 0; i < output.trajectory.size(); ++i) {
+    const auto pose =
+        interpolate_pose(recording.ground_truth, output.states[i].timestamp_ns, kMaxTruthGap_ns);
+    if (pose) return *pose * output.trajectory[i].T_world_camera.inverse();
+  }
+  return std::nullopt;
+}
+
 Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& recording,
                                    const Outcome<AteResult>& ate, const DepthConfig& depth,
                                    const Workers& workers) {
   if (recording.truth_mesh_file.empty()) {
     return fail(ErrorCode::data_missing, "the recording has no true mesh");
   }
-  const auto first =
-      interpolate_pose(recording.ground_truth, recording.frames.front().capture_ns, kMaxTruthGap_ns);
+  const auto first = first_camera_alignment(output, recording);
   if (!first) {
-    return fail(ErrorCode::data_missing, "the first frame has no ground truth to align the mesh by");
+    return fail(ErrorCode::data_missing, "no tracked frame has ground truth to align the mesh by");
   }
   const auto truth = read_ply(recording.truth_mesh_file);
   if (!truth) {
