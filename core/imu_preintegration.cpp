@@ -18,13 +18,9 @@ constexpr std::int64_t kMaxHoldNs = 50'000'000;
 // Half the window of smoothed samples: takes away four fifths of the noise at 200 Hz.
 constexpr double kSmoothedS = 0.1;
 
-bool earlier(const ImuSample& sample, std::int64_t timestamp_ns) {
-  return sample.timestamp_ns < timestamp_ns;
-}
-
 /// The sample at an instant, interpolated linearly or, outside the span, the nearest one.
 ImuSample sample_at(std::span<const ImuSample> samples, std::int64_t timestamp_ns) {
-  const auto after = std::lower_bound(samples.begin(), samples.end(), timestamp_ns, earlier);
+  const auto after = std::ranges::lower_bound(samples, timestamp_ns, {}, &ImuSample::timestamp_ns);
   ImuSample result = after == samples.end() ? samples.back() : *after;
   if (after != samples.end() && after != samples.begin() && after->timestamp_ns != timestamp_ns) {
     const ImuSample& before = *(after - 1);
@@ -43,7 +39,7 @@ ImuSample sample_at(std::span<const ImuSample> samples, std::int64_t timestamp_n
 /// The samples within [begin, end] with interpolated ones exactly at both ends.
 std::vector<ImuSample> cut(std::span<const ImuSample> samples, std::int64_t begin_ns, std::int64_t end_ns) {
   std::vector<ImuSample> result{sample_at(samples, begin_ns)};
-  for (auto it = std::lower_bound(samples.begin(), samples.end(), begin_ns + 1, earlier);
+  for (auto it = std::ranges::upper_bound(samples, begin_ns, {}, &ImuSample::timestamp_ns);
        it != samples.end() && it->timestamp_ns < end_ns; ++it) {
     result.push_back(*it);
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/smoothed_sample.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -60,12 +62,7 @@ void set_variance(GaussianState& state, int offset, int size, double sigma) {
 
 Result<GaussianState> initialise_with_imu(std::span<const ImuSample> samples, std::int64_t first_frame_ns,
                                           const SensorRig& rig, const InitialisationConfig& config) {
-  const auto half_window_ns = static_cast<std::int64_t>(std::llround(1e9 * config.window_s));
-  const auto earlier = [](const ImuSample& sample, std::int64_t t) { return sample.timestamp_ns < t; };
-  const auto begin =
-      std::lower_bound(samples.begin(), samples.end(), first_frame_ns - half_window_ns, earlier);
-  const auto end = std::lower_bound(begin, samples.end(), first_frame_ns + half_window_ns + 1, earlier);
-  const std::span<const ImuSample> window(begin, end);
+  const std::span<const ImuSample> window = samples_around(samples, first_frame_ns, config.window_s);
   if (window.size() < 2) {
     return fail(ErrorCode::data_corrupt,
                 fmt::format("no IMU samples within {} s of the first frame at {:.6f} s", config.window_s,

@@ -83,6 +83,7 @@ struct Pipeline::State {
   [[nodiscard]] bool settled_wrongly(const FrameReport& report) const;
   PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
+  FrameStatus locate(const GaussianState& predicted, const PreparedFrame& prepared, FrameReport& report);
   bool track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap, FrameReport& report);
   bool relocalise(const GaussianState& prediction, const PreparedFrame& prepared, FrameReport& report);
   Result<void> fuse(const PreparedFrame& prepared, FrameReport& report);
@@ -147,24 +148,18 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   if (!predicted) return tl::unexpected(predicted.error());
   PreparedFrame prepared = prepare(frame, predicted->mean, report);
 
-  // As after a gap, nobody knows how fast a recording begins.
-  const bool after_gap = lost_frames > 0 || first_frame.has_value();
-  bool tracked = first || track(*predicted, prepared, after_gap, report);  // Eqs. 1-5 and 15-23
-  const bool relocalised = !tracked && relocalise(*predicted, prepared, report);
-  tracked = tracked || relocalised;
-  if (!tracked || first) estimate = *predicted;  // a lost frame keeps the prediction
-  lost_frames = tracked ? 0 : lost_frames + 1;
+  const FrameStatus status = locate(*predicted, prepared, report);
+  const bool lost = status == FrameStatus::lost;
+  if (lost || first) estimate = *predicted;  // a lost frame keeps the prediction
+  lost_frames = lost ? lost_frames + 1 : 0;
   timestamp_ns = frame.capture_ns();
   // What has come to stand before many patches is no part of the scene, and patches cut from it would lead
   // astray; what stays there for a second is.
   constexpr int kMostOccludedFrames = 30;
   occluded_frames = report.health == FrameHealth::occluded ? occluded_frames + 1 : 0;
-  const bool trusted = tracked && (occluded_frames == 0 || occluded_frames > kMostOccludedFrames);
+  const bool trusted = !lost && (occluded_frames == 0 || occluded_frames > kMostOccludedFrames);
   if (trusted && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
-  report.status = first         ? FrameStatus::initialised
-                  : relocalised ? FrameStatus::relocalised
-                  : tracked     ? FrameStatus::tracked
-                                : FrameStatus::lost;
+  report.status = status;
 
   if (trusted) {
     const Result<void> fused = fuse(prepared, report);  // Sec. 2.3: M_k(X)
@@ -178,6 +173,15 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   report.angular_velocity_radps = estimate->mean.angular_velocity_imu_radps;
   report.model_blocks = model.block_count();
   return report;
+}
+
+FrameStatus Pipeline::State::locate(const GaussianState& predicted, const PreparedFrame& prepared,
+                                    FrameReport& report) {
+  if (!estimate) return FrameStatus::initialised;
+  // As after a gap, nobody knows how fast a recording begins.
+  const bool after_gap = lost_frames > 0 || first_frame.has_value();
+  if (track(predicted, prepared, after_gap, report)) return FrameStatus::tracked;  // Eqs. 1-5 and 15-23
+  return relocalise(predicted, prepared, report) ? FrameStatus::relocalised : FrameStatus::lost;
 }
 
 CameraVelocity Pipeline::State::camera_velocity(const FilterState& motion) const {

@@ -70,28 +70,22 @@ MeshViews views_of(const Recording& recording, const DepthConfig& depth) {
   return views;
 }
 
-/// Of the tracked cameras to the true ones at the same instants.
-Result<SE3> pose_alignment(const RunOutput& output, const Recording& recording) {
+/// The tracked cameras of which the true ones at the same instants are known.
+struct KnownCameras {
   std::vector<SE3> reference;
   std::vector<SE3> estimate;
+};
+
+KnownCameras known_cameras(const RunOutput& output, const Recording& recording) {
+  KnownCameras cameras;
   for (std::size_t i = 0; i < output.trajectory.size(); ++i) {
     const auto pose =
         interpolate_pose(recording.ground_truth, output.states[i].timestamp_ns, kMaxTruthGap_ns);
     if (!pose) continue;
-    reference.push_back(*pose);
-    estimate.push_back(output.trajectory[i].T_world_camera);
+    cameras.reference.push_back(*pose);
+    cameras.estimate.push_back(output.trajectory[i].T_world_camera);
   }
-  return align_poses(reference, estimate);
-}
-
-/// By the first camera whose true pose is known (ICL-NUIM's truth begins with its second image).
-std::optional<SE3> first_camera_alignment(const RunOutput& output, const Recording& recording) {
-  for (std::size_t i = 0; i < output.trajectory.size(); ++i) {
-    const auto pose =
-        interpolate_pose(recording.ground_truth, output.states[i].timestamp_ns, kMaxTruthGap_ns);
-    if (pose) return *pose * output.trajectory[i].T_world_camera.inverse();
-  }
-  return std::nullopt;
+  return cameras;
 }
 
 Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& recording,
@@ -100,8 +94,8 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
   if (recording.truth_mesh_file.empty()) {
     return fail(ErrorCode::data_missing, "the recording has no true mesh");
   }
-  const auto first = first_camera_alignment(output, recording);
-  if (!first) {
+  const KnownCameras cameras = known_cameras(output, recording);
+  if (cameras.reference.empty()) {
     return fail(ErrorCode::data_missing, "no tracked frame has ground truth to align the mesh by");
   }
   const auto truth = read_ply(recording.truth_mesh_file);
@@ -116,7 +110,7 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
   options.truth.count = kTruthSamples;
   const auto comparison = MeshComparison::create(output.mesh, *truth, views, options, workers);
   if (!comparison) return tl::unexpected(comparison.error());
-  const auto aligned = pose_alignment(output, recording);
+  const auto aligned = align_poses(cameras.reference, cameras.estimate);
   if (!aligned) return tl::unexpected(aligned.error());
   RecordedMesh mesh;
   mesh.reconstruction_sampling = options.reconstruction;
@@ -128,7 +122,9 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
   mesh.min_depth_m = depth.min_m;
   mesh.max_depth_m = depth.max_m;
   mesh.poses = comparison->evaluate({"poses", *aligned}, workers);
-  mesh.first_camera = comparison->evaluate({"first_camera", *first}, workers);
+  // Of the first known one: ICL-NUIM's truth begins with its second image.
+  const SE3 by_first_camera = cameras.reference.front() * cameras.estimate.front().inverse();
+  mesh.first_camera = comparison->evaluate({"first_camera", by_first_camera}, workers);
   if (ate.value) mesh.positions = comparison->evaluate(ate.value->alignment, workers);
   return mesh;
 }

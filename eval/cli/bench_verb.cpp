@@ -209,9 +209,6 @@ std::vector<StudyRun> study_runs(const std::vector<BatchOutcome>& outcomes) {
     if (outcome.skipped) continue;
     runs.push_back(
         {outcome.recording, outcome.group, outcome.half, outcome.variant, outcome.folder, outcome.record});
-    // An outcome knows more than the record of a run that ended by an error of its own.
-    runs.back().record.status = outcome.status;
-    runs.back().record.reason = outcome.reason;
   }
   return runs;
 }

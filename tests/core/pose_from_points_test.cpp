@@ -36,12 +36,7 @@ struct Scene {
       seen.push_back({T_a_camera * point, pixel(), 1.0});
     }
   }
-  [[nodiscard]] Vector6d error(const SE3& found) const {
-    Vector6d e;
-    e << so3_log(found.rotation.conjugate() * T_a_camera.rotation),
-        T_a_camera.translation - found.translation;
-    return e;
-  }
+  [[nodiscard]] Vector6d error(const SE3& found) const { return pose_minus(T_a_camera, found); }
 };
 
 TEST(PoseFromPoints, IsExactForExactPointsInDepthAndOnAPlane) {

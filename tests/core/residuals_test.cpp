@@ -16,11 +16,6 @@ using testing::relative_difference;
 const SE3 kTImuCamera{so3_exp({0.02, -0.03, 1.5}), {0.09, 0.003, 0.002}};
 const SE3 kTWorldImu{so3_exp({0.1, 0.2, -1.4}), {0.05, -0.1, 0.02}};
 
-/// The pose tangent of the filter: right rotation, then world position.
-SE3 moved(const SE3& T_world_imu, const Eigen::VectorXd& e) {
-  return {T_world_imu.rotation * so3_exp(e.head<3>()), T_world_imu.translation + e.tail<3>()};
-}
-
 GreyImage smooth_image() {
   GreyImage image(320, 240);
   for (int y = 0; y < image.height; ++y) {
@@ -45,7 +40,7 @@ TEST(Residuals, ProjectionJacobianEqualsNumericOne) {
   const Vector3d point_world(0.4, -0.3, 2.0);
   const PosedCamera posed(camera, kTWorldImu, kTImuCamera);
   const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
-    const PosedCamera p(camera, moved(kTWorldImu, e), kTImuCamera);
+    const PosedCamera p(camera, pose_plus(kTWorldImu, e), kTImuCamera);
     return p.camera.project(p.to_camera(point_world));
   };
   EXPECT_LT(relative_difference(project_with_jacobian(posed, posed.to_camera(point_world)).jacobian,
@@ -68,7 +63,7 @@ TEST(Residuals, PhotometricJacobianEqualsNumericOneAtAllLevels) {
       };
       // Bilinear interpolation is piecewise: a step far below a pixel stays within the cell.
       const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
-        return Eigen::VectorXd::Constant(1, residual(moved(kTWorldImu, e)).value_grey);
+        return Eigen::VectorXd::Constant(1, residual(pose_plus(kTWorldImu, e)).value_grey);
       };
       EXPECT_LT(relative_difference(residual(kTWorldImu).jacobian, numeric_jacobian(f, 6, 1e-7)), 1e-5)
           << "level " << level;
@@ -85,7 +80,7 @@ TEST(Residuals, PlaneJacobianEqualsNumericOne) {
                                    plane_point, normal);
   };
   const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
-    return Eigen::VectorXd::Constant(1, residual(moved(kTWorldImu, e)).value_m);
+    return Eigen::VectorXd::Constant(1, residual(pose_plus(kTWorldImu, e)).value_m);
   };
   EXPECT_LT(relative_difference(residual(kTWorldImu).jacobian, numeric_jacobian(f, 6)), 1e-8);
 }

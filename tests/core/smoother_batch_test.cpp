@@ -100,8 +100,7 @@ struct CommonError {
 
 CommonError calibration_error(const BatchEstimate& estimate, const MadeUp& truth) {
   CommonError error;
-  error.value << so3_log(truth.T_imu_camera.rotation.conjugate() * estimate.T_imu_camera.rotation),
-      estimate.T_imu_camera.translation - truth.T_imu_camera.translation,
+  error.value << pose_minus(estimate.T_imu_camera, truth.T_imu_camera),
       estimate.time_offset_s - truth.time_offset_s;
   error.covariance = estimate.common_covariance.bottomRightCorner<7, 7>();
   return error;

@@ -129,16 +129,6 @@ Matrix6d some_information() {
   return 1e4 * (root * root.transpose() + Matrix6d::Identity());
 }
 
-SE3 moved(const SE3& T, const Vector6d& d) {
-  return {T.rotation * so3_exp(d.head<3>()), T.translation + d.tail<3>()};
-}
-
-Vector6d error_of(const SE3& T, const SE3& expected) {
-  Vector6d e;
-  e << so3_log(expected.rotation.conjugate() * T.rotation), T.translation - expected.translation;
-  return e;
-}
-
 TEST(SeenPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   const SE3 T_imu_camera{so3_exp({0.1, -0.3, 0.2}), {0.09, -0.02, 0.05}};
   PoseEvidence evidence;
@@ -149,12 +139,12 @@ TEST(SeenPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   evidence.quadratic.gradient = -evidence.quadratic.information * step;
 
   const SeenPose seen = seen_pose(evidence, T_imu_camera);
-  const SE3 T_world_imu = moved(evidence.T_world_imu, step);
-  EXPECT_LT(error_of(seen.T_world_camera, T_world_imu * T_imu_camera).norm(), 1e-12);
+  const SE3 T_world_imu = pose_plus(evidence.T_world_imu, step);
+  EXPECT_LT(pose_minus(seen.T_world_camera, T_world_imu * T_imu_camera).norm(), 1e-12);
 
   const Eigen::MatrixXd camera_by_imu = numeric_jacobian(
       [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
-        return error_of(moved(T_world_imu, Vector6d(d)) * T_imu_camera, seen.T_world_camera);
+        return pose_minus(pose_plus(T_world_imu, Vector6d(d)) * T_imu_camera, seen.T_world_camera);
       },
       6);
   const Eigen::MatrixXd expected =
@@ -178,9 +168,9 @@ TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
   const auto by = [&](bool first) {
     return numeric_jacobian(
         [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
-          const SE3 T_a = first ? moved(a.T_world_camera, Vector6d(d)) : a.T_world_camera;
-          const SE3 T_b = first ? b.T_world_camera : moved(b.T_world_camera, Vector6d(d));
-          return error_of(T_a.inverse() * T_b, motion.T_reference_camera);
+          const SE3 T_a = first ? pose_plus(a.T_world_camera, Vector6d(d)) : a.T_world_camera;
+          const SE3 T_b = first ? b.T_world_camera : pose_plus(b.T_world_camera, Vector6d(d));
+          return pose_minus(T_a.inverse() * T_b, motion.T_reference_camera);
         },
         6);
   };

@@ -48,9 +48,7 @@ TEST(Calibration, RecoversWhatWasDisturbed) {
 
   // The body turns about one axis: what lies along it must be called undetermined, what lies across be found.
   const Vector3d axis = Vector3d(0.3, 0.9, -0.4).normalized();
-  Vector6d error;
-  error << so3_log(run.rig.T_imu_camera.rotation.conjugate() * found->T_imu_camera.rotation),
-      found->T_imu_camera.translation - run.rig.T_imu_camera.translation;
+  const Vector6d error = pose_minus(found->T_imu_camera, run.rig.T_imu_camera);
   const Vector6d sigma = found->extrinsic_covariance.diagonal().cwiseSqrt();
   for (int i = 0; i < 6; ++i) EXPECT_LT(std::abs(error[i]), 4 * sigma[i]) << "component " << i;
   EXPECT_LT(std::abs(found->time_offset_s - 0.012), 4 * found->time_offset_sigma_s);  // 2 ms were told
