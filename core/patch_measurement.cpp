@@ -139,14 +139,15 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
   light.gradient.setZero();
   light.by_pose.setZero();
   const double noise = scale_.photometric * config_.photometric.noise_grey;
-  const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
-  for (int level = finest_level; level < config_.patches.levels; ++level) {
+  double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
+  for (int level = finest_level; level < config_.patches.levels;
+       ++level, share *= config_.photometric.coarse_level_share) {
     const auto l = static_cast<std::size_t>(level);
     const auto& pixels = patches_[patch].levels[l].pixels;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const WarpedPixel& w = warped_[l][patch][i];
       if (!w.visible || !pixels[i].depth_confirmed) continue;
-      const IntensitySample observed = sample_bilinear(frame_.pyramid[l], w.pixel_px.x(), w.pixel_px.y());
+      const IntensitySample observed = sample_bicubic(frame_.pyramid[l], w.pixel_px.x(), w.pixel_px.y());
       const Projection projection = project_with_jacobian(posed.at[l], w.warp_point_camera);
       const PhotometricResidual r = photometric_residual(observed, projection.jacobian, pixels[i].intensity,
                                                          light.value.x(), light.value.y());
@@ -163,7 +164,7 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       outcome.chi2_photometric += whitened * whitened;
       outcome.robust_photometric += robust.weight * whitened * whitened;
       ++outcome.photometric_residuals;
-      state.active.push_back({level, &pixels[i]});
+      state.active.push_back({level, share, &pixels[i]});
     }
   }
   reduce_brightness(state);
@@ -293,7 +294,6 @@ double PatchMeasurement::patch_cost(const PatchState& state, const PosedLevels& 
 }
 
 double PatchMeasurement::photometric_cost(const PatchState& state, const PosedLevels& posed) const {
-  const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
   double cost = 0;
   for (const ActivePixel& active : state.active) {
     const auto level = static_cast<std::size_t>(active.level);
@@ -304,13 +304,13 @@ double PatchMeasurement::photometric_cost(const PatchState& state, const PosedLe
     Vector3d point_camera = camera.to_camera(active.pixel->warp_point_world);
     point_camera.z() = std::max(point_camera.z(), 1e-3);
     const Vector2d pixel = camera.camera.project(point_camera) + active.pixel->warp_offset_px;
-    const double x = std::clamp(pixel.x(), 0.0, image.width - 1.0);
-    const double y = std::clamp(pixel.y(), 0.0, image.height - 1.0);
+    const double x = std::clamp(pixel.x(), 1.0, image.width - 2.0);
+    const double y = std::clamp(pixel.y(), 1.0, image.height - 2.0);
     const double predicted =
         state.brightness.trial.x() * active.pixel->intensity + state.brightness.trial.y();
-    const double whitened = (sample_bilinear(image, x, y).value - predicted) /
+    const double whitened = (sample_bicubic(image, x, y).value - predicted) /
                             (scale_.photometric * config_.photometric.noise_grey);
-    cost += share * huber(whitened, config_.photometric.huber_sigmas).cost;
+    cost += active.share * huber(whitened, config_.photometric.huber_sigmas).cost;
   }
   return cost;
 }

@@ -352,8 +352,7 @@ void Pipeline::State::refresh(const PreparedFrame& prepared, FrameReport& report
   patches = refresh_patches(reference, model, survivors, config, workers);
   reference_ns = timestamp_ns;
   const double share = fused_share(model, patches, reference, config.depth);
-  estimate =
-      anchored(*estimate, {share, config.motion.drift_factor_rotation, config.motion.drift_factor_position});
+  estimate = anchored(*estimate, {share, config.motion.drift_factor});
 }
 
 Pipeline::Pipeline(const Config& config, const SensorRig& rig, std::span<const ImuSample> imu,

@@ -1,5 +1,7 @@
 #include "core/pose_anchors.hpp"
 
+#include <algorithm>
+
 namespace fusebench {
 
 namespace {
@@ -54,11 +56,9 @@ GaussianState anchored(const GaussianState& state, const ModelDrift& drift) {
 
   GaussianState result = transformed(state, clone * to_model);
   // What the model drifts beyond independent errors is no error of this pose.
-  Vector6d excess;
-  excess << Vector3d::Constant(drift.factor_rotation), Vector3d::Constant(drift.factor_position);
-  excess = drift.share * (excess.array().square() - 1.0).max(0.0).sqrt();
+  const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
   result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
-      excess.asDiagonal() * state.covariance.topLeftCorner<kPoseSize, kPoseSize>() * excess.asDiagonal();
+      excess * state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
   result.mean.model_offset =
       to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) * state.mean.model_offset;
   result.mean.T_world_imu_reference = state.mean.T_world_imu;

@@ -22,9 +22,8 @@ namespace fusebench {
 
 /// How the model follows the frames that are fused into it.
 struct ModelDrift {
-  double share = 0;            ///< of a frame's pose error that the model takes over, 0 to 1
-  double factor_rotation = 1;  ///< how much larger its drift is than that of independent errors (sigmas)
-  double factor_position = 1;
+  double share = 0;   ///< of a frame's pose error that the model takes over, 0 to 1
+  double factor = 1;  ///< how much larger its drift is than that of independent errors (sigmas)
 };
 
 /// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its

@@ -98,6 +98,66 @@ TEST(Residuals, BilinearSampleIsExactOnAPlaneAndAtTheBorder) {
   }
 }
 
+/// A wave that 8-bit pixels hold well, shifted.
+GreyImage wave(double shift_px) {
+  GreyImage image(40, 30);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      image(x, y) = static_cast<std::uint8_t>(
+          std::lround(127 + 80 * std::sin(0.8 * (x - shift_px)) * std::cos(0.6 * (y + shift_px))));
+    }
+  }
+  return image;
+}
+
+TEST(Residuals, BicubicSampleIsExactOnAParabolaAndSmooth) {
+  GreyImage image(9, 8);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 9; ++x) image(x, y) = static_cast<std::uint8_t>(3 * x * x + y * y - 2 * x * y + 20);
+  }
+  for (const auto& [x, y] : {std::pair{1.0, 1.0}, {7.0, 6.0}, {3.25, 2.75}, {6.999, 1.001}}) {
+    const IntensitySample sample = sample_bicubic(image, x, y);
+    EXPECT_NEAR(sample.value, 3 * x * x + y * y - 2 * x * y + 20, 1e-10);
+    EXPECT_NEAR(sample.dx, 6 * x - 2 * y, 1e-10);
+    EXPECT_NEAR(sample.dy, 2 * y - 2 * x, 1e-10);
+  }
+  const GreyImage rough = wave(0);
+  for (const double x : {5.0, 5.37, 11.999999}) {  // whole pixels are no kinks
+    const double numeric =
+        (sample_bicubic(rough, x + 1e-6, 7.4).value - sample_bicubic(rough, x - 1e-6, 7.4).value) / 2e-6;
+    EXPECT_NEAR(sample_bicubic(rough, x, 7.4).dx, numeric, 1e-3) << x;
+  }
+}
+
+/// Where samples of the shifted image are most like the reference: Gauss-Newton over the shift.
+template <typename Sampler>
+double aligned_shift(const GreyImage& reference, const GreyImage& shifted, Sampler&& sample) {
+  double shift = 0;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    double information = 0;
+    double gradient = 0;
+    for (int y = 8; y < 22; ++y) {
+      for (int x = 8; x < 32; ++x) {
+        const IntensitySample s = sample(shifted, x + shift, y - shift);
+        const double slope = s.dx - s.dy;
+        information += slope * slope;
+        gradient += slope * (s.value - reference(x, y));
+      }
+    }
+    shift -= gradient / information;
+  }
+  return shift;
+}
+
+TEST(Residuals, BicubicSamplesAreDrawnLessTowardsWholePixels) {
+  for (const double shift : {0.1, 0.2, 0.3, 0.4}) {
+    const double linear = aligned_shift(wave(0), wave(shift), sample_bilinear);
+    const double cubic = aligned_shift(wave(0), wave(shift), sample_bicubic);
+    EXPECT_LT(std::abs(cubic - shift), 0.5 * std::abs(linear - shift)) << linear << ' ' << cubic;
+    EXPECT_LT(std::abs(cubic - shift), 0.02) << cubic;
+  }
+}
+
 TEST(Residuals, HuberIsSmoothAtItsKneeAndItsWeightIsTheDerivative) {
   const double k = 1.345;
   EXPECT_NEAR(huber(k - 1e-9, k).cost, huber(k + 1e-9, k).cost, 1e-8);
