@@ -46,6 +46,7 @@ TimeOrder order_for(Duplicates duplicates) {
       return TimeOrder::not_backwards;
     case Duplicates::first:
     case Duplicates::last:
+    case Duplicates::as_written:
       break;
   }
   return TimeOrder::any;
@@ -58,6 +59,8 @@ std::string put_in_order(Trajectory& poses, Duplicates duplicates) {
     return a.timestamp_ns < b.timestamp_ns;
   };
   const bool sorted = std::ranges::is_sorted(poses, earlier);
+  if (duplicates == Duplicates::as_written)
+    return sorted ? "" : "rows are not in order of time (left as they are)";
   if (!sorted) std::ranges::stable_sort(poses, earlier);
   std::size_t kept = 0;  // in place: a second copy of a long trajectory would double the memory
   for (std::size_t i = 0; i < read; ++i) {

@@ -24,6 +24,7 @@ enum class Duplicates {
   last_in_order,  ///< time must not run backwards; of rows in a row with one stamp, the last is kept
   first,          ///< rows are sorted by time; of one stamp, the first row of the file is kept
   last,           ///< the same with the last row, as the scripts of the TUM RGB-D benchmark do
+  as_written,     ///< all rows in the order of the file, as evo does
 };
 
 /// Reads TUM text (blank lines, # comments and commas as in TextTable). Quaternions are normalised. Warnings

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/association.hpp"
-#include "eval/alignment.hpp"
+#include "eval/trajectory/alignment.hpp"
 
 namespace fusebench {
 
@@ -62,11 +62,12 @@ std::vector<std::size_t> partners(std::span<const std::int64_t> stamps, const Rp
 
 Result<void> check_rpe_input(const Trajectory& ground_truth, const Trajectory& estimate,
                              const RpeOptions& options) {
-  const bool whole = std::floor(options.delta) == options.delta;
-  if (!(options.delta > 0 && std::isfinite(options.delta)) || (options.unit == DeltaUnit::frames && !whole)) {
+  const bool known = options.unit == DeltaUnit::frames || options.unit == DeltaUnit::seconds;
+  const bool whole = options.unit != DeltaUnit::frames || std::floor(options.delta) == options.delta;
+  if (!known || !whole || !(options.delta > 0 && std::isfinite(options.delta))) {
     return fail(ErrorCode::configuration,
-                fmt::format("delta = {} {} (allowed: positive, and whole for frames)", options.delta,
-                            to_string(options.unit)));
+                fmt::format("delta = {} {} (allowed: positive seconds, or a whole number of frames)",
+                            options.delta, to_string(options.unit)));
   }
   if (ground_truth.size() < 2 || estimate.size() < 2) {
     return fail(
@@ -122,17 +123,15 @@ Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth, cons
     truth_positions.push_back(ground_truth[pair.first].T_world_camera.translation);
     estimate_positions.push_back(estimate[pair.second].T_world_camera.translation);
   }
-  const auto aligned = align_se3(truth_positions, estimate_positions);
+  const auto aligned = align_positions(truth_positions, estimate_positions, false);
   if (!aligned) return tl::unexpected(aligned.error());
-  result.alignment = {"se3", *aligned};
+  result.alignment = {"se3", aligned->rigid};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    result.errors_m.push_back((*aligned * estimate_positions[i] - truth_positions[i]).norm());
+    result.errors_m.push_back((aligned->rigid * estimate_positions[i] - truth_positions[i]).norm());
   }
   result.stats = statistics(result.errors_m);
   return result;
 }
-
-std::string_view to_string(DeltaUnit unit) { return unit == DeltaUnit::frames ? "f" : "s"; }
 
 Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Trajectory& estimate,
                                       const RpeOptions& options) {

@@ -14,6 +14,7 @@
 #include "core/error.hpp"
 #include "core/types.hpp"
 #include "eval/statistics.hpp"
+#include "eval/trajectory/motion_pairs.hpp"
 
 namespace fusebench {
 
@@ -51,17 +52,14 @@ struct AteResult {
   Statistics stats;
 };
 
-/// Errors data_corrupt: no matching stamps, or positions that cannot be aligned (see align_se3).
+/// Errors data_corrupt: no matching stamps, or positions that cannot be aligned (see align_positions).
 [[nodiscard]] Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth,
                                                           const Trajectory& estimate,
                                                           const AteOptions& options = {});
 
-enum class DeltaUnit { frames, seconds };
-[[nodiscard]] std::string_view to_string(DeltaUnit unit);  ///< "f", "s"
-
 struct RpeOptions {
-  double delta = 1;  ///< a whole number for frames
-  DeltaUnit unit = DeltaUnit::seconds;
+  double delta = 1;                     ///< a whole number for frames
+  DeltaUnit unit = DeltaUnit::seconds;  ///< or frames
   /// Ground truth further than this from an estimate's stamp is not used; TUM's own limit (twice the median
   /// interval of the ground truth) holds beside it.
   double max_difference_s = 0.02;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "eval/alignment.hpp"
-
 namespace fusebench {
 namespace {
 

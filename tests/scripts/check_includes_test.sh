@@ -10,7 +10,7 @@ failures=0
 
 fresh_tree() {
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{core,datasets,eval/cli,tests/support}
+  mkdir -p "$tree"/{core,datasets,eval/cli,eval/trajectory,tests/support}
   printf '#pragma once\n#include <vector>\n' >"$tree/core/types.hpp"
 }
 
@@ -48,7 +48,7 @@ expect_refused datasets/tum_rgbd.cpp '#include "eval/run.hpp"' 'datasets never i
 expect_refused eval/mesh_metrics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
 expect_refused eval/trajectory_metrics.hpp '#include "datasets/recording.hpp"' 'metrics never include'
 expect_refused eval/statistics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
-expect_refused eval/alignment.cpp '#include "datasets/recording.hpp"' 'metrics never include'
+expect_refused eval/trajectory/alignment.cpp '#include "datasets/recording.hpp"' 'metrics never include'
 expect_refused eval/record.cpp "$both" 'know both'
 expect_refused eval/run.hpp "$both" 'know both'
 expect_refused eval/run.cpp '#include "tests/support/scene.hpp"' 'only tests include tests'

@@ -1,0 +1,45 @@
+// Relative errors over segments of given lengths, as benchmarks of odometry report them:
+// rpg_trajectory_evaluation (Zhang & Scaramuzza, IROS 2018) and KITTI (Geiger et al., CVPR 2012).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "eval/trajectory/motion_pairs.hpp"
+#include "eval/trajectory/trajectory_pair.hpp"
+
+namespace fusebench {
+
+/// Errors of the segments of one length, each list as long as there are segments. Angles in radians.
+struct SegmentErrors {
+  double length_m = 0;
+  std::vector<double> translation_m;
+  std::vector<double> rotation_rad;
+  std::vector<double> yaw_rad;      ///< about the world's z at the segment's end
+  std::vector<double> gravity_rad;  ///< roll and pitch together
+};
+
+/// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), the estimate's motion scaled, with E turned into the world of the
+/// estimate at the segment's end to part yaw from tilt (Euler angles z, y, x).
+[[nodiscard]] SegmentErrors segment_errors(const TrajectoryPair& pair, const IndexPairs& segments,
+                                           double length_m, double scale = 1);
+
+/// 10, 20, 30, 40 and 50 % of the reference's path (all of its poses), cut to centimetres.
+[[nodiscard]] std::vector<double> rpg_lengths(const Trajectory& reference);
+
+/// KITTI's segments: from every tenth pose to the first that lies further along the reference by `length_m`.
+[[nodiscard]] IndexPairs kitti_segments(const Trajectory& reference, double length_m);
+
+/// KITTI's two numbers: means over all segments of 100, 200, ... 800 m.
+struct KittiErrors {
+  std::size_t segments = 0;
+  double translation = 0;  ///< share of the length (the benchmark prints percent)
+  double rotation_rad_per_m = 0;
+};
+
+/// Error data_corrupt: the reference is shorter than the shortest segment.
+[[nodiscard]] Result<KittiErrors> kitti_errors(const TrajectoryPair& pair);
+
+}  // namespace fusebench

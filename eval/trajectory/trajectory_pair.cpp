@@ -1,0 +1,149 @@
+#include "eval/trajectory/trajectory_pair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/association.hpp"
+#include "core/trajectory.hpp"
+#include "eval/trajectory/nearest_association.hpp"
+#include "eval/trajectory/stamp_seconds.hpp"
+
+namespace fusebench {
+
+namespace {
+
+std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); }
+
+std::vector<std::int64_t> stamps(const Trajectory& trajectory) {
+  std::vector<std::int64_t> result;
+  result.reserve(trajectory.size());
+  for (const StampedPose& pose : trajectory) result.push_back(pose.timestamp_ns);
+  return result;
+}
+
+Trajectory within(const Trajectory& trajectory, double start_s, double end_s) {
+  Trajectory kept;
+  for (const StampedPose& pose : trajectory) {
+    const double time_s = stamp_seconds(pose.timestamp_ns);
+    if (time_s >= start_s && time_s <= end_s) kept.push_back(pose);
+  }
+  return kept;
+}
+
+void take(const Trajectory& reference, const Trajectory& estimate, std::span<const AssociatedPair> pairs,
+          TrajectoryPair& result) {
+  for (const AssociatedPair& pair : pairs) {
+    result.reference.push_back(reference[pair.first]);
+    result.estimate.push_back(estimate[pair.second]);
+  }
+  result.possible = std::min(reference.size(), estimate.size());
+}
+
+void interpolate_reference(const Trajectory& reference, const Trajectory& estimate, TrajectoryPair& result) {
+  const std::int64_t offset_ns = nanoseconds(result.options.offset_s);
+  const std::int64_t gap_ns = nanoseconds(result.options.max_difference_s);
+  for (const StampedPose& pose : estimate) {
+    const std::int64_t wanted_ns = pose.timestamp_ns + offset_ns;
+    const std::optional<SE3> truth = interpolate_pose(reference, wanted_ns, gap_ns);
+    if (!truth) continue;
+    result.reference.push_back({wanted_ns, *truth});
+    result.estimate.push_back(pose);
+  }
+  result.possible = estimate.size();
+}
+
+/// A lost tracker is charged for the poses that it did not give.
+void hold_estimate(const Trajectory& reference, const Trajectory& estimate, TrajectoryPair& result) {
+  const std::int64_t offset_ns = nanoseconds(result.options.offset_s);
+  for (const StampedPose& truth : reference) {
+    const std::int64_t wanted_ns = truth.timestamp_ns - offset_ns;
+    const auto clamped = std::clamp(wanted_ns, estimate.front().timestamp_ns, estimate.back().timestamp_ns);
+    const std::optional<SE3> pose =
+        interpolate_pose(estimate, clamped, std::numeric_limits<std::int64_t>::max());
+    result.reference.push_back(truth);
+    result.estimate.push_back({wanted_ns, *pose});
+  }
+  result.possible = reference.size();
+}
+
+}  // namespace
+
+std::string_view to_string(AssociationRule rule) {
+  switch (rule) {
+    case AssociationRule::nearest:
+      return "nearest";
+    case AssociationRule::greedy:
+      return "greedy";
+    case AssociationRule::index:
+      return "index";
+    case AssociationRule::interpolated:
+      return "interpolated";
+    case AssociationRule::held:
+      return "held";
+  }
+  return "";
+}
+
+Result<TrajectoryPair> pair_up(const Trajectory& reference_whole, const Trajectory& estimate,
+                               const AssociationOptions& options) {
+  const Trajectory reference = within(reference_whole, options.start_s, options.end_s);
+  if (reference.empty() || estimate.empty()) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format(
+            "nothing to compare: {} of {} poses of the reference are within the time range, {} of the "
+            "estimate",
+            reference.size(), reference_whole.size(), estimate.size()));
+  }
+  TrajectoryPair result;
+  result.options = options;
+  switch (options.rule) {
+    case AssociationRule::nearest:
+      take(reference, estimate,
+           associate_nearest(stamps(reference), stamps(estimate), options.max_difference_s, options.offset_s),
+           result);
+      break;
+    case AssociationRule::greedy:
+      take(reference, estimate,
+           associate(stamps(reference), stamps(estimate), nanoseconds(options.max_difference_s),
+                     nanoseconds(options.offset_s)),
+           result);
+      break;
+    case AssociationRule::index:
+      if (reference.size() != estimate.size()) {
+        return fail(
+            ErrorCode::data_corrupt,
+            fmt::format("poses without stamps go by number, but the reference has {} and the estimate {}",
+                        reference.size(), estimate.size()),
+            "use trajectories with stamps, or fill what is missing");
+      }
+      result.reference = reference;
+      result.estimate = estimate;
+      result.possible = reference.size();
+      break;
+    case AssociationRule::interpolated:
+      interpolate_reference(reference, estimate, result);
+      break;
+    case AssociationRule::held:
+      hold_estimate(reference, estimate, result);
+      break;
+  }
+  if (result.size() == 0) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format(
+            "no stamps of the estimate ({} poses, {:.3f} to {:.3f} s) and the reference ({} poses, {:.3f} to "
+            "{:.3f} s) match within {} s",
+            estimate.size(), stamp_seconds(estimate.front().timestamp_ns),
+            stamp_seconds(estimate.back().timestamp_ns), reference.size(),
+            stamp_seconds(reference.front().timestamp_ns), stamp_seconds(reference.back().timestamp_ns),
+            options.max_difference_s),
+        "do both use the same clock? --t_offset is added to the estimate's stamps, --t_max_diff is the "
+        "limit");
+  }
+  return result;
+}
+
+}  // namespace fusebench
