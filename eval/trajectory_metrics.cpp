@@ -9,6 +9,7 @@
 
 #include "core/association.hpp"
 #include "eval/trajectory/alignment.hpp"
+#include "eval/trajectory/stamps.hpp"
 
 namespace fusebench {
 
@@ -16,8 +17,6 @@ namespace {
 
 constexpr double kGapFactor = 1.5;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
-std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); }
 
 double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -79,13 +78,6 @@ Result<void> check_rpe_input(const Trajectory& ground_truth, const Trajectory& e
 }
 
 }  // namespace
-
-std::vector<std::int64_t> stamps_of(const Trajectory& trajectory) {
-  std::vector<std::int64_t> stamps;
-  stamps.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) stamps.push_back(pose.timestamp_ns);
-  return stamps;
-}
 
 std::array<double, 16> matrix_of(const SE3& transform) {
   const Matrix3d r = transform.rotation_matrix();

@@ -18,9 +18,6 @@
 
 namespace fusebench {
 
-/// The stamps of a trajectory, in order.
-[[nodiscard]] std::vector<std::int64_t> stamps_of(const Trajectory& trajectory);
-
 /// How the estimate was moved before it was compared.
 struct Alignment {
   std::string mode = "none";  ///< "none" or "se3"

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "eval/trajectory/stamp_seconds.hpp"
+#include "eval/trajectory/stamps.hpp"
 
 namespace fusebench {
 

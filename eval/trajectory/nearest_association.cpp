@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "eval/trajectory/stamp_seconds.hpp"
+#include "eval/trajectory/stamps.hpp"
 
 namespace fusebench {
 

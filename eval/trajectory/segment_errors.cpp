@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/trajectory/euler_angles.hpp"
+
 namespace fusebench {
 
 SegmentErrors segment_errors(const TrajectoryPair& pair, const IndexPairs& segments, double length_m,
@@ -20,13 +22,10 @@ SegmentErrors segment_errors(const TrajectoryPair& pair, const IndexPairs& segme
     const SE3 error = reference_motion.inverse() * estimate_motion;
     errors.translation_m.push_back(error.translation.norm());
     errors.rotation_rad.push_back(so3_log(error.rotation).norm());
-    const Matrix3d R =
-        (estimate_end.rotation * error.rotation * estimate_end.rotation.conjugate()).toRotationMatrix();
-    const double yaw = std::atan2(R(1, 0), R(0, 0));
-    const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-    const double roll = std::atan2(R(2, 1), R(2, 2));
-    errors.yaw_rad.push_back(std::abs(yaw));
-    errors.gravity_rad.push_back(std::hypot(pitch, roll));
+    const Vector3d angles = roll_pitch_yaw_rad(
+        (estimate_end.rotation * error.rotation * estimate_end.rotation.conjugate()).toRotationMatrix());
+    errors.yaw_rad.push_back(std::abs(angles.z()));
+    errors.gravity_rad.push_back(angles.head<2>().norm());
   }
   return errors;
 }

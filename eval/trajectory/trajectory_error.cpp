@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
+
+#include "eval/trajectory/euler_angles.hpp"
 
 namespace fusebench {
 
@@ -21,10 +22,7 @@ std::vector<SE3> poses_of(const Trajectory& trajectory) {
 SE3 projected(const SE3& pose, Plane plane) {
   if (plane == Plane::none) return pose;
   const int normal = plane == Plane::xy ? 2 : plane == Plane::xz ? 1 : 0;
-  const Matrix3d R = pose.rotation_matrix();
-  const double across = std::hypot(R(0, 0), R(1, 0));
-  const Vector3d angles(std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), across),
-                        std::atan2(R(1, 0), R(0, 0)));
+  const Vector3d angles = roll_pitch_yaw_rad(pose.rotation_matrix());
   SE3 flat{so3_exp(angles[normal] * Vector3d::Unit(normal)), pose.translation};
   flat.translation[normal] = 0;
   return flat;
@@ -54,6 +52,30 @@ Result<Compared> compared(const TrajectoryPair& pair, const AlignmentRequest& re
 std::string described(const RelativeOptions& options) {
   return fmt::format("delta = {} {}, {} motions", options.delta.value, to_string(options.delta.unit),
                      options.selection == MotionSelection::all ? "all" : "consecutive");
+}
+
+Result<TrajectoryError> errors_of_motions(Compared sides, const TrajectoryPair& pair,
+                                          const RelativeOptions& options, const IndexPairs& motions) {
+  TrajectoryError result = std::move(sides.error);
+  result.relation = options.relation;
+  for (const auto& [i, j] : motions) {
+    const auto error = relative_error(options.relation, Motion{sides.reference[i], sides.reference[j]},
+                                      Motion{sides.estimate[i], sides.estimate[j]});
+    if (!error) continue;
+    result.errors.push_back(*error);
+    result.at_ns.push_back(pair.estimate[j].timestamp_ns);
+  }
+  if (result.errors.empty()) {
+    return fail(ErrorCode::data_corrupt,
+                motions.empty()
+                    ? fmt::format("no motion of {} poses fits ({})", pair.size(), described(options))
+                    : fmt::format("the reference does not move in any of {} motions ({})", motions.size(),
+                                  described(options)),
+                motions.empty() ? "a smaller delta, or a larger --delta_tol with --all_pairs, finds more"
+                                : "ratios need a reference that moves: compare trans_part");
+  }
+  result.stats = statistics(result.errors);
+  return result;
 }
 
 }  // namespace
@@ -86,33 +108,14 @@ Result<TrajectoryError> relative_error(const TrajectoryPair& pair, const Relativ
   const IndexPairs motions = options.selection == MotionSelection::all
                                  ? all_motions(selecting, options.delta, options.tolerance)
                                  : consecutive_motions(selecting, options.delta);
-  return relative_error(pair, options, motions);
+  return errors_of_motions(std::move(*sides), pair, options, motions);
 }
 
 Result<TrajectoryError> relative_error(const TrajectoryPair& pair, const RelativeOptions& options,
                                        const IndexPairs& motions) {
   Result<Compared> sides = compared(pair, options.alignment, options.plane);
   if (!sides) return tl::unexpected(sides.error());
-  TrajectoryError result = std::move(sides->error);
-  result.relation = options.relation;
-  for (const auto& [i, j] : motions) {
-    const auto error = relative_error(options.relation, Motion{sides->reference[i], sides->reference[j]},
-                                      Motion{sides->estimate[i], sides->estimate[j]});
-    if (!error) continue;
-    result.errors.push_back(*error);
-    result.at_ns.push_back(pair.estimate[j].timestamp_ns);
-  }
-  if (result.errors.empty()) {
-    return fail(ErrorCode::data_corrupt,
-                motions.empty()
-                    ? fmt::format("no motion of {} poses fits ({})", pair.size(), described(options))
-                    : fmt::format("the reference does not move in any of {} motions ({})", motions.size(),
-                                  described(options)),
-                motions.empty() ? "a smaller delta, or a larger --delta_tol with --all_pairs, finds more"
-                                : "ratios need a reference that moves: compare trans_part");
-  }
-  result.stats = statistics(result.errors);
-  return result;
+  return errors_of_motions(std::move(*sides), pair, options, motions);
 }
 
 Trajectory downsampled(const Trajectory& trajectory, std::size_t count) {

@@ -8,20 +8,11 @@
 #include "core/association.hpp"
 #include "core/trajectory.hpp"
 #include "eval/trajectory/nearest_association.hpp"
-#include "eval/trajectory/stamp_seconds.hpp"
+#include "eval/trajectory/stamps.hpp"
 
 namespace fusebench {
 
 namespace {
-
-std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1e9)); }
-
-std::vector<std::int64_t> stamps(const Trajectory& trajectory) {
-  std::vector<std::int64_t> result;
-  result.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) result.push_back(pose.timestamp_ns);
-  return result;
-}
 
 Trajectory within(const Trajectory& trajectory, double start_s, double end_s) {
   Trajectory kept;
@@ -102,12 +93,13 @@ Result<TrajectoryPair> pair_up(const Trajectory& reference_whole, const Trajecto
   switch (options.rule) {
     case AssociationRule::nearest:
       take(reference, estimate,
-           associate_nearest(stamps(reference), stamps(estimate), options.max_difference_s, options.offset_s),
+           associate_nearest(stamps_of(reference), stamps_of(estimate), options.max_difference_s,
+                             options.offset_s),
            result);
       break;
     case AssociationRule::greedy:
       take(reference, estimate,
-           associate(stamps(reference), stamps(estimate), nanoseconds(options.max_difference_s),
+           associate(stamps_of(reference), stamps_of(estimate), nanoseconds(options.max_difference_s),
                      nanoseconds(options.offset_s)),
            result);
       break;

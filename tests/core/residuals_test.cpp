@@ -58,10 +58,10 @@ TEST(Residuals, PhotometricJacobianEqualsNumericOneAtAllLevels) {
       const auto residual = [&](const SE3& T_world_imu) {
         const PosedCamera p(camera, T_world_imu, kTImuCamera);
         const Projection projection = project_with_jacobian(p, p.to_camera(point_world));
-        return photometric_residual(sample_bilinear(image, projection.pixel_px.x(), projection.pixel_px.y()),
+        return photometric_residual(sample_bicubic(image, projection.pixel_px.x(), projection.pixel_px.y()),
                                     projection.jacobian, 120.0, 1.1, -3.0);
       };
-      // Bilinear interpolation is piecewise: a step far below a pixel stays within the cell.
+      // The interpolant is smooth within a cell and its slope across: a step far below a pixel sees no more.
       const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
         return Eigen::VectorXd::Constant(1, residual(pose_plus(kTWorldImu, e)).value_grey);
       };

@@ -4,39 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 
 #include "core/trajectory_file.hpp"
 #include "eval/trajectory/nearest_association.hpp"
 #include "eval/trajectory/trajectory_error.hpp"
+#include "tests/support/trajectory_vectors.hpp"
 
 namespace fusebench {
 namespace {
 
 using nlohmann::json;
+using testing::trajectory_vectors;
+using testing::vector_cases;
 
 constexpr double kRelative = 1e-9;
 constexpr double kAbsolute = 1e-12;
-
-std::optional<std::filesystem::path> vectors() {
-  const char* const data = std::getenv("FUSEBENCH_DATA");
-  if (data == nullptr) return std::nullopt;
-  const auto folder = std::filesystem::path(data) / ".." / "vectors" / "trajectory";
-  if (!std::filesystem::exists(folder / "evo_expected.json")) return std::nullopt;
-  return folder;
-}
-
-#define SKIP_WITHOUT_VECTORS(folder) \
-  if (!folder) GTEST_SKIP() << "FUSEBENCH_DATA is not set, or has no ../vectors/trajectory beside it"
-
-json cases(const std::filesystem::path& folder, const char* file) {
-  return json::parse(std::ifstream(folder / file)).at("cases");
-}
 
 Trajectory load(const std::filesystem::path& folder, const json& test, const char* side) {
   std::vector<std::string> warnings;
@@ -109,10 +94,10 @@ Result<TrajectoryError> evaluate(const std::filesystem::path& folder, const json
 }
 
 TEST(EvoVectors, AbsoluteAndRelativeErrors) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   int compared = 0;
-  for (const json& test : cases(*folder, "evo_expected.json")) {
+  for (const json& test : vector_cases(*folder, "evo_expected.json")) {
     SCOPED_TRACE(test.at("id").get<std::string>() + ": " + test.at("command").get<std::string>());
     const std::string gt = test.at("gt");
     const bool aligned =
@@ -160,10 +145,10 @@ TEST(EvoVectors, AbsoluteAndRelativeErrors) {
 }
 
 TEST(EvoVectors, PairsOfMotions) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   int compared = 0;
-  for (const json& test : cases(*folder, "evo_rpe_pairs.json")) {
+  for (const json& test : vector_cases(*folder, "evo_rpe_pairs.json")) {
     Delta delta{test.at("delta"), parse_delta_unit(test.at("delta_unit").get<std::string>()).value()};
     SCOPED_TRACE(test.at("gt").get<std::string>() + " " + test.at("pairs_from").get<std::string>() + " " +
                  std::to_string(delta.value) + test.at("delta_unit").get<std::string>());
@@ -195,14 +180,14 @@ TEST(EvoVectors, PairsOfMotions) {
 }
 
 TEST(EvoVectors, Association) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   const auto stamps = [](const json& list) {
     std::vector<std::int64_t> result;
     for (const json& stamp : list) result.push_back(std::llround(stamp.get<double>() * 1e9));
     return result;
   };
-  for (const json& test : cases(*folder, "association_cases.json")) {
+  for (const json& test : vector_cases(*folder, "association_cases.json")) {
     const auto pairs = associate_nearest(stamps(test.at("ref")), stamps(test.at("est")), test.at("max_diff"),
                                          test.at("offset"));
     const json& expected = test.at("evo_ref_est_index_pairs");

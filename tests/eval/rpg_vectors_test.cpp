@@ -4,29 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 
 #include "core/trajectory_file.hpp"
 #include "eval/trajectory/segment_errors.hpp"
 #include "eval/trajectory/trajectory_error.hpp"
+#include "tests/support/trajectory_vectors.hpp"
 
 namespace fusebench {
 namespace {
 
 using nlohmann::json;
-
-std::optional<std::filesystem::path> vectors() {
-  const char* const data = std::getenv("FUSEBENCH_DATA");
-  if (data == nullptr) return std::nullopt;
-  const auto folder = std::filesystem::path(data) / ".." / "vectors" / "trajectory";
-  if (!std::filesystem::exists(folder / "rpg_expected.json")) return std::nullopt;
-  return folder;
-}
+using testing::trajectory_vectors;
+using testing::vector_cases;
 
 Trajectory load(const std::filesystem::path& file) {
   std::vector<std::string> warnings;
@@ -68,11 +60,11 @@ AlignmentRequest requested(const json& options) {
 }
 
 TEST(RpgVectors, AbsoluteAndRelativeErrors) {
-  const auto folder = vectors();
-  if (!folder) GTEST_SKIP() << "FUSEBENCH_DATA is not set, or has no ../vectors/trajectory beside it";
+  const auto folder = trajectory_vectors();
+  SKIP_WITHOUT_VECTORS(folder);
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   int compared = 0;
-  const json tests = json::parse(std::ifstream(*folder / "rpg_expected.json")).at("cases");
+  const json tests = vector_cases(*folder, "rpg_expected.json");
   for (const json& test : tests) {
     SCOPED_TRACE(test.at("est").get<std::string>() + " " + test.at("options").dump());
     const Trajectory reference = load(*folder / "inputs" / test.at("gt").get<std::string>());

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "eval/trajectory/stamps.hpp"
+
 namespace fusebench {
 namespace {
 

@@ -3,35 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "core/association.hpp"
 #include "core/trajectory_file.hpp"
 #include "eval/trajectory_metrics.hpp"
+#include "tests/support/trajectory_vectors.hpp"
 
 namespace fusebench {
 namespace {
 
 using nlohmann::json;
+using testing::trajectory_vectors;
+using testing::vector_cases;
 
 constexpr double kRelative = 1e-9;
 constexpr double kAbsolute = 1e-12;
-
-std::optional<std::filesystem::path> vectors() {
-  const char* const data = std::getenv("FUSEBENCH_DATA");
-  if (data == nullptr) return std::nullopt;
-  const auto folder = std::filesystem::path(data) / ".." / "vectors" / "trajectory";
-  if (!std::filesystem::exists(folder / "tum_expected.json")) return std::nullopt;
-  return folder;
-}
-
-#define SKIP_WITHOUT_VECTORS(folder) \
-  if (!folder) GTEST_SKIP() << "FUSEBENCH_DATA is not set, or has no ../vectors/trajectory beside it"
 
 void expect_close(double value, const json& expected, const std::string& what, double absolute = kAbsolute) {
   const double wanted = expected.get<double>();
@@ -68,15 +57,11 @@ Trajectory load(const std::filesystem::path& folder, const json& test, const cha
   return *trajectory;
 }
 
-json cases(const std::filesystem::path& folder, const char* file) {
-  return json::parse(std::ifstream(folder / file)).at("cases");
-}
-
 TEST(TumVectors, AbsoluteTrajectoryError) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   int compared = 0;
-  for (const json& test : cases(*folder, "tum_expected.json")) {
+  for (const json& test : vector_cases(*folder, "tum_expected.json")) {
     if (test.at("tool") != "evaluate_ate.py") continue;
     const std::string what = test.at("est").get<std::string>() + " " + test.at("options").dump();
     AteOptions options;
@@ -99,10 +84,10 @@ TEST(TumVectors, AbsoluteTrajectoryError) {
 }
 
 TEST(TumVectors, RelativePoseErrorWithFixedDelta) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   int compared = 0;
-  for (const json& test : cases(*folder, "tum_expected.json")) {
+  for (const json& test : vector_cases(*folder, "tum_expected.json")) {
     const json& given = test.at("options");
     if (test.at("tool") != "evaluate_rpe.py" || !given.value("fixed_delta", false)) continue;
     const std::string unit = given.at("delta_unit");
@@ -126,7 +111,7 @@ TEST(TumVectors, RelativePoseErrorWithFixedDelta) {
 }
 
 TEST(TumVectors, Association) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   const auto stamps = [](const json& list) {
     std::vector<std::int64_t> result;
@@ -136,7 +121,7 @@ TEST(TumVectors, Association) {
     return result;
   };
   int compared = 0;
-  for (const json& test : cases(*folder, "association_cases.json")) {
+  for (const json& test : vector_cases(*folder, "association_cases.json")) {
     const auto reference = stamps(test.at("ref"));
     const auto estimate = stamps(test.at("est"));
     const auto pairs = associate(reference, estimate, std::llround(test.at("max_diff").get<double>() * 1e9),
@@ -157,7 +142,7 @@ TEST(TumVectors, Association) {
 }
 
 TEST(TumVectors, DegenerateTrajectoriesAreRefused) {
-  const auto folder = vectors();
+  const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
   std::vector<std::string> warnings;
   for (const std::string name : {"synL_collinear", "synL_collinear_oblique", "syn2_two_poses"}) {
