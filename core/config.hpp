@@ -86,7 +86,7 @@ struct MotionConfig {
   double acceleration_noise_mps2_sqrthz = 1.5;
   double angular_acceleration_noise_radps2_sqrthz = 3.0;
   double gravity_noise_rad_sqrthz = 1e-5;
-  double drift_factor = 9.0;
+  double drift_factor = 10.0;
   double exposure_s = 0.01;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -106,8 +106,7 @@ struct MotionConfig {
         "drift_factor", self.drift_factor, 1.0, 100.0,
         "the model drifts this much more than independent errors of the frames would make it (standard "
         "deviations): consecutive frames see the same patches on the same model, so their errors are alike; "
-        "only the reported uncertainty depends on it (NEES of simulated runs: 1.0 and 1.1 slow, 0.8 and 0.9 "
-        "fast, of orientation and position)");
+        "only the reported uncertainty depends on it; chosen so that the NEES of simulated slow runs is 1");
     v.number(
         "exposure_s", self.exposure_s, 0.0, 0.5,
         "exposure of a colour image, from which motion blur is predicted (seconds; no format records it, "
@@ -198,7 +197,6 @@ struct PhotometricConfig {
   double noise_grey = 8.0;
   double huber_sigmas = 1.345;
   double pixels_per_measurement = 300.0;
-  double coarse_level_share = 0.25;
   double gain_sigma = 0.1;
   double offset_sigma_grey = 10.0;
 
@@ -212,12 +210,6 @@ struct PhotometricConfig {
         "pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
         "this many residuals count as one measurement, since the pixels of a patch share their errors (blur, "
         "calibration, interpolation); 300 are all pixels of a 10x10 patch on three levels");
-    v.number(
-        "coarse_level_share", self.coarse_level_share, 0.0, 1.0,
-        "how much a residual counts against one of the next finer level in use: coarse pixels mix surfaces "
-        "of "
-        "different depth, which turns a camera that sees depth edges by some 0.05 mrad a frame if they count "
-        "alike (1), but without them (0) shaken frames are lost");
     v.number("gain_sigma", self.gain_sigma, 0.0, 10.0,
              "prior of the brightness gain of a patch around 1; 0 fixes it");
     v.number("offset_sigma_grey", self.offset_sigma_grey, 0.0, 255.0,

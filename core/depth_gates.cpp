@@ -27,6 +27,20 @@ DepthImage gate_depth(const DepthImage& depth_m, const DepthConfig& config) {
   return gated;
 }
 
+bool is_one_surface(const DepthImage& depth_m, int x, int y, int reach_px, double edge_jump) {
+  const float middle_m = depth_m(x, y);
+  if (middle_m <= 0) return false;
+  if (reach_px == 0) return true;
+  for (int dy = -reach_px; dy <= reach_px; dy += reach_px) {
+    for (int dx = -reach_px; dx <= reach_px; dx += reach_px) {
+      if (!depth_m.contains(x + dx, y + dy)) continue;
+      const float m = depth_m(x + dx, y + dy);
+      if (m <= 0 || std::abs(m - middle_m) > edge_jump * middle_m) return false;
+    }
+  }
+  return true;
+}
+
 Vector3d measured_normal(const DepthImage& depth_m, const PinholeCamera& camera, int x, int y) {
   constexpr int kReach = 4;
   if (!depth_m.contains(x - kReach, y - kReach) || !depth_m.contains(x + kReach, y + kReach)) {

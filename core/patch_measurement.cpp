@@ -139,9 +139,8 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
   light.gradient.setZero();
   light.by_pose.setZero();
   const double noise = scale_.photometric * config_.photometric.noise_grey;
-  double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
-  for (int level = finest_level; level < config_.patches.levels;
-       ++level, share *= config_.photometric.coarse_level_share) {
+  const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
+  for (int level = finest_level; level < config_.patches.levels; ++level) {
     const auto l = static_cast<std::size_t>(level);
     const auto& pixels = patches_[patch].levels[l].pixels;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -164,7 +163,7 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       outcome.chi2_photometric += whitened * whitened;
       outcome.robust_photometric += robust.weight * whitened * whitened;
       ++outcome.photometric_residuals;
-      state.active.push_back({level, share, &pixels[i]});
+      state.active.push_back({level, &pixels[i]});
     }
   }
   reduce_brightness(state);
@@ -294,6 +293,7 @@ double PatchMeasurement::patch_cost(const PatchState& state, const PosedLevels& 
 }
 
 double PatchMeasurement::photometric_cost(const PatchState& state, const PosedLevels& posed) const {
+  const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
   double cost = 0;
   for (const ActivePixel& active : state.active) {
     const auto level = static_cast<std::size_t>(active.level);
@@ -310,7 +310,7 @@ double PatchMeasurement::photometric_cost(const PatchState& state, const PosedLe
         state.brightness.trial.x() * active.pixel->intensity + state.brightness.trial.y();
     const double whitened = (sample_bicubic(image, x, y).value - predicted) /
                             (scale_.photometric * config_.photometric.noise_grey);
-    cost += active.share * huber(whitened, config_.photometric.huber_sigmas).cost;
+    cost += share * huber(whitened, config_.photometric.huber_sigmas).cost;
   }
   return cost;
 }

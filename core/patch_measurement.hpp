@@ -83,7 +83,6 @@ class PatchMeasurement final : public PoseMeasurement {
   /// A photometric residual of the last linearisation.
   struct ActivePixel {
     int level = 0;
-    double share = 1;  ///< of a measurement that it counts as
     const PatchPixel* pixel = nullptr;
   };
   /// Everything that the last linearisation fixed for one patch.

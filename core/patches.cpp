@@ -111,8 +111,10 @@ std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& mo
     pixel.point_world =
         frame.T_world_camera * frame.camera.back_project(pixels[i].x(), pixels[i].y(), surfaces[i].depth_m);
     pixel.normal_world = surfaces[i].normal_world;
-    pixel.depth_confirmed =
-        frame.depth_m(static_cast<int>(pixels[i].x()), static_cast<int>(pixels[i].y())) > 0;
+    // A pixel of a coarse level is a mean over what lies about its own size around it.
+    const int reach_px = r.level == 0 ? 0 : 1 << r.level;
+    pixel.depth_confirmed = is_one_surface(frame.depth_m, static_cast<int>(pixels[i].x()),
+                                           static_cast<int>(pixels[i].y()), reach_px, config.depth.edge_jump);
     patches[r.patch].levels[r.level].pixels.push_back(pixel);
   }
   for (Patch& patch : patches) trust_model_in_holes(patch);

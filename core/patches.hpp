@@ -20,9 +20,10 @@ struct PatchPixel {
   double intensity = 0;  ///< grey levels, at the patch level
   Vector3d point_world = Vector3d::Zero();   ///< model surface behind the pixel, metres
   Vector3d normal_world = Vector3d::Zero();  ///< unit, towards free space
-  /// The frame measured depth here as well, so that colour and depth belong together. At a silhouette a pixel
-  /// of the near surface may have the depth of the far one, which would move it the wrong way: such pixels
-  /// are not aligned by (they count in the intensity error all the same).
+  /// The frame measured depth here as well, of one surface as far as the pixel of its level sees, so that
+  /// colour and depth belong together. At a silhouette a pixel of the near surface may have the depth of the
+  /// far one, which would move it the wrong way: such pixels are not aligned by (they count in the intensity
+  /// error all the same).
   bool depth_confirmed = true;
   /// What is projected to find the pixel in the next frame: the pixel lands at project(warp_point) +
   /// warp_offset. This is all that the kinds of deformation differ in.

@@ -5,7 +5,6 @@
 #include <set>
 #include <utility>
 
-#include "core/depth_gates.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -44,37 +43,6 @@ TEST(CornerSelection, HonoursTheLimitAndAPlainImage) {
   config.max_count = 7;
   EXPECT_LE(select_corners(frame.grey, frame.depth_m, {}, config).size(), 7U);
   EXPECT_TRUE(select_corners(GreyImage(320, 240, 77), frame.depth_m, {}, config).empty());
-}
-
-TEST(DepthGates, RangeAndEdgesBecomeHolesAndPlanesStay) {
-  DepthImage depth(20, 20, 1.0F);
-  for (int y = 0; y < 20; ++y) {
-    for (int x = 10; x < 20; ++x) depth(x, y) = 1.5F;
-  }
-  depth(3, 3) = 0.1F;
-  depth(16, 16) = 9.0F;
-  const DepthImage gated = gate_depth(depth, DepthConfig{});
-  EXPECT_EQ(gated(3, 3), 0.0F);
-  EXPECT_EQ(gated(16, 16), 0.0F);
-  EXPECT_EQ(gated(9, 10), 0.0F) << "near side of the edge";
-  EXPECT_EQ(gated(10, 10), 0.0F) << "far side of the edge";
-  EXPECT_EQ(gated(7, 10), 1.0F);
-  EXPECT_EQ(gated(13, 10), 1.5F);
-}
-
-TEST(DepthGates, NormalOfASlantedPlaneFacesTheCamera) {
-  const PinholeCamera camera = testing::small_camera();
-  const Vector3d normal = Vector3d(0.4, -0.2, -1.0).normalized();
-  DepthImage depth(320, 240);
-  for (int y = 0; y < 240; ++y) {
-    for (int x = 0; x < 320; ++x) {
-      depth(x, y) = static_cast<float>(normal.z() * 2.0 / normal.dot(camera.back_project(x, y, 1.0)));
-    }
-  }
-  EXPECT_LT((measured_normal(depth, camera, 200, 90) - normal).norm(), 1e-4);
-  EXPECT_EQ(measured_normal(depth, camera, 2, 90).norm(), 0.0) << "no neighbours at the border";
-  depth(204, 90) = 0;
-  EXPECT_EQ(measured_normal(depth, camera, 200, 90).norm(), 0.0) << "a missing neighbour";
 }
 
 }  // namespace
