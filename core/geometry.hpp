@@ -19,7 +19,9 @@ using Matrix2x3d = Eigen::Matrix<double, 2, 3>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 [[nodiscard]] constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
+[[nodiscard]] constexpr double degrees(double radians) { return radians * kDegreesPerRadian; }
 
 /// Cross-product matrix: hat(a) * b = a x b.
 [[nodiscard]] Matrix3d hat(const Vector3d& a);

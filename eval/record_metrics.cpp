@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "eval/statistics_json.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -14,12 +16,6 @@ using Json = nlohmann::ordered_json;
 double number_at(const Json& json, const char* key) {
   const Json& value = json.at(key);
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-}
-
-Json json_of(const Statistics& stats) {
-  if (stats.count == 0) return nullptr;
-  return {{"rmse", stats.rmse}, {"mean", stats.mean}, {"median", stats.median}, {"std", stats.std},
-          {"min", stats.min},   {"max", stats.max},   {"sse", stats.sse},       {"count", stats.count}};
 }
 
 Statistics statistics_of(const Json& json) {

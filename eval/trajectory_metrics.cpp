@@ -16,7 +16,6 @@ namespace fusebench {
 namespace {
 
 constexpr double kGapFactor = 1.5;
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -40,34 +39,27 @@ double median_interval(std::span<const std::int64_t> stamps) {
   return statistics(intervals).median;
 }
 
-/// The partner of each pose i under the fixed delta; kNone if it has none.
-std::vector<std::size_t> partners(std::span<const std::int64_t> stamps, const RpeOptions& options) {
-  const std::size_t last = stamps.size() - 1;
-  std::vector<std::size_t> result(stamps.size(), kNone);
-  const double gap_limit = kGapFactor * options.delta * median_interval(stamps);
-  for (std::size_t i = 0; i <= last; ++i) {
-    std::size_t j = kNone;
-    if (options.unit == DeltaUnit::seconds) {
-      j = nearest_stamp(stamps, stamps[i] + nanoseconds(options.delta));
-      if (options.skip_gaps && j == i) continue;
-    } else {
-      j = std::min(last, i + static_cast<std::size_t>(options.delta));
-      if (options.skip_gaps && static_cast<double>(stamps[j] - stamps[i]) > gap_limit) continue;
-    }
-    if (j != last) result[i] = j;
-  }
-  return result;
+/// The motions of the estimate that are compared.
+IndexPairs motions_of(const Trajectory& estimate, std::span<const std::int64_t> stamps,
+                      const RpeOptions& options) {
+  IndexPairs motions =
+      options.all_pairs ? all_to_all(estimate.size()) : tum_motions(estimate, {options.delta, options.unit});
+  if (!options.skip_gaps) return motions;
+  const double gap_limit_ns = kGapFactor * options.delta * median_interval(stamps);
+  std::erase_if(motions, [&](const auto& motion) {
+    const auto& [i, j] = motion;
+    if (i == j) return true;
+    return options.unit == DeltaUnit::frames && !options.all_pairs &&
+           static_cast<double>(stamps[j] - stamps[i]) > gap_limit_ns;
+  });
+  return motions;
 }
 
 Result<void> check_rpe_input(const Trajectory& ground_truth, const Trajectory& estimate,
                              const RpeOptions& options) {
-  const bool known = options.unit == DeltaUnit::frames || options.unit == DeltaUnit::seconds;
-  const bool whole = options.unit != DeltaUnit::frames || std::floor(options.delta) == options.delta;
-  if (!known || !whole || !(options.delta > 0 && std::isfinite(options.delta))) {
-    return fail(ErrorCode::configuration,
-                fmt::format("delta = {} {} (allowed: positive seconds, or a whole number of frames)",
-                            options.delta, to_string(options.unit)));
-  }
+  if (auto sensible = check_delta({options.delta, options.unit}); !sensible) return sensible;
+  if (options.delta <= 0)
+    return fail(ErrorCode::configuration, fmt::format("delta = {} (allowed: above 0)", options.delta));
   if (ground_truth.size() < 2 || estimate.size() < 2) {
     return fail(
         ErrorCode::data_corrupt,
@@ -134,28 +126,25 @@ Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Traj
   const std::int64_t offset = nanoseconds(options.offset_s);
   const double limit_ns = std::min(2 * median_interval(truth_ns), options.max_difference_s * 1e9);
 
-  const auto truth_at = [&](std::size_t i) -> std::optional<std::size_t> {
-    const std::int64_t wanted = estimate_ns[i] + offset;
+  std::vector<std::optional<std::size_t>> truth_of;
+  for (const std::int64_t stamp_ns : estimate_ns) {
+    const std::int64_t wanted = stamp_ns + offset;
     const std::size_t nearest = nearest_stamp(truth_ns, wanted);
-    if (static_cast<double>(std::abs(truth_ns[nearest] - wanted)) > limit_ns) return std::nullopt;
-    return nearest;
-  };
+    const bool near = static_cast<double>(std::abs(truth_ns[nearest] - wanted)) <= limit_ns;
+    truth_of.push_back(near ? std::optional(nearest) : std::nullopt);
+  }
 
   RpeResult result;
   result.delta = options.delta;
   result.unit = options.unit;
   result.max_difference_s = limit_ns * 1e-9;
-  const std::vector<std::size_t> partner = partners(estimate_ns, options);
-  for (std::size_t i = 0; i < partner.size(); ++i) {
-    if (partner[i] == kNone) continue;
-    const std::size_t j = partner[i];
-    ++result.possible;
-    const auto truth_i = truth_at(i);
-    const auto truth_j = truth_at(j);
-    if (!truth_i || !truth_j) continue;
+  const IndexPairs motions = motions_of(estimate, estimate_ns, options);
+  result.possible = motions.size();
+  for (const auto& [i, j] : motions) {
+    if (!truth_of[i] || !truth_of[j]) continue;
     const SE3 estimate_motion = estimate[j].T_world_camera.inverse() * estimate[i].T_world_camera;
     const SE3 truth_motion =
-        ground_truth[*truth_j].T_world_camera.inverse() * ground_truth[*truth_i].T_world_camera;
+        ground_truth[*truth_of[j]].T_world_camera.inverse() * ground_truth[*truth_of[i]].T_world_camera;
     const SE3 error = estimate_motion.inverse() * truth_motion;
     result.errors_m.push_back(error.translation.norm());
     result.errors_rad.push_back(so3_log(error.rotation).norm());

@@ -55,8 +55,9 @@ struct AteResult {
                                                           const AteOptions& options = {});
 
 struct RpeOptions {
-  double delta = 1;                     ///< a whole number for frames
-  DeltaUnit unit = DeltaUnit::seconds;  ///< or frames
+  double delta = 1;  ///< above 0, a whole number for frames
+  DeltaUnit unit = DeltaUnit::seconds;
+  bool all_pairs = false;  ///< every pose with every pose (--max_pairs 0 without --fixed_delta); no delta
   /// Ground truth further than this from an estimate's stamp is not used; TUM's own limit (twice the median
   /// interval of the ground truth) holds beside it.
   double max_difference_s = 0.02;
@@ -70,7 +71,7 @@ struct RpeOptions {
 
 /// Relative pose error over a fixed delta (evaluate_rpe.py --fixed_delta).
 ///
-/// For each pose i of the estimate, j is the pose whose index (frames) or stamp (seconds) is nearest to i's
+/// For each pose i of the estimate, j is the pose whose index, stamp, path or summed angle is nearest to i's
 /// plus delta; pairs that end at the last pose are dropped (so that the end is not counted over shorter
 /// deltas; with frames and delta 1 this costs one pair, and is as in the script). Both poses take the nearest
 /// ground truth. The error is E = (P_j^-1 P_i)^-1 (G_j^-1 G_i) for estimate P and truth G: |trans(E)| in

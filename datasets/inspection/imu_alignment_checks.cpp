@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/geometry.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/turn_alignment.hpp"
 
@@ -17,7 +17,6 @@ namespace fusebench {
 
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kMinExplained = 0.5;       // less than half of the variance: not the same motion
 constexpr double kOffsetWarning_s = 0.004;  // an eighth of a frame
 constexpr double kOffsetError_s = 0.010;
@@ -122,7 +121,7 @@ void report_rotation(const ImuAlignment& a, const Matrix3d& calibrated, Inspecti
   out.add("extrinsic-rotated", error_rad >= kRotationError_rad ? Severity::error : Severity::warning,
           fmt::format("the rotation of T_imu_camera is {:.1f} deg (+- {:.1f}) from the one that fits the "
                       "turns of the {} best",
-                      kDegrees * error_rad, kDegrees * a.rotation_sigma_rad, a.source),
+                      kDegreesPerRadian * error_rad, kDegreesPerRadian * a.rotation_sigma_rad, a.source),
           fmt::format("the best rotation for T_imu_color in [imu] of calibration.toml is {}",
                       matrix_text(a.rotation_imu_camera)));
 }
@@ -130,8 +129,9 @@ void report_rotation(const ImuAlignment& a, const Matrix3d& calibrated, Inspecti
 /// A factor of the gyroscope by which its values would be in degrees, or 1.
 double unit_of(double scale) {
   const double magnitude = std::abs(scale);
-  if (magnitude > 0.8 * kDegrees && magnitude < 1.25 * kDegrees) return kDegrees;
-  if (magnitude > 0.8 / kDegrees && magnitude < 1.25 / kDegrees) return 1 / kDegrees;
+  if (magnitude > 0.8 * kDegreesPerRadian && magnitude < 1.25 * kDegreesPerRadian) return kDegreesPerRadian;
+  if (magnitude > 0.8 / kDegreesPerRadian && magnitude < 1.25 / kDegreesPerRadian)
+    return 1 / kDegreesPerRadian;
   return 1;
 }
 
@@ -157,8 +157,8 @@ void report_bias(const ImuAlignment& a, Inspection& out) {
   const double bias = out.imu->gyroscope_bias_radps->norm();
   if (bias < 0.1 || unit_of(a.scale) != 1) return;
   out.add("gyroscope-bias", Severity::warning,
-          fmt::format("the gyroscope's bias is {:.3f} rad/s ({:.1f} deg/s), by the {}", bias, kDegrees * bias,
-                      out.imu->bias_source),
+          fmt::format("the gyroscope's bias is {:.3f} rad/s ({:.1f} deg/s), by the {}", bias,
+                      kDegreesPerRadian * bias, out.imu->bias_source),
           "start from rest, or widen the prior of the bias");
 }
 

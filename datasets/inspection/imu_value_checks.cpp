@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <vector>
 
+#include "core/geometry.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/order_statistics.hpp"
 
@@ -14,7 +14,6 @@ namespace fusebench {
 
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 // A sensor at the end of its range repeats that value. No sensor's range ends below these, so repeated
 // extremes there are not looked at.
 constexpr double kMinGyroscopeRange_radps = radians(120);
@@ -161,7 +160,7 @@ void check_imu_values(const Recording& recording, Inspection& out) {
   imu.longest_repeat = longest_repeat(samples);
   check_accelerometer_unit(imu, out);
   check_range(samples, &ImuSample::angular_velocity_radps, kMinGyroscopeRange_radps, "gyroscope-saturated",
-              "deg/s", kDegrees, out);
+              "deg/s", kDegreesPerRadian, out);
   check_range(samples, &ImuSample::specific_force_mps2, kMinAccelerometerRange_mps2,
               "accelerometer-saturated", "m/s^2", 1, out);
   if (static_cast<double>(imu.longest_repeat) * imu.stamps.median_interval_s > 0.1 &&

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "core/geometry.hpp"
 #include "core/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/order_statistics.hpp"
@@ -13,8 +13,6 @@
 namespace fusebench {
 
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// From the frame before to the one after: over one interval the jitter of a motion-capture system shows.
 std::vector<SpeedSample> speeds_from_truth(const Recording& recording) {
@@ -67,7 +65,7 @@ void report_jumps(const MotionMeasurement& motion, Inspection& out) {
   out.add("truth-jump", Severity::warning,
           fmt::format("the ground truth moves with up to {:.1f} m/s (frame {}) and {:.0f} deg/s (frame {}), "
                       "which no hand does",
-                      *motion.linear_max_mps, fastest->frame, kDegrees * motion.angular_max_radps,
+                      *motion.linear_max_mps, fastest->frame, kDegreesPerRadian * motion.angular_max_radps,
                       fastest_turn->frame),
           "leave the poses around it out, or look whether its stamps are right");
 }
@@ -141,8 +139,8 @@ void check_motion(const Recording& recording, Inspection& out) {
                       "10 ms exposure "
                       "(fast from {:.0f} %); {:.0f} deg/s in the mean, {:.0f} at most",
                       motion.fast ? "fast" : "slow", motion.source, 100 * motion.severe_share, kSevereBlur_px,
-                      100 * kFastShare, kDegrees * motion.angular_mean_radps,
-                      kDegrees * motion.angular_max_radps));
+                      100 * kFastShare, kDegreesPerRadian * motion.angular_mean_radps,
+                      kDegreesPerRadian * motion.angular_max_radps));
   if (motion.linear_max_mps) report_jumps(motion, out);
 }
 

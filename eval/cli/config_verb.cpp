@@ -7,9 +7,9 @@
 
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/text_layout.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/json_text.hpp"
+#include "eval/report/text_layout.hpp"
 
 namespace fusebench {
 

@@ -12,10 +12,10 @@
 #include "datasets/recording_catalogue.hpp"
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/text_layout.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/experiment.hpp"
 #include "eval/json_text.hpp"
+#include "eval/report/text_layout.hpp"
 
 namespace fusebench {
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <utility>
 
+#include "core/geometry.hpp"
 #include "eval/report/inspection_text.hpp"
 #include "eval/report/inspection_thumbnails.hpp"
 #include "eval/report/page.hpp"
@@ -15,7 +15,6 @@ namespace fusebench {
 
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::size_t kBuckets = 900;  // twice as many points as a chart is wide
 constexpr std::string_view kTime = "time [s]";
 
@@ -48,7 +47,7 @@ std::vector<Chart> motion_charts(const Inspection& i) {
   }
   Chart angular = time_chart("Angular speed", "angular speed [deg/s]");
   angular.series.push_back({"camera, by the " + i.motion.source, over_time(speeds, [](const SpeedSample& s) {
-                              return kDegrees * s.angular_radps;
+                              return kDegreesPerRadian * s.angular_radps;
                             })});
   charts.push_back(std::move(angular));
   Chart blur = time_chart("Predicted blur", "blur [px]");
@@ -124,13 +123,15 @@ std::vector<Chart> imu_charts(const Inspection& i, const Recording& recording) {
   Chart turning = time_chart("Rotation: gyroscope and camera", "angular speed [deg/s]");
   if (i.imu_alignment) {  // first, since what comes first is drawn on top
     const ImuAlignment& a = *i.imu_alignment;
-    turning.series.push_back({"camera, by the " + a.source,
-                              over_time(a.rates, [](const TurnRate& r) { return kDegrees * r.camera_radps; }),
-                              SeriesStyle::dots});
+    turning.series.push_back(
+        {"camera, by the " + a.source,
+         over_time(a.rates, [](const TurnRate& r) { return kDegreesPerRadian * r.camera_radps; }),
+         SeriesStyle::dots});
     turning.caption = fmt::format("The IMU's clock is {:+.2f} ms (+- {:.2f}) later.", 1e3 * a.time_offset_s,
                                   1e3 * a.time_offset_sigma_s);
   }
-  turning.series.push_back({"gyroscope", imu_norms(recording, &ImuSample::angular_velocity_radps, kDegrees)});
+  turning.series.push_back(
+      {"gyroscope", imu_norms(recording, &ImuSample::angular_velocity_radps, kDegreesPerRadian)});
   Chart force = time_chart("Specific force", "specific force [m/s²]");
   force.from_zero = false;
   force.series.push_back({"accelerometer", imu_norms(recording, &ImuSample::specific_force_mps2, 1)});

@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 namespace fusebench {
 
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 class Rows {
  public:
@@ -75,8 +72,8 @@ void motion_rows(const Inspection& i, std::vector<InspectionRow>& all) {
   Rows rows("motion");
   rows.add("class", fmt::format("{} (by the {})", m.fast ? "fast" : "slow", m.source));
   rows.add("angular speed",
-           fmt::format("{:.1f} deg/s mean, {:.1f} p95, {:.1f} max", kDegrees * m.angular_mean_radps,
-                       kDegrees * m.angular_p95_radps, kDegrees * m.angular_max_radps));
+           fmt::format("{:.1f} deg/s mean, {:.1f} p95, {:.1f} max", kDegreesPerRadian * m.angular_mean_radps,
+                       kDegreesPerRadian * m.angular_p95_radps, kDegreesPerRadian * m.angular_max_radps));
   if (m.linear_mean_mps) {
     rows.add("linear speed", fmt::format("{:.3f} m/s mean, {:.3f} p95, {:.3f} max", *m.linear_mean_mps,
                                          *m.linear_p95_mps, *m.linear_max_mps));
@@ -115,8 +112,9 @@ void imu_rows(const Inspection& i, std::vector<InspectionRow>& all) {
   Rows rows("IMU");
   const ImuMeasurement& m = *i.imu;
   rows.add_stamps(m.stamps);
-  rows.add("largest values", fmt::format("{:.0f} deg/s, {:.1f} m/s^2 (one axis)",
-                                         kDegrees * m.gyroscope_max_radps, m.accelerometer_max_mps2));
+  rows.add("largest values",
+           fmt::format("{:.0f} deg/s, {:.1f} m/s^2 (one axis)", kDegreesPerRadian * m.gyroscope_max_radps,
+                       m.accelerometer_max_mps2));
   if (m.gravity_mps2)
     rows.add("gravity", fmt::format("{:.3f} m/s^2 ({})", *m.gravity_mps2, m.gravity_source));
   if (m.gyroscope_bias_radps)
@@ -130,11 +128,11 @@ void imu_rows(const Inspection& i, std::vector<InspectionRow>& all) {
     rows.add("time offset",
              fmt::format("{:+.2f} ms +- {:.2f} (IMU later than the {}; {} turns)", 1e3 * a.time_offset_s,
                          1e3 * a.time_offset_sigma_s, a.source, a.intervals));
-    rows.add("extrinsic rotation",
-             a.rotation_error_rad
-                 ? fmt::format("{:.2f} deg +- {:.2f} off the calibration's", kDegrees * *a.rotation_error_rad,
-                               kDegrees * a.rotation_sigma_rad)
-                 : "none fits: the axes are mirrored");
+    rows.add("extrinsic rotation", a.rotation_error_rad
+                                       ? fmt::format("{:.2f} deg +- {:.2f} off the calibration's",
+                                                     kDegreesPerRadian * *a.rotation_error_rad,
+                                                     kDegreesPerRadian * a.rotation_sigma_rad)
+                                       : "none fits: the axes are mirrored");
     rows.add("gyroscope scale",
              fmt::format("{:.4f}; explains {:.1f} % of the turns", a.scale, 100 * a.explained));
   }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/geometry.hpp"
 #include "eval/json_text.hpp"
 #include "eval/report/data_labels.hpp"
 #include "eval/report/table.hpp"
@@ -15,7 +15,6 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kTextColumns = 5;  // recording, data, IMU, variant, status: left-aligned
 
 std::string shown(const std::optional<double>& value, double factor, int decimals) {
@@ -44,7 +43,7 @@ Cells shown_cells(const ResultTable& table, const TableRow& row) {
           shown(row.aie_common_grey, 1, 3),
           shown(row.ate_rmse_m, 100, 2),
           shown(row.rpe_second_m, 100, 2),
-          shown(row.rpe_second_rad, kDegrees, 2),
+          shown(row.rpe_second_rad, kDegreesPerRadian, 2),
           fmt::format("{}/{}", row.tracked, row.total),
           fmt::format("{}", row.vertices),
           fmt::format("{:.1f}", row.fps)};

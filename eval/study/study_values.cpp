@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace fusebench {
 
 namespace {
-
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 std::optional<double> finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
@@ -74,7 +71,7 @@ constexpr auto kValues = std::to_array<StudyValue>({
      .of = rpe<&Metrics::rpe_second, &RpeResult::translation>},
     {.name = "rpe_second_rad",
      .label = "RPE 1 s [deg]",
-     .shown_factor = kDegrees,
+     .shown_factor = kDegreesPerRadian,
      .of = rpe<&Metrics::rpe_second, &RpeResult::rotation>},
     {.name = "rpe_frame_m",
      .label = "RPE frame [mm]",
@@ -82,7 +79,7 @@ constexpr auto kValues = std::to_array<StudyValue>({
      .of = rpe<&Metrics::rpe_frame, &RpeResult::translation>},
     {.name = "rpe_frame_rad",
      .label = "RPE frame [deg]",
-     .shown_factor = kDegrees,
+     .shown_factor = kDegreesPerRadian,
      .decimals = 3,
      .of = rpe<&Metrics::rpe_frame, &RpeResult::rotation>},
     {.name = "aie_grey", .label = "AIE", .of = aie},

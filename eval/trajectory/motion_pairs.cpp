@@ -130,7 +130,7 @@ std::vector<double> measured_along(const Trajectory& trajectory, DeltaUnit unit)
       return path_lengths(trajectory);
     case DeltaUnit::degrees:
       along = turned_rad(trajectory);
-      for (double& angle : along) angle *= 180.0 / std::numbers::pi;
+      for (double& angle : along) angle = degrees(angle);
       return along;
     case DeltaUnit::radians:
       return turned_rad(trajectory);

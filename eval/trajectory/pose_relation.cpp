@@ -48,7 +48,7 @@ double of_difference(PoseRelation relation, const SE3& difference) {
     case PoseRelation::angle_rad:
       return angle_rad;
     case PoseRelation::angle_deg:
-      return angle_rad * (180.0 / std::numbers::pi);
+      return degrees(angle_rad);
     case PoseRelation::full:
       return std::hypot(rotation_part(angle_rad), difference.translation.norm());
     case PoseRelation::translation:

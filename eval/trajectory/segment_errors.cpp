@@ -1,7 +1,5 @@
 #include "eval/trajectory/segment_errors.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +11,7 @@ SegmentErrors segment_errors(const TrajectoryPair& pair, const IndexPairs& segme
                              double scale) {
   SegmentErrors errors;
   errors.length_m = length_m;
+  const std::vector<double> path = path_lengths(pair.reference);
   for (const auto& [i, j] : segments) {
     const SE3& reference_end = pair.reference[j].T_world_camera;
     const SE3& estimate_end = pair.estimate[j].T_world_camera;
@@ -20,6 +19,7 @@ SegmentErrors segment_errors(const TrajectoryPair& pair, const IndexPairs& segme
     SE3 estimate_motion = pair.estimate[i].T_world_camera.inverse() * estimate_end;
     estimate_motion.translation *= scale;
     const SE3 error = reference_motion.inverse() * estimate_motion;
+    errors.path_m.push_back(path[j] - path[i]);
     errors.translation_m.push_back(error.translation.norm());
     errors.rotation_rad.push_back(so3_log(error.rotation).norm());
     const Vector3d angles = roll_pitch_yaw_rad(
@@ -50,26 +50,18 @@ IndexPairs kitti_segments(const Trajectory& reference, double length_m) {
   return segments;
 }
 
-Result<KittiErrors> kitti_errors(const TrajectoryPair& pair) {
-  KittiErrors sum;
-  for (const double length_m : {100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 800.0}) {
-    const SegmentErrors errors = segment_errors(pair, kitti_segments(pair.reference, length_m), length_m);
-    for (std::size_t k = 0; k < errors.translation_m.size(); ++k) {
-      sum.translation += errors.translation_m[k] / length_m;
-      sum.rotation_rad_per_m += errors.rotation_rad[k] / length_m;
-      ++sum.segments;
-    }
+IndexPairs eth3d_segments(const Trajectory& reference, double length_m) {
+  constexpr double kTolerance_m = 0.025;
+  const std::vector<double> path = path_lengths(reference);
+  IndexPairs segments;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double wanted = path[i] + length_m;
+    while (j + 1 < path.size() && std::abs(path[j + 1] - wanted) < std::abs(path[j] - wanted)) ++j;
+    if (j + 1 >= path.size()) break;
+    if (i != j && std::abs(path[j] - wanted) <= kTolerance_m) segments.emplace_back(i, j);
   }
-  if (sum.segments == 0) {
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("the reference's path of {:.1f} m is shorter than KITTI's shortest segment (100 m)",
-                    path_lengths(pair.reference).back()),
-        "use `fusebench eval rpe --delta D --delta_unit m` for shorter recordings");
-  }
-  sum.translation /= static_cast<double>(sum.segments);
-  sum.rotation_rad_per_m /= static_cast<double>(sum.segments);
-  return sum;
+  return segments;
 }
 
 }  // namespace fusebench

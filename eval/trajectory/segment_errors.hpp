@@ -1,5 +1,6 @@
 // Relative errors over segments of given lengths, as benchmarks of odometry report them:
-// rpg_trajectory_evaluation (Zhang & Scaramuzza, IROS 2018) and KITTI (Geiger et al., CVPR 2012).
+// rpg_trajectory_evaluation (Zhang & Scaramuzza, IROS 2018), KITTI (Geiger et al., CVPR 2012) and ETH3D
+// (Schoeps et al., CVPR 2019).
 #pragma once
 
 #include <cstddef>
@@ -15,6 +16,7 @@ namespace fusebench {
 /// Errors of the segments of one length, each list as long as there are segments. Angles in radians.
 struct SegmentErrors {
   double length_m = 0;
+  std::vector<double> path_m;  ///< of the reference over each segment, about length_m
   std::vector<double> translation_m;
   std::vector<double> rotation_rad;
   std::vector<double> yaw_rad;      ///< about the world's z at the segment's end
@@ -32,14 +34,8 @@ struct SegmentErrors {
 /// KITTI's segments: from every tenth pose to the first that lies further along the reference by `length_m`.
 [[nodiscard]] IndexPairs kitti_segments(const Trajectory& reference, double length_m);
 
-/// KITTI's two numbers: means over all segments of 100, 200, ... 800 m.
-struct KittiErrors {
-  std::size_t segments = 0;
-  double translation = 0;  ///< share of the length (the benchmark prints percent)
-  double rotation_rad_per_m = 0;
-};
-
-/// Error data_corrupt: the reference is shorter than the shortest segment.
-[[nodiscard]] Result<KittiErrors> kitti_errors(const TrajectoryPair& pair);
+/// ETH3D's segments: from every pose to the one whose path is nearest to length_m further along the
+/// reference, if it is off by at most 2.5 cm; they end before the last pose.
+[[nodiscard]] IndexPairs eth3d_segments(const Trajectory& reference, double length_m);
 
 }  // namespace fusebench

@@ -80,6 +80,20 @@ Result<TrajectoryError> errors_of_motions(Compared sides, const TrajectoryPair& 
 
 }  // namespace
 
+std::string_view to_string(Plane plane) {
+  switch (plane) {
+    case Plane::none:
+      return "none";
+    case Plane::xy:
+      return "xy";
+    case Plane::xz:
+      return "xz";
+    case Plane::yz:
+      return "yz";
+  }
+  return "";
+}
+
 Result<TrajectoryError> absolute_error(const TrajectoryPair& pair, const AbsoluteOptions& options) {
   if (options.relation == PoseRelation::distance_error_ratio) {
     return fail(ErrorCode::usage, fmt::format("{} is a relation of motions", to_string(options.relation)),

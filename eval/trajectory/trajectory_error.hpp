@@ -29,6 +29,7 @@ struct TrajectoryError {
 
 /// A plane that both are projected onto before they are compared, after the alignment.
 enum class Plane { none, xy, xz, yz };
+[[nodiscard]] std::string_view to_string(Plane plane);  ///< "none", "xy", "xz", "yz"
 
 struct AbsoluteOptions {
   PoseRelation relation = PoseRelation::translation;

@@ -45,8 +45,22 @@ void interpolate_reference(const Trajectory& reference, const Trajectory& estima
   result.possible = estimate.size();
 }
 
+/// The reference at the stamps that are evaluated, as far as it is known there. As ETH3D's program has it, a
+/// stamp that just meets the last pose of the reference is not.
+Trajectory at_stamps(const Trajectory& reference, const AssociationOptions& options) {
+  Trajectory poses;
+  for (const std::int64_t stamp_ns : options.evaluated_ns) {
+    if (stamp_ns >= reference.back().timestamp_ns) break;
+    const auto pose = interpolate_pose(reference, stamp_ns, nanoseconds(options.max_difference_s));
+    if (pose) poses.push_back({stamp_ns, *pose});
+  }
+  return poses;
+}
+
 /// A lost tracker is charged for the poses that it did not give.
-void hold_estimate(const Trajectory& reference, const Trajectory& estimate, TrajectoryPair& result) {
+void hold_estimate(const Trajectory& own_reference, const Trajectory& estimate, TrajectoryPair& result) {
+  const Trajectory interpolated = at_stamps(own_reference, result.options);
+  const Trajectory& reference = result.options.evaluated_ns.empty() ? own_reference : interpolated;
   const std::int64_t offset_ns = nanoseconds(result.options.offset_s);
   for (const StampedPose& truth : reference) {
     const std::int64_t wanted_ns = truth.timestamp_ns - offset_ns;

@@ -18,7 +18,7 @@ enum class AssociationRule {
   greedy,        ///< TUM's associate.py, rpg: closest first, one to one, strictly within the limit
   index,         ///< KITTI: by number; both have as many poses
   interpolated,  ///< the reference at the estimate's stamps, within its gaps of at most the limit
-  held,          ///< ETH3D: an estimate for every stamp of the reference, interpolated, or the nearest end's
+  held,          ///< ETH3D: an estimate for every stamp that is evaluated, interpolated, or the nearest end's
 };
 [[nodiscard]] std::string_view to_string(AssociationRule rule);
 
@@ -29,6 +29,9 @@ struct AssociationOptions {
   /// Of the reference's own stamps; the estimate is not cut.
   double start_s = -std::numeric_limits<double>::infinity();
   double end_s = std::numeric_limits<double>::infinity();
+  /// With `held`, where the reference is interpolated, within its gaps of at most the limit, and then
+  /// compared: stamps of images, increasing. Empty: the reference's own.
+  std::vector<std::int64_t> evaluated_ns = {};
 };
 
 /// As many poses on either side, each with its own stamp.

@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|recordings|interrupt|determinism
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|recordings|interrupt|determinism
 TEXT
 }
 
@@ -317,9 +317,84 @@ check_determinism() {
   (($? == 1)) || complain "a bar that fails: not exit code 1"
 }
 
+# curve OFFSET STRETCH: a trajectory of 60 poses on a helix, in TUM's format.
+curve() {
+  awk -v offset="$1" -v stretch="$2" 'BEGIN {
+    for (i = 0; i < 60; i++) {
+      a = 0.05 * i
+      printf "%.4f %.9f %.9f %.9f 0 0 %.9f %.9f\n", 1305031100 + 0.1 * i + offset, stretch * cos(a), stretch * sin(a),
+             stretch * 0.1 * a, sin(a / 2), cos(a / 2)
+    }
+  }'
+}
+
+# prints PATTERN NAME ARGUMENT...: the program succeeds, says nothing on standard error, and prints the pattern.
+prints() {
+  local pattern=$1 name=$2
+  shift 2
+  checks=$((checks + 1))
+  "$binary" "$@" >stdout 2>stderr || complain "$name: exit code $?"
+  if [[ -s stderr ]]; then complain "$name: something on standard error"; fi
+  grep -qE -- "$pattern" stdout || complain "$name: does not print '$pattern'"
+}
+
+check_evaluation() {
+  curve 0 1 >gt.txt
+  curve 0.004 1.1 >est.txt
+  awk '{ printf "%.0f,%s,%s,%s,%s,%s,%s,%s\n", $1 * 1e9, $2, $3, $4, $8, $5, $6, $7 }' gt.txt >data.csv
+  awk '{ a = 0.05 * (NR - 1); printf "%.9f %.9f 0 %s %.9f %.9f 0 %s 0 0 1 %s\n", cos(a), -sin(a), $2, sin(a), cos(a), $3, $4 }' \
+    gt.txt >kitti.txt
+
+  prints 'protocol +evo \(evo v1.36.5\)' "protocol" eval ate gt.txt est.txt
+  prints '60 of 60 possible \(coverage 100.0 %\)' "pairs" eval ate gt.txt est.txt
+  prints 'alignment +sim3 from all pairs.*scale 0.90909' "evo's -as" eval ate gt.txt est.txt -as
+  prints 'rmse +[0-9.]+e-1[0-9]' "a scaled copy" eval ate gt.txt est.txt -vas
+  prints 'alignment +se3 from the first 10 pairs' "n_to_align" eval ate gt.txt est.txt -a --n_to_align 10
+  prints 'trans_part \[cm\]' "change_unit" eval ate gt.txt est.txt --change_unit cm
+  prints 'angle_deg \[deg\]' "relation" eval ate gt.txt est.txt --pose_relation angle_deg
+  prints 'data.csv \(euroc\): 60 poses' "euroc" eval ate data.csv est.txt -a
+  prints 'estimate +est.txt \(tum\)' "euroc against tum" eval ate euroc data.csv est.txt -a
+  prints 'by the number of the pose' "kitti" eval ate kitti kitti.txt kitti.txt
+  prints 'consecutive, delta 1 f, selected from the estimate' "rpe" eval rpe gt.txt est.txt
+  prints 'all, delta 0.3 m within 10 %' "rpe of all pairs" eval rpe gt.txt est.txt --all_pairs -d 0.3 -u m
+  prints 'fixed delta, delta 1 s' "rpe of tum" eval rpe gt.txt est.txt --protocol tum
+  prints 'length \[m\] +segments' "rpe of rpg" eval rpe gt.txt est.txt --protocol rpg
+  prints 'held where it has no pose' "eth3d" eval ate gt.txt est.txt --protocol eth3d
+  prints '"protocol": "evo"' "JSON" eval rpe gt.txt est.txt --json
+  prints 'rmse' "errors as a file" eval ate gt.txt est.txt --errors errors/ate.csv
+  [[ $(head -1 errors/ate.csv) == timestamp_ns,trans_part_m ]] || complain "errors as a file: $(head -1 errors/ate.csv)"
+  [[ $(wc -l <errors/ate.csv) == 61 ]] || complain "errors as a file: not 60 errors"
+
+  refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
+  refused "one file" 2 'GT EST|files' -- eval ate gt.txt
+  refused "no metric" 2 -- eval
+  refused "unknown protocol" 2 "unknown protocol 'tums'" 'hint:evo, tum' -- eval ate gt.txt est.txt --protocol tums
+  refused "unknown relation" 2 'angle' -- eval ate gt.txt est.txt -r angle
+  refused "unknown unit" 2 "delta unit 'x'" -- eval rpe gt.txt est.txt -u x
+  refused "unit of another kind" 2 'change_unit deg' 'hint:mm' -- eval ate gt.txt est.txt --change_unit deg
+  refused "half a frame" 2 'delta = 0.5' -- eval rpe gt.txt est.txt -d 0.5
+  refused "deltas of segments" 2 'lengths' -- eval rpe gt.txt est.txt --protocol rpg -d 1
+  refused "kitti's absolute error" 2 'no absolute error' -- eval ate gt.txt est.txt --protocol kitti
+  refused "two alignments" 2 'exclude each other' -- eval ate gt.txt est.txt -a --align sim3
+  refused "stamps on one side" 2 'no stamps' -- eval ate gt.txt kitti.txt
+  refused "numbers by time" 2 'by time' -- eval rpe kitti.txt kitti.txt -d 1 -u s
+  refused "another clock" 3 'match within 0.01 s' 'hint:t_offset' -- eval ate gt.txt <(curve 1000 1)
+  refused "a line" 3 'on a line' 'hint:origin|yaw' -- eval ate -a <(awk '{ print $1, NR, 0, 0, 0, 0, 0, 1 }' gt.txt) est.txt
+  refused "motions too long" 3 'no motion of 60 poses' -- eval rpe gt.txt est.txt -d 1000
+  refused "a short row" 3 'short.txt:5' -- eval ate "$(sed '5s/ [^ ]*$//' gt.txt >short.txt && echo short.txt)" est.txt
+  refused "not a number" 3 'nan.txt:7' -- eval ate "$(sed '7s/^[^ ]*/nan/' gt.txt >nan.txt && echo nan.txt)" est.txt
+  refused "no quaternion" 3 'zero.txt:3.*norm 0' -- \
+    eval ate "$(sed '3s/.*/1305031100.2 0 0 0 0 0 0 0/' gt.txt >zero.txt && echo zero.txt)" est.txt
+  refused "a repeated stamp" 3 'twice.txt:2.*line 1' -- \
+    eval ate "$(sed '1p' gt.txt >twice.txt && echo twice.txt)" est.txt
+  refused "two trajectories" 3 'two.txt:61: time jumps back' 'hint:split' -- \
+    eval ate "$(cat gt.txt est.txt >two.txt && echo two.txt)" est.txt
+}
+
 case "$group" in
   bad-data) check_bad_data ;;
   bad-usage) check_bad_usage ;;
+  evaluation) check_evaluation ;;
   recordings) check_recordings ;;
   interrupt) check_interrupt ;;
   determinism) check_determinism ;;

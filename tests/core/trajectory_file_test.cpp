@@ -94,7 +94,7 @@ TEST_F(TrajectoryFile, DisorderIsTold) {
 }
 
 TEST_F(TrajectoryFile, QuaternionsAreNormalisedAndLongOnesCounted) {
-  const auto path = read("1 0 0 0 0 0 0 1.005\n2 0 0 0 0 0 0 0.9\n3 0 0 0 1 1 1 1\n");
+  const auto path = read("1 0 0 0 0 0 0 1.0005\n2 0 0 0 0 0 0 0.9\n3 0 0 0 1 1 1 1\n");
   ASSERT_TRUE(path) << path.error().message;
   for (const StampedPose& pose : *path) EXPECT_NEAR(pose.T_world_camera.rotation.norm(), 1, 1e-15);
   ASSERT_EQ(warnings_.size(), 1U);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/geometry.hpp"
 #include "core/trajectory_file.hpp"
 #include "eval/trajectory/segment_errors.hpp"
 #include "eval/trajectory/trajectory_error.hpp"
@@ -62,7 +62,6 @@ AlignmentRequest requested(const json& options) {
 TEST(RpgVectors, AbsoluteAndRelativeErrors) {
   const auto folder = trajectory_vectors();
   SKIP_WITHOUT_VECTORS(folder);
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   int compared = 0;
   const json tests = vector_cases(*folder, "rpg_expected.json");
   for (const json& test : tests) {
@@ -87,9 +86,9 @@ TEST(RpgVectors, AbsoluteAndRelativeErrors) {
       ASSERT_EQ(errors.translation_m.size(), expected.at("n").get<std::size_t>()) << length_m;
       if (errors.translation_m.empty()) continue;
       expect_statistics(errors.translation_m, expected.at("rel_trans"), "translation");
-      expect_statistics(errors.rotation_rad, expected.at("rel_rot_deg"), "rotation", kDegrees);
-      expect_statistics(errors.yaw_rad, expected.at("rel_yaw_deg"), "yaw", kDegrees);
-      expect_statistics(errors.gravity_rad, expected.at("rel_gravity_deg"), "gravity", kDegrees);
+      expect_statistics(errors.rotation_rad, expected.at("rel_rot_deg"), "rotation", kDegreesPerRadian);
+      expect_statistics(errors.yaw_rad, expected.at("rel_yaw_deg"), "yaw", kDegreesPerRadian);
+      expect_statistics(errors.gravity_rad, expected.at("rel_gravity_deg"), "gravity", kDegreesPerRadian);
     }
     if (!test.at("options").contains("dists")) {
       const std::vector<double> lengths = rpg_lengths(reference);

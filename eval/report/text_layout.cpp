@@ -1,4 +1,4 @@
-#include "eval/cli/text_layout.hpp"
+#include "eval/report/text_layout.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,218 @@
+#include "eval/report/trajectory_report.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "core/geometry.hpp"
+#include "eval/json_text.hpp"
+#include "eval/report/text_layout.hpp"
+#include "eval/statistics_json.hpp"
+
+namespace fusebench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Lines = std::vector<std::vector<std::string>>;
+
+std::string shown(double value) { return fmt::format("{:.7g}", value); }
+
+/// "a [m]", or "a" of what has no unit.
+std::string with_unit(const ErrorSeries& series) {
+  return series.unit.empty() ? series.relation : fmt::format("{} [{}]", series.relation, series.unit);
+}
+
+std::string association_text(const TrajectoryEvaluation& e) {
+  const AssociationOptions& a = e.request.association;
+  std::string how;
+  switch (a.rule) {
+    case AssociationRule::nearest:
+      how = fmt::format("nearest stamp within {:.6g} s, one may serve several", a.max_difference_s);
+      break;
+    case AssociationRule::greedy:
+      how = fmt::format("closest stamps first, one to one, less than {:.6g} s apart", a.max_difference_s);
+      break;
+    case AssociationRule::index:
+      how = "by the number of the pose";
+      break;
+    case AssociationRule::interpolated:
+      how = fmt::format("reference interpolated in gaps of at most {:.6g} s", a.max_difference_s);
+      break;
+    case AssociationRule::held:
+      how = "estimate interpolated, and held where it has no pose";
+      break;
+  }
+  if (a.offset_s != 0) how += fmt::format(", estimate's stamps moved by {:+.6g} s", a.offset_s);
+  return how;
+}
+
+std::string alignment_text(const TrajectoryEvaluation& e) {
+  const AlignmentRequest& request = e.request.alignment;
+  if (request.mode == AlignmentMode::none) return "none";
+  const Vector3d& t = e.alignment.rigid.translation;
+  const std::string from = request.mode == AlignmentMode::origin ? "from the first pair"
+                           : request.first > 0 ? fmt::format("from the first {} pairs", request.first)
+                                               : "from all pairs";
+  return fmt::format("{} {}: turned by {:.4f} deg, moved by ({:.4f}, {:.4f}, {:.4f}) m, scale {:.6g}",
+                     to_string(request.mode), from, degrees(so3_log(e.alignment.rigid.rotation).norm()),
+                     t.x(), t.y(), t.z(), e.alignment.scale);
+}
+
+std::string motions_text(const TrajectoryEvaluation& e) {
+  const TrajectoryRequest& r = e.request;
+  if (r.motions == MotionRule::segments) return "segments of given lengths along the reference";
+  if (r.motions == MotionRule::each_to_each) return "every pose with every pose of the estimate";
+  std::string text =
+      fmt::format("{}, delta {:.6g} {}", to_string(r.motions), r.delta.value, to_string(r.delta.unit));
+  if (r.motions == MotionRule::all && r.delta.unit != DeltaUnit::frames)
+    text += fmt::format(" within {:.6g} %", 100 * r.delta_tolerance);
+  return text + (r.from_reference ? ", selected from the reference" : ", selected from the estimate");
+}
+
+Lines heading(const TrajectoryEvaluation& e, const ComparedFiles& files) {
+  const bool relative = e.request.metric == TrajectoryMetric::rpe;
+  Lines lines = {
+      {"protocol", fmt::format("{} ({})", to_string(e.request.protocol), source_of(e.request.protocol))},
+      {"reference", fmt::format("{} ({}): {} poses", files.reference, to_string(files.reference_format),
+                                e.reference_poses)},
+      {"estimate",
+       fmt::format("{} ({}): {} poses", files.estimate, to_string(files.estimate_format), e.estimate_poses)},
+      {"association", association_text(e)},
+      {relative && e.request.motions == MotionRule::fixed_delta ? "motions" : "pairs",
+       fmt::format("{} of {} possible (coverage {:.1f} %)", e.pairs, e.possible, 100 * e.coverage)},
+      {"alignment", alignment_text(e)}};
+  if (relative) lines.push_back({"motions", motions_text(e)});
+  if (e.request.plane != Plane::none) lines.push_back({"plane", std::string(to_string(e.request.plane))});
+  return lines;
+}
+
+/// A column of statistics for each series.
+std::string statistics_text(const TrajectoryEvaluation& e) {
+  constexpr std::array<std::pair<const char*, double Statistics::*>, 7> kRows{
+      {{"rmse", &Statistics::rmse},
+       {"mean", &Statistics::mean},
+       {"median", &Statistics::median},
+       {"std", &Statistics::std},
+       {"min", &Statistics::min},
+       {"max", &Statistics::max},
+       {"sse", &Statistics::sse}}};
+  Lines lines = {{""}};
+  for (const ErrorSeries& series : e.series) lines[0].push_back(with_unit(series));
+  for (const auto& [name, value] : kRows) {
+    lines.push_back({name});
+    for (const ErrorSeries& series : e.series) lines.back().push_back(shown(series.stats.*value));
+  }
+  lines.push_back({"errors"});
+  for (const ErrorSeries& series : e.series) lines.back().push_back(fmt::format("{}", series.errors.size()));
+  return aligned_columns(lines);
+}
+
+std::string segments_text(const TrajectoryEvaluation& e) {
+  Lines lines = {{"length [m]", "segments", "translation mean [m]", "mean [%]", "median [%]",
+                  "rotation mean [deg]", "mean [deg/m]", "yaw mean [deg]", "gravity mean [deg]"}};
+  for (const SegmentRow& row : e.segments) {
+    lines.push_back({shown(row.length_m), fmt::format("{}", row.segments), shown(row.translation_m.mean),
+                     shown(row.translation_percent.mean), shown(row.translation_percent.median),
+                     shown(row.rotation_deg.mean), shown(row.rotation_deg_per_m.mean),
+                     shown(row.yaw_deg.mean), shown(row.gravity_deg.mean)});
+  }
+  return aligned_columns(lines);
+}
+
+Json json_of(const Similarity& alignment) {
+  const Matrix3d R = alignment.scale * alignment.rigid.rotation_matrix();
+  const Vector3d& t = alignment.rigid.translation;
+  return {R(0, 0), R(0, 1), R(0, 2), t.x(), R(1, 0), R(1, 1), R(1, 2), t.y(),
+          R(2, 0), R(2, 1), R(2, 2), t.z(), 0.0,     0.0,     0.0,     1.0};
+}
+
+Json json_of(const ErrorSeries& series) {
+  Json json = {{"relation", series.relation}, {"unit", series.unit}};
+  json["errors"] = series.errors;
+  if (!series.at_ns.empty()) json["timestamps_ns"] = series.at_ns;
+  json["stats"] = json_of(series.stats);
+  return json;
+}
+
+Json json_of(const SegmentRow& row) {
+  return {{"length_m", row.length_m},
+          {"segments", row.segments},
+          {"translation_m", json_of(row.translation_m)},
+          {"translation_percent", json_of(row.translation_percent)},
+          {"rotation_deg", json_of(row.rotation_deg)},
+          {"rotation_deg_per_m", json_of(row.rotation_deg_per_m)},
+          {"yaw_deg", json_of(row.yaw_deg)},
+          {"gravity_deg", json_of(row.gravity_deg)}};
+}
+
+Json motions_json(const TrajectoryRequest& request) {
+  Json json = {{"rule", to_string(request.motions)}};
+  if (request.motions == MotionRule::segments || request.motions == MotionRule::each_to_each) return json;
+  json["delta"] = request.delta.value;
+  json["delta_unit"] = to_string(request.delta.unit);
+  if (request.motions == MotionRule::all) json["tolerance"] = request.delta_tolerance;
+  json["selected_from"] = request.from_reference ? "reference" : "estimate";
+  return json;
+}
+
+}  // namespace
+
+std::string to_text(const TrajectoryEvaluation& evaluation, const ComparedFiles& files) {
+  std::string text = evaluation.request.metric == TrajectoryMetric::ate ? "absolute trajectory error\n\n"
+                                                                        : "relative pose error\n\n";
+  text += aligned_columns(heading(evaluation, files));
+  text += '\n';
+  if (!evaluation.segments.empty()) text += segments_text(evaluation) + "\nall segments:\n";
+  return text + statistics_text(evaluation);
+}
+
+std::string to_json(const TrajectoryEvaluation& evaluation, const ComparedFiles& files) {
+  const TrajectoryRequest& request = evaluation.request;
+  const ErrorSeries& first = evaluation.series.front();
+  Json json = {{"metric", to_string(request.metric)},
+               {"protocol", to_string(request.protocol)},
+               {"protocol_source", source_of(request.protocol)},
+               {"reference",
+                {{"file", files.reference},
+                 {"format", to_string(files.reference_format)},
+                 {"poses", evaluation.reference_poses}}},
+               {"estimate",
+                {{"file", files.estimate},
+                 {"format", to_string(files.estimate_format)},
+                 {"poses", evaluation.estimate_poses}}},
+               {"relation", first.relation},
+               {"unit", first.unit},
+               {"pairs", evaluation.pairs},
+               {"possible", evaluation.possible},
+               {"coverage", evaluation.coverage}};
+  json["association"] = {{"rule", to_string(request.association.rule)},
+                         {"max_difference_s", request.association.max_difference_s},
+                         {"offset_s", request.association.offset_s}};
+  json["alignment"] = {{"mode", to_string(request.alignment.mode)},
+                       {"first", request.alignment.first},
+                       {"scale", evaluation.alignment.scale},
+                       {"matrix", json_of(evaluation.alignment)}};
+  json["plane"] = to_string(request.plane);
+  if (request.metric == TrajectoryMetric::rpe) json["motions"] = motions_json(request);
+  const Json series = json_of(first);
+  for (const char* key : {"errors", "timestamps_ns", "stats"}) {
+    if (series.contains(key)) json[key] = series[key];
+  }
+  if (evaluation.series.size() > 1) {
+    Json also = Json::array();
+    for (std::size_t i = 1; i < evaluation.series.size(); ++i) also.push_back(json_of(evaluation.series[i]));
+    json["also"] = std::move(also);
+  }
+  if (!evaluation.segments.empty()) {
+    Json rows = Json::array();
+    for (const SegmentRow& row : evaluation.segments) rows.push_back(json_of(row));
+    json["segments"] = std::move(rows);
+  }
+  return json_text(json) + "\n";
+}
+
+}  // namespace fusebench

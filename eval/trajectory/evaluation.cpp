@@ -1,0 +1,204 @@
+#include "eval/trajectory/evaluation.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "eval/trajectory/segment_errors.hpp"
+#include "eval/trajectory_metrics.hpp"
+
+namespace fusebench {
+
+namespace {
+
+ErrorSeries series_of(std::string relation, std::string unit, std::vector<double> errors,
+                      std::vector<std::int64_t> at_ns) {
+  const Statistics stats = statistics(errors);
+  return {std::move(relation), std::move(unit), std::move(errors), std::move(at_ns), stats};
+}
+
+ErrorSeries series_of(TrajectoryError error) {
+  return {std::string(to_string(error.relation)), std::string(unit_of(error.relation)),
+          std::move(error.errors), std::move(error.at_ns), error.stats};
+}
+
+Trajectory thinned(const Trajectory& trajectory, const TrajectoryRequest& request) {
+  const Trajectory fewer = request.downsample > 0 ? downsampled(trajectory, request.downsample) : trajectory;
+  return request.motion_filter
+             ? moved_only(fewer, request.motion_filter->distance_m, request.motion_filter->angle_rad)
+             : fewer;
+}
+
+TrajectoryEvaluation described(const TrajectoryRequest& request, const TrajectoryPair& pair,
+                               const Similarity& alignment) {
+  TrajectoryEvaluation result;
+  result.request = request;
+  result.pairs = pair.size();
+  result.possible = pair.possible;
+  result.coverage = pair.coverage();
+  result.alignment = alignment;
+  return result;
+}
+
+Result<TrajectoryEvaluation> of_poses(const TrajectoryPair& pair, const TrajectoryRequest& request) {
+  Result<TrajectoryError> error =
+      absolute_error(pair, AbsoluteOptions{request.relation, request.alignment, request.plane});
+  if (!error) return tl::unexpected(error.error());
+  TrajectoryEvaluation result = described(request, pair, error->alignment);
+  result.series.push_back(series_of(std::move(*error)));
+  return result;
+}
+
+Result<TrajectoryEvaluation> of_motions(const TrajectoryPair& pair, const TrajectoryRequest& request) {
+  Result<TrajectoryError> error =
+      relative_error(pair, RelativeOptions{request.relation, request.alignment, request.plane, request.delta,
+                                           request.motions == MotionRule::all ? MotionSelection::all
+                                                                              : MotionSelection::consecutive,
+                                           request.delta_tolerance, request.from_reference});
+  if (!error) return tl::unexpected(error.error());
+  TrajectoryEvaluation result = described(request, pair, error->alignment);
+  result.series.push_back(series_of(std::move(*error)));
+  return result;
+}
+
+/// TUM's script selects motions from all of the estimate, and then asks for ground truth.
+Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Trajectory estimate,
+                                            const TrajectoryRequest& request) {
+  TrajectoryEvaluation result;
+  result.request = request;
+  if (request.alignment.mode == AlignmentMode::sim3 || request.alignment.mode == AlignmentMode::scale) {
+    const Result<TrajectoryPair> pair = pair_up(reference, estimate, request.association);
+    if (!pair) return tl::unexpected(pair.error());
+    const Result<TrajectoryError> aligned =
+        absolute_error(*pair, AbsoluteOptions{.alignment = request.alignment});
+    if (!aligned) return tl::unexpected(aligned.error());
+    result.alignment = aligned->alignment;
+    for (StampedPose& pose : estimate) pose.T_world_camera.translation *= result.alignment.scale;
+  }
+  RpeOptions options;
+  options.delta = request.delta.value;
+  options.unit = request.delta.unit;
+  options.all_pairs = request.motions == MotionRule::each_to_each;
+  options.max_difference_s = std::numeric_limits<double>::infinity();
+  options.offset_s = request.association.offset_s;
+  options.skip_gaps = false;
+  Result<RpeResult> rpe = relative_pose_error(reference, estimate, options);
+  if (!rpe) return tl::unexpected(rpe.error());
+  result.pairs = rpe->pairs;
+  result.possible = rpe->possible;
+  result.coverage = rpe->coverage;
+  result.request.association.max_difference_s = rpe->max_difference_s;
+  result.series.push_back(series_of("trans_part", "m", std::move(rpe->errors_m), {}));
+  for (double& angle : rpe->errors_rad) angle = degrees(angle);
+  result.series.push_back(series_of("angle_deg", "deg", std::move(rpe->errors_rad), {}));
+  return result;
+}
+
+std::vector<double> lengths_m(const Trajectory& reference, Protocol protocol) {
+  switch (protocol) {
+    case Protocol::kitti:
+      return {100, 200, 300, 400, 500, 600, 700, 800};
+    case Protocol::eth3d:
+      return {0.5, 1, 1.5, 2};
+    default:
+      return rpg_lengths(reference);
+  }
+}
+
+IndexPairs segments_of(const Trajectory& reference, Protocol protocol, double length_m) {
+  switch (protocol) {
+    case Protocol::kitti:
+      return kitti_segments(reference, length_m);
+    case Protocol::eth3d:
+      return eth3d_segments(reference, length_m);
+    default:
+      return rpg_motions(reference, length_m, true);
+  }
+}
+
+/// Statistics of value(k) over all segments.
+template <typename Value>
+Statistics over(std::size_t segments, Value&& value) {
+  std::vector<double> values;
+  values.reserve(segments);
+  for (std::size_t k = 0; k < segments; ++k) values.push_back(value(k));
+  return statistics(values);
+}
+
+SegmentRow row_of(const SegmentErrors& errors, const std::vector<double>& divisor_m) {
+  const std::size_t n = errors.translation_m.size();
+  SegmentRow row;
+  row.length_m = errors.length_m;
+  row.segments = n;
+  row.translation_m = statistics(errors.translation_m);
+  row.translation_percent =
+      over(n, [&](std::size_t k) { return 100 * errors.translation_m[k] / divisor_m[k]; });
+  row.rotation_deg = over(n, [&](std::size_t k) { return degrees(errors.rotation_rad[k]); });
+  row.rotation_deg_per_m =
+      over(n, [&](std::size_t k) { return degrees(errors.rotation_rad[k]) / divisor_m[k]; });
+  row.yaw_deg = over(n, [&](std::size_t k) { return degrees(errors.yaw_rad[k]); });
+  row.gravity_deg = over(n, [&](std::size_t k) { return degrees(errors.gravity_rad[k]); });
+  return row;
+}
+
+Result<TrajectoryEvaluation> of_segments(const Trajectory& reference, const TrajectoryPair& pair,
+                                         const TrajectoryRequest& request) {
+  const Result<TrajectoryError> aligned =
+      absolute_error(pair, AbsoluteOptions{.alignment = request.alignment});
+  if (!aligned) return tl::unexpected(aligned.error());
+  TrajectoryEvaluation result = described(request, pair, aligned->alignment);
+  std::vector<double> percent;
+  std::vector<double> deg_per_m;
+  std::vector<std::int64_t> at_ns;
+  for (const double length_m : lengths_m(reference, request.protocol)) {
+    const IndexPairs segments = segments_of(pair.reference, request.protocol, length_m);
+    if (segments.empty()) continue;
+    const SegmentErrors errors = segment_errors(pair, segments, length_m, aligned->alignment.scale);
+    // ETH3D divides by the path of each segment, the others by the length that was asked for.
+    const std::vector<double> divisor_m = request.protocol == Protocol::eth3d
+                                              ? errors.path_m
+                                              : std::vector<double>(errors.path_m.size(), length_m);
+    result.segments.push_back(row_of(errors, divisor_m));
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      percent.push_back(100 * errors.translation_m[k] / divisor_m[k]);
+      deg_per_m.push_back(degrees(errors.rotation_rad[k]) / divisor_m[k]);
+      at_ns.push_back(pair.estimate[segments[k].second].timestamp_ns);
+    }
+  }
+  if (result.segments.empty()) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("the reference's path of {:.2f} m has no segment of a length that {} asks for",
+                            path_lengths(pair.reference).back(), to_string(request.protocol)),
+                "`--protocol evo --delta D --delta_unit m` takes any length");
+  }
+  result.series.push_back(series_of("translation_percent", "%", std::move(percent), at_ns));
+  result.series.push_back(series_of("rotation_deg_per_m", "deg/m", std::move(deg_per_m), std::move(at_ns)));
+  return result;
+}
+
+Result<TrajectoryEvaluation> evaluate_thinned(const Trajectory& reference, const Trajectory& estimate,
+                                              const TrajectoryRequest& request) {
+  const bool relative = request.metric == TrajectoryMetric::rpe;
+  if (relative && (request.motions == MotionRule::fixed_delta || request.motions == MotionRule::each_to_each))
+    return of_tum_motions(reference, estimate, request);
+  const Result<TrajectoryPair> pair = pair_up(reference, estimate, request.association);
+  if (!pair) return tl::unexpected(pair.error());
+  if (!relative) return of_poses(*pair, request);
+  if (request.motions == MotionRule::segments) return of_segments(reference, *pair, request);
+  return of_motions(*pair, request);
+}
+
+}  // namespace
+
+Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
+                                      const TrajectoryRequest& request) {
+  const Trajectory fewer_reference = thinned(reference, request);
+  const Trajectory fewer_estimate = thinned(estimate, request);
+  Result<TrajectoryEvaluation> result = evaluate_thinned(fewer_reference, fewer_estimate, request);
+  if (!result) return result;
+  result->reference_poses = reference.size();
+  result->estimate_poses = estimate.size();
+  return result;
+}
+
+}  // namespace fusebench

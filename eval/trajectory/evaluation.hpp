@@ -1,0 +1,55 @@
+// One trajectory against another by a protocol: the numbers, and all that they depend on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "eval/statistics.hpp"
+#include "eval/trajectory/alignment.hpp"
+#include "eval/trajectory/protocol.hpp"
+
+namespace fusebench {
+
+/// One kind of error: of poses, of motions, or of segments.
+struct ErrorSeries {
+  std::string relation;  ///< evo's name of it; of segments "translation_percent" or "rotation_deg_per_m"
+  std::string unit;      ///< "m", "%", "rad", "deg", "deg/m", or "" of what has none
+  std::vector<double> errors;
+  std::vector<std::int64_t> at_ns;  ///< of each error: the stamp of the pose, or of the motion's end
+  Statistics stats;
+};
+
+/// Segments of one length.
+struct SegmentRow {
+  double length_m = 0;
+  std::size_t segments = 0;
+  Statistics translation_m;
+  Statistics translation_percent;
+  Statistics rotation_deg;
+  Statistics rotation_deg_per_m;
+  Statistics yaw_deg;
+  Statistics gravity_deg;
+};
+
+struct TrajectoryEvaluation {
+  TrajectoryRequest request;
+  std::size_t reference_poses = 0;
+  std::size_t estimate_poses = 0;
+  std::size_t pairs = 0;             ///< associated poses; of TUM's relative error, motions with ground truth
+  std::size_t possible = 0;          ///< that there could have been
+  double coverage = 0;               ///< pairs / possible
+  Similarity alignment;              ///< reference from estimate
+  std::vector<ErrorSeries> series;   ///< the first is the protocol's own number
+  std::vector<SegmentRow> segments;  ///< where segments are what is compared
+};
+
+/// Errors: configuration for deltas that make no sense, data_corrupt for trajectories that do not match or do
+/// not determine the alignment, and where no motion is left.
+[[nodiscard]] Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
+                                                    const TrajectoryRequest& request);
+
+}  // namespace fusebench

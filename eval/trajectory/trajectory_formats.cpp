@@ -1,0 +1,148 @@
+#include "eval/trajectory/trajectory_formats.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <utility>
+
+#include "core/stamped_rows.hpp"
+#include "core/text_table.hpp"
+#include "core/trajectory_file.hpp"
+
+namespace fusebench {
+
+namespace {
+
+constexpr std::array kNames{std::pair{TrajectoryFormat::tum, "tum"},
+                            std::pair{TrajectoryFormat::kitti, "kitti"},
+                            std::pair{TrajectoryFormat::euroc, "euroc"}};
+constexpr std::size_t kTumColumns = 8;
+constexpr std::size_t kKittiColumns = 12;
+constexpr std::size_t kEurocColumns = 17;
+
+/// The format that the first row can only be. Of eight columns, an integer of nanoseconds is EuRoC's.
+Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
+  std::string line;
+  std::vector<std::string_view> fields;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    std::string_view text = line;
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    fields.clear();
+    split_fields(text, fields);
+    if (fields.empty() || fields[0].starts_with('#')) continue;
+    if (fields.size() == kKittiColumns) return TrajectoryFormat::kitti;
+    if (fields.size() == kEurocColumns) return TrajectoryFormat::euroc;
+    constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
+    const bool integer = fields[0].find_first_not_of("0123456789") == std::string_view::npos;
+    if (fields.size() == kTumColumns)
+      return integer && fields[0].size() >= kNanosecondDigits ? TrajectoryFormat::euroc
+                                                              : TrajectoryFormat::tum;
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17)",
+                            file.string(), number, fields.size()),
+                "`--format` names the format if the first row does not");
+  }
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected poses)", file.string()));
+}
+
+Result<Trajectory> read_euroc(const std::filesystem::path& file, Duplicates duplicates,
+                              std::vector<std::string>& warnings) {
+  TrajectoryRows rows;
+  const Result<void> done = for_each_stamped_row(
+      file, "timestamp px py pz qw qx qy qz [vx vy vz wx wy wz ax ay az]", order_for(duplicates),
+      [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
+        Eigen::Matrix<double, 7, 1> v;
+        if (auto read = table.numbers(1, {v.data(), 7}); !read) return read;
+        return take_pose(table, time_ns, v.head<3>(), Quaterniond(v[3], v[4], v[5], v[6]), rows);
+      },
+      TimeUnit::nanoseconds);
+  if (!done) return tl::unexpected(done.error());
+  return ordered(std::move(rows), duplicates, file, warnings);
+}
+
+/// The rotation nearest to a matrix, and by how much the matrix is none: the largest entry of R^T R - I.
+struct NearestRotation {
+  Matrix3d R;
+  double deviation = 0;
+};
+NearestRotation nearest_rotation(const Matrix3d& matrix) {
+  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double deviation = matrix.determinant() <= 0
+                               ? 1.0
+                               : (matrix.transpose() * matrix - Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  return {svd.matrixU() * svd.matrixV().transpose(), deviation};
+}
+
+Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  constexpr double kNoRotation = 1e-2;
+  constexpr double kRounding = 1e-5;  // KITTI's files have six digits
+  Trajectory poses;
+  double largest = 0;
+  int largest_line = 0;
+  const Result<void> done = for_each_row(
+      file, "r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz", [&](const TextTable& table) -> Result<void> {
+        Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
+        if (auto read = table.numbers(0, {T.data(), kKittiColumns}); !read) return read;
+        const NearestRotation rotation = nearest_rotation(T.leftCols<3>());
+        if (!(rotation.deviation < kNoRotation)) {
+          return table.fail_here(
+              fmt::format("the 3x3 part is no rotation (determinant {:g}, R^T R off identity by {:.2g})",
+                          T.leftCols<3>().determinant(), rotation.deviation),
+              "a row is the upper 3x4 of the pose, row by row");
+        }
+        if (rotation.deviation > largest) {
+          largest = rotation.deviation;
+          largest_line = table.line();
+        }
+        poses.push_back({static_cast<std::int64_t>(poses.size()), {Quaterniond(rotation.R), T.col(3)}});
+        return {};
+      });
+  if (!done) return tl::unexpected(done.error());
+  if (largest > kRounding) {
+    warnings.push_back(
+        fmt::format("{}:{}: rotations are off orthonormal by up to {:.2g} (replaced by the nearest rotation)",
+                    file.string(), largest_line, largest));
+  }
+  return poses;
+}
+
+}  // namespace
+
+std::string_view to_string(TrajectoryFormat format) {
+  return std::ranges::find(kNames, format, [](const auto& entry) { return entry.first; })->second;
+}
+
+Result<TrajectoryFormat> parse_trajectory_format(std::string_view text) {
+  for (const auto& [format, name] : kNames) {
+    if (text == name) return format;
+  }
+  return fail(ErrorCode::usage, fmt::format("unknown trajectory format '{}'", text),
+              "formats are tum, kitti and euroc");
+}
+
+Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
+                                         std::optional<TrajectoryFormat> format, Duplicates duplicates,
+                                         std::vector<std::string>& warnings) {
+  std::error_code ignored;
+  if (!format && std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored) &&
+      !std::filesystem::is_directory(file, ignored))
+    format = TrajectoryFormat::tum;
+  if (!format) {
+    const Result<TrajectoryFormat> found = recognised(file);
+    if (!found) return tl::unexpected(found.error());
+    format = *found;
+  }
+  Result<Trajectory> poses = *format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
+                             : *format == TrajectoryFormat::euroc
+                                 ? read_euroc(file, duplicates, warnings)
+                                 : read_tum_trajectory(file, warnings, duplicates);
+  if (!poses) return tl::unexpected(poses.error());
+  return LoadedTrajectory{*format, std::move(*poses)};
+}
+
+}  // namespace fusebench

@@ -1,0 +1,42 @@
+// Trajectories as people keep them: TUM, KITTI and EuRoC files.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/trajectory_rows.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+enum class TrajectoryFormat {
+  tum,    ///< "timestamp tx ty tz qx qy qz qw", seconds and metres
+  kitti,  ///< the upper 3x4 of a pose, row by row; no stamps, poses go by their number
+  euroc,  ///< "timestamp[ns] px py pz qw qx qy qz", with or without velocity and biases (data.csv)
+};
+[[nodiscard]] std::string_view to_string(TrajectoryFormat format);  ///< "tum", "kitti", "euroc"
+/// Error usage for another name.
+[[nodiscard]] Result<TrajectoryFormat> parse_trajectory_format(std::string_view text);
+
+struct LoadedTrajectory {
+  TrajectoryFormat format = TrajectoryFormat::tum;
+  Trajectory poses;  ///< without stamps, the number of a pose is its stamp in nanoseconds
+  [[nodiscard]] bool has_stamps() const { return format != TrajectoryFormat::kitti; }
+};
+
+/// Reads a trajectory. Without a format, the first row's columns tell it; what cannot be read twice (a pipe)
+/// is taken for TUM text. Rotations are made unit and orthonormal; warnings say how far off they were, and
+/// what ordered() did.
+///
+/// Errors name file:line: data_missing; data_corrupt for a row that is no pose, a matrix that is no rotation
+/// to a hundredth, those of ordered(), or columns that fit no format.
+[[nodiscard]] Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
+                                                       std::optional<TrajectoryFormat> format,
+                                                       Duplicates duplicates,
+                                                       std::vector<std::string>& warnings);
+
+}  // namespace fusebench
