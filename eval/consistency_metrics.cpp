@@ -106,6 +106,19 @@ std::optional<double> normalised_error_squared(const StateVector& error, const S
   return std::isfinite(squared) ? std::optional(squared) : std::nullopt;
 }
 
+std::vector<StampedState> states_of_camera(std::span<const StampedState> states, const SE3& T_imu_camera) {
+  std::vector<StampedState> moved(states.begin(), states.end());
+  for (StampedState& at : moved) at.state.T_world_imu = at.state.T_world_imu * T_imu_camera;
+  for (std::size_t i = 0; i < moved.size() && moved.size() > 1; ++i) {
+    const StampedState& before = moved[i > 0 ? i - 1 : 0];
+    const StampedState& after = moved[std::min(i + 1, moved.size() - 1)];
+    moved[i].state.velocity_world_mps =
+        (after.state.T_world_imu.translation - before.state.T_world_imu.translation) /
+        seconds_between(before.timestamp_ns, after.timestamp_ns);
+  }
+  return moved;
+}
+
 Result<ConsistencyResult> consistency(std::span<const StampedState> truth,
                                       std::span<const StampedEstimate> estimates, const SE3& T_imu_camera) {
   if (estimates.empty()) return fail(ErrorCode::data_corrupt, "there are no estimates");

@@ -39,6 +39,11 @@ inline constexpr std::array<StatePart, 6> kStateParts = {{{"orientation", kRotat
 [[nodiscard]] std::optional<FilterState> interpolate_state(std::span<const StampedState> states,
                                                            std::int64_t timestamp_ns);
 
+/// True states of the camera in place of the IMU's, for estimators whose body is the camera: pose, and the
+/// velocity of its centre, by central differences of its positions (at the ends one-sided). Biases are kept.
+[[nodiscard]] std::vector<StampedState> states_of_camera(std::span<const StampedState> states,
+                                                         const SE3& T_imu_camera);
+
 /// e^T P^-1 e of one part; nothing where its covariance is singular (of what is known by definition, such as
 /// the pose of the first frame) or is not finite.
 [[nodiscard]] std::optional<double> normalised_error_squared(const StateVector& error,

@@ -275,7 +275,7 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   record.reason = progress->reason;
   record.frames = progress->frames;
   record.model = {mesh.vertices.size(), mesh.triangles.size(), pipeline.model().block_count()};
-  record.metrics = metrics_of(progress->output, run.recording, config.depth, workers);
+  record.metrics = metrics_of(progress->output, run.recording, config, workers);
   record.timing = timing_of(*progress, cost, mesh_ms);
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);

@@ -4,6 +4,7 @@
 
 #include "core/mesh_file.hpp"
 #include "core/trajectory.hpp"
+#include "core/variants.hpp"
 #include "eval/pose_alignment.hpp"
 
 namespace fusebench {
@@ -28,7 +29,7 @@ void add_trajectory_metrics(RecordedMetrics& metrics, const RunOutput& output, c
       recording.ground_truth, output.trajectory, {.delta = 1, .unit = DeltaUnit::seconds}));
 }
 
-RecordedNees nees_of(const RunOutput& output, const Recording& recording) {
+RecordedNees nees_of(const RunOutput& output, const Recording& recording, const Config& config) {
   const auto none = [](const std::string& reason) {
     RecordedNees nees;
     nees.fill({std::nullopt, reason});
@@ -38,7 +39,11 @@ RecordedNees nees_of(const RunOutput& output, const Recording& recording) {
   if (recording.imu_source == ImuSource::synthetic) {
     return none("the true states are of the recorded IMU, and the run used a synthetic one");
   }
-  auto parts = consistency(recording.state_truth, output.states, recording.rig.T_imu_camera);
+  // Without an inertial prior the body is the camera itself.
+  const SE3& T_imu_camera = recording.rig.T_imu_camera;
+  auto parts = needs_imu(config)
+                   ? consistency(recording.state_truth, output.states, T_imu_camera)
+                   : consistency(states_of_camera(recording.state_truth, T_imu_camera), output.states, SE3{});
   if (!parts) return none(parts.error().message);
   RecordedNees nees;
   for (std::size_t i = 0; i < nees.size(); ++i) {
@@ -131,7 +136,7 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
 
 }  // namespace
 
-RecordedMetrics metrics_of(const RunOutput& output, const Recording& recording, const DepthConfig& depth,
+RecordedMetrics metrics_of(const RunOutput& output, const Recording& recording, const Config& config,
                            const Workers& workers) {
   RecordedMetrics metrics;
   metrics.aie = {output.intensity.result(), {}};
@@ -139,8 +144,9 @@ RecordedMetrics metrics_of(const RunOutput& output, const Recording& recording, 
   metrics.residuals = {output.residuals.result(), {}};
   if (metrics.residuals.value->frames == 0) metrics.residuals = {std::nullopt, "no frame was tracked"};
   add_trajectory_metrics(metrics, output, recording);
-  metrics.nees = nees_of(output, recording);
-  metrics.mesh = Outcome<RecordedMesh>::from(mesh_error_of(output, recording, metrics.ate, depth, workers));
+  metrics.nees = nees_of(output, recording, config);
+  metrics.mesh =
+      Outcome<RecordedMesh>::from(mesh_error_of(output, recording, metrics.ate, config.depth, workers));
   return metrics;
 }
 

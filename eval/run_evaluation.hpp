@@ -23,8 +23,9 @@ struct RunOutput {
   Mesh mesh;  ///< of the model, in world
 };
 
-/// depth: what the run took of depth images, which decides what of a true scene it could observe.
+/// config: of the run; it says what of a true scene its depth could observe, and whether the body that it
+/// estimates is the IMU or the camera.
 [[nodiscard]] RecordedMetrics metrics_of(const RunOutput& output, const Recording& recording,
-                                         const DepthConfig& depth, const Workers& workers);
+                                         const Config& config, const Workers& workers);
 
 }  // namespace fusebench

@@ -120,6 +120,23 @@ TEST(Consistency, TheWorldOfTheTruthDoesNotMatter) {
   }
 }
 
+TEST(Consistency, TheCamerasStatesAreThoseOfItsOwnMotion) {
+  const std::vector<StampedState> truth = smooth_truth(400);
+  const SE3 T_imu_camera{so3_exp({0.3, -1.2, 0.5}), {0.05, -0.02, 0.1}};
+  const std::vector<StampedState> camera = states_of_camera(truth, T_imu_camera);
+  ASSERT_EQ(camera.size(), truth.size());
+  constexpr double kStep_s = 1e-6;
+  const auto position = [&](double t) { return smooth_state(t).T_world_imu * T_imu_camera.translation; };
+  for (std::size_t i = 1; i + 1 < camera.size(); ++i) {
+    const double t = 5e-3 * static_cast<double>(i);
+    const Vector3d velocity = (position(t + kStep_s) - position(t - kStep_s)) / (2 * kStep_s);
+    EXPECT_LT((camera[i].state.velocity_world_mps - velocity).norm(), 0.015) << t;  // h^2 / 6 times the jerk
+    const SE3 pose = truth[i].state.T_world_imu * T_imu_camera;
+    EXPECT_LT((camera[i].state.T_world_imu.translation - pose.translation).norm(), 1e-12);
+    EXPECT_LT(rotation_angle_rad(camera[i].state.T_world_imu.rotation, pose.rotation), 1e-7);
+  }
+}
+
 TEST(Consistency, APartThatIsNotEstimatedHasNoFrames) {
   Scenario s = scenario(20, 1.0);
   for (StampedEstimate& at : s.estimates) {
