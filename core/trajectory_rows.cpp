@@ -54,6 +54,31 @@ std::vector<std::size_t> by_time(const Trajectory& poses) {
   return order;
 }
 
+/// Rows whose stamp an earlier row has, and the first of them.
+struct Repeats {
+  std::size_t count = 0;
+  int line = 0;
+  int earlier_line = 0;
+};
+
+Repeats repeats_of(const TrajectoryRows& rows, const std::vector<std::size_t>& order) {
+  Repeats repeats;
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    if (rows.poses[order[k]].timestamp_ns != rows.poses[order[k - 1]].timestamp_ns) continue;
+    if (repeats.count++ > 0) continue;
+    repeats.line = rows.lines[order[k]];
+    repeats.earlier_line = rows.lines[order[k - 1]];
+  }
+  return repeats;
+}
+
+bool allows(Duplicates duplicates, std::size_t repeats, std::size_t rows) {
+  constexpr std::size_t kRare = 100;  // rows for one repeat
+  if (duplicates == Duplicates::none) return repeats == 0;
+  const bool rare_only = duplicates == Duplicates::rare_last || duplicates == Duplicates::rare_kept;
+  return !rare_only || repeats * kRare <= rows;
+}
+
 }  // namespace
 
 TimeOrder order_for(Duplicates duplicates) {
@@ -66,6 +91,8 @@ TimeOrder order_for(Duplicates duplicates) {
     case Duplicates::first:
     case Duplicates::last:
     case Duplicates::as_written:
+    case Duplicates::rare_last:
+    case Duplicates::rare_kept:
       break;
   }
   return TimeOrder::any;
@@ -102,31 +129,35 @@ Result<Trajectory> ordered(TrajectoryRows rows, Duplicates duplicates, const std
   }
   if (auto single = check_single(rows, file); !single) return tl::unexpected(single.error());
 
+  const std::vector<std::size_t> order = by_time(rows.poses);
+  const Repeats repeats = repeats_of(rows, order);
+  if (!allows(duplicates, repeats.count, rows.poses.size())) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}:{}: the stamp is the same as that of line {} ({} of {} rows repeat a stamp)",
+                    file.string(), repeats.line, repeats.earlier_line, repeats.count, rows.poses.size()),
+        "remove one of the two rows, or say which one counts (--duplicates first or last)");
+  }
   Trajectory kept;
   kept.reserve(rows.poses.size());
-  std::size_t last_row = 0;
-  for (const std::size_t i : by_time(rows.poses)) {
+  for (const std::size_t i : order) {
     const bool repeated = !kept.empty() && kept.back().timestamp_ns == rows.poses[i].timestamp_ns;
-    if (repeated && duplicates == Duplicates::none) {
-      return fail(ErrorCode::data_corrupt,
-                  fmt::format("{}:{}: the stamp is the same as that of line {}", file.string(), rows.lines[i],
-                              rows.lines[last_row]),
-                  "remove one of the two rows, or say which one counts");
-    }
-    if (!repeated) {
+    if (!repeated || duplicates == Duplicates::rare_kept) {
       kept.push_back(rows.poses[i]);
     } else if (duplicates != Duplicates::first) {
       kept.back() = rows.poses[i];
     }
-    last_row = i;
   }
-  const std::size_t dropped = rows.poses.size() - kept.size();
-  if (!sorted && dropped == 0) {
-    warnings.push_back(fmt::format("{}: rows are not in order of time (sorted)", file.string()));
-  } else if (dropped > 0) {
-    warnings.push_back(fmt::format("{}: {}{} of {} rows repeat a stamp (the {} one is kept)", file.string(),
-                                   sorted ? "" : "rows are not in order of time (sorted); ", dropped,
-                                   rows.poses.size(), duplicates == Duplicates::first ? "first" : "last"));
+  const std::string disorder = sorted ? "" : "rows are not in order of time (sorted)";
+  const std::string_view which = duplicates == Duplicates::first       ? "the first one is kept"
+                                 : duplicates == Duplicates::rare_kept ? "both are kept"
+                                                                       : "the last one is kept";
+  if (repeats.count > 0) {
+    warnings.push_back(fmt::format("{}:{}: {}{}{} of {} rows repeat a stamp ({})", file.string(),
+                                   repeats.line, disorder, sorted ? "" : "; ", repeats.count,
+                                   rows.poses.size(), which));
+  } else if (!sorted) {
+    warnings.push_back(fmt::format("{}: {}", file.string(), disorder));
   }
   return kept;
 }

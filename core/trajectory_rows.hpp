@@ -21,6 +21,10 @@ enum class Duplicates {
   first,          ///< rows are sorted by time; of one stamp, the first row of the file is kept
   last,           ///< the same with the last row, as the scripts of the TUM RGB-D benchmark do
   as_written,     ///< all rows in the order of the file, as evo does
+  // Rows are sorted by time. While at most one in a hundred repeats a stamp (published ground truth has such
+  // rows), the last one counts, or both; more are an error.
+  rare_last,
+  rare_kept,
 };
 
 /// The order in time that the rows of the file itself must have.

@@ -37,7 +37,7 @@ struct EvalOptions {
   std::optional<double> t_end;
   bool interpolate = false;
   std::filesystem::path images;
-  std::string duplicates = "error";
+  std::string duplicates;
   std::size_t downsample = 0;
   std::vector<double> motion_filter;
   std::string plane = "none";
@@ -178,7 +178,7 @@ struct Sides {
   LoadedTrajectory estimate;
 };
 
-Result<Sides> load(const EvalOptions& options) {
+Result<Sides> load(const EvalOptions& options, Protocol protocol) {
   std::optional<TrajectoryFormat> format;
   if (!options.format.empty()) {
     const auto parsed = parse_trajectory_format(options.format);
@@ -186,7 +186,8 @@ Result<Sides> load(const EvalOptions& options) {
     format = *parsed;
   }
   std::vector<std::string> warnings;
-  const Duplicates duplicates = named(kDuplicates, options.duplicates);
+  const Duplicates usual = protocol == Protocol::evo ? Duplicates::rare_kept : Duplicates::rare_last;
+  const Duplicates duplicates = options.duplicates.empty() ? usual : named(kDuplicates, options.duplicates);
   auto reference = load_trajectory(options.files[0], format, duplicates, warnings);
   if (!reference) return tl::unexpected(reference.error());
   // evo's euroc: the reference is a data.csv, the estimate may be TUM text.
@@ -271,7 +272,7 @@ Result<int> run(EvalOptions options, TrajectoryMetric metric) {
   if (auto taken = take_leading_format(options); !taken) return tl::unexpected(taken.error());
   auto request = request_of(options, metric);
   if (!request) return tl::unexpected(request.error());
-  const auto sides = load(options);
+  const auto sides = load(options, request->protocol);
   if (!sides) return tl::unexpected(sides.error());
   if (auto suited = suit_stamps(*sides, *request); !suited) return tl::unexpected(suited.error());
   auto evaluation = evaluate(sides->reference.poses, sides->estimate.poses, *request);
@@ -325,9 +326,10 @@ void add_protocol_options(CLI::App& verb, EvalOptions& options) {
                   "With --protocol eth3d: list whose stamps are compared (rgb.txt); default: the reference's")
       ->type_name("FILE");
   verb.add_option("--duplicates", options.duplicates,
-                  "Rows of one stamp: error, or the first or last counts, or keep both as evo does")
-      ->check(members(kDuplicates))
-      ->capture_default_str();
+                  "Rows of one stamp: error, first, last or keep (both). Default: as the protocol's script "
+                  "does, while "
+                  "they are rare")
+      ->check(members(kDuplicates));
 }
 
 void add_selection_options(CLI::App& verb, EvalOptions& options) {

@@ -365,6 +365,12 @@ check_evaluation() {
   [[ $(head -1 errors/ate.csv) == timestamp_ns,trans_part_m ]] || complain "errors as a file: $(head -1 errors/ate.csv)"
   [[ $(wc -l <errors/ate.csv) == 61 ]] || complain "errors as a file: not 60 errors"
 
+  for i in 1 2 3 4; do curve $((100 * i)) 1; done >long.txt
+  sed '7p' long.txt >rare.txt
+  checks=$((checks + 1))
+  "$binary" eval ate rare.txt long.txt >stdout 2>stderr || complain "a rare repeat: exit code $?"
+  grep -q 'warning: rare.txt:8: 1 of 241 rows repeat a stamp (both are kept)' stderr || complain "a rare repeat is not told"
+
   refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
   refused "one file" 2 'GT EST|files' -- eval ate gt.txt
   refused "no metric" 2 -- eval
@@ -385,7 +391,7 @@ check_evaluation() {
   refused "not a number" 3 'nan.txt:7' -- eval ate "$(sed '7s/^[^ ]*/nan/' gt.txt >nan.txt && echo nan.txt)" est.txt
   refused "no quaternion" 3 'zero.txt:3.*norm 0' -- \
     eval ate "$(sed '3s/.*/1305031100.2 0 0 0 0 0 0 0/' gt.txt >zero.txt && echo zero.txt)" est.txt
-  refused "a repeated stamp" 3 'twice.txt:2.*line 1' -- \
+  refused "a repeated stamp" 3 'twice.txt:2.*line 1' 'hint:--duplicates' -- \
     eval ate "$(sed '1p' gt.txt >twice.txt && echo twice.txt)" est.txt
   refused "two trajectories" 3 'two.txt:61: time jumps back' 'hint:split' -- \
     eval ate "$(cat gt.txt est.txt >two.txt && echo two.txt)" est.txt

@@ -95,6 +95,16 @@ TEST_F(TrajectoryFormats, OrderAndRepeatedStamps) {
   EXPECT_EQ(load(kRepeated, Duplicates::last)->poses.back().T_world_camera.translation.x(), 3);
   EXPECT_EQ(load(kRepeated, Duplicates::as_written)->poses.size(), 3U);
 
+  std::string rare = "0 0 0 0 0 0 0 1\n";
+  for (int i = 0; i < 200; ++i) rare += std::to_string(i) + " 1 0 0 0 0 0 1\n";
+  EXPECT_EQ(load(rare, Duplicates::rare_kept)->poses.size(), 201U);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find(":2: 1 of 201 rows repeat a stamp (both are kept)"), std::string::npos);
+  const auto last = load(rare, Duplicates::rare_last);
+  EXPECT_EQ(last->poses.size(), 200U);
+  EXPECT_EQ(last->poses[0].T_world_camera.translation.x(), 1);
+  EXPECT_FALSE(load(kRepeated, Duplicates::rare_kept).has_value()) << "one in three is not rare";
+
   const auto sorted = load("3 3 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
   ASSERT_TRUE(sorted.has_value());
   EXPECT_EQ(sorted->poses.front().timestamp_ns, 1000000000);
