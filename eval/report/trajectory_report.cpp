@@ -26,9 +26,18 @@ std::string with_unit(const ErrorSeries& series) {
   return series.unit.empty() ? series.relation : fmt::format("{} [{}]", series.relation, series.unit);
 }
 
+/// TUM's relative errors pair motions, not poses.
+bool pairs_of_tum(const TrajectoryRequest& request) {
+  return request.metric == TrajectoryMetric::rpe &&
+         (request.motions == MotionRule::fixed_delta || request.motions == MotionRule::each_to_each);
+}
+
 std::string association_text(const TrajectoryEvaluation& e) {
   const AssociationOptions& a = e.request.association;
   std::string how;
+  if (pairs_of_tum(e.request))
+    return fmt::format("nearest reference pose within {:.6g} s (twice its median interval)",
+                       a.max_difference_s);
   switch (a.rule) {
     case AssociationRule::nearest:
       how = fmt::format("nearest stamp within {:.6g} s, one may serve several", a.max_difference_s);
@@ -82,7 +91,7 @@ Lines heading(const TrajectoryEvaluation& e, const ComparedFiles& files) {
       {"estimate",
        fmt::format("{} ({}): {} poses", files.estimate, to_string(files.estimate_format), e.estimate_poses)},
       {"association", association_text(e)},
-      {relative && e.request.motions == MotionRule::fixed_delta ? "motions" : "pairs",
+      {pairs_of_tum(e.request) ? "compared" : "pairs",
        fmt::format("{} of {} possible (coverage {:.1f} %)", e.pairs, e.possible, 100 * e.coverage)},
       {"alignment", alignment_text(e)}};
   if (relative) lines.push_back({"motions", motions_text(e)});

@@ -114,7 +114,9 @@ Result<TrajectoryRequest> request_for(Protocol protocol, TrajectoryMetric metric
   request.protocol = protocol;
   request.association.rule = row.association;
   request.association.max_difference_s = row.max_difference_s;
-  request.alignment.mode = row.alignment;
+  // TUM's relative error aligns nothing.
+  const bool tum_motions = protocol == Protocol::tum && metric == TrajectoryMetric::rpe;
+  request.alignment.mode = tum_motions ? AlignmentMode::none : row.alignment;
   request.alignment.single_pose = protocol == Protocol::rpg;
   request.motions = row.motions;
   request.delta = row.delta;
