@@ -85,7 +85,7 @@ TEST_F(TrajectoryFile, SortsAndKeepsTheDuplicateAskedFor) {
 TEST_F(TrajectoryFile, DisorderIsTold) {
   ASSERT_TRUE(read("1.0 1 0 0 0 0 0 1\n1.0 2 0 0 0 0 0 1\n", Duplicates::last));
   ASSERT_EQ(warnings_.size(), 1U);
-  EXPECT_EQ(warnings_[0], file_.string() + ": 1 of 2 rows repeat a stamp (the last one is kept)");
+  EXPECT_EQ(warnings_[0], file_.string() + ":2: 1 of 2 rows repeat a stamp (the last one is kept)");
   ASSERT_TRUE(read("2.0 1 0 0 0 0 0 1\n1.0 2 0 0 0 0 0 1\n", Duplicates::first));
   ASSERT_EQ(warnings_.size(), 1U);
   EXPECT_NE(warnings_[0].find("not in order of time"), std::string::npos) << warnings_[0];
