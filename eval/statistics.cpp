@@ -26,12 +26,14 @@ Statistics statistics(std::span<const double> values) {
   for (const double value : values) squares += (value - result.mean) * (value - result.mean);
   result.std = std::sqrt(squares / count);
 
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t middle = sorted.size() / 2;
-  result.median = sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
-  result.min = sorted.front();
-  result.max = sorted.back();
+  const auto [smallest, largest] = std::ranges::minmax_element(values);
+  result.min = *smallest;
+  result.max = *largest;
+  std::vector<double> halves(values.begin(), values.end());
+  const auto middle = halves.begin() + static_cast<std::ptrdiff_t>(halves.size() / 2);
+  std::ranges::nth_element(halves, middle);
+  result.median =
+      halves.size() % 2 == 1 ? *middle : 0.5 * (*std::max_element(halves.begin(), middle) + *middle);
   return result;
 }
 

@@ -148,6 +148,7 @@ Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Traj
     const SE3 error = estimate_motion.inverse() * truth_motion;
     result.errors_m.push_back(error.translation.norm());
     result.errors_rad.push_back(so3_log(error.rotation).norm());
+    result.at_ns.push_back(estimate_ns[j]);
   }
   result.pairs = result.errors_m.size();
   result.coverage = share(result.pairs, result.possible);

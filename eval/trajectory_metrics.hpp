@@ -88,8 +88,9 @@ struct RpeResult {
   Alignment alignment;  ///< none
   std::vector<double> errors_m;
   std::vector<double> errors_rad;
-  Statistics translation;  ///< metres
-  Statistics rotation;     ///< radians
+  std::vector<std::int64_t> at_ns;  ///< of each error, the estimate's stamp at the motion's end
+  Statistics translation;           ///< metres
+  Statistics rotation;              ///< radians
 };
 
 /// Errors: configuration for a delta that makes no sense, data_corrupt for fewer than two poses on either

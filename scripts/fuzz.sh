@@ -51,7 +51,7 @@ fuzz() {
     -dict=tests/fuzz/tokens.dict -artifact_prefix="$crashes/" >"$log" 2>&1 || status=$?
   local runs
   runs=$(awk '/^stat::number_of_executed_units:/ { print $2 }' "$log")
-  printf '%-14s %9s runs, %d new crash input(s)\n' "$target" "${runs:-?}" \
+  printf '%-18s %9s runs, %d new crash input(s)\n' "$target" "${runs:-?}" \
     $(($(find "$crashes" -type f | wc -l) - before))
   if ((status != 0)); then
     grep -E -m 3 'ERROR|what\(\)|runtime error' "$log" || tail -n 5 "$log"

@@ -327,8 +327,7 @@ void add_protocol_options(CLI::App& verb, EvalOptions& options) {
       ->type_name("FILE");
   verb.add_option("--duplicates", options.duplicates,
                   "Rows of one stamp: error, first, last or keep (both). Default: as the protocol's script "
-                  "does, while "
-                  "they are rare")
+                  "does, while they are rare")
       ->check(members(kDuplicates));
 }
 

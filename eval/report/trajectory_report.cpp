@@ -142,7 +142,7 @@ Json json_of(const Similarity& alignment) {
 Json json_of(const ErrorSeries& series) {
   Json json = {{"relation", series.relation}, {"unit", series.unit}};
   json["errors"] = series.errors;
-  if (!series.at_ns.empty()) json["timestamps_ns"] = series.at_ns;
+  json["timestamps_ns"] = series.at_ns;
   json["stats"] = json_of(series.stats);
   return json;
 }
@@ -208,9 +208,7 @@ std::string to_json(const TrajectoryEvaluation& evaluation, const ComparedFiles&
   json["plane"] = to_string(request.plane);
   if (request.metric == TrajectoryMetric::rpe) json["motions"] = motions_json(request);
   const Json series = json_of(first);
-  for (const char* key : {"errors", "timestamps_ns", "stats"}) {
-    if (series.contains(key)) json[key] = series[key];
-  }
+  for (const char* key : {"errors", "timestamps_ns", "stats"}) json[key] = series[key];
   if (evaluation.series.size() > 1) {
     Json also = Json::array();
     for (std::size_t i = 1; i < evaluation.series.size(); ++i) also.push_back(json_of(evaluation.series[i]));

@@ -22,11 +22,11 @@ ErrorSeries series_of(TrajectoryError error) {
           std::move(error.errors), std::move(error.at_ns), error.stats};
 }
 
-Trajectory thinned(const Trajectory& trajectory, const TrajectoryRequest& request) {
-  const Trajectory fewer = request.downsample > 0 ? downsampled(trajectory, request.downsample) : trajectory;
-  return request.motion_filter
-             ? moved_only(fewer, request.motion_filter->distance_m, request.motion_filter->angle_rad)
-             : fewer;
+Trajectory thinned(Trajectory trajectory, const TrajectoryRequest& request) {
+  if (request.downsample > 0) trajectory = downsampled(trajectory, request.downsample);
+  if (request.motion_filter)
+    trajectory = moved_only(trajectory, request.motion_filter->distance_m, request.motion_filter->angle_rad);
+  return trajectory;
 }
 
 TrajectoryEvaluation described(const TrajectoryRequest& request, const TrajectoryPair& pair,
@@ -69,10 +69,9 @@ Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Traject
   if (request.alignment.mode == AlignmentMode::sim3 || request.alignment.mode == AlignmentMode::scale) {
     const Result<TrajectoryPair> pair = pair_up(reference, estimate, request.association);
     if (!pair) return tl::unexpected(pair.error());
-    const Result<TrajectoryError> aligned =
-        absolute_error(*pair, AbsoluteOptions{.alignment = request.alignment});
+    const Result<Similarity> aligned = align(*pair, request.alignment);
     if (!aligned) return tl::unexpected(aligned.error());
-    result.alignment = aligned->alignment;
+    result.alignment = *aligned;
     for (StampedPose& pose : estimate) pose.T_world_camera.translation *= result.alignment.scale;
   }
   RpeOptions options;
@@ -88,9 +87,9 @@ Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Traject
   result.possible = rpe->possible;
   result.coverage = rpe->coverage;
   result.request.association.max_difference_s = rpe->max_difference_s;
-  result.series.push_back(series_of("trans_part", "m", std::move(rpe->errors_m), {}));
+  result.series.push_back(series_of("trans_part", "m", std::move(rpe->errors_m), rpe->at_ns));
   for (double& angle : rpe->errors_rad) angle = degrees(angle);
-  result.series.push_back(series_of("angle_deg", "deg", std::move(rpe->errors_rad), {}));
+  result.series.push_back(series_of("angle_deg", "deg", std::move(rpe->errors_rad), std::move(rpe->at_ns)));
   return result;
 }
 
@@ -125,17 +124,31 @@ Statistics over(std::size_t segments, Value&& value) {
   return statistics(values);
 }
 
-SegmentRow row_of(const SegmentErrors& errors, const std::vector<double>& divisor_m) {
+/// Errors of segments by their lengths. ETH3D divides by the path of each segment, the others by the length
+/// that was asked for.
+struct RelativeErrors {
+  std::vector<double> translation_percent;
+  std::vector<double> rotation_deg_per_m;
+};
+RelativeErrors by_length(const SegmentErrors& errors, Protocol protocol) {
+  RelativeErrors relative;
+  for (std::size_t k = 0; k < errors.path_m.size(); ++k) {
+    const double divisor_m = protocol == Protocol::eth3d ? errors.path_m[k] : errors.length_m;
+    relative.translation_percent.push_back(100 * errors.translation_m[k] / divisor_m);
+    relative.rotation_deg_per_m.push_back(degrees(errors.rotation_rad[k]) / divisor_m);
+  }
+  return relative;
+}
+
+SegmentRow row_of(const SegmentErrors& errors, const RelativeErrors& relative) {
   const std::size_t n = errors.translation_m.size();
   SegmentRow row;
   row.length_m = errors.length_m;
   row.segments = n;
   row.translation_m = statistics(errors.translation_m);
-  row.translation_percent =
-      over(n, [&](std::size_t k) { return 100 * errors.translation_m[k] / divisor_m[k]; });
+  row.translation_percent = statistics(relative.translation_percent);
   row.rotation_deg = over(n, [&](std::size_t k) { return degrees(errors.rotation_rad[k]); });
-  row.rotation_deg_per_m =
-      over(n, [&](std::size_t k) { return degrees(errors.rotation_rad[k]) / divisor_m[k]; });
+  row.rotation_deg_per_m = statistics(relative.rotation_deg_per_m);
   row.yaw_deg = over(n, [&](std::size_t k) { return degrees(errors.yaw_rad[k]); });
   row.gravity_deg = over(n, [&](std::size_t k) { return degrees(errors.gravity_rad[k]); });
   return row;
@@ -143,27 +156,21 @@ SegmentRow row_of(const SegmentErrors& errors, const std::vector<double>& diviso
 
 Result<TrajectoryEvaluation> of_segments(const Trajectory& reference, const TrajectoryPair& pair,
                                          const TrajectoryRequest& request) {
-  const Result<TrajectoryError> aligned =
-      absolute_error(pair, AbsoluteOptions{.alignment = request.alignment});
+  const Result<Similarity> aligned = align(pair, request.alignment);
   if (!aligned) return tl::unexpected(aligned.error());
-  TrajectoryEvaluation result = described(request, pair, aligned->alignment);
+  TrajectoryEvaluation result = described(request, pair, *aligned);
   std::vector<double> percent;
   std::vector<double> deg_per_m;
   std::vector<std::int64_t> at_ns;
   for (const double length_m : lengths_m(reference, request.protocol)) {
     const IndexPairs segments = segments_of(pair.reference, request.protocol, length_m);
     if (segments.empty()) continue;
-    const SegmentErrors errors = segment_errors(pair, segments, length_m, aligned->alignment.scale);
-    // ETH3D divides by the path of each segment, the others by the length that was asked for.
-    const std::vector<double> divisor_m = request.protocol == Protocol::eth3d
-                                              ? errors.path_m
-                                              : std::vector<double>(errors.path_m.size(), length_m);
-    result.segments.push_back(row_of(errors, divisor_m));
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-      percent.push_back(100 * errors.translation_m[k] / divisor_m[k]);
-      deg_per_m.push_back(degrees(errors.rotation_rad[k]) / divisor_m[k]);
-      at_ns.push_back(pair.estimate[segments[k].second].timestamp_ns);
-    }
+    const SegmentErrors errors = segment_errors(pair, segments, length_m, aligned->scale);
+    const RelativeErrors relative = by_length(errors, request.protocol);
+    result.segments.push_back(row_of(errors, relative));
+    percent.insert(percent.end(), relative.translation_percent.begin(), relative.translation_percent.end());
+    deg_per_m.insert(deg_per_m.end(), relative.rotation_deg_per_m.begin(), relative.rotation_deg_per_m.end());
+    for (const auto& [i, j] : segments) at_ns.push_back(pair.estimate[j].timestamp_ns);
   }
   if (result.segments.empty()) {
     return fail(ErrorCode::data_corrupt,
@@ -192,9 +199,10 @@ Result<TrajectoryEvaluation> evaluate_thinned(const Trajectory& reference, const
 
 Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
                                       const TrajectoryRequest& request) {
-  const Trajectory fewer_reference = thinned(reference, request);
-  const Trajectory fewer_estimate = thinned(estimate, request);
-  Result<TrajectoryEvaluation> result = evaluate_thinned(fewer_reference, fewer_estimate, request);
+  const bool whole = request.downsample == 0 && !request.motion_filter;
+  Result<TrajectoryEvaluation> result =
+      whole ? evaluate_thinned(reference, estimate, request)
+            : evaluate_thinned(thinned(reference, request), thinned(estimate, request), request);
   if (!result) return result;
   result->reference_poses = reference.size();
   result->estimate_poses = estimate.size();

@@ -94,6 +94,10 @@ std::string_view to_string(Plane plane) {
   return "";
 }
 
+Result<Similarity> align(const TrajectoryPair& pair, const AlignmentRequest& request) {
+  return align(poses_of(pair.reference), poses_of(pair.estimate), request);
+}
+
 Result<TrajectoryError> absolute_error(const TrajectoryPair& pair, const AbsoluteOptions& options) {
   if (options.relation == PoseRelation::distance_error_ratio) {
     return fail(ErrorCode::usage, fmt::format("{} is a relation of motions", to_string(options.relation)),

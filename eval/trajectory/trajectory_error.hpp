@@ -37,6 +37,9 @@ struct AbsoluteOptions {
   Plane plane = Plane::none;
 };
 
+/// What moves the estimate of a pair. Errors as align().
+[[nodiscard]] Result<Similarity> align(const TrajectoryPair& pair, const AlignmentRequest& request);
+
 /// Error of each associated pose. Errors: configuration for a relation of motions, data_corrupt as align().
 [[nodiscard]] Result<TrajectoryError> absolute_error(const TrajectoryPair& pair,
                                                      const AbsoluteOptions& options);

@@ -25,6 +25,8 @@ Trajectory within(const Trajectory& trajectory, double start_s, double end_s) {
 
 void take(const Trajectory& reference, const Trajectory& estimate, std::span<const AssociatedPair> pairs,
           TrajectoryPair& result) {
+  result.reference.reserve(pairs.size());
+  result.estimate.reserve(pairs.size());
   for (const AssociatedPair& pair : pairs) {
     result.reference.push_back(reference[pair.first]);
     result.estimate.push_back(estimate[pair.second]);
@@ -93,7 +95,9 @@ std::string_view to_string(AssociationRule rule) {
 
 Result<TrajectoryPair> pair_up(const Trajectory& reference_whole, const Trajectory& estimate,
                                const AssociationOptions& options) {
-  const Trajectory reference = within(reference_whole, options.start_s, options.end_s);
+  const bool whole = std::isinf(options.start_s) && std::isinf(options.end_s);
+  const Trajectory cut = whole ? Trajectory{} : within(reference_whole, options.start_s, options.end_s);
+  const Trajectory& reference = whole ? reference_whole : cut;
   if (reference.empty() || estimate.empty()) {
     return fail(
         ErrorCode::data_corrupt,

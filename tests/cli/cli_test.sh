@@ -371,6 +371,9 @@ check_evaluation() {
   "$binary" eval ate rare.txt long.txt >stdout 2>stderr || complain "a rare repeat: exit code $?"
   grep -q 'warning: rare.txt:8: 1 of 241 rows repeat a stamp (both are kept)' stderr || complain "a rare repeat is not told"
 
+  prints 'rmse' "errors of tum's motions as a file" eval rpe gt.txt est.txt --protocol tum --errors errors/rpe.csv
+  [[ $(sed -n 2p errors/rpe.csv) =~ ^13050311[0-9]{11}, ]] || complain "errors of tum's motions have no stamps"
+
   refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
   refused "one file" 2 'GT EST|files' -- eval ate gt.txt
   refused "no metric" 2 -- eval

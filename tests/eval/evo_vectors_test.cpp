@@ -17,11 +17,10 @@ namespace fusebench {
 namespace {
 
 using nlohmann::json;
+using testing::expect_close;
+using testing::kAbsolute;
 using testing::trajectory_vectors;
 using testing::vector_cases;
-
-constexpr double kRelative = 1e-9;
-constexpr double kAbsolute = 1e-12;
 
 Trajectory load(const std::filesystem::path& folder, const json& test, const char* side) {
   std::vector<std::string> warnings;
@@ -29,10 +28,6 @@ Trajectory load(const std::filesystem::path& folder, const json& test, const cha
                                         Duplicates::as_written);
   EXPECT_TRUE(trajectory.has_value()) << trajectory.error().message;
   return *trajectory;
-}
-
-void expect_close(double value, double wanted, const std::string& what, double absolute = kAbsolute) {
-  EXPECT_NEAR(value, wanted, std::max(absolute, kRelative * std::abs(wanted))) << what;
 }
 
 /// The options of a command of evo, as ours.

@@ -16,16 +16,10 @@ namespace fusebench {
 namespace {
 
 using nlohmann::json;
+using testing::expect_close;
+using testing::kAbsolute;
 using testing::trajectory_vectors;
 using testing::vector_cases;
-
-constexpr double kRelative = 1e-9;
-constexpr double kAbsolute = 1e-12;
-
-void expect_close(double value, const json& expected, const std::string& what, double absolute = kAbsolute) {
-  const double wanted = expected.get<double>();
-  EXPECT_NEAR(value, wanted, std::max(absolute, kRelative * std::abs(wanted))) << what;
-}
 
 void expect_statistics(const Statistics& stats, const json& expected, const std::string& what,
                        double absolute = kAbsolute) {

@@ -10,6 +10,7 @@ namespace fusebench::fuzz {
 
 void text_table(std::string_view bytes);
 void trajectory(std::string_view bytes);
+void trajectory_formats(std::string_view bytes);
 void image_list(std::string_view bytes);
 void side_files(std::string_view bytes);
 void calibration(std::string_view bytes);
@@ -27,6 +28,7 @@ struct Target {
 inline constexpr std::array kTargets = {
     Target{"text_table", text_table},
     Target{"trajectory", trajectory},
+    Target{"trajectory_formats", trajectory_formats},
     Target{"image_list", image_list},
     Target{"side_files", side_files},
     Target{"calibration", calibration},
