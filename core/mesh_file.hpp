@@ -1,4 +1,4 @@
-// PLY out and in.
+// Meshes as people keep them: PLY and Wavefront OBJ files.
 #pragma once
 
 #include <filesystem>
@@ -8,15 +8,8 @@
 
 namespace fusebench {
 
-/// Writes binary little-endian PLY: float x y z, nx ny nz (if present), uchar red green blue (if present),
-/// and triangles. Error io when it cannot be written.
-[[nodiscard]] Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file);
-
-/// Reads a PLY mesh or point cloud, ascii or binary little-endian: vertices with x y z and, if present, nx ny
-/// nz and red green blue (integers 0-255), in any numeric type; faces as lists vertex_indices or
-/// vertex_index, where larger polygons are cut into fans. Other properties and elements are skipped. Errors:
-/// data_missing (no such file), data_corrupt (names the line of an ascii file or header, or the byte of
-/// binary data, and the property).
-[[nodiscard]] Result<Mesh> read_ply(const std::filesystem::path& file);
+/// Reads a mesh by the ending of its name, .ply or .obj (upper or lower case). Errors: usage for another
+/// ending; those of read_ply() and read_obj().
+[[nodiscard]] Result<PreciseMesh> read_mesh(const std::filesystem::path& file);
 
 }  // namespace fusebench

@@ -96,11 +96,22 @@ struct StampedPose {
 using Trajectory = std::vector<StampedPose>;  ///< sorted by time, stamps unique
 
 /// Indexed triangle mesh in the world frame (metres). normals and colors are empty or one per vertex.
-struct Mesh {
-  std::vector<Eigen::Vector3f> vertices;
+template <class Scalar>
+struct BasicMesh {
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> vertices;
   std::vector<Eigen::Vector3f> normals;  ///< unit, pointing out of the surface
   std::vector<Rgb> colors;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+
+  template <class Other>
+  [[nodiscard]] BasicMesh<Other> cast() const {
+    BasicMesh<Other> result{{}, normals, colors, triangles};
+    result.vertices.reserve(vertices.size());
+    for (const auto& vertex : vertices) result.vertices.push_back(vertex.template cast<Other>());
+    return result;
+  }
 };
+using Mesh = BasicMesh<float>;          ///< as it is reconstructed and drawn
+using PreciseMesh = BasicMesh<double>;  ///< as files hold it, and as it is measured
 
 }  // namespace fusebench

@@ -15,7 +15,7 @@
 #include "core/options.hpp"
 #include "eval/consistency_metrics.hpp"
 #include "eval/intensity_metrics.hpp"
-#include "eval/mesh_metrics.hpp"
+#include "eval/mesh/mesh_metrics.hpp"
 #include "eval/residual_metrics.hpp"
 #include "eval/trajectory_metrics.hpp"
 

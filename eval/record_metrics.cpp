@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "eval/alignment_json.hpp"
+#include "eval/mesh/mesh_json.hpp"
 #include "eval/statistics_json.hpp"
 
 namespace fusebench {
@@ -24,10 +26,6 @@ Statistics statistics_of(const Json& json) {
           number_at(json, "median"), number_at(json, "std"),
           number_at(json, "min"),    number_at(json, "max"),
           number_at(json, "sse"),    json.at("count").get<std::size_t>()};
-}
-
-Json json_of(const Alignment& alignment) {
-  return {{"mode", alignment.mode}, {"matrix", matrix_of(alignment.T_reference_estimate)}};
 }
 
 Alignment alignment_of(const Json& json) {
@@ -157,31 +155,9 @@ void read(const Json& json, ResidualSummary& summary) {
   summary.accepted_share = number_at(json, "accepted_share");
 }
 
-Json json_of(const MeshDistances& distances) {
-  Json json = json_of(distances.stats);
-  if (!json.is_null()) {
-    json["p90"] = distances.p90;
-    json["p95"] = distances.p95;
-  }
-  return json;
-}
-
 MeshDistances distances_of(const Json& json) {
   if (json.is_null()) return {};
   return {statistics_of(json), number_at(json, "p90"), number_at(json, "p95")};
-}
-
-Json json_of(const MeshErrorResult& mesh) {
-  Json thresholds = Json::array();
-  for (const MeshThreshold& at : mesh.thresholds) {
-    thresholds.push_back(
-        {{"tau_m", at.tau_m}, {"precision", at.precision}, {"recall", at.recall}, {"fscore", at.fscore}});
-  }
-  return {{"alignment", json_of(mesh.alignment)},
-          {"accuracy", json_of(mesh.accuracy)},
-          {"completeness", json_of(mesh.completeness)},
-          {"chamfer_m", mesh.chamfer_m},
-          {"thresholds", std::move(thresholds)}};
 }
 
 MeshErrorResult mesh_error_of(const Json& json) {
@@ -194,13 +170,6 @@ MeshErrorResult mesh_error_of(const Json& json) {
     mesh.thresholds.push_back({at.at("tau_m"), at.at("precision"), at.at("recall"), at.at("fscore")});
   }
   return mesh;
-}
-
-Json json_of(const MeshSampling& sampling, std::size_t points) {
-  return {{"from", to_string(sampling.from)},
-          {"count", sampling.count},
-          {"seed", sampling.seed},
-          {"points", points}};
 }
 
 MeshSampling sampling_of(const Json& json) {

@@ -6,8 +6,8 @@
 
 #include "core/fingerprint.hpp"
 #include "core/marching_cubes.hpp"
-#include "core/mesh_file.hpp"
 #include "core/pipeline.hpp"
+#include "core/ply_file.hpp"
 #include "core/staged_folder.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "core/mesh_file.hpp"
+#include "core/ply_file.hpp"
 #include "core/trajectory.hpp"
 #include "core/variants.hpp"
 #include "eval/pose_alignment.hpp"
+#include "eval/recording_views.hpp"
 
 namespace fusebench {
 
@@ -60,20 +61,8 @@ RecordedNees nees_of(const RunOutput& output, const Recording& recording, const 
 }
 
 constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
-constexpr std::size_t kViewEveryFrames = 10;
 constexpr std::size_t kReconstructionSamples = 50'000;
 constexpr std::size_t kTruthSamples = 200'000;  // of the whole scene, of which a run may see a corner
-
-/// The true colour cameras of every tenth frame, the first among them.
-MeshViews views_of(const Recording& recording, const DepthConfig& depth) {
-  MeshViews views{recording.rig.camera, depth.min_m, depth.max_m, {}};
-  for (std::size_t frame = 0; frame < recording.frames.size(); frame += kViewEveryFrames) {
-    const auto pose =
-        interpolate_pose(recording.ground_truth, recording.frames[frame].capture_ns, kMaxTruthGap_ns);
-    if (pose) views.T_truth_camera.push_back(*pose);
-  }
-  return views;
-}
 
 /// The tracked cameras of which the true ones at the same instants are known.
 struct KnownCameras {
@@ -109,11 +98,13 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
     return fail(truth.error().code,
                 fmt::format("{} is not a usable mesh", recording.truth_mesh_file.filename().string()));
   }
-  const MeshViews views = views_of(recording, depth);
+  const auto views = recorded_views(recording, {depth.min_m, depth.max_m});
+  if (!views) return tl::unexpected(views.error());
   MeshErrorOptions options;
   options.reconstruction.count = kReconstructionSamples;
   options.truth.count = kTruthSamples;
-  const auto comparison = MeshComparison::create(output.mesh, *truth, views, options, workers);
+  const auto comparison =
+      MeshComparison::create(output.mesh.cast<double>(), *truth, *views, options, workers);
   if (!comparison) return tl::unexpected(comparison.error());
   const auto aligned = align_poses(cameras.reference, cameras.estimate);
   if (!aligned) return tl::unexpected(aligned.error());
@@ -123,7 +114,7 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
   mesh.reconstruction_samples = comparison->reconstruction_samples();
   mesh.truth_samples = comparison->truth_samples();
   mesh.truth_observed = comparison->truth_observed();
-  mesh.views = views.T_truth_camera.size();
+  mesh.views = views->T_truth_camera.size();
   mesh.min_depth_m = depth.min_m;
   mesh.max_depth_m = depth.max_m;
   mesh.poses = comparison->evaluate({"poses", *aligned}, workers);

@@ -8,7 +8,7 @@ Usage: scripts/check_includes.sh [ROOT]
 
 Checks the #include lines below ROOT (default: this repository):
   - core includes neither datasets nor eval, and datasets does not include eval
-  - the metrics of eval (*_metrics, statistics, trajectory/) include neither datasets nor core/pipeline.hpp
+  - the metrics of eval (*_metrics, statistics, mesh/, trajectory/) include neither datasets nor core/pipeline.hpp
   - only eval/run.cpp, eval/batch.cpp, eval/measured_motion.cpp and eval/cli include both datasets and core/pipeline.hpp
   - nothing outside tests includes tests
   - quoted paths start at the repository root
@@ -44,7 +44,7 @@ find "${rooms[@]}" -type f \( -name '*.hpp' -o -name '*.cpp' \) -print | LC_ALL=
       offence(file, line, text, "core never includes datasets or eval")
     if (file ~ /^datasets\// && path ~ /^eval\//)
       offence(file, line, text, "datasets never includes eval")
-    if (file ~ /^eval\/([a-z0-9_]*_metrics|statistics|trajectory\/[a-z0-9_]*)\.[ch]pp$/ &&
+    if (file ~ /^eval\/([a-z0-9_]*_metrics|statistics|(mesh|trajectory)\/[a-z0-9_]*)\.[ch]pp$/ &&
         (path ~ /^datasets\// || path == "core/pipeline.hpp"))
       offence(file, line, text, "metrics never include datasets or the pipeline")
     if (file !~ /^tests\// && path ~ /^tests\//)

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/mesh_file.hpp"
+#include "core/ply_file.hpp"
 #include "datasets/simulator/write_lists.hpp"
 #include "datasets/time_unit.hpp"
 

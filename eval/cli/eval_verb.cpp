@@ -9,11 +9,12 @@ namespace fusebench {
 
 Verb add_eval_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "eval", "Evaluates a trajectory from anywhere against its reference, by a named protocol");
+      "eval", "Evaluates a trajectory or a mesh from anywhere against its reference, by a named protocol");
   verb->require_subcommand(1);
   const auto metrics = std::make_shared<std::vector<Verb>>();
   metrics->push_back(add_eval_ate_verb(*verb));
   metrics->push_back(add_eval_rpe_verb(*verb));
+  metrics->push_back(add_eval_mesh_verb(*verb));
   return {verb, [metrics]() -> Result<int> {
             for (const Verb& metric : *metrics) {
               if (metric.app->parsed()) return metric.run();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include "core/stamped_rows.hpp"
 #include "core/text_table.hpp"
 #include "core/trajectory_file.hpp"
+#include "eval/trajectory/nearest_rotation.hpp"
 
 namespace fusebench {
 
@@ -63,19 +63,6 @@ Result<Trajectory> read_euroc(const std::filesystem::path& file, Duplicates dupl
       TimeUnit::nanoseconds);
   if (!done) return tl::unexpected(done.error());
   return ordered(std::move(rows), duplicates, file, warnings);
-}
-
-/// The rotation nearest to a matrix, and by how much the matrix is none: the largest entry of R^T R - I.
-struct NearestRotation {
-  Matrix3d R;
-  double deviation = 0;
-};
-NearestRotation nearest_rotation(const Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double deviation = matrix.determinant() <= 0
-                               ? 1.0
-                               : (matrix.transpose() * matrix - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  return {svd.matrixU() * svd.matrixV().transpose(), deviation};
 }
 
 Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std::string>& warnings) {

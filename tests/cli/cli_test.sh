@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|recordings|interrupt|determinism
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|recordings|interrupt|determinism
 TEXT
 }
 
@@ -400,10 +400,69 @@ check_evaluation() {
     eval ate "$(cat gt.txt est.txt >two.txt && echo two.txt)" est.txt
 }
 
+# corner_obj FACTOR SHIFT: floor and two walls of a room of 4 x 3 x 2.5 m, times FACTOR, moved by SHIFT along z.
+corner_obj() {
+  awk -v f="$1" -v d="$2" '{ print "v", f * $1, f * $2, f * $3 + d }' <<'TEXT'
+0 0 0
+4 0 0
+4 3 0
+0 3 0
+0 0 2.5
+4 0 2.5
+0 3 2.5
+TEXT
+  printf 'f 1 2 3 4\nf 1 2 6 5\nf 1 4 7 5\n'
+}
+
+check_meshes() {
+  corner_obj 1 0 >truth.obj
+  corner_obj 1 0.01 >rec.obj
+  corner_obj 1000 0 >millimetres.obj
+  printf '1 0 0 0\n0 1 0 0\n0 0 1 -0.01\n0 0 0 1\n' >down.txt
+  curve 0 1 >gt.txt
+
+  prints 'alignment +none' "no alignment" eval mesh rec.obj truth.obj
+  prints 'samples +reconstruction: 200000 even over the area \(seed 1\)' "samples" eval mesh rec.obj truth.obj
+  prints 'samples +reconstruction: 7 vertices' "vertices" eval mesh rec.obj truth.obj --samples vertices
+  prints 'max +0.01 +0.01' "statistics" eval mesh rec.obj truth.obj --samples vertices
+  prints '0.02 +100.00 +100.00 +100.00' "thresholds" eval mesh rec.obj truth.obj --thresholds 0.02,0.005
+  prints 'alignment +file: turned by 0.0000 deg, moved by \(0.0000, 0.0000, -0.0100\) m' "a transform" \
+    eval mesh rec.obj truth.obj --align file --transform down.txt
+  prints 'alignment +icp: .*-0.0100\) m \([0-9]+ steps from where it was' "icp" eval mesh rec.obj truth.obj --align icp
+  prints 'from the file' "icp from a transform" eval mesh rec.obj truth.obj --align icp --transform down.txt
+  prints 'alignment +trajectory: turned by 0.0000 deg' "trajectories" \
+    eval mesh truth.obj truth.obj --align trajectory --trajectories gt.txt gt.txt
+  prints 'scale +the reconstruction times 0.001' "millimetres" eval mesh millimetres.obj truth.obj --scale 0.001
+  prints '"surfreg_m": 0.0(1|09999)[0-9]*,' "JSON" eval mesh rec.obj truth.obj --json --samples vertices
+  checks=$((checks + 1))
+  "$binary" eval mesh rec.obj truth.obj --colored colored.ply >stdout 2>stderr || complain "a coloured mesh: exit code $?"
+  grep -q 'yellow at 0.05 m' stderr || complain "a coloured mesh: its range is not told"
+  [[ $(head -c 3 colored.ply) == ply ]] || complain "a coloured mesh was not written"
+
+  refused "millimetres for metres" 3 'not to be in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
+  refused "no such mesh" 3 'absent.ply' -- eval mesh absent.ply truth.obj
+  refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj
+  refused "an empty mesh" 3 'no triangles' -- eval mesh "$(grep ^v rec.obj >points.obj && echo points.obj)" truth.obj
+  refused "a broken vertex" 3 'nan.obj:2' -- eval mesh "$(sed '2s/ 4 / nan /' rec.obj >nan.obj && echo nan.obj)" truth.obj
+  refused "a file without its transform" 2 'needs --transform' -- eval mesh rec.obj truth.obj --align file
+  refused "a transform without its mode" 2 'does not use --transform' 'hint:--align file' -- \
+    eval mesh rec.obj truth.obj --transform down.txt
+  refused "a scaling transform" 3 'no rotation' -- \
+    eval mesh rec.obj truth.obj --align file --transform "$(printf '2 0 0 0\n0 2 0 0\n0 0 2 0\n' >double.txt && echo double.txt)"
+  refused "culling from nowhere" 2 'needs --recording' -- eval mesh rec.obj truth.obj --cull depth
+  refused "a recording without culling" 2 '--cull frustum' -- eval mesh rec.obj truth.obj --recording x
+  refused "no samples" 2 'samples 0' -- eval mesh rec.obj truth.obj --samples 0
+  refused "a threshold of none" 2 'thresholds' -- eval mesh rec.obj truth.obj --thresholds 0
+  fresh_copy
+  refused "a truth that nobody saw" 3 'observed' 'hint:one world' -- \
+    eval mesh rec.obj truth.obj --cull depth --recording freiburg1_copy --cull-every 1
+}
+
 case "$group" in
   bad-data) check_bad_data ;;
   bad-usage) check_bad_usage ;;
   evaluation) check_evaluation ;;
+  meshes) check_meshes ;;
   recordings) check_recordings ;;
   interrupt) check_interrupt ;;
   determinism) check_determinism ;;

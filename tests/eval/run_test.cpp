@@ -9,7 +9,7 @@
 #include <csignal>
 #include <sstream>
 
-#include "core/mesh_file.hpp"
+#include "core/ply_file.hpp"
 #include "core/text_table.hpp"
 #include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
@@ -165,10 +165,8 @@ TEST_F(RunTest, TheMeshIsComparedInTheWorldOfTheTruth) {
   const Recording& recording = prepared->recording;
   const auto first = interpolate_pose(recording.ground_truth, recording.frames[0].capture_ns, 100'000'000);
   ASSERT_TRUE(first.has_value());
-  for (Eigen::Vector3f& vertex : scene->vertices) {
-    vertex = (*first * Vector3d(vertex.cast<double>())).cast<float>();
-  }
-  ASSERT_TRUE(write_ply(*scene, folder_ / "scene.ply").has_value());
+  for (Vector3d& vertex : scene->vertices) vertex = *first * vertex;
+  ASSERT_TRUE(write_ply(scene->cast<float>(), folder_ / "scene.ply").has_value());
   prepared->recording.truth_mesh_file = folder_ / "scene.ply";
   const auto with = execute_run(*prepared);
   ASSERT_TRUE(with.has_value());

@@ -10,7 +10,7 @@ failures=0
 
 fresh_tree() {
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{core,datasets,eval/cli,eval/trajectory,tests/support}
+  mkdir -p "$tree"/{core,datasets,eval/cli,eval/mesh,eval/trajectory,tests/support}
   printf '#pragma once\n#include <vector>\n' >"$tree/core/types.hpp"
 }
 
@@ -45,7 +45,7 @@ expect_refused core/iekf.cpp '#include "datasets/recording.hpp"' 'core never inc
 expect_refused core/iekf.hpp '  #  include "eval/statistics.hpp"' 'core never includes'
 expect_refused core/iekf.cpp '#include <fusebench/eval/run.hpp>' 'core never includes'
 expect_refused datasets/tum_rgbd.cpp '#include "eval/run.hpp"' 'datasets never includes eval'
-expect_refused eval/mesh_metrics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
+expect_refused eval/mesh/mesh_metrics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
 expect_refused eval/trajectory_metrics.hpp '#include "datasets/recording.hpp"' 'metrics never include'
 expect_refused eval/statistics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
 expect_refused eval/trajectory/alignment.cpp '#include "datasets/recording.hpp"' 'metrics never include'

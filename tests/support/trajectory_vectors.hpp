@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
+
+#include "tests/support/expect_close.hpp"
 
 namespace fusebench::testing {
 
@@ -25,14 +24,6 @@ namespace fusebench::testing {
 
 [[nodiscard]] inline nlohmann::json vector_cases(const std::filesystem::path& folder, const char* file) {
   return nlohmann::json::parse(std::ifstream(folder / file)).at("cases");
-}
-
-inline constexpr double kRelative = 1e-9;
-inline constexpr double kAbsolute = 1e-12;
-
-/// `what` names the number in the message.
-inline void expect_close(double value, double wanted, const std::string& what, double absolute = kAbsolute) {
-  EXPECT_NEAR(value, wanted, std::max(absolute, kRelative * std::abs(wanted))) << what;
 }
 
 }  // namespace fusebench::testing

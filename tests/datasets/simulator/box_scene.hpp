@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "core/mesh_file.hpp"
+#include "core/ply_file.hpp"
 
 namespace fusebench::testing {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/imu_preintegration.hpp"
-#include "core/mesh_file.hpp"
+#include "core/ply_file.hpp"
 #include "core/stamped_rows.hpp"
 #include "core/toml_document.hpp"
 #include "core/trajectory.hpp"
@@ -265,9 +265,9 @@ TEST_P(Layouts, SceneLiesInTheWorldOfTheTruth) {
   ASSERT_TRUE(frame);
   const SE3 T_camera_world = pose_of(recording, 5).inverse();
   const PinholeCamera& camera = recording.rig.camera;
-  EXPECT_GT(share_on_surface(*scene, *frame, camera, T_camera_world), 0.95);
+  EXPECT_GT(share_on_surface(scene->cast<float>(), *frame, camera, T_camera_world), 0.95);
   const SE3 elsewhere{so3_exp({0.1, 0.1, 0.1}), {0.1, 0.1, 0.1}};
-  EXPECT_LT(share_on_surface(*scene, *frame, camera, elsewhere * T_camera_world), 0.5);
+  EXPECT_LT(share_on_surface(scene->cast<float>(), *frame, camera, elsewhere * T_camera_world), 0.5);
 }
 
 /// Median of how far the measurements of two images of one view lie apart, metres.

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "core/mesh_file.hpp"
+#include "core/ply_file.hpp"
 #include "datasets/simulator/renderer.hpp"
 #include "tests/datasets/simulator/simple_scenes.hpp"
 

@@ -6,11 +6,14 @@
 #include <limits>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {
 
-/// Distance from a point to a triangle (its inside, edges and corners; also of triangles without area).
+/// The nearest point of a triangle (its inside, edges and corners; also of triangles without area).
+[[nodiscard]] Vector3d closest_point_of_triangle(const Vector3d& point,
+                                                 const std::array<Vector3d, 3>& corners);
 [[nodiscard]] double squared_distance_to_triangle(const Vector3d& point,
                                                   const std::array<Vector3d, 3>& corners);
 
@@ -24,15 +27,21 @@ struct NearestTriangle {
 class TriangleTree {
  public:
   /// Vertices finite, indices in range, at least one triangle.
-  explicit TriangleTree(const Mesh& mesh);
+  TriangleTree(const PreciseMesh& mesh, const Workers& workers);
 
   /// hint: the answer for a point nearby, which saves time and changes nothing else.
   [[nodiscard]] NearestTriangle nearest(const Vector3d& point, const NearestTriangle& hint = {}) const;
+
+  /// Of a triangle that nearest() found: its point nearest to the given one, and its unit normal (zero of a
+  /// triangle without area).
+  [[nodiscard]] Vector3d closest_point(const Vector3d& point, std::uint32_t place) const;
+  [[nodiscard]] Vector3d normal(std::uint32_t place) const;
 
   /// Whether a triangle crosses the straight line from one point to the other, from whichever side.
   [[nodiscard]] bool blocked(const Vector3d& from, const Vector3d& to) const;
 
  private:
+  /// A box around the triangles below it, rounded outwards.
   struct Node {
     std::array<float, 3> low;
     std::array<float, 3> high;
@@ -40,12 +49,9 @@ class TriangleTree {
     std::uint32_t count = 0;  ///< triangles of a leaf; 0 otherwise
   };
   struct Builder;
-  using Corners = std::array<Eigen::Vector3f, 3>;
-
-  [[nodiscard]] std::array<Vector3d, 3> corners(std::uint32_t place) const;
 
   std::vector<Node> nodes_;
-  std::vector<Corners> triangles_;  ///< in the order of the leaves
+  std::vector<std::array<Vector3d, 3>> triangles_;  ///< in the order of the leaves
 };
 
 }  // namespace fusebench

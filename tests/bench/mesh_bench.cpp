@@ -1,0 +1,48 @@
+// A million vertices against a million triangles, exactly.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <thread>
+
+#include "eval/mesh/mesh_metrics.hpp"
+#include "tests/support/test_meshes.hpp"
+
+namespace fusebench {
+namespace {
+
+constexpr double kOffset_m = 0.005;
+
+/// Of 2 rings (rings + 1) vertices and 4 rings^2 triangles.
+int rings_for(std::int64_t triangles) {
+  return static_cast<int>(std::sqrt(static_cast<double>(triangles) / 4));
+}
+
+void mesh_accuracy(benchmark::State& state) {
+  const PreciseMesh truth = testing::sphere(1, rings_for(state.range(0)));
+  const PreciseMesh reconstruction = testing::sphere(1 + kOffset_m, rings_for(2 * state.range(0)));
+  const Workers workers(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  const auto measured = [&] {
+    return statistics(distances_m(reconstruction.vertices, {}, TriangleTree(truth, workers), workers));
+  };
+  // A facet lies below the sphere by at most an eighth of its squared edge.
+  if (const Statistics stats = measured();
+      stats.count < static_cast<std::size_t>(state.range(0)) || std::abs(stats.mean - kOffset_m) > 1e-5)
+    return state.SkipWithError("the distance is not what was put in");
+  for (auto _ : state) benchmark::DoNotOptimize(measured());
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+void mesh_tree(benchmark::State& state) {
+  const PreciseMesh truth = testing::sphere(1, rings_for(state.range(0)));
+  const Workers workers(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  if (TriangleTree(truth, workers).nearest({0, 0, 3}).squared_m2 != 4)
+    return state.SkipWithError("the pole is elsewhere");
+  for (auto _ : state) benchmark::DoNotOptimize(TriangleTree(truth, workers));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+BENCHMARK(mesh_accuracy)->Arg(10'000)->Arg(1'000'000)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(mesh_tree)->Arg(1'000'000)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace fusebench
