@@ -49,7 +49,7 @@ void describe_update(const PatchMeasurement& measurement, const IekfResult& resu
   report.variance_geometric = measurement.geometric_variance();
   report.iterations = result.iterations;
   report.converged = result.converged;
-  report.intensity = measurement.intensity_residuals();
+  report.pixels = measurement.tracked_pixels();
 }
 
 }  // namespace fusebench

@@ -69,7 +69,7 @@ struct FrameReport {
   std::size_t model_blocks = 0;
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
   double blur_px = 0;          ///< predicted length of motion blur at the image centre
-  std::vector<IntensityResidual> intensity;           ///< of all tracked patches, by patch, then pixel
+  TrackedPixels pixels;        ///< of all tracked patches, by patch, then pixel
   std::array<double, kStageNames.size()> stage_ms{};  ///< wall time; the only part that is not reproducible
 };
 

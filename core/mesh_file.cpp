@@ -18,7 +18,7 @@ Result<PreciseMesh> read_mesh(const std::filesystem::path& file) {
   if (ending == ".obj") return read_obj(file);
   return fail(
       ErrorCode::usage,
-      fmt::format("{}: a mesh of the unknown ending '{}' (allowed: .ply and .obj)", file.string(), ending),
+      fmt::format("{}: a mesh of the unknown ending '{}' (allowed .ply, .obj)", file.string(), ending),
       "convert the mesh to PLY");
 }
 

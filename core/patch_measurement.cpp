@@ -319,8 +319,8 @@ void PatchMeasurement::accept() {
   for (PatchState& state : states_) state.brightness.value = state.brightness.trial;
 }
 
-std::vector<IntensityResidual> PatchMeasurement::intensity_residuals() const {
-  std::vector<IntensityResidual> residuals;
+TrackedPixels PatchMeasurement::tracked_pixels() const {
+  TrackedPixels tracked;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     if (!outcomes_[p].tracked) continue;
     const auto& pixels = patches_[p].levels.front().pixels;
@@ -328,12 +328,14 @@ std::vector<IntensityResidual> PatchMeasurement::intensity_residuals() const {
       const WarpedPixel& w = warped_.front()[p][i];
       if (!w.visible) continue;
       const double observed = sample_bilinear(frame_.pyramid.front(), w.pixel_px.x(), w.pixel_px.y()).value;
-      residuals.push_back({pixels[i].reference_pixel,
-                           static_cast<float>(std::abs(observed - pixels[i].intensity)),
-                           outcomes_[p].accepted});
+      tracked.intensity.push_back({pixels[i].reference_pixel,
+                                   static_cast<float>(std::abs(observed - pixels[i].intensity)),
+                                   outcomes_[p].accepted});
+      tracked.landings.push_back({static_cast<std::uint32_t>(p), w.pixel_px.cast<float>(),
+                                  static_cast<float>(pixels[i].intensity), static_cast<float>(observed)});
     }
   }
-  return residuals;
+  return tracked;
 }
 
 }  // namespace fusebench

@@ -61,8 +61,8 @@ class PatchMeasurement final : public PoseMeasurement {
   /// By what factors the variances of the residuals exceed their claim there (patch_scatter.hpp).
   [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
   [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
-  /// Level-0 intensity differences of tracked patches there.
-  [[nodiscard]] std::vector<IntensityResidual> intensity_residuals() const;
+  /// The level-0 pixels of tracked patches there, by patch.
+  [[nodiscard]] TrackedPixels tracked_pixels() const;
 
  private:
   /// Gain and offset of a patch's brightness, eliminated from each step (Schur complement) and carried along.

@@ -337,7 +337,7 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
     return false;
   }
   report = std::move(again);
-  report.intensity.clear();  // the intensity error is one against the frame before
+  report.pixels = {};  // the intensity error is one against the frame before
   return true;
 }
 

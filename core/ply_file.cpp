@@ -41,6 +41,7 @@ std::string header_of(const Mesh& mesh) {
   header += "property float x\nproperty float y\nproperty float z\n";
   if (!mesh.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
   if (!mesh.colors.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  if (!mesh.quality.empty()) header += "property float quality\n";
   header += fmt::format("element face {}\n", mesh.triangles.size());
   return header + "property list uchar int vertex_indices\nend_header\n";
 }
@@ -108,8 +109,9 @@ class PlyReader {
   }
 
  private:
-  static constexpr std::array<std::string_view, 9> kVertexNames = {"x",  "y",   "z",     "nx",  "ny",
-                                                                   "nz", "red", "green", "blue"};
+  static constexpr std::array<std::string_view, 10> kVertexNames = {"x",  "y",   "z",     "nx",   "ny",
+                                                                    "nz", "red", "green", "blue", "quality"};
+  static constexpr std::size_t kQuality = 9;
 
   bool reject(const std::string& what) {
     const std::string place =
@@ -198,9 +200,9 @@ class PlyReader {
       if (element.properties.empty())
         return reject(fmt::format("element {} has no properties", printable(element.name)));
     }
-    const auto has = [&](std::size_t first) {  // three properties in a row of kVertexNames
+    const auto has = [&](std::size_t first, std::size_t count = 3) {  // neighbours in kVertexNames
       return std::all_of(
-          kVertexNames.begin() + first, kVertexNames.begin() + first + 3, [&](std::string_view name) {
+          kVertexNames.begin() + first, kVertexNames.begin() + first + count, [&](std::string_view name) {
             return std::any_of(vertex->properties.begin(), vertex->properties.end(),
                                [&](const Property& p) { return p.name == name && !p.count_type; });
           });
@@ -209,6 +211,7 @@ class PlyReader {
     mesh_.vertices.reserve(vertex->count);
     has_normals_ = has(3);
     has_colors_ = has(6);
+    has_quality_ = has(kQuality, 1);
     vertex_count_ = vertex->count;
     binary_ = binary;
     return true;
@@ -227,12 +230,14 @@ class PlyReader {
       if (!read_value(property.type, property.name, value)) return false;
       if (role < 3 && !(std::abs(value) <= std::numeric_limits<float>::max()))
         return reject(fmt::format("property {} is not finite as a float", property.name));
-      if (role >= 6 && has_colors_ && !(value >= 0 && value <= 255 && value == std::floor(value))) {
+      if (role >= 6 && role < kQuality && has_colors_ &&
+          !(value >= 0 && value <= 255 && value == std::floor(value))) {
         return reject(fmt::format("property {} = {} (expected an integer in 0-255)", property.name, value));
       }
     }
     mesh_.vertices.emplace_back(values[0], values[1], values[2]);
     if (has_normals_) mesh_.normals.push_back(Vector3d(values[3], values[4], values[5]).cast<float>());
+    if (has_quality_) mesh_.quality.push_back(static_cast<float>(values[kQuality]));
     if (has_colors_) {
       mesh_.colors.push_back({static_cast<std::uint8_t>(values[6]), static_cast<std::uint8_t>(values[7]),
                               static_cast<std::uint8_t>(values[8])});
@@ -356,6 +361,7 @@ class PlyReader {
   std::size_t vertex_count_ = 0;
   bool has_normals_ = false;
   bool has_colors_ = false;
+  bool has_quality_ = false;
   PreciseMesh mesh_;
   Error error_;
 };
@@ -365,13 +371,16 @@ class PlyReader {
 Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
   check(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size(), "no normals or one a vertex");
   check(mesh.colors.empty() || mesh.colors.size() == mesh.vertices.size(), "no colours or one a vertex");
+  check(mesh.quality.empty() || mesh.quality.size() == mesh.vertices.size(), "no quality or one a vertex");
   std::string bytes = header_of(mesh);
-  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0U : 12U) + (mesh.colors.empty() ? 0U : 3U);
+  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0U : 12U) + (mesh.colors.empty() ? 0U : 3U) +
+                                   (mesh.quality.empty() ? 0U : 4U);
   bytes.reserve(bytes.size() + mesh.vertices.size() * vertex_bytes + mesh.triangles.size() * 13);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     append(bytes, mesh.vertices[i]);
     if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
     if (!mesh.colors.empty()) append(bytes, mesh.colors[i]);
+    if (!mesh.quality.empty()) append(bytes, mesh.quality[i]);
   }
   for (const auto& triangle : mesh.triangles) {
     append(bytes, std::uint8_t{3});

@@ -95,17 +95,19 @@ struct StampedPose {
 };
 using Trajectory = std::vector<StampedPose>;  ///< sorted by time, stamps unique
 
-/// Indexed triangle mesh in the world frame (metres). normals and colors are empty or one per vertex.
+/// Indexed triangle mesh in the world frame (metres). normals, colors and quality are empty or one per
+/// vertex.
 template <class Scalar>
 struct BasicMesh {
   std::vector<Eigen::Matrix<Scalar, 3, 1>> vertices;
   std::vector<Eigen::Vector3f> normals;  ///< unit, pointing out of the surface
   std::vector<Rgb> colors;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<float> quality = {};                      ///< any number, such as the vertex's error
 
   template <class Other>
   [[nodiscard]] BasicMesh<Other> cast() const {
-    BasicMesh<Other> result{{}, normals, colors, triangles};
+    BasicMesh<Other> result{{}, normals, colors, triangles, quality};
     result.vertices.reserve(vertices.size());
     for (const auto& vertex : vertices) result.vertices.push_back(vertex.template cast<Other>());
     return result;

@@ -131,6 +131,10 @@ Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<I
                       {3, OIIO::TypeDesc::UINT8, "an RGB image with 8 bits a channel"}, expected);
 }
 
+Result<GreyImage> read_grey(const std::filesystem::path& file, std::optional<ImageSize> expected) {
+  return read_image<std::uint8_t>(file, {1, OIIO::TypeDesc::UINT8, "a grey image with 8 bits"}, expected);
+}
+
 Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
                                           std::optional<ImageSize> expected) {
   return plain_or_any(read_plain_png_grey16(file), file,

@@ -26,6 +26,10 @@ struct ImageSize {
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
                                             std::optional<ImageSize> expected = std::nullopt);
 
+/// Reads an image with one channel of 8 bits. Errors as read_color().
+[[nodiscard]] Result<GreyImage> read_grey(const std::filesystem::path& file,
+                                          std::optional<ImageSize> expected = std::nullopt);
+
 /// Reads an image with one channel of 16 bits, raw values. Errors as read_color().
 [[nodiscard]] Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
                                                         std::optional<ImageSize> expected = std::nullopt);

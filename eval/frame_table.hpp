@@ -8,8 +8,15 @@
 // the run is repeated.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/error.hpp"
 #include "core/pipeline.hpp"
 #include "core/types.hpp"
 
@@ -19,5 +26,23 @@ namespace fusebench {
 
 /// One line, with its line break. decode_ms: reading and undistorting the images.
 [[nodiscard]] std::string frame_table_row(std::size_t frame, const FrameReport& report, double decode_ms);
+
+/// A row, as far as reports need it. What the table leaves empty is absent.
+struct FrameTableRow {
+  std::int64_t timestamp_ns = 0;
+  std::string status;
+  std::string health;
+  double patches_accepted = 0;
+  std::optional<double> aie_grey;
+  double speed_mps = 0;
+  double angular_speed_radps = 0;
+  double blur_px = 0;
+  double patch_motion_px = 0;
+  double position_sigma_m = 0;
+};
+
+/// Reads a table; columns go by their names, and others are skipped. Errors: data_missing; data_corrupt (a
+/// column that is not there, a row of another length, what is no number).
+[[nodiscard]] Result<std::vector<FrameTableRow>> read_frame_table(const std::filesystem::path& file);
 
 }  // namespace fusebench

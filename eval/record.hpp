@@ -83,6 +83,8 @@ struct RecordedMesh {
   MeshErrorResult poses;                     ///< by all poses of the trajectory: the main result
   MeshErrorResult first_camera;              ///< by the true pose of the first camera
   std::optional<MeshErrorResult> positions;  ///< by ATE's alignment, which sees positions only
+  /// Distance of each vertex to the true surface, aligned by all poses: in mesh.ply, not in the record.
+  std::vector<double> vertex_errors_m;
 };
 
 struct RecordedMetrics {

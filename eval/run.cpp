@@ -9,6 +9,7 @@
 #include "core/pipeline.hpp"
 #include "core/ply_file.hpp"
 #include "core/staged_folder.hpp"
+#include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "datasets/synthetic_imu.hpp"
@@ -16,6 +17,7 @@
 #include "eval/frame_source.hpp"
 #include "eval/frame_table.hpp"
 #include "eval/intensity_file.hpp"
+#include "eval/patch_table.hpp"
 #include "eval/process_meter.hpp"
 #include "eval/run_evaluation.hpp"
 #include "eval/state_table.hpp"
@@ -31,6 +33,7 @@ struct Progress {
   RecordedFrames frames;
   std::size_t lost_in_a_row = 0;
   RunOutput output;
+  FastestFrames fastest;
   std::string frame_table = frame_table_header();
   std::string state_table = state_table_header();
   std::string log;
@@ -132,7 +135,7 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
     progress.stage_ms[stage] += report.stage_ms[stage];
   }
   // The first frame has nothing to be compared with: it is no frame without tracked pixels.
-  if (report.status != FrameStatus::initialised) progress.output.intensity.add_frame(report.intensity);
+  if (report.status != FrameStatus::initialised) progress.output.intensity.add_frame(report.pixels.intensity);
   if (report.status != FrameStatus::lost) {
     if (report.status == FrameStatus::relocalised)
       progress.log +=
@@ -195,7 +198,8 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
       break;
     }
     take_report(progress, frame, *report, run, loaded->decode_ms);
-    if (auto written = intensity->write_frame(report->timestamp_ns, report->intensity); !written) {
+    progress.fastest.offer(frame, *report, loaded->frame.grey);
+    if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written) {
       return tl::unexpected(written.error());
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
@@ -218,6 +222,28 @@ RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, doub
   }
   timing.stages_ms.emplace_back("mesh_once", mesh_ms);
   return timing;
+}
+
+/// The true colour camera at every frame of which it is known, by the frame's stamp.
+Trajectory true_trajectory(const Recording& recording) {
+  constexpr std::int64_t kMaxGap_ns = 100'000'000;
+  Trajectory truth;
+  for (const FrameEntry& frame : recording.frames) {
+    const auto pose = interpolate_pose(recording.ground_truth, frame.capture_ns, kMaxGap_ns);
+    if (pose) truth.push_back({frame.timestamp_ns, *pose});
+  }
+  return truth;
+}
+
+/// The model, with the error of each vertex where there is a true scene, and the patches that moved fastest.
+Result<void> write_surfaces(Progress& progress, const RecordedMetrics& metrics, const StagedFolder& folder) {
+  Mesh& mesh = progress.output.mesh;
+  if (metrics.mesh.value) {
+    const std::vector<double>& errors_m = metrics.mesh.value->vertex_errors_m;
+    mesh.quality.assign(errors_m.begin(), errors_m.end());
+  }
+  if (auto written = write_ply(mesh, folder.file("mesh.ply")); !written) return written;
+  return write_patch_table(folder.path(), progress.fastest.frames());
 }
 
 }  // namespace
@@ -265,9 +291,6 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   const Stopwatch mesh_time;
   Mesh& mesh = progress->output.mesh;
   mesh = extract_mesh(pipeline.model(), config.tsdf.min_mesh_weight, workers);
-  if (auto written = write_ply(mesh, folder->file("mesh.ply")); !written) {
-    return tl::unexpected(written.error());
-  }
   const double mesh_ms = mesh_time.milliseconds();
   const ProcessCost cost = meter.cost();
 
@@ -277,15 +300,19 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   record.model = {mesh.vertices.size(), mesh.triangles.size(), pipeline.model().block_count()};
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
   record.timing = timing_of(*progress, cost, mesh_ms);
+  if (auto written = write_surfaces(*progress, record.metrics, *folder); !written)
+    return tl::unexpected(written.error());
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);
-  const std::array<std::pair<std::string_view, std::string>, 5> texts = {
+  const std::array<std::pair<std::string_view, std::string>, 6> texts = {
       {{"trajectory.tum", tum_text(progress->output.trajectory)},
+       {"truth.tum", tum_text(true_trajectory(run.recording))},
        {"frames.csv", progress->frame_table},
        {"states.csv", progress->state_table},
        {"log.txt", progress->log},
        {"record.json", to_json(record)}}};
   for (const auto& [name, text] : texts) {
+    if (text.empty()) continue;  // no truth
     if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
   }
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());

@@ -103,8 +103,8 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
   MeshErrorOptions options;
   options.reconstruction.count = kReconstructionSamples;
   options.truth.count = kTruthSamples;
-  const auto comparison =
-      MeshComparison::create(output.mesh.cast<double>(), *truth, *views, options, workers);
+  const PreciseMesh precise = output.mesh.cast<double>();
+  const auto comparison = MeshComparison::create(precise, *truth, *views, options, workers);
   if (!comparison) return tl::unexpected(comparison.error());
   const auto aligned = align_poses(cameras.reference, cameras.estimate);
   if (!aligned) return tl::unexpected(aligned.error());
@@ -118,6 +118,7 @@ Result<RecordedMesh> mesh_error_of(const RunOutput& output, const Recording& rec
   mesh.min_depth_m = depth.min_m;
   mesh.max_depth_m = depth.max_m;
   mesh.poses = comparison->evaluate({"poses", *aligned}, workers);
+  mesh.vertex_errors_m = distances_m(precise.vertices, *aligned, comparison->truth(), workers);
   // Of the first known one: ICL-NUIM's truth begins with its second image.
   const SE3 by_first_camera = cameras.reference.front() * cameras.estimate.front().inverse();
   mesh.first_camera = comparison->evaluate({"first_camera", by_first_camera}, workers);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every check and test: formatting, include directions, a warning-free build, generated pages, a minute of fuzzing,
-# tests; clang-tidy on request. Runs all of them even if one fails, and ends with the tests and a summary.
+# tests (pages are read in headless Chromium, which is installed); clang-tidy on request. Runs all of them even if one fails, and ends with the tests and a summary.
 # shellcheck disable=SC2317  # the checks are called through step
 set -euo pipefail
 
@@ -60,7 +60,7 @@ sources() {
 
 check_scripts() {
   local script status=0
-  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh .ci/run; do
+  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh tests/report/*.sh .ci/run; do
     bash -n "$script" || status=1
   done
   return "$status"
@@ -98,5 +98,6 @@ if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi
 step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
 if $tidy; then step clang-tidy check_tidy; fi
 step fuzz ./scripts/fuzz.sh 60
+step browser ./scripts/setup.sh chromium-driver python3-selenium
 step tests ctest --preset ci
 finish

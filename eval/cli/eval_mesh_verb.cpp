@@ -167,6 +167,7 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   for (Vector3d& vertex : mesh.vertices) vertex = T_truth_reconstruction * vertex;
   mesh.normals.clear();
   mesh.colors = error_colors(evaluation.vertex_errors_m, largest_m);
+  mesh.quality.assign(evaluation.vertex_errors_m.begin(), evaluation.vertex_errors_m.end());
   const auto written = write_ply(mesh.cast<float>(), options.colored);
   if (!written) return written;
   print_progress(

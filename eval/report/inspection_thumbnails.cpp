@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <string>
-#include <string_view>
 
 #include "datasets/image_files.hpp"
+#include "eval/report/base64.hpp"
 
 namespace fusebench {
 
@@ -15,18 +15,6 @@ namespace {
 
 constexpr int kWidth_px = 240;
 constexpr int kQuality = 80;
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < count ? bytes[i + j] : 0U);
-    for (std::size_t j = 0; j < 4; ++j) text += j <= count ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
-  }
-  return text;
-}
 
 cv::Mat small_color(const ColorImage& image, const cv::Size& size) {
   cv::Mat view(image.height, image.width, CV_8UC3, const_cast<Rgb*>(image.data.data()));  // only read

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/text_table.hpp"
 #include "eval/json_text.hpp"
+#include "eval/report/base64.hpp"
 #include "eval/report/page_assets.hpp"
 
 namespace fusebench {
@@ -51,6 +53,10 @@ std::string_view style_name(SeriesStyle style) {
       return "dots";
     case SeriesStyle::bars:
       return "bars";
+    case SeriesStyle::boxes:
+      return "boxes";
+    case SeriesStyle::backdrop:
+      return "backdrop";
     case SeriesStyle::line:
       break;
   }
@@ -63,17 +69,71 @@ Json json_of(const Chart& chart) {
     const ChartSeries& s = chart.series[place];
     Json points = Json::array();
     for (const Vector2d& point : s.points) points.push_back({number(point.x()), number(point.y())});
+    for (const ChartBox& box : s.boxes) {
+      points.push_back({number(box.x), number(box.min), number(box.quartile), number(box.median),
+                        number(box.upper_quartile), number(box.max)});
+    }
     series.push_back({{"label", s.label},
                       {"style", style_name(s.style)},
                       {"colour", s.colour.value_or(place)},
                       {"right", s.right},
                       {"points", points}});
   }
-  return {{"x", chart.x_label},
-          {"left", chart.left_label},
-          {"right", chart.right_label},
-          {"zero", chart.from_zero},
+  return {{"x", chart.x_label},      {"left", chart.left_label},   {"right", chart.right_label},
+          {"zero", chart.from_zero}, {"equal", chart.equal_scale}, {"categories", chart.categories},
           {"series", series}};
+}
+
+std::string bytes_text(const void* data, std::size_t size) {
+  const auto* bytes = static_cast<const std::uint8_t*>(data);
+  return base64({bytes, size});
+}
+
+std::string colors_text(const std::vector<Rgb>& colors) {
+  return bytes_text(colors.data(), colors.size() * sizeof(Rgb));
+}
+
+Json json_of(const SceneMesh& scene) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& vertex : scene.mesh.vertices) box.extend(vertex);
+  if (box.isEmpty()) box.extend(Vector3d::Zero());
+  constexpr double kSteps = 65'535;
+  std::vector<std::uint16_t> positions;
+  for (const Vector3d& vertex : scene.mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double extent = std::max(box.sizes()[axis], 1e-9);
+      positions.push_back(
+          static_cast<std::uint16_t>(std::lround(kSteps * (vertex[axis] - box.min()[axis]) / extent)));
+    }
+  }
+  return {{"label", scene.label},
+          {"low", {number(box.min().x()), number(box.min().y()), number(box.min().z())}},
+          {"size", {number(box.sizes().x()), number(box.sizes().y()), number(box.sizes().z())}},
+          {"positions", bytes_text(positions.data(), positions.size() * sizeof(std::uint16_t))},
+          {"triangles", bytes_text(scene.mesh.triangles.data(),
+                                   scene.mesh.triangles.size() * sizeof(scene.mesh.triangles[0]))},
+          {"colors", colors_text(scene.mesh.colors)},
+          {"errors", colors_text(scene.error_colors)}};
+}
+
+Json json_of(const PageScene& scene) {
+  Json meshes = Json::array();
+  for (const SceneMesh& mesh : scene.meshes) meshes.push_back(json_of(mesh));
+  return {{"meshes", std::move(meshes)},
+          {"largest_error_m", scene.largest_error_m},
+          {"centre", {number(scene.centre.x()), number(scene.centre.y()), number(scene.centre.z())}},
+          {"radius_m", number(scene.radius_m)},
+          {"up", scene.up}};
+}
+
+/// JSON that cannot end the script element that holds it.
+std::string script_safe(const Json& json) {
+  std::string safe;
+  for (const char c : json_text(json, -1)) {
+    if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
+    safe += c;
+  }
+  return safe;
 }
 
 std::string html_of(const PageTable& table) {
@@ -95,9 +155,10 @@ std::string html_of(const std::vector<Chart>& charts, Json& all) {
   std::string html = "<div class=\"charts\">\n";
   for (const Chart& chart : charts) {
     html += fmt::format(
-        "<figure><h3>{}</h3><div class=\"canvas\"><canvas id=\"chart-{}\" role=\"img\" "
+        "<figure><h3>{}</h3><div class=\"canvas{}\"><canvas id=\"chart-{}\" role=\"img\" "
         "aria-label=\"{}\"></canvas></div><figcaption>{}</figcaption></figure>\n",
-        escaped(chart.title), all.size(), escaped(chart.title), escaped(chart.caption));
+        escaped(chart.title), chart.equal_scale ? " square" : "", all.size(), escaped(chart.title),
+        escaped(chart.caption));
     all.push_back(json_of(chart));
   }
   return html + "</div>\n";
@@ -112,31 +173,70 @@ std::string html_of(const std::vector<PageImage>& images) {
   return html + "</div>\n";
 }
 
-std::string html_of(const PageSection& section, Json& charts) {
-  std::string html = fmt::format("<h2>{}</h2>\n", escaped(section.title));
+std::string html_of(const PageScene& scene, Json& all) {
+  std::string html = fmt::format("<div class=\"scene\" id=\"scene-{}\"></div>\n", all.size());
+  if (!scene.caption.empty()) html += fmt::format("<p>{}</p>\n", escaped(scene.caption));
+  all.push_back(json_of(scene));
+  return html;
+}
+
+std::string html_of(const std::vector<PageDetails>& list) {
+  std::string html;
+  for (const PageDetails& details : list) {
+    html += fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(details.summary),
+                        html_of(details.table));
+  }
+  return html;
+}
+
+/// What the script draws.
+struct Drawn {
+  Json charts = Json::array();
+  Json scenes = Json::array();
+};
+
+std::string html_of(const PageSection& section, std::size_t place, Drawn& drawn) {
+  std::string html =
+      fmt::format("<h{0} id=\"section-{1}\">{2}</h{0}>\n", section.level, place, escaped(section.title));
   if (!section.text.empty()) html += fmt::format("<p>{}</p>\n", escaped(section.text));
   if (const auto* table = std::get_if<PageTable>(&section.content)) return html + html_of(*table);
   if (const auto* list = std::get_if<std::vector<Chart>>(&section.content))
-    return html + html_of(*list, charts);
+    return html + html_of(*list, drawn.charts);
+  if (const auto* scene = std::get_if<PageScene>(&section.content))
+    return html + html_of(*scene, drawn.scenes);
+  if (const auto* details = std::get_if<std::vector<PageDetails>>(&section.content))
+    return html + html_of(*details);
   return html + html_of(std::get<std::vector<PageImage>>(section.content));
 }
 
-/// JSON that cannot end the script element that holds it.
-std::string script_safe(const Json& json) {
-  std::string safe;
-  for (const char c : json_text(json, -1)) {
-    if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
-    safe += c;
+/// Links to the main sections, where there are many.
+std::string contents_of(const Page& page) {
+  constexpr std::size_t kMany = 4;
+  std::string html;
+  std::size_t count = 0;
+  for (std::size_t place = 0; place < page.sections.size(); ++place) {
+    if (page.sections[place].level != 2) continue;
+    html += fmt::format("<a href=\"#section-{}\">{}</a>\n", place, escaped(page.sections[place].title));
+    ++count;
   }
-  return safe;
+  const bool parts = std::ranges::any_of(page.sections, [](const PageSection& s) { return s.level > 2; });
+  return count >= kMany || parts ? "<nav>\n" + html + "</nav>\n" : std::string();
 }
 
 }  // namespace
 
 std::string to_html(const Page& page) {
-  Json charts = Json::array();
-  std::string body;
-  for (const PageSection& section : page.sections) body += html_of(section, charts);
+  Drawn drawn;
+  std::string body = contents_of(page);
+  for (std::size_t place = 0; place < page.sections.size(); ++place)
+    body += html_of(page.sections[place], place, drawn);
+  if (!drawn.scenes.empty()) {
+    body += fmt::format(
+        "<script type=\"application/json\" "
+        "id=\"scenes\">{}</script>\n<script>{}</script>\n<script>{}</script>\n"
+        "<script>\n{}</script>\n",
+        script_safe(drawn.scenes), scene_library(), scene_controls(), scene_script());
+  }
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -144,8 +244,8 @@ std::string to_html(const Page& page) {
       "<noscript><p>The charts need JavaScript; everything else is here.</p></noscript>\n{3}"
       "<script type=\"application/json\" id=\"charts\">{4}</script>\n"
       "<script>{5}</script>\n<script>\n{6}</script>\n</body>\n</html>\n",
-      escaped(page.title), escaped(page.subtitle), page_style(), body, script_safe(charts), chart_library(),
-      page_script());
+      escaped(page.title), escaped(page.subtitle), page_style(), body, script_safe(drawn.charts),
+      chart_library(), page_script());
 }
 
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& points, std::size_t buckets) {

@@ -7,6 +7,10 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+function strokeOf(series) {
+  return colour("--series-" + (series.colour % 8));
+}
+
 function axis(title, extra) {
   return Object.assign({
     type: "linear",
@@ -17,46 +21,142 @@ function axis(title, extra) {
 }
 
 function dataset(series) {
-  const stroke = colour("--series-" + (series.colour % 5));
+  const stroke = strokeOf(series);
+  const boxes = series.style === "boxes";
   return {
     label: series.label,
-    data: series.points.map(([x, y]) => ({ x: x, y: y })),
+    // A box is drawn by a plugin; its two points make the axes reach its whiskers.
+    data: boxes ? series.points.flatMap((b) => [{ x: b[0], y: b[1] }, { x: b[0], y: b[5] }])
+      : series.points.map(([x, y]) => ({ x: x, y: y })),
+    boxes: boxes ? series.points : null,
     yAxisID: series.right ? "right" : "left",
-    borderColor: stroke,
+    borderColor: series.style === "backdrop" ? stroke + "66" : stroke,
     backgroundColor: series.style === "bars" ? stroke + "66" : stroke,
-    borderWidth: series.style === "dots" ? 0 : 1.3,
+    borderWidth: series.style === "dots" || boxes ? 0 : series.style === "backdrop" ? 4 : 1.3,
+    order: series.style === "backdrop" ? 1 : 0,
     pointRadius: series.style === "dots" ? 2.5 : 0,
     pointHitRadius: 6,
-    showLine: series.style !== "dots",
+    showLine: series.style !== "dots" && !boxes,
     stepped: series.style === "bars" ? "middle" : false,
     fill: series.style === "bars" ? "origin" : false,
     spanGaps: false,
   };
 }
 
+/// Bars that stand on one another, one stack a category.
+function barDataset(series, count) {
+  const stroke = strokeOf(series);
+  const data = new Array(count).fill(null);
+  series.points.forEach(([x, y]) => { data[x] = y; });
+  return { label: series.label, data: data, backgroundColor: stroke, borderColor: colour("--panel"), borderWidth: 1,
+    yAxisID: "left" };
+}
+
+/// Boxes from the lower to the upper quartile, with the median and whiskers; those at one place stand side by side.
+const boxPlugin = {
+  id: "boxes",
+  afterDatasetsDraw(chart) {
+    const sets = chart.data.datasets.map((set, index) => ({ set: set, index: index })).filter(({ set }) => set.boxes);
+    const visible = sets.filter(({ index }) => chart.isDatasetVisible(index));
+    if (visible.length === 0) return;
+    const context = chart.ctx;
+    const places = [...new Set(visible.flatMap(({ set }) => set.boxes.map((b) => b[0])))].sort((a, b) => a - b);
+    const gaps = places.slice(1).map((x, i) => chart.scales.x.getPixelForValue(x) - chart.scales.x.getPixelForValue(places[i]));
+    const room = Math.min(90, 0.75 * Math.min(...gaps, chart.chartArea.width / 3));
+    const width = room / visible.length;
+    context.save();
+    visible.forEach(({ set }, place) => {
+      context.strokeStyle = set.borderColor;
+      context.lineWidth = 1.4;
+      set.boxes.forEach(([x, ...values]) => {
+        const middle = chart.scales.x.getPixelForValue(x) + (place + 0.5) * width - room / 2;
+        const [min, low, median, high, max] = values.map((value) => chart.scales.left.getPixelForValue(value));
+        const half = 0.38 * width;
+        context.beginPath();
+        context.moveTo(middle, min); context.lineTo(middle, low);
+        context.moveTo(middle, high); context.lineTo(middle, max);
+        context.moveTo(middle - half / 2, min); context.lineTo(middle + half / 2, min);
+        context.moveTo(middle - half / 2, max); context.lineTo(middle + half / 2, max);
+        context.rect(middle - half, high, 2 * half, low - high);
+        context.moveTo(middle - half, median); context.lineTo(middle + half, median);
+        context.fillStyle = set.borderColor + "33";
+        context.fillRect(middle - half, high, 2 * half, low - high);
+        context.stroke();
+      });
+    });
+    context.restore();
+  },
+};
+
+/// Makes a unit of x as long as one of y, with the data in the middle.
+function equalise(chart) {
+  const points = chart.data.datasets.flatMap((set) => set.data).filter((p) => p.x !== null && p.y !== null);
+  if (points.length === 0) return;
+  const range = (values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
+  const [xLow, xHigh] = range(points.map((p) => p.x));
+  const [yLow, yHigh] = range(points.map((p) => p.y));
+  const area = chart.chartArea;
+  const unit = 1.08 * Math.max((xHigh - xLow) / area.width, (yHigh - yLow) / area.height, 1e-6);
+  const around = (low, high, pixels) => ({ min: (low + high - unit * pixels) / 2, max: (low + high + unit * pixels) / 2 });
+  Object.assign(chart.options.scales.x, around(xLow, xHigh, area.width));
+  Object.assign(chart.options.scales.left, around(yLow, yHigh, area.height));
+  chart.update("none");
+}
+
+/// Ends of an equalised axis are no round numbers: three digits are enough.
+function shortTicks(scale) {
+  scale.ticks.callback = (value) => Number(value.toPrecision(3));
+  return scale;
+}
+
+function scalesOf(chart) {
+  const bars = chart.categories.length > 0;
+  const scales = {
+    x: bars ? axis(chart.x, { type: "category", stacked: true }) : axis(chart.x, { axis: "x" }),
+    left: axis(chart.left, { axis: "y", position: "left", beginAtZero: chart.zero, stacked: bars }),
+  };
+  if (chart.right !== "") {
+    scales.right = axis(chart.right, { axis: "y", position: "right", beginAtZero: chart.zero, grid: { drawOnChartArea: false } });
+  }
+  if (chart.equal) Object.values(scales).forEach(shortTicks);
+  const boxes = chart.series.filter((series) => series.style === "boxes");
+  if (boxes.length > 0) {
+    const places = [...new Set(boxes.flatMap((series) => series.points.map((b) => b[0])))].sort((a, b) => a - b);
+    const margin = places.length > 1 ? 0.6 * (places[1] - places[0]) : 1;
+    scales.x.min = places[0] - margin;
+    scales.x.max = places[places.length - 1] + margin;
+    scales.x.ticks.callback = (value) => Number(value.toPrecision(3));
+    scales.x.afterBuildTicks = (scale) => { scale.ticks = places.map((x) => ({ value: x })); };
+  }
+  return scales;
+}
+
 function draw() {
   drawn.forEach((chart) => chart.destroy());
   drawn = description.map((chart, index) => {
-    const scales = { x: axis(chart.x, { axis: "x" }), left: axis(chart.left, { axis: "y", position: "left", beginAtZero: chart.zero }) };
-    if (chart.right !== "") {
-      scales.right = axis(chart.right, { axis: "y", position: "right", beginAtZero: chart.zero, grid: { drawOnChartArea: false } });
-    }
-    return new Chart(document.getElementById("chart-" + index), {
-      type: "line",
-      data: { datasets: chart.series.map(dataset) },
+    const bars = chart.categories.length > 0;
+    const made = new Chart(document.getElementById("chart-" + index), {
+      type: bars ? "bar" : "line",
+      data: {
+        labels: bars ? chart.categories : undefined,
+        datasets: chart.series.map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series)),
+      },
       options: {
         animation: false,
         maintainAspectRatio: false,
-        parsing: false,
-        normalized: true,
+        parsing: bars ? undefined : false,
+        normalized: !bars,
         interaction: { mode: "nearest", axis: "x", intersect: false },
         plugins: {
           legend: { labels: { color: colour("--text"), boxWidth: 14, boxHeight: 3 } },
-          tooltip: { callbacks: { title: (items) => chart.x + ": " + items[0].parsed.x } },
+          tooltip: { callbacks: bars ? {} : { title: (items) => chart.x + ": " + items[0].parsed.x } },
         },
-        scales: scales,
+        scales: scalesOf(chart),
       },
+      plugins: [boxPlugin],
     });
+    if (chart.equal) equalise(made);
+    return made;
   });
 }
 

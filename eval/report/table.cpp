@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <system_error>
-#include <tuple>
 #include <utility>
 
-#include "core/variants.hpp"
+#include "eval/found_runs.hpp"
 #include "eval/intensity_file.hpp"
 #include "eval/intensity_metrics.hpp"
 #include "eval/report/common_pixels.hpp"
@@ -21,52 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct FoundRun {
-  fs::path folder;
-  RunRecord record;
-};
-
 std::optional<double> finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-std::size_t variant_rank(const std::string& name) {
-  const auto variants = all_variants();
-  const auto found =
-      std::find_if(variants.begin(), variants.end(), [&](const Variant& v) { return v.name == name; });
-  return static_cast<std::size_t>(found - variants.begin());
-}
-
-Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
-  std::error_code error;
-  std::vector<FoundRun> found;
-  fs::recursive_directory_iterator entry(runs, error);
-  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with('.') && entry->is_directory()) {
-      entry.disable_recursion_pending();
-    } else if (name == "record.json") {
-      auto record = read_record(entry->path());
-      if (!record) return tl::unexpected(record.error());
-      found.push_back({entry->path().parent_path(), std::move(*record)});
-    }
-  }
-  if (error) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
-  }
-  if (found.empty()) {
-    return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", runs.string()),
-                "`fusebench run` and `fusebench bench` write them to their --out");
-  }
-  std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
-    const auto key = [](const FoundRun& run) {
-      return std::tuple(run.record.recording.name, variant_rank(run.record.variant), run.record.variant,
-                        run.folder.string());
-    };
-    return key(a) < key(b);
-  });
-  return found;
 }
 
 TableRow row_of(const FoundRun& run) {
@@ -140,19 +94,21 @@ std::vector<std::string> footer_of(const ResultTable& table) {
 
 }  // namespace
 
-Result<ResultTable> collect_table(const fs::path& runs) {
-  const auto found = find_runs(runs);
-  if (!found) return tl::unexpected(found.error());
+ResultTable table_of(const std::vector<FoundRun>& runs) {
   ResultTable table;
-  for (const FoundRun& run : *found) {
+  for (const FoundRun& run : runs) {
     table.rows.push_back(row_of(run));
     if (run.record.status == RunStatus::ok) continue;
     table.notes.push_back(fmt::format("{}, {}: {}: {}", run.record.recording.name, run.record.variant,
                                       to_string(run.record.status), run.record.reason));
   }
-  add_common_pixels(*found, table);
+  add_common_pixels(runs, table);
   table.footer = footer_of(table);
   return table;
+}
+
+Result<ResultTable> collect_table(const fs::path& runs) {
+  return find_runs(runs).transform([](const std::vector<FoundRun>& found) { return table_of(found); });
 }
 
 }  // namespace fusebench

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "eval/found_runs.hpp"
 #include "eval/record.hpp"
 
 namespace fusebench {
@@ -40,10 +41,13 @@ struct ResultTable {
   std::vector<std::string> footer;  ///< the protocol of each column
 };
 
-/// Reads every record.json below a folder (hidden folders are unfinished runs and are skipped) and the
-/// intensity differences beside them. Errors: data_missing (no folder, no records), data_corrupt (a record
-/// that cannot be read).
+/// Reads the intensity differences beside the records.
+[[nodiscard]] ResultTable table_of(const std::vector<FoundRun>& runs);
+/// Of a folder. Errors as find_runs().
 [[nodiscard]] Result<ResultTable> collect_table(const std::filesystem::path& runs);
+
+/// The heading and a line a row, as people see them: cm and degrees.
+[[nodiscard]] std::vector<std::vector<std::string>> table_cells(const ResultTable& table);
 
 enum class TableFormat { markdown, csv, json, latex };
 /// Error usage.

@@ -65,10 +65,9 @@ std::string replaced(std::string_view text, std::string_view special, std::strin
 }
 
 std::string markdown(const ResultTable& table) {
-  std::vector<Cells> lines = {header_cells()};
-  for (const TableRow& row : table.rows) {
-    lines.push_back(shown_cells(table, row));
-    for (std::string& cell : lines.back()) cell = replaced(cell, "|", "\\");
+  std::vector<Cells> lines = table_cells(table);
+  for (Cells& line : lines) {
+    for (std::string& cell : line) cell = replaced(cell, "|", "\\");
   }
   std::vector<std::size_t> widths(lines[0].size(), 3);
   for (const Cells& line : lines) {
@@ -179,6 +178,12 @@ std::string json(const ResultTable& table) {
 }
 
 }  // namespace
+
+std::vector<Cells> table_cells(const ResultTable& table) {
+  std::vector<Cells> lines = {header_cells()};
+  for (const TableRow& row : table.rows) lines.push_back(shown_cells(table, row));
+  return lines;
+}
 
 Result<TableFormat> parse_table_format(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, TableFormat>, 4> kFormats = {

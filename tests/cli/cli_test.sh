@@ -284,7 +284,7 @@ check_determinism() {
       continue
     fi
     [[ $folder == "$first" ]] || complain "$threads threads: folder $folder instead of $first"
-    for name in trajectory.tum mesh.ply intensity.bin log.txt; do
+    for name in trajectory.tum truth.tum mesh.ply intensity.bin patches.csv log.txt; do
       cmp -s "$reference/$name" "$folder/$name" || complain "$threads threads: $name differs"
     done
     cmp -s <(reproducible_part "$reference/record.json") <(reproducible_part "$folder/record.json") ||

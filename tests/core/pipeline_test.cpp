@@ -105,7 +105,7 @@ TEST(Pipeline, ThreadCountDoesNotShow) {
   for (const int threads : {2, 8}) {
     const auto many = track(shared_run(), config_of("full"), threads);
     EXPECT_TRUE(same_poses(one, many)) << threads << " threads";
-    EXPECT_EQ(one.back().intensity.size(), many.back().intensity.size());
+    EXPECT_EQ(one.back().pixels.intensity.size(), many.back().pixels.intensity.size());
     EXPECT_EQ(one.back().model_blocks, many.back().model_blocks);
   }
 }

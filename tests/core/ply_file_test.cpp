@@ -76,6 +76,10 @@ TEST_F(PlyFile, RoundTripsWithAndWithoutNormalsAndColours) {
       expect_same(read->cast<float>(), mesh);
     }
   }
+  Mesh measured = tetrahedron();
+  measured.quality = {0, 0.5F, 1e-6F, 3};
+  ASSERT_TRUE(write_ply(measured, folder_ / "measured.ply"));
+  EXPECT_EQ(read_ply(folder_ / "measured.ply")->quality, measured.quality);
   ASSERT_TRUE(write_ply(Mesh{}, folder_ / "empty.ply"));
   const auto empty = read_ply(folder_ / "empty.ply");
   ASSERT_TRUE(empty) << empty.error().message;

@@ -51,8 +51,8 @@ TEST_F(RunTest, WritesAWholeFolder) {
   EXPECT_EQ(record->status, RunStatus::ok) << record->reason;
   EXPECT_EQ(frames_seen, 5U);
   EXPECT_EQ(record->frames.total, 5U);
-  for (const char* const name : {"record.json", "trajectory.tum", "mesh.ply", "frames.csv", "states.csv",
-                                 "intensity.bin", "log.txt"}) {
+  for (const char* const name : {"record.json", "trajectory.tum", "truth.tum", "patches.csv", "mesh.ply",
+                                 "frames.csv", "states.csv", "intensity.bin", "log.txt"}) {
     EXPECT_TRUE(std::filesystem::exists(prepared->folder / name)) << name;
   }
   EXPECT_EQ(testing::read_bytes(prepared->folder / "record.json"), to_json(*record));
@@ -92,7 +92,8 @@ TEST_F(RunTest, SameBytesWithAnyThreadCount) {
   const auto three = prepare_run(spec("no-imu", 3));
   ASSERT_TRUE(one && three && execute_run(*one) && execute_run(*three));
   EXPECT_EQ(one->folder.filename(), three->folder.filename());
-  for (const char* const name : {"trajectory.tum", "states.csv", "mesh.ply", "intensity.bin", "log.txt"}) {
+  for (const char* const name :
+       {"trajectory.tum", "truth.tum", "states.csv", "mesh.ply", "intensity.bin", "patches.csv", "log.txt"}) {
     EXPECT_EQ(testing::read_bytes(one->folder / name), testing::read_bytes(three->folder / name)) << name;
   }
   EXPECT_EQ(reproducible_part(testing::read_bytes(one->folder / "record.json")),

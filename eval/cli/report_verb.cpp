@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "eval/cli/console.hpp"
+#include "eval/cli/verbs.hpp"
+#include "eval/found_runs.hpp"
+#include "eval/report/results/results_page.hpp"
+#include "eval/text_file.hpp"
+
+namespace fusebench {
+
+namespace {
+
+struct ReportOptions {
+  std::filesystem::path runs;
+  std::filesystem::path out;
+  std::string title;
+};
+
+Result<int> report(const ReportOptions& options) {
+  const auto runs = find_runs(options.runs);
+  if (!runs) return tl::unexpected(runs.error());
+  std::string title = options.title;
+  if (title.empty())
+    title = "Results of " + std::filesystem::path(options.runs / "").parent_path().filename().string();
+  const ResultsPage page = results_page(*runs, title);
+  for (const std::string& warning : page.warnings) print_progress("warning: " + warning);
+  const std::string html = to_html(page.page);
+  if (auto written = write_text_file(options.out, html); !written) return tl::unexpected(written.error());
+  print_progress(fmt::format("{}: {} runs, {:.1f} MB", options.out.string(), runs->size(),
+                             static_cast<double>(html.size()) / 1e6));
+  return 0;
+}
+
+}  // namespace
+
+Verb add_report_verb(CLI::App& app) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "report",
+      "Makes one page of a folder of runs: tables, charts, patches and meshes; it needs no network");
+  verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
+  verb->add_option("--out", options->out, "The page to write")->type_name("FILE.html")->required();
+  verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
+      ->type_name("TEXT");
+  return {verb, [options] { return report(*options); }};
+}
+
+}  // namespace fusebench

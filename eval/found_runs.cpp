@@ -1,0 +1,60 @@
+#include "eval/found_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "core/variants.hpp"
+
+namespace fusebench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t variant_rank(const std::string& name) {
+  const auto variants = all_variants();
+  const auto found =
+      std::find_if(variants.begin(), variants.end(), [&](const Variant& v) { return v.name == name; });
+  return static_cast<std::size_t>(found - variants.begin());
+}
+
+}  // namespace
+
+Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
+  std::error_code error;
+  std::vector<FoundRun> found;
+  fs::recursive_directory_iterator entry(runs, error);
+  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') && entry->is_directory()) {
+      entry.disable_recursion_pending();
+    } else if (name == "record.json") {
+      auto record = read_record(entry->path());
+      if (!record) return tl::unexpected(record.error());
+      found.push_back({entry->path().parent_path(), std::move(*record)});
+    }
+  }
+  if (error) {
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
+  }
+  if (found.empty()) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", runs.string()),
+                "`fusebench run` and `fusebench bench` write them to their --out");
+  }
+  std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
+    const auto key = [](const FoundRun& run) {
+      return std::tuple(run.record.recording.name, variant_rank(run.record.variant), run.record.variant,
+                        run.folder.string());
+    };
+    return key(a) < key(b);
+  });
+  return found;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,22 @@
+// The finished runs of a folder.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/error.hpp"
+#include "eval/record.hpp"
+
+namespace fusebench {
+
+struct FoundRun {
+  std::filesystem::path folder;
+  RunRecord record;
+};
+
+/// Every record.json below a folder (hidden folders are unfinished runs and are skipped), by recording, then
+/// variant in the order of all_variants(), then run. Errors: data_missing (no folder, no records),
+/// data_corrupt (a record that cannot be read).
+[[nodiscard]] Result<std::vector<FoundRun>> find_runs(const std::filesystem::path& runs);
+
+}  // namespace fusebench

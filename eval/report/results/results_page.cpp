@@ -1,0 +1,231 @@
+#include "eval/report/results/results_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "core/ply_file.hpp"
+#include "eval/mesh/error_colors.hpp"
+#include "eval/mesh/mesh_clustering.hpp"
+#include "eval/mesh/mesh_metrics.hpp"
+#include "eval/report/data_labels.hpp"
+#include "eval/report/results/patch_pictures.hpp"
+#include "eval/report/results/run_charts.hpp"
+#include "eval/report/results/run_series.hpp"
+#include "eval/report/table.hpp"
+
+namespace fusebench {
+
+namespace {
+
+constexpr double kLargestError_m = 0.05;
+constexpr std::array<std::string_view, 3> kPicturedVariants = {"full", "dm", "literal"};
+
+/// How much of each run a page of so many runs shows.
+struct Detail {
+  std::size_t buckets = 0;    ///< of charts over time
+  std::size_t triangles = 0;  ///< of a mesh
+};
+
+Detail detail_for(std::size_t runs) {
+  constexpr std::size_t kBuckets = 12'000;  // of all runs together
+  constexpr std::size_t kTriangles = 400'000;
+  const std::size_t share = std::max<std::size_t>(runs, 1);
+  return {std::clamp<std::size_t>(kBuckets / share, 40, 450),
+          std::clamp<std::size_t>(kTriangles / share, 1'500, 40'000)};
+}
+
+/// The runs of one recording.
+using Group = std::span<const FoundRun>;
+
+std::vector<Group> groups_of(const std::vector<FoundRun>& runs) {
+  std::vector<Group> groups;
+  for (std::size_t begin = 0; begin < runs.size();) {
+    std::size_t end = begin;
+    while (end < runs.size() && runs[end].record.recording.name == runs[begin].record.recording.name) ++end;
+    groups.emplace_back(runs.data() + begin, end - begin);
+    begin = end;
+  }
+  return groups;
+}
+
+std::string label_of(const FoundRun& run, Group group) {
+  const auto same = std::ranges::count(group, run.record.variant,
+                                       [](const FoundRun& other) { return other.record.variant; });
+  return same > 1 ? fmt::format("{} ({})", run.record.variant, run.folder.filename().string())
+                  : run.record.variant;
+}
+
+PageTable page_table(const ResultTable& table) {
+  PageTable page;
+  const auto lines = table_cells(table);
+  page.header = lines.front();
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const RunStatus status = table.rows[i - 1].status;
+    page.rows.push_back({lines[i], status == RunStatus::failed ? "error"
+                                   : status == RunStatus::lost ? "warning"
+                                                               : ""});
+  }
+  return page;
+}
+
+PageTable lines_table(const std::vector<std::string>& lines) {
+  PageTable table;
+  for (const std::string& line : lines) table.rows.push_back({{line}, ""});
+  return table;
+}
+
+std::string facts_of(const RecordedRecording& recording) {
+  return fmt::format("{}, format {}, {} frames over {:.1f} s; ground truth: {}.",
+                     data_cell(words_of(recording)), recording.format, recording.frames, recording.duration_s,
+                     recording.truth.empty() ? "unknown" : recording.truth);
+}
+
+PageTable run_facts(Group group) {
+  PageTable table;
+  table.header = {"run", "status", "tracked", "lost", "IMU", "reason"};
+  for (const FoundRun& run : group) {
+    const RunRecord& r = run.record;
+    table.rows.push_back({{label_of(run, group), std::string(to_string(r.status)),
+                           fmt::format("{}/{}", r.frames.tracked, r.frames.total),
+                           fmt::format("{}", r.frames.lost), r.recording.imu, r.reason},
+                          r.status == RunStatus::ok ? "" : "warning"});
+  }
+  return table;
+}
+
+/// Variants that differ in how patches are deformed, where they kept their patches.
+PatchPictures pictures_of(Group group, std::vector<std::string>& warnings) {
+  std::vector<LabelledPatches> runs;
+  for (const std::string_view variant : kPicturedVariants) {
+    const auto run = std::ranges::find(group, variant, [](const FoundRun& r) { return r.record.variant; });
+    if (run == group.end() || runs.size() == 2) continue;
+    auto frames = read_patch_table(run->folder);
+    if (!frames) warnings.push_back(frames.error().message);
+    if (frames && !frames->empty()) runs.push_back({std::string(variant), std::move(*frames)});
+  }
+  return patch_pictures(runs);
+}
+
+/// Stray bits of a mesh would make the rest small.
+void look_at_most(PageScene& scene) {
+  constexpr double kStray = 0.02;
+  Vector3d low = Vector3d::Zero();
+  Vector3d high = Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> places;
+    for (const SceneMesh& mesh : scene.meshes) {
+      for (const Vector3d& vertex : mesh.mesh.vertices) places.push_back(vertex[axis]);
+    }
+    if (places.empty()) return;
+    std::ranges::sort(places);
+    low[axis] = percentile(places, kStray);
+    high[axis] = percentile(places, 1 - kStray);
+  }
+  scene.centre = 0.5 * (low + high);
+  scene.radius_m = 0.5 * (high - low).norm();
+}
+
+PageScene scene_of(Group group, std::size_t triangles, std::vector<std::string>& warnings) {
+  PageScene scene;
+  scene.largest_error_m = kLargestError_m;
+  scene.up = {0, -1, 0};  // the world is the first camera, whose y points down
+  for (const FoundRun& run : group) {
+    const auto file = run.folder / "mesh.ply";
+    if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
+    const auto mesh = read_ply(file);
+    if (!mesh) warnings.push_back(mesh.error().message);
+    if (!mesh || mesh->triangles.empty() || mesh->colors.empty()) continue;
+    SceneMesh shown{label_of(run, group), reduced(*mesh, triangles), {}};
+    if (!shown.mesh.quality.empty()) {
+      const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());
+      shown.error_colors = error_colors(errors_m, kLargestError_m);
+    }
+    scene.meshes.push_back(std::move(shown));
+  }
+  look_at_most(scene);
+  return scene;
+}
+
+std::string value_text(const OptionValue& value) {
+  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+}
+
+PageDetails configuration_of(const FoundRun& run, Group group) {
+  const RunRecord& r = run.record;
+  PageDetails details{fmt::format("{}: configuration {} and provenance", label_of(run, group), r.config_hash),
+                      {}};
+  details.table.header = {"key", "value", "from"};
+  const RecordedProvenance& p = r.provenance;
+  for (const auto& [key, value] :
+       {std::pair{"version", p.version}, std::pair{"git", p.git}, std::pair{"compiler", p.compiler},
+        std::pair{"flags", p.flags}, std::pair{"cpu", p.cpu},
+        std::pair{"threads", fmt::format("{}", p.threads)},
+        std::pair{"recording's fingerprint", r.recording.fingerprint},
+        std::pair{"peak memory",
+                  fmt::format("{:.0f} MB", static_cast<double>(r.timing.peak_rss_bytes) / 1e6)},
+        std::pair{"wall and CPU time", fmt::format("{:.1f} s, {:.1f} s", r.timing.wall_s, r.timing.cpu_s)}})
+    details.table.rows.push_back({{key, value, "the run"}, ""});
+  for (const RecordedOption& option : r.config)
+    details.table.rows.push_back({{option.key, value_text(option.value), option.origin}, ""});
+  for (const std::string& note : r.recording.notes)
+    details.table.rows.push_back({{"note on the recording", note, "the reader"}, ""});
+  return details;
+}
+
+void add_charts(Page& page, std::string title, std::vector<Chart> charts) {
+  if (!charts.empty()) page.sections.push_back({std::move(title), "", std::move(charts), 3});
+}
+
+void add_recording(ResultsPage& result, Group group, const Detail& detail) {
+  Page& page = result.page;
+  const auto started =
+      std::ranges::find_if(group, [](const FoundRun& run) { return run.record.recording.frames > 0; });
+  const RecordedRecording& recording = (started == group.end() ? group.begin() : started)->record.recording;
+  page.sections.push_back(
+      {recording.name, started == group.end() ? "No run began." : facts_of(recording), run_facts(group)});
+  std::vector<RunSeries> series;
+  for (const FoundRun& run : group) {
+    if (run.record.frames.total == 0) continue;  // failed before its first frame: there is nothing to draw
+    series.push_back(series_of(run, label_of(run, group)));
+    for (const std::string& warning : series.back().warnings) result.warnings.push_back(warning);
+  }
+  add_charts(page, "Trajectories", view_charts(series, detail.buckets));
+  add_charts(page, "Position over time", position_charts(series, detail.buckets));
+  add_charts(page, "Errors", error_charts(series, detail.buckets));
+  add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
+  if (PatchPictures pictures = pictures_of(group, result.warnings); !pictures.images.empty())
+    page.sections.push_back({"Patches", pictures.text, std::move(pictures.images), 3});
+  if (PageScene scene = scene_of(group, detail.triangles, result.warnings); !scene.meshes.empty()) {
+    page.sections.push_back(
+        {"Models", "Simplified for this page; mesh.ply of each run has all triangles.", std::move(scene), 3});
+  }
+  add_charts(page, "Health and time", tracking_charts(series, detail.buckets));
+  std::vector<PageDetails> details;
+  for (const FoundRun& run : group) details.push_back(configuration_of(run, group));
+  page.sections.push_back({"Configuration and provenance", "", std::move(details), 3});
+}
+
+}  // namespace
+
+ResultsPage results_page(const std::vector<FoundRun>& runs, const std::string& title) {
+  ResultsPage result;
+  const ResultTable table = table_of(runs);
+  const auto ok = std::ranges::count(table.rows, RunStatus::ok, &TableRow::status);
+  result.page.title = title;
+  result.page.subtitle = fmt::format("{} of {} runs ok.", ok, runs.size());
+  result.page.sections.push_back({"Results", "", page_table(table)});
+  std::vector<std::string> remarks = table.footer;
+  remarks.insert(remarks.end(), table.notes.begin(), table.notes.end());
+  result.page.sections.push_back({"How to read the columns", "", lines_table(remarks), 3});
+  const Detail detail = detail_for(runs.size());
+  for (const Group group : groups_of(runs)) add_recording(result, group, detail);
+  return result;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,63 @@
+#include "eval/report/results/run_series.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "core/trajectory_file.hpp"
+
+namespace fusebench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Nothing of a trajectory that is not there: a run without truth, or that lost its first frame.
+Trajectory trajectory_of(const fs::path& file, std::vector<std::string>& warnings) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return {};
+  auto read = read_tum_trajectory(file, warnings);
+  if (read) return std::move(*read);
+  warnings.push_back(read.error().message);
+  return {};
+}
+
+std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& truth,
+                                   const SE3& T_truth_world) {
+  std::map<std::int64_t, const SE3*> known;
+  for (const StampedPose& pose : truth) known.emplace(pose.timestamp_ns, &pose.T_world_camera);
+  std::vector<ComparedPose> poses;
+  for (const StampedPose& pose : estimate) {
+    ComparedPose both{pose.timestamp_ns, T_truth_world * pose.T_world_camera, {}, 0};
+    if (const auto found = known.find(pose.timestamp_ns); found != known.end()) {
+      both.T_truth_truth = *found->second;
+      both.error_m = (both.T_truth_camera.translation - found->second->translation).norm();
+    }
+    poses.push_back(both);
+  }
+  return poses;
+}
+
+}  // namespace
+
+RunSeries series_of(const FoundRun& run, std::string label) {
+  RunSeries series;
+  series.run = &run;
+  series.label = std::move(label);
+  auto frames = read_frame_table(run.folder / "frames.csv");
+  if (frames) {
+    series.frames = std::move(*frames);
+  } else {
+    series.warnings.push_back(frames.error().message);
+  }
+  series.truth = trajectory_of(run.folder / "truth.tum", series.warnings);
+  const Trajectory estimate = trajectory_of(run.folder / "trajectory.tum", series.warnings);
+  const auto& ate = run.record.metrics.ate.value;
+  series.poses = compared(estimate, ate ? series.truth : Trajectory{},
+                          ate ? ate->alignment.T_reference_estimate : SE3{});
+  return series;
+}
+
+}  // namespace fusebench

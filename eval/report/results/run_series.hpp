@@ -1,0 +1,41 @@
+// What a run's files say over time, ready to be drawn.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/types.hpp"
+#include "eval/found_runs.hpp"
+#include "eval/frame_table.hpp"
+
+namespace fusebench {
+
+/// Where a tracked frame was, and where it should have been.
+struct ComparedPose {
+  std::int64_t timestamp_ns = 0;
+  SE3 T_truth_camera;                ///< of the estimate, aligned as for the ATE
+  std::optional<SE3> T_truth_truth;  ///< of the truth, if it is known then
+  double error_m = 0;                ///< distance of both, if it is
+};
+
+struct RunSeries {
+  const FoundRun* run = nullptr;
+  std::string label;  ///< the variant, with the run's name if there are several
+  std::vector<FrameTableRow> frames;
+  std::vector<ComparedPose> poses;
+  Trajectory truth;  ///< empty: not known
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] double time_s(std::int64_t timestamp_ns) const {
+    return frames.empty() ? 0.0 : seconds_between(frames.front().timestamp_ns, timestamp_ns);
+  }
+};
+
+/// Reads frames.csv, trajectory.tum and truth.tum of a run; what is not there or not readable stays empty,
+/// with a warning.
+[[nodiscard]] RunSeries series_of(const FoundRun& run, std::string label);
+
+}  // namespace fusebench

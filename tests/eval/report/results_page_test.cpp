@@ -1,0 +1,132 @@
+#include "eval/report/results/results_page.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/ply_file.hpp"
+#include "core/trajectory_file.hpp"
+#include "eval/report/results/run_charts.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/test_meshes.hpp"
+
+namespace fusebench {
+namespace {
+
+constexpr std::int64_t kStart_ns = 1'305'031'229'000'000'000;
+constexpr int kFrames = 60;
+
+/// A camera on a circle of 1 m, and runs that are off by a constant once aligned, or lost at the end.
+class ResultsPageTest : public testing::InTemporaryFolder {
+ protected:
+  static Trajectory circle(int frames) {
+    Trajectory trajectory;
+    for (int i = 0; i < frames; ++i) {
+      const double angle = 0.1 * i;
+      trajectory.push_back(
+          {kStart_ns + i * 33'000'000LL,
+           {so3_exp({0, 0, angle}), {std::cos(angle), std::sin(angle), 0.1 * std::sin(3 * angle)}}});
+    }
+    return trajectory;
+  }
+
+  FoundRun add_run(const std::string& variant, int tracked, const SE3& T_truth_world) {
+    RunRecord record;
+    record.status = tracked == kFrames ? RunStatus::ok : RunStatus::lost;
+    record.reason = tracked == kFrames ? "" : "lost at the end";
+    record.recording.name = "circle";
+    record.recording.frames = kFrames;
+    record.recording.truth = "given";
+    record.variant = variant;
+    record.frames = {kFrames, static_cast<std::size_t>(tracked), static_cast<std::size_t>(kFrames - tracked)};
+    record.timing.stages_ms = {{"update", 12.0}, {"fuse", 3.0}};
+    AteResult ate;
+    ate.stats = statistics(std::vector<double>{0.01});
+    ate.alignment = {"se3", T_truth_world};
+    record.metrics.ate = {ate, {}};
+    const auto folder = std::filesystem::path("runs") / "circle" / variant / "01234567";
+    write(folder / "record.json", to_json(record));
+    Trajectory estimate = circle(tracked);
+    for (StampedPose& pose : estimate) {
+      pose.T_world_camera = T_truth_world.inverse() * pose.T_world_camera;
+      pose.T_world_camera.translation += T_truth_world.rotation.inverse() * Vector3d(0, 0, 0.02);
+    }
+    write(folder / "trajectory.tum", tum_text(estimate));
+    write(folder / "truth.tum", tum_text(circle(kFrames)));
+    std::string table = frame_table_header();
+    for (int i = 0; i < kFrames; ++i) {
+      FrameReport report;
+      report.timestamp_ns = kStart_ns + i * 33'000'000LL;
+      report.status = i < tracked ? FrameStatus::tracked : FrameStatus::lost;
+      report.patches_accepted = 50;
+      table += frame_table_row(static_cast<std::size_t>(i), report, 1);
+    }
+    write(folder / "frames.csv", table);
+    Mesh mesh = testing::sphere(1, 10).cast<float>();
+    mesh.colors.assign(mesh.vertices.size(), Rgb{1, 2, 3});
+    mesh.quality.assign(mesh.vertices.size(), 0.01F);
+    EXPECT_TRUE(write_ply(mesh, folder_ / folder / "mesh.ply").has_value());
+    return {folder_ / folder, record};
+  }
+};
+
+const ChartSeries& series_of_chart(const std::vector<Chart>& charts, const std::string& title,
+                                   const std::string& label) {
+  const auto chart = std::ranges::find(charts, title, &Chart::title);
+  if (chart == charts.end()) throw std::runtime_error("no chart " + title);
+  const auto series = std::ranges::find(chart->series, label, &ChartSeries::label);
+  if (series == chart->series.end()) throw std::runtime_error("no series " + label);
+  return *series;
+}
+
+TEST_F(ResultsPageTest, ChartsShowWhatTheFilesSay) {
+  const SE3 T_truth_world{so3_exp({0.3, -0.2, 0.5}), {4, 5, 6}};
+  const FoundRun full = add_run("full", kFrames, T_truth_world);
+  const FoundRun no_imu = add_run("no-imu", 30, T_truth_world);
+  const std::vector<RunSeries> runs = {series_of(full, "full"), series_of(no_imu, "no-imu")};
+  for (const RunSeries& run : runs) EXPECT_TRUE(run.warnings.empty());
+
+  const auto errors = error_charts(runs, 100);
+  for (const Vector2d& point : series_of_chart(errors, "Position error", "full").points)
+    EXPECT_NEAR(point.y(), 2, 1e-6);  // centimetres
+  EXPECT_NEAR(series_of_chart(errors, "Cumulative position error", "full").points.back().y(), 100, 1e-9);
+  EXPECT_NEAR(series_of_chart(errors, "Cumulative position error", "no-imu").points.back().y(), 50, 1e-9);
+  for (const ChartBox& box :
+       series_of_chart(errors, "Relative error over segments of the path", "full").boxes) {
+    EXPECT_NEAR(box.max, 0, 1e-6);  // a constant offset is no relative error
+    EXPECT_LE(box.min, box.median);
+  }
+
+  const auto motion = motion_charts(runs, 100);
+  for (const Vector2d& point : series_of_chart(motion, "Angular speed of the camera", "ground truth").points)
+    EXPECT_NEAR(point.y(), degrees(0.1) / 0.033, 1e-6);
+
+  const auto views = view_charts(runs, 200);
+  ASSERT_EQ(views.size(), 3U);
+  for (const Vector2d& point : series_of_chart(views, "x-y view", "full").points)
+    EXPECT_NEAR(point.norm(), 1, 1e-6);
+
+  const auto tracking = tracking_charts(runs, 100);
+  EXPECT_EQ(series_of_chart(tracking, "Accepted patches and lost frames", "no-imu, lost").points.size(), 30U);
+  EXPECT_EQ(series_of_chart(tracking, "Time of the stages", "update").points[1].y(), 12);
+}
+
+TEST_F(ResultsPageTest, APageHoldsAllRunsAndSaysWhatItCouldNotRead) {
+  add_run("full", kFrames, SE3{});
+  const FoundRun damaged = add_run("dm", kFrames, SE3{});
+  add_run("no-imu", 30, SE3{});
+  write("runs/circle/dm/01234567/frames.csv", "frame,timestamp\n0\n");
+  const auto runs = find_runs(folder_ / "runs");
+  ASSERT_TRUE(runs.has_value());
+  const ResultsPage result = results_page(*runs, "Circles");
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("frames.csv:2"), std::string::npos) << result.warnings[0];
+  const std::string html = to_html(result.page);
+  for (const char* const part :
+       {"Circles", "lost at the end", "2 of 3 runs ok", "Trajectories", "Models", "ground truth"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  EXPECT_LT(html.size(), 3'000'000U);
+}
+
+}  // namespace
+}  // namespace fusebench

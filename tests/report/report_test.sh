@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# The report of a small simulated suite: made, and read in headless Chromium. Exit code 77: no browser to read it with.
+set -uo pipefail
+
+usage() {
+  cat <<'TEXT'
+Usage: tests/report/report_test.sh BINARY [SCREENSHOT_FOLDER]
+TEXT
+}
+
+if (($# < 1 || $# > 2)); then
+  usage >&2
+  exit 2
+fi
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+binary=$(realpath -- "$1")
+screenshots=()
+if (($# == 2)); then screenshots=("$(realpath -m -- "$2")"); fi
+unset FUSEBENCH_DATA
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+
+failed() {
+  printf 'FAILED: %s\n' "$1" >&2
+  exit 1
+}
+
+"$binary" simulate --preset fast --in-motion --duration 0.7 --size 320x240 --out recording >/dev/null 2>&1 ||
+  failed "the recording is not made"
+for variant in full dm no-imu; do
+  "$binary" run recording --variant "$variant" --out runs >/dev/null 2>&1 || failed "the run $variant fails"
+done
+# A run that failed before its first frame has a record and nothing else.
+lost=runs/recording/planar/00000000
+mkdir -p "$lost"
+sed -e 's/"status": "ok"/"status": "failed"/' -e 's/"reason": ""/"reason": "<b>no \& such<\/b> thing"/' \
+  -e 's/"variant": "full"/"variant": "planar"/' runs/recording/full/*/record.json >"$lost/record.json"
+
+"$binary" report runs --out report.html 2>stderr || failed "no report: $(cat stderr)"
+(($(stat -c %s report.html) < 15000000)) || failed "the report is larger than 15 MB"
+grep -q 'NaN\|>nan<\|>inf<' <(sed '/<script/,/<\/script>/d' report.html) && failed "the report shows what is no number"
+grep -q '&lt;b&gt;no &amp; such' report.html || failed "a reason is not escaped"
+for part in 'Trajectories' 'Errors' 'Motion and intensity' 'Patches' 'Models' 'Health and time' 'Configuration'; do
+  grep -q "<h3[^>]*>$part" report.html || failed "the report has no part '$part'"
+done
+exec /usr/bin/python3 "$here/page_test.py" report.html "${screenshots[@]}"
