@@ -14,16 +14,12 @@ namespace fusebench {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 std::size_t variant_rank(const std::string& name) {
   const auto variants = all_variants();
   const auto found =
       std::find_if(variants.begin(), variants.end(), [&](const Variant& v) { return v.name == name; });
   return static_cast<std::size_t>(found - variants.begin());
 }
-
-}  // namespace
 
 Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
   std::error_code error;

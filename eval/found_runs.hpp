@@ -1,7 +1,9 @@
 // The finished runs of a folder.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/error.hpp"
@@ -13,6 +15,9 @@ struct FoundRun {
   std::filesystem::path folder;
   RunRecord record;
 };
+
+/// Place of a variant in the order of all_variants(); another one comes after them.
+[[nodiscard]] std::size_t variant_rank(const std::string& variant);
 
 /// Every record.json below a folder (hidden folders are unfinished runs and are skipped), by recording, then
 /// variant in the order of all_variants(), then run. Errors: data_missing (no folder, no records),

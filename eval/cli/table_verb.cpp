@@ -32,8 +32,9 @@ Verb add_table_verb(CLI::App& app) {
   auto options = std::make_shared<TableOptions>();
   CLI::App* verb = app.add_subcommand("table", "Prints the table of a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
-  verb->add_option("--format", options->format, "markdown, csv, json or latex")
-      ->check(CLI::IsMember({"markdown", "csv", "json", "latex"}))
+  verb->add_option("--format", options->format,
+                   "markdown, csv (a line a run), csv-long (a line a number), json or latex")
+      ->check(CLI::IsMember({"markdown", "csv", "csv-long", "json", "latex"}))
       ->capture_default_str();
   add_json_flag(*verb, options->json);
   return {verb, [options] { return table(*options); }};

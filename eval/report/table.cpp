@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
+#include "core/geometry.hpp"
 #include "eval/found_runs.hpp"
 #include "eval/intensity_file.hpp"
 #include "eval/intensity_metrics.hpp"
@@ -74,6 +77,46 @@ void add_common_pixels(const std::vector<FoundRun>& runs, ResultTable& table) {
   }
 }
 
+/// Synthetic or simulated data are never in one mean with others.
+std::vector<TableMean> means_of(const std::vector<TableRow>& rows) {
+  std::vector<TableMean> means;
+  std::vector<std::set<std::string>> recordings;
+  std::vector<std::array<std::size_t, 5>> counts;
+  for (const TableRow& row : rows) {
+    const auto same = [&](const TableMean& m) {
+      return m.data == row.data && m.imu == row.imu && m.truth == row.truth && m.variant == row.variant;
+    };
+    const auto at = static_cast<std::size_t>(std::ranges::find_if(means, same) - means.begin());
+    if (at == means.size()) {
+      means.push_back({row.data, row.imu, row.truth, row.variant, 0, 0, 0, {}});
+      recordings.emplace_back();
+      counts.emplace_back();
+    }
+    TableMean& mean = means[at];
+    recordings[at].insert(row.recording);
+    ++mean.total;
+    if (row.status != RunStatus::ok) continue;
+    ++mean.ok;
+    for (std::size_t c = 0; c < table_columns().size(); ++c) {
+      const auto value = table_columns()[c].value;
+      if (!(row.*value)) continue;
+      mean.values.*value = (mean.values.*value).value_or(0) + *(row.*value);
+      ++counts[at][c];
+    }
+  }
+  for (std::size_t at = 0; at < means.size(); ++at) {
+    means[at].recordings = recordings[at].size();
+    for (std::size_t c = 0; c < table_columns().size(); ++c) {
+      auto& value = means[at].values.*(table_columns()[c].value);
+      if (counts[at][c] < means[at].ok) value.reset();
+      if (value) *value /= static_cast<double>(means[at].ok);
+    }
+  }
+  std::erase_if(means, [](const TableMean& mean) { return mean.recordings < 2; });
+  std::ranges::stable_sort(means, {}, [](const TableMean& m) { return variant_rank(m.variant); });
+  return means;
+}
+
 std::vector<std::string> footer_of(const ResultTable& table) {
   std::vector<std::string> footer = {
       "AIE: average intensity error of tracked patches in grey levels (0-255): mean over frames of the mean "
@@ -86,6 +129,12 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "tracked frames "
       "have a pose, so read it with the column tracked.",
       "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
+  if (!table.means.empty()) {
+    footer.push_back(
+        "mean: of the variant's runs that are ok, whose number stands before that of all; over data of one "
+        "kind. "
+        "Means over different recordings do not compare.");
+  }
   std::vector<DataWords> words;
   for (const TableRow& row : table.rows) words.push_back({row.data, row.imu, row.truth});
   for (std::string& footnote : data_footnotes(words)) footer.push_back(std::move(footnote));
@@ -103,8 +152,19 @@ ResultTable table_of(const std::vector<FoundRun>& runs) {
                                       to_string(run.record.status), run.record.reason));
   }
   add_common_pixels(runs, table);
+  table.means = means_of(table.rows);
   table.footer = footer_of(table);
   return table;
+}
+
+std::span<const TableColumn> table_columns() {
+  static constexpr std::array<TableColumn, 5> kColumns = {
+      {{"aie_grey", "grey", "AIE", 1, 3, &TableValues::aie_grey},
+       {"aie_common_grey", "grey", "AIE common", 1, 3, &TableValues::aie_common_grey},
+       {"ate_rmse_m", "m", "ATE [cm]", 100, 2, &TableValues::ate_rmse_m},
+       {"rpe_1s_m", "m", "RPE [cm/s]", 100, 2, &TableValues::rpe_second_m},
+       {"rpe_1s_rad", "rad", "RPE [deg/s]", kDegreesPerRadian, 2, &TableValues::rpe_second_rad}}};
+  return kColumns;
 }
 
 Result<ResultTable> collect_table(const fs::path& runs) {

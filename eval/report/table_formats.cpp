@@ -14,6 +14,7 @@ namespace fusebench {
 namespace {
 
 using Cells = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextColumns = 5;  // recording, data, IMU, variant, status: left-aligned
 
@@ -22,8 +23,15 @@ std::string shown(const std::optional<double>& value, double factor, int decimal
 }
 
 Cells header_cells() {
-  return {"recording", "data",       "IMU",         "variant", "status",   "AIE", "AIE common",
-          "ATE [cm]",  "RPE [cm/s]", "RPE [deg/s]", "tracked", "vertices", "fps"};
+  Cells cells = {"recording", "data", "IMU", "variant", "status"};
+  for (const TableColumn& column : table_columns()) cells.emplace_back(column.heading);
+  cells.insert(cells.end(), {"tracked", "vertices", "fps"});
+  return cells;
+}
+
+void add_values(const TableValues& values, Cells& cells) {
+  for (const TableColumn& column : table_columns())
+    cells.push_back(shown(values.*column.value, column.shown_factor, column.decimals));
 }
 
 /// The run's name is shown only where the same variant occurs twice.
@@ -34,19 +42,22 @@ bool repeated(const ResultTable& table, const TableRow& row) {
 }
 
 Cells shown_cells(const ResultTable& table, const TableRow& row) {
-  return {row.recording,
-          data_cell({row.data, row.imu, row.truth}),
-          row.imu,
-          repeated(table, row) ? fmt::format("{} ({})", row.variant, row.run) : row.variant,
-          std::string(to_string(row.status)),
-          shown(row.aie_grey, 1, 3),
-          shown(row.aie_common_grey, 1, 3),
-          shown(row.ate_rmse_m, 100, 2),
-          shown(row.rpe_second_m, 100, 2),
-          shown(row.rpe_second_rad, kDegreesPerRadian, 2),
-          fmt::format("{}/{}", row.tracked, row.total),
-          fmt::format("{}", row.vertices),
-          fmt::format("{:.1f}", row.fps)};
+  Cells cells = {row.recording, data_cell({row.data, row.imu, row.truth}), row.imu,
+                 repeated(table, row) ? fmt::format("{} ({})", row.variant, row.run) : row.variant,
+                 std::string(to_string(row.status))};
+  add_values(row, cells);
+  cells.insert(cells.end(), {fmt::format("{}/{}", row.tracked, row.total), fmt::format("{}", row.vertices),
+                             fmt::format("{:.1f}", row.fps)});
+  return cells;
+}
+
+Cells shown_cells(const TableMean& mean) {
+  Cells cells = {fmt::format("mean over {} recordings", mean.recordings),
+                 data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.variant,
+                 fmt::format("{}/{} ok", mean.ok, mean.total)};
+  add_values(mean.values, cells);
+  cells.insert(cells.end(), {"", "", ""});
+  return cells;
 }
 
 std::string count_line(const ResultTable& table) {
@@ -96,11 +107,52 @@ std::string markdown(const ResultTable& table) {
   return text;
 }
 
+std::string latex_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '\\':
+        result += "\\textbackslash{}";
+        break;
+      case '~':
+        result += "\\textasciitilde{}";
+        break;
+      case '^':
+        result += "\\textasciicircum{}";
+        break;
+      default:
+        if (std::string_view("_&%#${}").find(c) != std::string_view::npos) result += '\\';
+        result += c;
+    }
+  }
+  return result;
+}
+
+/// The columns in which a run is the best of its recording's ok runs, if there are others; ties are all best.
+std::vector<bool> best_columns(const ResultTable& table, const TableRow& row) {
+  std::vector<bool> best;
+  for (const TableColumn& column : table_columns()) {
+    std::size_t others = 0;
+    bool is_best = row.status == RunStatus::ok && (row.*column.value).has_value();
+    for (const TableRow& other : table.rows) {
+      if (!is_best || &other == &row || other.recording != row.recording) continue;
+      if (other.status != RunStatus::ok || !(other.*column.value)) continue;
+      ++others;
+      is_best = *(row.*column.value) <= *(other.*column.value);
+    }
+    best.push_back(is_best && others > 0);
+  }
+  return best;
+}
+
 std::string latex(const ResultTable& table) {
-  const auto escaped = [](std::string_view text) { return replaced(text, "_&%#$", "\\"); };
-  const auto line_of = [&](const Cells& cells) {
+  const auto line_of = [](const Cells& cells, const std::vector<bool>& bold = {}) {
     std::string line;
-    for (const std::string& cell : cells) line += (line.empty() ? "" : " & ") + escaped(cell);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::size_t value = i - kTextColumns;  // wraps around for texts, and is then past the end
+      const std::string cell = latex_escaped(cells[i]);
+      line += (i == 0 ? "" : " & ") + (value < bold.size() && bold[value] ? "\\textbf{" + cell + "}" : cell);
+    }
     return line + " \\\\\n";
   };
   const Cells header = header_cells();
@@ -110,8 +162,10 @@ std::string latex(const ResultTable& table) {
   text += line_of(header) + "\\midrule\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (i > 0 && table.rows[i].recording != table.rows[i - 1].recording) text += "\\midrule\n";
-    text += line_of(shown_cells(table, table.rows[i]));
+    text += line_of(shown_cells(table, table.rows[i]), best_columns(table, table.rows[i]));
   }
+  if (!table.means.empty()) text += "\\midrule\n";
+  for (const TableMean& mean : table.means) text += line_of(shown_cells(mean));
   text += "\\bottomrule\n\\end{tabular}\n% " + count_line(table) + "\n";
   for (const std::string& note : table.notes) text += fmt::format("% {}\n", note);
   for (const std::string& line : table.footer) text += fmt::format("% {}\n", line);
@@ -125,53 +179,82 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string csv_identity(const TableRow& row) {
+  return fmt::format("{},{},{},{},{},{},{}", csv_cell(row.recording), row.data, csv_cell(row.imu),
+                     csv_cell(row.truth), csv_cell(row.variant), row.run, to_string(row.status));
+}
+
 std::string csv(const ResultTable& table) {
-  std::string text =
-      "recording,data,imu,truth,variant,run,status,reason,aie_grey,aie_common_grey,ate_rmse_m,rpe_1s_m,rpe_"
-      "1s_rad,"
-      "tracked,total,"
-      "vertices,fps\n";
-  const auto number = [](const std::optional<double>& value) {
-    return value ? fmt::format("{}", *value) : "";
-  };
+  std::string text = "recording,data,imu,truth,variant,run,status,reason";
+  for (const TableColumn& column : table_columns()) text += fmt::format(",{}", column.key);
+  text += ",tracked,total,vertices,fps\n";
   for (const TableRow& row : table.rows) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.recording),
-                        row.data, csv_cell(row.imu), csv_cell(row.truth), csv_cell(row.variant), row.run,
-                        to_string(row.status), csv_cell(row.reason), number(row.aie_grey),
-                        number(row.aie_common_grey), number(row.ate_rmse_m), number(row.rpe_second_m),
-                        number(row.rpe_second_rad), row.tracked, row.total, row.vertices, row.fps);
+    text += fmt::format("{},{}", csv_identity(row), csv_cell(row.reason));
+    for (const TableColumn& column : table_columns())
+      text += row.*column.value ? fmt::format(",{}", *(row.*column.value)) : ",";
+    text += fmt::format(",{},{},{},{}\n", row.tracked, row.total, row.vertices, row.fps);
   }
   return text;
 }
 
+std::string csv_long(const ResultTable& table) {
+  std::string text = "recording,data,imu,truth,variant,run,status,metric,unit,value\n";
+  for (const TableRow& row : table.rows) {
+    const auto add = [&](const char* metric, const char* unit, double value) {
+      text += fmt::format("{},{},{},{}\n", csv_identity(row), metric, unit, value);
+    };
+    for (const TableColumn& column : table_columns()) {
+      if (row.*column.value) add(column.key, column.unit, *(row.*column.value));
+    }
+    add("tracked", "frames", static_cast<double>(row.tracked));
+    add("total", "frames", static_cast<double>(row.total));
+    add("vertices", "", static_cast<double>(row.vertices));
+    add("fps", "1/s", row.fps);
+  }
+  return text;
+}
+
+Json json_of(const TableValues& values) {
+  Json json = Json::object();
+  for (const TableColumn& column : table_columns())
+    json[column.key] = values.*column.value ? Json(*(values.*column.value)) : Json(nullptr);
+  return json;
+}
+
 std::string json(const ResultTable& table) {
-  using Json = nlohmann::ordered_json;
-  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (const TableRow& row : table.rows) {
-    rows.push_back({{"recording", row.recording},
-                    {"data", row.data},
-                    {"imu", row.imu},
-                    {"truth", row.truth},
-                    {"variant", row.variant},
-                    {"run", row.run},
-                    {"status", to_string(row.status)},
-                    {"reason", row.reason},
-                    {"aie_grey", number(row.aie_grey)},
-                    {"aie_common_grey", number(row.aie_common_grey)},
-                    {"ate_rmse_m", number(row.ate_rmse_m)},
-                    {"rpe_1s_m", number(row.rpe_second_m)},
-                    {"rpe_1s_rad", number(row.rpe_second_rad)},
-                    {"tracked", row.tracked},
-                    {"total", row.total},
-                    {"vertices", row.vertices},
-                    {"fps", row.fps}});
+    Json json = {{"recording", row.recording},
+                 {"data", row.data},
+                 {"imu", row.imu},
+                 {"truth", row.truth},
+                 {"variant", row.variant},
+                 {"run", row.run},
+                 {"status", to_string(row.status)},
+                 {"reason", row.reason}};
+    json.update(json_of(row));
+    json.update(
+        Json{{"tracked", row.tracked}, {"total", row.total}, {"vertices", row.vertices}, {"fps", row.fps}});
+    rows.push_back(std::move(json));
+  }
+  Json means = Json::array();
+  for (const TableMean& mean : table.means) {
+    Json json = {{"data", mean.data},
+                 {"imu", mean.imu},
+                 {"truth", mean.truth},
+                 {"variant", mean.variant},
+                 {"recordings", mean.recordings},
+                 {"n_ok", mean.ok},
+                 {"n_total", mean.total}};
+    json.update(json_of(mean.values));
+    means.push_back(std::move(json));
   }
   const auto ok = std::count_if(table.rows.begin(), table.rows.end(),
                                 [](const TableRow& row) { return row.status == RunStatus::ok; });
   const Json document = {{"n_ok", ok},
                          {"n_total", table.rows.size()},
-                         {"rows", rows},
+                         {"rows", std::move(rows)},
+                         {"means", std::move(means)},
                          {"notes", table.notes},
                          {"protocol", table.footer}};
   return json_text(document) + "\n";
@@ -182,19 +265,22 @@ std::string json(const ResultTable& table) {
 std::vector<Cells> table_cells(const ResultTable& table) {
   std::vector<Cells> lines = {header_cells()};
   for (const TableRow& row : table.rows) lines.push_back(shown_cells(table, row));
+  for (const TableMean& mean : table.means) lines.push_back(shown_cells(mean));
   return lines;
 }
 
 Result<TableFormat> parse_table_format(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, TableFormat>, 4> kFormats = {
+  constexpr std::array<std::pair<std::string_view, TableFormat>, 5> kFormats = {
       {{"markdown", TableFormat::markdown},
        {"csv", TableFormat::csv},
+       {"csv-long", TableFormat::csv_long},
        {"json", TableFormat::json},
        {"latex", TableFormat::latex}}};
   for (const auto& [name, format] : kFormats) {
     if (name == text) return format;
   }
-  return fail(ErrorCode::usage, fmt::format("--format {} (allowed: markdown | csv | json | latex)", text));
+  return fail(ErrorCode::usage,
+              fmt::format("--format {} (allowed: markdown | csv | csv-long | json | latex)", text));
 }
 
 std::string render_table(const ResultTable& table, TableFormat format) {
@@ -203,6 +289,8 @@ std::string render_table(const ResultTable& table, TableFormat format) {
       return markdown(table);
     case TableFormat::csv:
       return csv(table);
+    case TableFormat::csv_long:
+      return csv_long(table);
     case TableFormat::json:
       return json(table);
     case TableFormat::latex:

@@ -19,8 +19,8 @@ class TableTest : public testing::InTemporaryFolder {
     RunRecord record;
     record.status = status;
     record.reason = reason;
-    record.recording.name = "fr1_rpy";
-    record.recording.fingerprint = "ff";
+    record.recording.name = recording_;
+    record.recording.fingerprint = recording_;
     record.recording.imu = variant == "no-imu" ? "none" : "synthetic IMU";
     record.variant = variant;
     record.frames = {240, status == RunStatus::ok ? 240U : 12U, 0};
@@ -32,11 +32,13 @@ class TableTest : public testing::InTemporaryFolder {
       sums.add_frame(pixels);
       record.metrics.aie = {sums.result(), {}};
     }
-    const auto run = std::filesystem::path("runs") / "fr1_rpy" / variant / hash;
+    const auto run = std::filesystem::path("runs") / recording_ / variant / hash;
     write(run / "record.json", to_json(record));
     auto writer = IntensityWriter::create(folder_ / run / "intensity.bin", 640, 480);
     ASSERT_TRUE(writer && writer->write_frame(1, {}) && writer->write_frame(2, pixels) && writer->finish());
   }
+
+  std::string recording_ = "fr1_rpy";
 
   /// full and dm share pixel 5; dm drops the hard pixel 7; no-imu is lost.
   void add_three_runs() {
@@ -147,6 +149,39 @@ TEST_F(TableTest, CsvAndJsonCarryTheSameNumbers) {
   std::getline(lines, full);
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(full.begin(), full.end(), ','));
   EXPECT_NE(full.find(",0.0123,"), std::string::npos) << full;
+}
+
+TEST_F(TableTest, LongCsvHasALineForEachNumber) {
+  add_three_runs();
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::csv_long);
+  EXPECT_NE(text.find("fr1_rpy,recorded,synthetic IMU,none,full,01234567,ok,ate_rmse_m,m,0.0123\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("lost,ate_rmse_m"), std::string::npos) << text;  // does not exist
+  EXPECT_NE(text.find("lost,tracked,frames,12\n"), std::string::npos) << text;
+}
+
+TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
+  add_three_runs();
+  recording_ = "fr1_xyz";
+  add_run("full", RunStatus::ok, "", 0.0277, {{5, 2.0F, true}, {7, 10.0F, true}});
+  add_run("no-imu", RunStatus::ok, "", 0.5, {{5, 2.0F, true}});
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_EQ(table->means.size(), 2U);  // dm ran on one recording
+  EXPECT_EQ(table->means[0].variant, "full");
+  EXPECT_EQ(table->means[0].ok, 2U);
+  EXPECT_DOUBLE_EQ(*table->means[0].values.ate_rmse_m, 0.02);
+  EXPECT_EQ(table->means[1].ok, 1U);
+  EXPECT_EQ(table->means[1].total, 2U);
+  EXPECT_DOUBLE_EQ(*table->means[1].values.ate_rmse_m, 0.5);
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find("| 1/2 ok |"), std::string::npos);
+}
+
+TEST_F(TableTest, LatexHasTheBestOfEachRecordingInBold) {
+  add_three_runs();
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);
+  EXPECT_NE(text.find("& 6.000 & \\textbf{2.000} & \\textbf{1.23} &"), std::string::npos) << text;
+  EXPECT_NE(text.find("& \\textbf{3.000} & 3.000 & 5.00 &"), std::string::npos) << text;
 }
 
 TEST_F(TableTest, LatexEscapesNames) {

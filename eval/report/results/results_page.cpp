@@ -66,7 +66,7 @@ PageTable page_table(const ResultTable& table) {
   const auto lines = table_cells(table);
   page.header = lines.front();
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const RunStatus status = table.rows[i - 1].status;
+    const RunStatus status = i <= table.rows.size() ? table.rows[i - 1].status : RunStatus::ok;
     page.rows.push_back({lines[i], status == RunStatus::failed ? "error"
                                    : status == RunStatus::lost ? "warning"
                                                                : ""});
