@@ -7,13 +7,14 @@
 #include "core/geometry.hpp"
 #include "eval/json_text.hpp"
 #include "eval/report/data_labels.hpp"
+#include "eval/report/plain_table.hpp"
 #include "eval/report/table.hpp"
 
 namespace fusebench {
 
 namespace {
 
-using Cells = std::vector<std::string>;
+using Cells = TableCells;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextColumns = 5;  // recording, data, IMU, variant, status: left-aligned
@@ -66,40 +67,8 @@ std::string count_line(const ResultTable& table) {
   return fmt::format("{} of {} runs ok.", ok, table.rows.size());
 }
 
-std::string replaced(std::string_view text, std::string_view special, std::string_view escape) {
-  std::string result;
-  for (const char c : text) {
-    if (special.find(c) != std::string_view::npos) result += escape;
-    result += c;
-  }
-  return result;
-}
-
 std::string markdown(const ResultTable& table) {
-  std::vector<Cells> lines = table_cells(table);
-  for (Cells& line : lines) {
-    for (std::string& cell : line) cell = replaced(cell, "|", "\\");
-  }
-  std::vector<std::size_t> widths(lines[0].size(), 3);
-  for (const Cells& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  }
-  std::string text;
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    text += "|";
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      text += i < kTextColumns ? fmt::format(" {:<{}} |", lines[k][i], widths[i])
-                               : fmt::format(" {:>{}} |", lines[k][i], widths[i]);
-    }
-    text += "\n";
-    if (k > 0) continue;
-    text += "|";
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      text += i < kTextColumns ? fmt::format(" {:-<{}} |", "", widths[i])
-                               : fmt::format(" {:->{}}: |", "", widths[i] - 1);
-    }
-    text += "\n";
-  }
+  std::string text = markdown_table(table_cells(table), kTextColumns);
   text += fmt::format("\n{}\n", count_line(table));
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   text += "\n";
@@ -107,31 +76,11 @@ std::string markdown(const ResultTable& table) {
   return text;
 }
 
-std::string latex_escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '\\':
-        result += "\\textbackslash{}";
-        break;
-      case '~':
-        result += "\\textasciitilde{}";
-        break;
-      case '^':
-        result += "\\textasciicircum{}";
-        break;
-      default:
-        if (std::string_view("_&%#${}").find(c) != std::string_view::npos) result += '\\';
-        result += c;
-    }
-  }
-  return result;
-}
-
-/// The columns in which a run is the best of its recording's ok runs, if there are others; ties are all best.
-std::vector<bool> best_columns(const ResultTable& table, const TableRow& row) {
-  std::vector<bool> best;
-  for (const TableColumn& column : table_columns()) {
+/// The cells in which a run is the best of its recording's ok runs, if there are others; ties are all best.
+std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row) {
+  std::vector<std::size_t> best;
+  for (std::size_t c = 0; c < table_columns().size(); ++c) {
+    const TableColumn& column = table_columns()[c];
     std::size_t others = 0;
     bool is_best = row.status == RunStatus::ok && (row.*column.value).has_value();
     for (const TableRow& other : table.rows) {
@@ -140,43 +89,23 @@ std::vector<bool> best_columns(const ResultTable& table, const TableRow& row) {
       ++others;
       is_best = *(row.*column.value) <= *(other.*column.value);
     }
-    best.push_back(is_best && others > 0);
+    if (is_best && others > 0) best.push_back(kTextColumns + c);
   }
   return best;
 }
 
 std::string latex(const ResultTable& table) {
-  const auto line_of = [](const Cells& cells, const std::vector<bool>& bold = {}) {
-    std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::size_t value = i - kTextColumns;  // wraps around for texts, and is then past the end
-      const std::string cell = latex_escaped(cells[i]);
-      line += (i == 0 ? "" : " & ") + (value < bold.size() && bold[value] ? "\\textbf{" + cell + "}" : cell);
-    }
-    return line + " \\\\\n";
-  };
-  const Cells header = header_cells();
-  std::string text =
-      fmt::format("% requires \\usepackage{{booktabs}}\n\\begin{{tabular}}{{{}{}}}\n\\toprule\n",
-                  std::string(kTextColumns, 'l'), std::string(header.size() - kTextColumns, 'r'));
-  text += line_of(header) + "\\midrule\n";
+  std::string text = latex_begin(header_cells(), kTextColumns);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (i > 0 && table.rows[i].recording != table.rows[i - 1].recording) text += "\\midrule\n";
-    text += line_of(shown_cells(table, table.rows[i]), best_columns(table, table.rows[i]));
+    text += latex_line(shown_cells(table, table.rows[i]), best_cells(table, table.rows[i]));
   }
   if (!table.means.empty()) text += "\\midrule\n";
-  for (const TableMean& mean : table.means) text += line_of(shown_cells(mean));
+  for (const TableMean& mean : table.means) text += latex_line(shown_cells(mean));
   text += "\\bottomrule\n\\end{tabular}\n% " + count_line(table) + "\n";
   for (const std::string& note : table.notes) text += fmt::format("% {}\n", note);
   for (const std::string& line : table.footer) text += fmt::format("% {}\n", line);
   return text;
-}
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string csv_identity(const TableRow& row) {
