@@ -9,16 +9,15 @@
 #include "core/pipeline.hpp"
 #include "core/ply_file.hpp"
 #include "core/staged_folder.hpp"
-#include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "datasets/synthetic_imu.hpp"
-#include "eval/build_info.hpp"
 #include "eval/frame_source.hpp"
 #include "eval/frame_table.hpp"
 #include "eval/intensity_file.hpp"
 #include "eval/patch_table.hpp"
 #include "eval/process_meter.hpp"
+#include "eval/record_origin.hpp"
 #include "eval/run_evaluation.hpp"
 #include "eval/state_table.hpp"
 
@@ -65,54 +64,16 @@ Result<void> provide_imu(Recording& recording, const RunSpec& spec) {
       "table; --variant no-imu does without");
 }
 
-/// What was done to the data on reading, and what to beware of. Where a message begins with the recording's
-/// folder, its name stands for it, so that the same recording elsewhere gives the same record.
-std::vector<std::string> reading_notes(const Recording& recording, const std::filesystem::path& folder) {
-  std::string place = folder.string();
-  while (place.size() > 1 && place.ends_with('/')) place.pop_back();
-  const auto placed = [&](const std::string& text) {
-    if (!text.starts_with(place + "/") && !text.starts_with(place + ":")) return text;
-    return recording.name + text.substr(place.size());
-  };
-  std::vector<std::string> notes;
-  for (const std::string& note : recording.notes) notes.push_back(placed(note));
-  for (const std::string& warning : recording.warnings) notes.push_back("warning: " + placed(warning));
-  return notes;
-}
-
-std::string_view truth_word(const Recording& recording) {
-  if (recording.ground_truth.empty()) return "none";
-  return recording.truth_label.empty() ? "given" : kPseudoTruthWord;
-}
-
 RunRecord record_of_question(const PreparedRun& run) {
-  const Recording& recording = run.recording;
   RunRecord record;
-  record.recording = {.name = recording.name,
-                      .format = recording.format,
-                      .data = recording.simulated ? "simulated" : "recorded",
-                      .frames = recording.frames.size(),
-                      .first_frame = run.spec.frames ? run.spec.frames->begin : 0,
-                      .duration_s = seconds_between(recording.frames.front().timestamp_ns,
-                                                    recording.frames.back().timestamp_ns),
-                      .fingerprint = recording.fingerprint,
-                      .imu = std::string(to_string(recording.imu_source)),
-                      .imu_note = recording.imu_note,
-                      .truth = std::string(truth_word(recording)),
-                      .notes = reading_notes(recording, run.spec.recording)};
+  record.recording =
+      recorded_recording(run.recording, run.spec.recording, run.spec.frames ? run.spec.frames->begin : 0);
   record.variant = run.spec.variant;
   for (const OptionRow& row : describe_options(run.spec.config.values)) {
     record.config.push_back({row.key, parse_option_value(row.value), run.spec.config.origin(row.key)});
   }
   record.config_hash = config_hash(run.spec.config.values);
-  const BuildInfo& build = build_info();
-  record.provenance = {std::string(build.version),
-                       std::string(build.git),
-                       std::string(build.compiler),
-                       std::string(build.flags),
-                       cpu_model(),
-                       run.spec.threads,
-                       host_name()};
+  record.provenance = provenance_here(run.spec.threads);
   return record;
 }
 
@@ -224,17 +185,6 @@ RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, doub
   return timing;
 }
 
-/// The true colour camera at every frame of which it is known, by the frame's stamp.
-Trajectory true_trajectory(const Recording& recording) {
-  constexpr std::int64_t kMaxGap_ns = 100'000'000;
-  Trajectory truth;
-  for (const FrameEntry& frame : recording.frames) {
-    const auto pose = interpolate_pose(recording.ground_truth, frame.capture_ns, kMaxGap_ns);
-    if (pose) truth.push_back({frame.timestamp_ns, *pose});
-  }
-  return truth;
-}
-
 /// The model, with the error of each vertex where there is a true scene, and the patches that moved fastest.
 Result<void> write_surfaces(Progress& progress, const RecordedMetrics& metrics, const StagedFolder& folder) {
   Mesh& mesh = progress.output.mesh;
@@ -306,7 +256,7 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
                                record.frames.tracked, record.frames.total);
   const std::array<std::pair<std::string_view, std::string>, 6> texts = {
       {{"trajectory.tum", tum_text(progress->output.trajectory)},
-       {"truth.tum", tum_text(true_trajectory(run.recording))},
+       {"truth.tum", tum_text(true_trajectory(run.recording, frame_stamps(run.recording)))},
        {"frames.csv", progress->frame_table},
        {"states.csv", progress->state_table},
        {"log.txt", progress->log},

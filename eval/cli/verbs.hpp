@@ -21,6 +21,7 @@ struct Verb {
 [[nodiscard]] Verb add_bench_verb(CLI::App& app);
 [[nodiscard]] Verb add_table_verb(CLI::App& app);
 [[nodiscard]] Verb add_report_verb(CLI::App& app);
+[[nodiscard]] Verb add_import_verb(CLI::App& app);
 [[nodiscard]] Verb add_eval_verb(CLI::App& app);
 [[nodiscard]] Verb add_list_verb(CLI::App& app);
 [[nodiscard]] Verb add_config_verb(CLI::App& app);

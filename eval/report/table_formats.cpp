@@ -48,7 +48,7 @@ Cells shown_cells(const ResultTable& table, const TableRow& row) {
                  std::string(to_string(row.status))};
   add_values(row, cells);
   cells.insert(cells.end(), {fmt::format("{}/{}", row.tracked, row.total), fmt::format("{}", row.vertices),
-                             fmt::format("{:.1f}", row.fps)});
+                             row.fps > 0 ? fmt::format("{:.1f}", row.fps) : "-"});
   return cells;
 }
 

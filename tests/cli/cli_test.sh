@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|recordings|interrupt|determinism
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|imports|recordings|interrupt|determinism
 TEXT
 }
 
@@ -458,11 +458,48 @@ check_meshes() {
     eval mesh rec.obj truth.obj --cull depth --recording freiburg1_copy --cull-every 1
 }
 
+check_imports() {
+  fresh_copy
+  local truth=freiburg1_copy/groundtruth.txt stamps=freiburg1_copy/rgb.txt
+  # The truth at the images' stamps as another system's answer; every pose but that of the third image.
+  awk -v rgb="$stamps" '
+    BEGIN { while ((getline line < rgb) > 0) if (line !~ /^#/) { split(line, f, " "); t[n++] = f[1] } }
+    /^#/ { next }
+    { for (i = 0; i < n; i++) { d = $1 - t[i]; if (d < 0) d = -d; if (!(i in best) || d < best[i]) { best[i] = d; row[i] = $0 } } }
+    END { for (i = 0; i < n; i++) if (i != 2) print row[i] }' "$truth" >other.txt
+  corner_obj 1 0 >other.obj
+
+  checks=$((checks + 1))
+  "$binary" import Other other.txt other.obj --recording freiburg1_copy --imu none --out runs >stdout 2>stderr ||
+    complain "an import: exit code $?"
+  local run
+  run=$(cat stdout)
+  for name in record.json trajectory.tum truth.tum mesh.ply log.txt; do
+    [[ -s $run/$name ]] || complain "an import does not write $name"
+  done
+  grep -q '4/5 frames' stderr || complain "an import does not tell its frames"
+  prints '\| freiburg1_copy +\| recorded +\| none +\| Other +\| ok +\| +- \| +- \| +0.00 \|' "an import in the table" table runs
+  checks=$((checks + 1))
+  "$binary" report runs --out report.html >stdout 2>stderr || complain "a report of an import: exit code $?"
+  grep -q warning stderr && complain "a report of an import warns"
+
+  refused "a variant of ours" 2 'is a variant of this program' 'hint:name of its own' -- \
+    import full other.txt --recording freiburg1_copy --out out
+  refused "no name of a folder" 2 'no name of a system' -- import a/b other.txt --recording freiburg1_copy --out out
+  refused "another clock" 3 'belongs to one of 5 frames' 'hint:colour images' -- \
+    import Other <(curve 1000 1) --recording freiburg1_copy --out out
+  refused "poses without stamps" 3 '2 poses without stamps for 5 frames' -- \
+    import Other "$(printf '1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n' >two.txt && echo two.txt)" \
+    --recording freiburg1_copy --out out
+  refused "no such mesh" 3 'absent.ply' -- import Other other.txt absent.ply --recording freiburg1_copy --out out
+}
+
 case "$group" in
   bad-data) check_bad_data ;;
   bad-usage) check_bad_usage ;;
   evaluation) check_evaluation ;;
   meshes) check_meshes ;;
+  imports) check_imports ;;
   recordings) check_recordings ;;
   interrupt) check_interrupt ;;
   determinism) check_determinism ;;

@@ -140,8 +140,9 @@ PageScene scene_of(Group group, std::size_t triangles, std::vector<std::string>&
     if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
     const auto mesh = read_ply(file);
     if (!mesh) warnings.push_back(mesh.error().message);
-    if (!mesh || mesh->triangles.empty() || mesh->colors.empty()) continue;
+    if (!mesh || mesh->triangles.empty()) continue;
     SceneMesh shown{label_of(run, group), reduced(*mesh, triangles), {}};
+    if (shown.mesh.colors.empty()) shown.mesh.colors.assign(shown.mesh.vertices.size(), Rgb{170, 170, 170});
     if (!shown.mesh.quality.empty()) {
       const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());
       shown.error_colors = error_colors(errors_m, kLargestError_m);

@@ -311,7 +311,8 @@ Chart health_chart(std::span<const RunSeries> runs, std::size_t buckets) {
         runs[i], buckets, [](const FrameTableRow& f) { return f.status == "lost" ? 0.0 : std::nan(""); });
     if (!lost.empty())
       chart.series.push_back({runs[i].label + ", lost", lost, SeriesStyle::dots, false, colour_of(i)});
-    chart.caption += (i > 0 ? " " : "Frames: ") + health_text(runs[i]);
+    if (!runs[i].frames.empty())
+      chart.caption += (chart.caption.empty() ? "Frames: " : " ") + health_text(runs[i]);
   }
   return chart;
 }
@@ -319,8 +320,11 @@ Chart health_chart(std::span<const RunSeries> runs, std::size_t buckets) {
 Chart stage_chart(std::span<const RunSeries> runs) {
   Chart chart = chart_of("Time of the stages", "", "mean time a frame [ms]",
                          "On the machine of the run; times of different machines do not compare.");
+  std::vector<const RunSeries*> timed;  // imported runs are not
   std::vector<std::string> stages;
   for (const RunSeries& run : runs) {
+    if (run.run->record.timing.stages_ms.empty()) continue;
+    timed.push_back(&run);
     chart.categories.push_back(run.label);
     for (const auto& [stage, ms] : run.run->record.timing.stages_ms) {
       if (stage != "mesh_once" && std::ranges::find(stages, stage) == stages.end()) stages.push_back(stage);
@@ -328,8 +332,8 @@ Chart stage_chart(std::span<const RunSeries> runs) {
   }
   for (const std::string& stage : stages) {
     ChartSeries series{stage, {}, SeriesStyle::bars};
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      for (const auto& [name, ms] : runs[i].run->record.timing.stages_ms) {
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+      for (const auto& [name, ms] : timed[i]->run->record.timing.stages_ms) {
         if (name == stage) series.points.emplace_back(static_cast<double>(i), ms);
       }
     }

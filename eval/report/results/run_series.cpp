@@ -46,7 +46,10 @@ RunSeries series_of(const FoundRun& run, std::string label) {
   RunSeries series;
   series.run = &run;
   series.label = std::move(label);
-  auto frames = read_frame_table(run.folder / "frames.csv");
+  std::error_code ignored;
+  const bool imported = run.record.config.empty() && !fs::exists(run.folder / "frames.csv", ignored);
+  Result<std::vector<FrameTableRow>> frames =
+      imported ? std::vector<FrameTableRow>() : read_frame_table(run.folder / "frames.csv");
   if (frames) {
     series.frames = std::move(*frames);
   } else {
@@ -54,6 +57,11 @@ RunSeries series_of(const FoundRun& run, std::string label) {
   }
   series.truth = trajectory_of(run.folder / "truth.tum", series.warnings);
   const Trajectory estimate = trajectory_of(run.folder / "trajectory.tum", series.warnings);
+  if (!series.frames.empty()) {
+    series.start_ns = series.frames.front().timestamp_ns;
+  } else if (!series.truth.empty() || !estimate.empty()) {
+    series.start_ns = (series.truth.empty() ? estimate : series.truth).front().timestamp_ns;
+  }
   const auto& ate = run.record.metrics.ate.value;
   series.poses = compared(estimate, ate ? series.truth : Trajectory{},
                           ate ? ate->alignment.T_reference_estimate : SE3{});

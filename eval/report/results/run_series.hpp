@@ -23,14 +23,15 @@ struct ComparedPose {
 
 struct RunSeries {
   const FoundRun* run = nullptr;
-  std::string label;  ///< the variant, with the run's name if there are several
-  std::vector<FrameTableRow> frames;
+  std::string label;                  ///< the variant, with the run's name if there are several
+  std::vector<FrameTableRow> frames;  ///< none of an imported run
+  std::int64_t start_ns = 0;          ///< of the first frame, or the first pose that is known
   std::vector<ComparedPose> poses;
   Trajectory truth;  ///< empty: not known
   std::vector<std::string> warnings;
 
   [[nodiscard]] double time_s(std::int64_t timestamp_ns) const {
-    return frames.empty() ? 0.0 : seconds_between(frames.front().timestamp_ns, timestamp_ns);
+    return seconds_between(start_ns, timestamp_ns);
   }
 };
 

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "eval/cli/console.hpp"
+#include "eval/cli/reading_options.hpp"
+#include "eval/cli/shared_options.hpp"
+#include "eval/cli/verbs.hpp"
+#include "eval/experiment.hpp"
+#include "eval/imported_run.hpp"
+
+namespace fusebench {
+
+namespace {
+
+struct ImportOptions {
+  std::string name;
+  std::filesystem::path trajectory;
+  std::filesystem::path mesh;
+  std::string trajectory_format;
+  std::string recording;
+  std::filesystem::path data;
+  std::filesystem::path out;
+  ReadingOptions reading;
+  std::string frames;
+  std::string imu;
+  int threads = 1;
+};
+
+Result<ImportSpec> spec_of(const ImportOptions& options) {
+  ImportSpec spec;
+  spec.name = options.name;
+  spec.trajectory = options.trajectory;
+  spec.mesh = options.mesh;
+  if (!options.trajectory_format.empty()) {
+    const auto format = parse_trajectory_format(options.trajectory_format);
+    if (!format) return tl::unexpected(format.error());
+    spec.format = *format;
+  }
+  const auto folder = find_recording(options.recording, options.data);
+  if (!folder) return tl::unexpected(folder.error());
+  spec.recording = *folder;
+  auto how = open_options(options.reading);
+  if (!how) return tl::unexpected(how.error());
+  spec.open = std::move(*how);
+  const auto window = parse_frames(options.frames);
+  if (!window) return tl::unexpected(window.error());
+  spec.frames = *window;
+  if (!options.imu.empty()) spec.imu = options.imu == "synthetic" ? "synthetic IMU" : options.imu;
+  spec.threads = options.threads;
+  spec.out = options.out;
+  return spec;
+}
+
+Result<int> import(const ImportOptions& options) {
+  const auto spec = spec_of(options);
+  if (!spec) return tl::unexpected(spec.error());
+  const auto run = import_run(*spec);
+  if (!run) return tl::unexpected(run.error());
+  for (const std::string& warning : run->warnings) print_progress("warning: " + warning);
+  print_progress(fmt::format("{}: {}", run->record.variant, summary_line(run->record)));
+  print_output(run->folder.string() + "\n");
+  return 0;
+}
+
+}  // namespace
+
+Verb add_import_verb(CLI::App& app) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "import", "Puts what another system made of a recording beside our runs, evaluated the same way");
+  verb->add_option("NAME", options->name, "The other system: the run's variant in tables and reports")
+      ->required();
+  verb->add_option("TRAJECTORY", options->trajectory, "Its poses of the colour camera (TUM, KITTI or EuRoC)")
+      ->required();
+  verb->add_option("MESH", options->mesh, "Its model in the world of these poses, .ply or .obj");
+  verb->add_option("--recording", options->recording,
+                   "Folder of the recording, or the name of one under --data")
+      ->type_name("REC")
+      ->required();
+  verb->add_option("--out", options->out, "Folder of results, as of `run` and `bench`")
+      ->type_name("DIR")
+      ->required();
+  verb->add_option("--trajectory-format", options->trajectory_format,
+                   "tum, kitti or euroc; recognised if not given")
+      ->type_name("NAME");
+  verb->add_option("--imu", options->imu, "What it used: none, recorded or synthetic; said in every table")
+      ->check(CLI::IsMember({"none", "recorded", "synthetic"}));
+  verb->add_option("--frames", options->frames, "It was given only frames A to B-1")->type_name("A:B");
+  add_reading_options(*verb, options->reading);
+  add_threads_option(*verb, options->threads);
+  add_data_option(*verb, options->data);
+  verb->footer("Prints the run's folder. Frames without a pose within 0.02 s count as lost.");
+  return {verb, [options] { return import(*options); }};
+}
+
+}  // namespace fusebench
