@@ -8,6 +8,7 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/found_runs.hpp"
+#include "eval/report/figures.hpp"
 #include "eval/report/results/results_page.hpp"
 #include "eval/text_file.hpp"
 
@@ -19,6 +20,8 @@ struct ReportOptions {
   std::filesystem::path runs;
   std::filesystem::path out;
   std::string title;
+  std::filesystem::path figures;
+  std::string figure_format = "svg";
 };
 
 Result<int> report(const ReportOptions& options) {
@@ -33,6 +36,12 @@ Result<int> report(const ReportOptions& options) {
   if (auto written = write_text_file(options.out, html); !written) return tl::unexpected(written.error());
   print_progress(fmt::format("{}: {} runs, {:.1f} MB", options.out.string(), runs->size(),
                              static_cast<double>(html.size()) / 1e6));
+  if (options.figures.empty()) return 0;
+  const auto format = parse_figure_format(options.figure_format);
+  if (!format) return tl::unexpected(format.error());
+  const auto figures = write_figures(page.page, options.figures, *format);
+  if (!figures) return tl::unexpected(figures.error());
+  print_progress(fmt::format("{}: {} figures", options.figures.string(), *figures));
   return 0;
 }
 
@@ -47,6 +56,13 @@ Verb add_report_verb(CLI::App& app) {
   verb->add_option("--out", options->out, "The page to write")->type_name("FILE.html")->required();
   verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
       ->type_name("TEXT");
+  verb->add_option(
+          "--figures", options->figures,
+          "Writes every chart as a file for papers as well, and beside it the script that draws it (gnuplot)")
+      ->type_name("DIR");
+  verb->add_option("--figure-format", options->figure_format, "svg or pdf")
+      ->check(CLI::IsMember({"svg", "pdf"}))
+      ->capture_default_str();
   return {verb, [options] { return report(*options); }};
 }
 

@@ -45,4 +45,14 @@ grep -q '&lt;b&gt;no &amp; such' report.html || failed "a reason is not escaped"
 for part in 'Trajectories' 'Errors' 'Motion and intensity' 'Patches' 'Models' 'Health and time' 'Configuration'; do
   grep -q "<h3[^>]*>$part" report.html || failed "the report has no part '$part'"
 done
+if command -v gnuplot >/dev/null; then
+  for format in svg pdf; do
+    "$binary" report runs --out again.html --figures figures --figure-format "$format" 2>stderr ||
+      failed "no figures: $(cat stderr)"
+    for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error; do
+      [[ -s figures/recording-$figure.$format ]] || failed "no figure $figure.$format"
+    done
+  done
+  cmp report.html again.html || failed "the report is not the same twice"
+fi
 exec /usr/bin/python3 "$here/page_test.py" report.html "${screenshots[@]}"
