@@ -4,6 +4,7 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <fstream>
@@ -58,6 +59,27 @@ Result<std::vector<Vector3d>> read_vertices(const fs::path& file) {
   return vertices;
 }
 
+/// Polygons are cut into fans.
+Result<void> add_faces(const tinyobj::shape_t& shape, const fs::path& file, PreciseMesh& mesh) {
+  std::size_t at = 0;
+  for (const auto corners : shape.mesh.num_face_vertices) {
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(corners); ++k) {
+      const int vertex = shape.mesh.indices[at++].vertex_index;
+      if (vertex < 0 || static_cast<std::size_t>(vertex) >= mesh.vertices.size()) {
+        return fail(ErrorCode::data_corrupt,
+                    fmt::format("{}: shape '{}': a face names vertex {} of {}", file.string(), shape.name,
+                                vertex + 1, mesh.vertices.size()));
+      }
+      triangle[std::min<std::size_t>(k, 2)] = static_cast<std::uint32_t>(vertex);
+      if (k < 2) continue;
+      mesh.triangles.push_back(triangle);
+      triangle[1] = triangle[2];  // the next triangle of the fan
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<PreciseMesh> read_obj(const fs::path& file) {
@@ -66,7 +88,7 @@ Result<PreciseMesh> read_obj(const fs::path& file) {
   Result<std::vector<Vector3d>> vertices = read_vertices(file);
   if (!vertices) return tl::unexpected(vertices.error());
   tinyobj::ObjReaderConfig config;
-  config.triangulate = true;
+  config.triangulate = false;   // the library drops polygons of vertices that do not exist
   config.vertex_color = false;  // no white where the file has no colours
   tinyobj::ObjReader reader;
   if (!reader.ParseFromFile(file.string(), config)) {
@@ -87,19 +109,7 @@ Result<PreciseMesh> read_obj(const fs::path& file) {
       mesh.colors.push_back(color_of(&attributes.colors[i]));
   }
   for (const tinyobj::shape_t& shape : reader.GetShapes()) {
-    for (std::size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3) {
-      std::array<std::uint32_t, 3> triangle{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int vertex = shape.mesh.indices[i + k].vertex_index;
-        if (vertex < 0 || static_cast<std::size_t>(vertex) >= mesh.vertices.size()) {
-          return fail(ErrorCode::data_corrupt,
-                      fmt::format("{}: shape '{}': a face names vertex {} of {}", file.string(), shape.name,
-                                  vertex + 1, mesh.vertices.size()));
-        }
-        triangle[k] = static_cast<std::uint32_t>(vertex);
-      }
-      mesh.triangles.push_back(triangle);
-    }
+    if (auto added = add_faces(shape, file, mesh); !added) return tl::unexpected(added.error());
   }
   return mesh;
 }

@@ -45,8 +45,8 @@ Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
   }
   std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
     const auto key = [](const FoundRun& run) {
-      return std::tuple(run.record.recording.name, variant_rank(run.record.variant), run.record.variant,
-                        run.folder.string());
+      return std::tuple(run.record.recording.name, run.record.recording.fingerprint,
+                        variant_rank(run.record.variant), run.record.variant, run.folder.string());
     };
     return key(a) < key(b);
   });

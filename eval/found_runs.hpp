@@ -19,9 +19,9 @@ struct FoundRun {
 /// Place of a variant in the order of all_variants(); another one comes after them.
 [[nodiscard]] std::size_t variant_rank(const std::string& variant);
 
-/// Every record.json below a folder (hidden folders are unfinished runs and are skipped), by recording, then
-/// variant in the order of all_variants(), then run. Errors: data_missing (no folder, no records),
-/// data_corrupt (a record that cannot be read).
+/// Every record.json below a folder (hidden folders are unfinished runs and are skipped), by recording (name,
+/// then content), then variant in the order of all_variants(), then run. Errors: data_missing (no folder, no
+/// records), data_corrupt (a record that cannot be read).
 [[nodiscard]] Result<std::vector<FoundRun>> find_runs(const std::filesystem::path& runs);
 
 }  // namespace fusebench

@@ -101,7 +101,7 @@ RecordedMetrics metrics_of_import(const RunOutput& output, const Recording& reco
   return metrics;
 }
 
-Result<std::string> hash_of(const ImportSpec& spec, const Recording& recording) {
+Result<std::string> hash_of(const ImportSpec& spec, TrajectoryFormat format, const Recording& recording) {
   Fingerprint identity;
   for (const auto& file : {spec.trajectory, spec.mesh}) {
     if (file.empty()) continue;
@@ -109,6 +109,10 @@ Result<std::string> hash_of(const ImportSpec& spec, const Recording& recording) 
   }
   identity.add(recording.fingerprint);
   identity.add(spec.imu);
+  identity.add(to_string(format));
+  const PinholeCamera& camera = recording.rig.camera;
+  identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
+                           camera.cx_px, camera.cy_px));
   return identity.hex();
 }
 
@@ -140,11 +144,12 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   ImportedRun run;
   auto loaded = load_trajectory(spec.trajectory, spec.format, Duplicates::rare_last, run.warnings);
   if (!loaded) return tl::unexpected(loaded.error());
+  const TrajectoryFormat format = loaded->format;
   const auto poses = stamped(std::move(*loaded), *recording);
   if (!poses) return tl::unexpected(poses.error());
   const auto owned = poses_of_frames(*poses, *recording);
   if (!owned) return tl::unexpected(owned.error());
-  const auto hash = hash_of(spec, *recording);
+  const auto hash = hash_of(spec, format, *recording);
   if (!hash) return tl::unexpected(hash.error());
   RunOutput output;
   output.trajectory = owned->poses;
@@ -153,6 +158,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
     const auto mesh = read_mesh(spec.mesh);
     if (!mesh) return tl::unexpected(mesh.error());
     output.mesh = mesh->cast<float>();
+    output.mesh.quality.clear();  // ours is the error of each vertex
   }
 
   RunRecord& record = run.record;

@@ -85,7 +85,11 @@ Result<std::vector<PatchTableFrame>> read_patch_table(const std::filesystem::pat
         if (!frame) return tl::unexpected(frame.error());
         if (!stamp_ns) return tl::unexpected(stamp_ns.error());
         if (auto read = table.numbers(2, v); !read) return read;
-        const auto number = static_cast<std::size_t>(std::max(0.0, *frame));
+        constexpr double kMost = 1e6;  // of numbers of frames, patches and pixels
+        const bool sound = *frame >= 0 && *frame < kMost && v[1] >= 0 &&
+                           std::ranges::all_of(v, [](double value) { return std::abs(value) < kMost; });
+        if (!sound) return table.fail_here("a number beyond any image");
+        const auto number = static_cast<std::size_t>(*frame);
         if (frames.empty() || frames.back().frame != number)
           frames.push_back({number, *stamp_ns, v[0], {}, {}});
         frames.back().pixels.push_back({static_cast<std::uint32_t>(v[1]),
@@ -100,6 +104,14 @@ Result<std::vector<PatchTableFrame>> read_patch_table(const std::filesystem::pat
   for (PatchTableFrame& frame : frames) {
     auto image = read_grey(image_file(folder, frame.frame));
     if (!image) return tl::unexpected(image.error());
+    const auto inside = [&](const PatchTablePixel& p) {
+      return image->contains(p.reference_px.x(), p.reference_px.y()) &&
+             image->contains(static_cast<int>(p.landed_px.x()), static_cast<int>(p.landed_px.y()));
+    };
+    if (!std::ranges::all_of(frame.pixels, inside)) {
+      return fail(ErrorCode::data_corrupt, fmt::format("{}: frame {} has a patch outside its image",
+                                                       (folder / "patches.csv").string(), frame.frame));
+    }
     frame.grey = std::move(*image);
   }
   return frames;

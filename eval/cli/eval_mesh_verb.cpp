@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -141,12 +142,34 @@ Result<void> set_views(const MeshVerbOptions& options, MeshRequest& request) {
   auto views = recorded_views(*recording, {options.depth_range_m[0], options.depth_range_m[1],
                                            culling_of(options.cull), options.cull_every});
   if (!views) return tl::unexpected(views.error());
+  if (views->T_truth_camera.empty()) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: no frame has ground truth", options.recording),
+                "only true poses tell what of the true surface was seen");
+  }
   request.views = std::move(*views);
   return {};
 }
 
+/// The parser takes "nan" for a number within any range.
+Result<void> check_numbers(const MeshVerbOptions& options) {
+  const auto refuse = [](const char* option) {
+    return fail(ErrorCode::usage, fmt::format("{} needs numbers that are finite", option));
+  };
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  if (!std::ranges::all_of(options.thresholds_m, is_finite)) return refuse("--thresholds");
+  if (!std::ranges::all_of(options.depth_range_m, is_finite)) return refuse("--depth-range");
+  if (!is_finite(options.scale.value_or(1))) return refuse("--scale");
+  if (!is_finite(options.colored_max_m.value_or(1))) return refuse("--colored-max");
+  if (!is_finite(options.icp_kept)) return refuse("--icp-kept");
+  if (!is_finite(options.least_observed)) return refuse("--min-observed");
+  if (options.depth_range_m[0] < options.depth_range_m[1]) return {};
+  return fail(ErrorCode::usage, fmt::format("--depth-range {} {}: the nearest depth comes first",
+                                            options.depth_range_m[0], options.depth_range_m[1]));
+}
+
 Result<MeshRequest> request_of(const MeshVerbOptions& options) {
   MeshRequest request;
+  if (auto sound = check_numbers(options); !sound) return tl::unexpected(sound.error());
   const auto sampling = sampling_of(options);
   if (!sampling) return tl::unexpected(sampling.error());
   request.errors = {*sampling, *sampling, options.thresholds_m};
@@ -168,8 +191,13 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   mesh.normals.clear();
   mesh.colors = error_colors(evaluation.vertex_errors_m, largest_m);
   mesh.quality.assign(evaluation.vertex_errors_m.begin(), evaluation.vertex_errors_m.end());
-  const auto written = write_ply(mesh.cast<float>(), options.colored);
-  if (!written) return written;
+  const std::filesystem::path unfinished = options.colored.string() + ".part";
+  if (auto written = write_ply(mesh.cast<float>(), unfinished); !written) return written;
+  std::error_code error;
+  std::filesystem::rename(unfinished, options.colored, error);
+  if (error)
+    return fail(ErrorCode::io,
+                fmt::format("{}: cannot be written: {}", options.colored.string(), error.message()));
   print_progress(
       fmt::format("{}: the reconstruction in the truth's world, dark blue on the true surface to yellow at "
                   "{:g} m from it and beyond",
@@ -284,6 +312,7 @@ Verb add_eval_mesh_verb(CLI::App& eval) {
   verb->add_option("--thresholds", options->thresholds_m,
                    "Distances (metres) below which points count for precision, recall and F")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::PositiveNumber)
       ->type_name("M,M,...")
       ->capture_default_str();

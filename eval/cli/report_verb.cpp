@@ -29,7 +29,7 @@ Result<int> report(const ReportOptions& options) {
   if (!runs) return tl::unexpected(runs.error());
   std::string title = options.title;
   if (title.empty())
-    title = "Results of " + std::filesystem::path(options.runs / "").parent_path().filename().string();
+    title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
   const ResultsPage page = results_page(*runs, title);
   for (const std::string& warning : page.warnings) print_progress("warning: " + warning);
   const std::string html = to_html(page.page);

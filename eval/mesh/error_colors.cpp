@@ -22,7 +22,10 @@ constexpr std::array<std::array<double, 3>, 10> kViridis = {{{68, 1, 84},
                                                              {180, 222, 44},
                                                              {253, 231, 37}}};
 
+constexpr Rgb kUnknown = {170, 170, 170};
+
 Rgb color_at(double share) {
+  if (!std::isfinite(share)) return kUnknown;
   const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kViridis.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(at), kViridis.size() - 2);
   const double part = at - static_cast<double>(below);

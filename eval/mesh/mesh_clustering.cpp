@@ -31,9 +31,11 @@ PreciseMesh clustered(const PreciseMesh& mesh, double cell_m) {
   std::vector<std::uint32_t> cluster_of(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vector3d& v = mesh.vertices[i];
-    const std::array<std::int64_t, 3> cell = {static_cast<std::int64_t>(std::floor(v.x() / cell_m)),
-                                              static_cast<std::int64_t>(std::floor(v.y() / cell_m)),
-                                              static_cast<std::int64_t>(std::floor(v.z() / cell_m))};
+    const auto place = [&](double x) {
+      constexpr double kFarthest = 1e15;  // cells; whatever lies beyond is one
+      return static_cast<std::int64_t>(std::clamp(std::floor(x / cell_m), -kFarthest, kFarthest));
+    };
+    const std::array<std::int64_t, 3> cell = {place(v.x()), place(v.y()), place(v.z())};
     const auto [entry, is_new] = numbers.emplace(cell, static_cast<std::uint32_t>(clusters.size()));
     if (is_new) clusters.emplace_back();
     cluster_of[i] = entry->second;

@@ -31,8 +31,8 @@ bool is_open(const Vector3d& point_truth, const Vector2d& pixel, double depth_m,
       return !truth.blocked(eye, eye + clear * (point_truth - eye));
     }
     case Culling::depth: {
-      const double measured_m = views.depth_m[view](static_cast<int>(std::lround(pixel.x())),
-                                                    static_cast<int>(std::lround(pixel.y())));
+      const double measured_m = views.depth_m[view](static_cast<int>(std::floor(pixel.x() + 0.5)),
+                                                    static_cast<int>(std::floor(pixel.y() + 0.5)));
       return measured_m > 0 && depth_m < measured_m + std::max(kBehind_m, kBehind * measured_m);
     }
   }

@@ -16,7 +16,7 @@ struct RegistrationOptions {
   /// must not pull.
   double kept = 0.9;
   int max_steps = 100;
-  double converged_m = 1e-7;  ///< a step that moves no point further than this is the last
+  double converged_m = 1e-7;  ///< a step that moves the points by less (rms) is the last
 };
 
 struct RegistrationResult {
@@ -33,7 +33,7 @@ struct RegistrationResult {
 /// trimmed iterative closest point algorithm", ICPR 2002, with each point's distance linearised along the
 /// line to its nearest surface point as by Chen and Medioni, 1992).
 ///
-/// Errors: configuration for a share that is not in (0, 1]; data_corrupt for fewer than six points.
+/// Errors: usage for a share that is not in (0, 1]; data_corrupt if fewer than six points are kept.
 [[nodiscard]] Result<RegistrationResult> register_points(std::span<const Vector3d> points,
                                                          const TriangleTree& surface,
                                                          const SE3& T_surface_points,

@@ -25,7 +25,7 @@ constexpr std::array<const char*, 8> kColours = {"#0067a8", "#c8500a", "#00795a"
 std::string gnuplot_text(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
+    if (c == '"' || c == '\\' || c == '`') result += '\\';  // it runs what stands between backticks
     result += c == '\n' ? ' ' : c;
   }
   return result + "\"";
@@ -82,8 +82,7 @@ std::string curve(const Chart& chart, std::size_t i) {
     case SeriesStyle::dots:
       return fmt::format("$series{}{} with points pt 7 ps 0.3 lc rgb '{}' title {}", i, axes, colour, title);
     case SeriesStyle::bars:
-      return fmt::format("$series{}{} with {} lw 1.2 lc rgb '{}' title {}", i, axes,
-                         chart.categories.empty() ? "histeps" : "lines", colour, title);
+      return fmt::format("$series{}{} with histeps lw 1.2 lc rgb '{}' title {}", i, axes, colour, title);
     case SeriesStyle::boxes: {
       const std::string places = box_places(chart, i);
       return fmt::format(
@@ -136,7 +135,9 @@ std::string slug(std::string_view text) {
 }
 
 Result<void> run_gnuplot(const std::filesystem::path& script) {
-  auto child = ChildProcess::start({"/usr/bin/env", "gnuplot", script.string()});
+  // Within the folder, so that the script draws there again for whoever edits it.
+  auto child = ChildProcess::start(
+      {"/usr/bin/env", "-C", script.parent_path().string(), "gnuplot", script.filename().string()});
   if (!child) return tl::unexpected(child.error());
   std::optional<ChildEnd> end;
   while (!(end = child->poll())) std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -177,22 +178,28 @@ std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFo
 Result<std::size_t> write_figures(const Page& page, const std::filesystem::path& folder,
                                   FigureFormat format) {
   std::string part;
-  std::size_t count = 0;
+  std::set<std::string> names;
   for (const PageSection& section : page.sections) {
     if (section.level == 2) part = slug(section.title);
     const auto* charts = std::get_if<std::vector<Chart>>(&section.content);
     if (charts == nullptr) continue;
     for (const Chart& chart : *charts) {
-      const std::string name = part + "-" + slug(chart.title);
+      std::string name = part + "-" + slug(chart.title);
+      for (int copy = 2; !names.insert(name).second; ++copy)
+        name = fmt::format("{}-{}-{}", part, slug(chart.title), copy);
       const auto figure = folder / (name + (format == FigureFormat::pdf ? ".pdf" : ".svg"));
       const auto script = folder / (name + ".gp");
-      if (auto written = write_text_file(script, gnuplot_script(chart, figure.string(), format)); !written)
+      if (auto written = write_text_file(script, gnuplot_script(chart, figure.filename().string(), format));
+          !written)
         return tl::unexpected(written.error());
-      if (auto drawn = run_gnuplot(script); !drawn) return tl::unexpected(drawn.error());
-      ++count;
+      if (auto drawn = run_gnuplot(script); !drawn) {
+        std::error_code ignored;
+        std::filesystem::remove(figure, ignored);  // half of it is worth nothing
+        return tl::unexpected(drawn.error());
+      }
     }
   }
-  return count;
+  return names.size();
 }
 
 }  // namespace fusebench

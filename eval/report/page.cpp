@@ -126,12 +126,15 @@ Json json_of(const PageScene& scene) {
           {"up", scene.up}};
 }
 
-/// JSON that cannot end the script element that holds it.
+/// JSON that can neither end the script element that holds it nor begin another one.
 std::string script_safe(const Json& json) {
   std::string safe;
   for (const char c : json_text(json, -1)) {
-    if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
-    safe += c;
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
   }
   return safe;
 }

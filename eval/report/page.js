@@ -144,9 +144,11 @@ function draw() {
       options: {
         animation: false,
         maintainAspectRatio: false,
-        parsing: bars ? undefined : false,
-        normalized: !bars,
-        interaction: { mode: "nearest", axis: "x", intersect: false },
+        // Points of a view are in no order of x.
+        parsing: bars || chart.equal ? undefined : false,
+        normalized: !bars && !chart.equal,
+        interaction: { mode: "nearest", axis: chart.equal ? "xy" : "x", intersect: false },
+        onResize: chart.equal ? (resized) => setTimeout(() => { if (resized.ctx) equalise(resized); }) : undefined,
         plugins: {
           legend: { labels: { color: colour("--text"), boxWidth: 14, boxHeight: 3 } },
           tooltip: { callbacks: bars ? {} : { title: (items) => chart.x + ": " + items[0].parsed.x } },

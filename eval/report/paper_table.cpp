@@ -58,18 +58,21 @@ void add_here(const PublishedTable& published, const std::vector<FoundRun>& runs
               const std::set<std::string>& names, PaperRow& row) {
   std::vector<std::optional<double>> common;
   std::set<std::string> data;
+  std::set<std::string> fingerprints;
   for (const std::string& variant : published.variants) {
     const Place place = place_of(runs, table, names, variant);
     row.here.push_back(place.run ? published.value->of(place.run->record) : std::nullopt);
     common.push_back(place.row ? place.row->aie_common_grey : std::nullopt);
     if (!place.run) continue;
     const RecordedRecording& recording = place.run->record.recording;
+    fingerprints.insert(recording.fingerprint);
     const std::string imu = recording.imu == "synthetic IMU" ? ", synthetic IMU" : "";
     data.insert(fmt::format("{}{}, {} frames", data_cell(words_of(recording)), imu, recording.frames));
   }
   for (const std::string& words : data) row.data += (row.data.empty() ? "" : "; ") + words;
   if (!published.ratio) return;
   row.published_ratio = ratio_of(row.published);
+  if (fingerprints.size() > 1) return;  // of different data, there is no ratio
   row.here_ratio = ratio_of(row.here);
   row.common_ratio = ratio_of(common);
 }

@@ -46,7 +46,7 @@ TableRow row_of(const FoundRun& run) {
   row.tracked = record.frames.tracked;
   row.total = record.frames.total;
   row.vertices = record.model.vertices;
-  row.fps = record.timing.fps;
+  if (record.timing.fps > 0) row.fps = record.timing.fps;
   return row;
 }
 
@@ -54,7 +54,8 @@ TableRow row_of(const FoundRun& run) {
 void add_common_pixels(const std::vector<FoundRun>& runs, ResultTable& table) {
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].record.status != RunStatus::ok) continue;
+    // An imported run says nothing of intensities.
+    if (runs[i].record.status != RunStatus::ok || !runs[i].record.metrics.aie.value) continue;
     groups[{runs[i].record.recording.name, runs[i].record.recording.fingerprint}].push_back(i);
   }
   for (const auto& [recording, members] : groups) {

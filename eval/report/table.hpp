@@ -48,7 +48,7 @@ struct TableRow : TableValues {
   std::size_t tracked = 0;
   std::size_t total = 0;
   std::size_t vertices = 0;
-  double fps = 0;
+  std::optional<double> fps;
 };
 
 /// Of the runs of a variant on data of one kind.

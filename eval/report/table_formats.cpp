@@ -48,7 +48,7 @@ Cells shown_cells(const ResultTable& table, const TableRow& row) {
                  std::string(to_string(row.status))};
   add_values(row, cells);
   cells.insert(cells.end(), {fmt::format("{}/{}", row.tracked, row.total), fmt::format("{}", row.vertices),
-                             row.fps > 0 ? fmt::format("{:.1f}", row.fps) : "-"});
+                             shown(row.fps, 1, 1)});
   return cells;
 }
 
@@ -109,8 +109,8 @@ std::string latex(const ResultTable& table) {
 }
 
 std::string csv_identity(const TableRow& row) {
-  return fmt::format("{},{},{},{},{},{},{}", csv_cell(row.recording), row.data, csv_cell(row.imu),
-                     csv_cell(row.truth), csv_cell(row.variant), row.run, to_string(row.status));
+  return fmt::format("{},{},{},{},{},{},{}", csv_cell(row.recording), csv_cell(row.data), csv_cell(row.imu),
+                     csv_cell(row.truth), csv_cell(row.variant), csv_cell(row.run), to_string(row.status));
 }
 
 std::string csv(const ResultTable& table) {
@@ -121,7 +121,8 @@ std::string csv(const ResultTable& table) {
     text += fmt::format("{},{}", csv_identity(row), csv_cell(row.reason));
     for (const TableColumn& column : table_columns())
       text += row.*column.value ? fmt::format(",{}", *(row.*column.value)) : ",";
-    text += fmt::format(",{},{},{},{}\n", row.tracked, row.total, row.vertices, row.fps);
+    text += fmt::format(",{},{},{},{}\n", row.tracked, row.total, row.vertices,
+                        row.fps ? fmt::format("{}", *row.fps) : "");
   }
   return text;
 }
@@ -138,7 +139,7 @@ std::string csv_long(const ResultTable& table) {
     add("tracked", "frames", static_cast<double>(row.tracked));
     add("total", "frames", static_cast<double>(row.total));
     add("vertices", "", static_cast<double>(row.vertices));
-    add("fps", "1/s", row.fps);
+    if (row.fps) add("fps", "1/s", *row.fps);
   }
   return text;
 }
@@ -162,8 +163,10 @@ std::string json(const ResultTable& table) {
                  {"status", to_string(row.status)},
                  {"reason", row.reason}};
     json.update(json_of(row));
-    json.update(
-        Json{{"tracked", row.tracked}, {"total", row.total}, {"vertices", row.vertices}, {"fps", row.fps}});
+    json.update(Json{{"tracked", row.tracked},
+                     {"total", row.total},
+                     {"vertices", row.vertices},
+                     {"fps", row.fps ? Json(*row.fps) : Json(nullptr)}});
     rows.push_back(std::move(json));
   }
   Json means = Json::array();

@@ -30,6 +30,10 @@ TEST_F(ObjFile, NamesWhatIsWrong) {
   EXPECT_NE(refusal("v 0 0 0\nv 1 0\n").find("mesh.obj:2: a vertex of 2 numbers"), std::string::npos);
   EXPECT_NE(refusal("v 0 0 0\nv 1 x 0\n").find("mesh.obj:2"), std::string::npos);
   EXPECT_NE(refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n").find("vertex 9 of 3"), std::string::npos);
+  EXPECT_NE(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 9 4\n").find("vertex 9 of 4"),
+            std::string::npos);
+  EXPECT_NE(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nf 1 2 3 9 5\n").find("vertex 9 of 5"),
+            std::string::npos);
   EXPECT_EQ(read_obj(folder_ / "none.obj").error().code, ErrorCode::data_missing);
   const auto other = read_mesh(write("mesh.stl", ""));
   EXPECT_EQ(other.error().code, ErrorCode::usage);

@@ -209,6 +209,20 @@ TEST_F(TableTest, DamagedDifferencesCostOnlyTheCommonColumn) {
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("intensity.bin"), std::string::npos);
 }
 
+TEST_F(TableTest, AnImportedRunLeavesTheCommonPixelsOfOursAlone) {
+  add_three_runs();
+  RunRecord imported = *read_record(folder_ / "runs/fr1_rpy/full/01234567/record.json");
+  imported.variant = "Other";
+  imported.metrics.aie = {std::nullopt, "says nothing of intensities"};
+  imported.config.clear();
+  write("runs/fr1_rpy/Other/01234567/record.json", to_json(imported));
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_EQ(table->rows.size(), 4U);
+  EXPECT_EQ(table->rows[3].variant, "Other");
+  EXPECT_DOUBLE_EQ(*table->rows[0].aie_common_grey, 2.0);
+  EXPECT_FALSE(table->rows[3].fps.has_value());
+}
+
 TEST_F(TableTest, UnfinishedRunsAreNotRead) {
   add_three_runs();
   write("runs/fr1_rpy/full/.01234567.99.tmp/record.json", "half");

@@ -20,7 +20,28 @@ except ImportError as missing:
     sys.exit(77)
 
 DRIVER = "/usr/bin/chromedriver"
-# A canvas that was drawn on has more than one colour.
+# How many pixels of a chart have the colour of a series, about: axes and texts are grey.
+SERIES = """
+const canvas = document.createElement("canvas");
+canvas.width = arguments[0].width;
+canvas.height = arguments[0].height;
+const context = canvas.getContext("2d", { willReadFrequently: true });
+context.drawImage(arguments[0], 0, 0);
+// Without the legend, which shows the colours as well. "drawn" is what the page has drawn.
+const area = drawn[Number(arguments[0].id.slice("chart-".length))].chartArea;
+const scale = canvas.width / arguments[0].clientWidth;
+const pixels = context.getImageData(scale * area.left, scale * area.top, scale * area.width, scale * area.height).data;
+const style = getComputedStyle(document.documentElement);
+const colours = [0, 1, 2, 3, 4, 5, 6].map((i) => style.getPropertyValue("--series-" + i).trim())
+  .map((text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16)));
+let count = 0;
+for (let i = 0; i < pixels.length; i += 4) {
+  if (pixels[i + 3] < 100) continue;
+  if (colours.some((c) => c.every((value, k) => Math.abs(value - pixels[i + k]) < 40))) ++count;
+}
+return count;
+"""
+# A view that shows a mesh has more than one colour.
 DRAWN = """
 const canvas = document.createElement("canvas");
 canvas.width = arguments[0].width;
@@ -72,7 +93,7 @@ class Reader:
         canvases = self.driver.find_elements(By.CSS_SELECTOR, ".canvas canvas")
         for canvas in canvases:
             self.show(canvas)
-            if self.driver.execute_script(DRAWN, canvas) < 4:
+            if self.driver.execute_script(SERIES, canvas) < 8:
                 self.complain(f"{scheme}: nothing is drawn: {canvas.get_attribute('aria-label')}")
         return len(canvases)
 
@@ -109,7 +130,7 @@ class Reader:
         for details in self.driver.find_elements(By.CSS_SELECTOR, "details"):
             self.show(details)
             details.find_element(By.CSS_SELECTOR, "summary").click()
-            if not details.find_elements(By.CSS_SELECTOR, "tr"):
+            if details.get_attribute("open") is None or not details.find_elements(By.CSS_SELECTOR, "tr"):
                 self.complain("folded away is nothing: " + details.text)
 
     def follow_links(self):

@@ -43,11 +43,18 @@ Detail detail_for(std::size_t runs) {
 /// The runs of one recording.
 using Group = std::span<const FoundRun>;
 
+/// A run that failed before it knew the recording's content has no fingerprint.
+bool is_same_recording(const RecordedRecording& a, const RecordedRecording& b) {
+  if (a.name != b.name) return false;
+  return a.fingerprint == b.fingerprint || a.fingerprint.empty() || b.fingerprint.empty();
+}
+
 std::vector<Group> groups_of(const std::vector<FoundRun>& runs) {
   std::vector<Group> groups;
   for (std::size_t begin = 0; begin < runs.size();) {
-    std::size_t end = begin;
-    while (end < runs.size() && runs[end].record.recording.name == runs[begin].record.recording.name) ++end;
+    std::size_t end = begin + 1;
+    while (end < runs.size() && is_same_recording(runs[end - 1].record.recording, runs[end].record.recording))
+      ++end;
     groups.emplace_back(runs.data() + begin, end - begin);
     begin = end;
   }
@@ -131,19 +138,21 @@ void look_at_most(PageScene& scene) {
   scene.radius_m = 0.5 * (high - low).norm();
 }
 
-PageScene scene_of(Group group, std::size_t triangles, std::vector<std::string>& warnings) {
+PageScene scene_of(std::span<const RunSeries> runs, std::size_t triangles,
+                   std::vector<std::string>& warnings) {
   PageScene scene;
   scene.largest_error_m = kLargestError_m;
-  scene.up = {0, -1, 0};  // the world is the first camera, whose y points down
-  for (const FoundRun& run : group) {
-    const auto file = run.folder / "mesh.ply";
+  scene.up = {0, -1, 0};  // of the first camera, whose y points down
+  for (const RunSeries& run : runs) {
+    const auto file = run.run->folder / "mesh.ply";
     if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
     const auto mesh = read_ply(file);
     if (!mesh) warnings.push_back(mesh.error().message);
     if (!mesh || mesh->triangles.empty()) continue;
-    SceneMesh shown{label_of(run, group), reduced(*mesh, triangles), {}};
+    SceneMesh shown{run.label, reduced(*mesh, triangles), {}};
+    for (Vector3d& vertex : shown.mesh.vertices) vertex = run.T_first_world * vertex;
     if (shown.mesh.colors.empty()) shown.mesh.colors.assign(shown.mesh.vertices.size(), Rgb{170, 170, 170});
-    if (!shown.mesh.quality.empty()) {
+    if (run.run->record.metrics.mesh.value && !shown.mesh.quality.empty()) {
       const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());
       shown.error_colors = error_colors(errors_m, kLargestError_m);
     }
@@ -163,15 +172,21 @@ PageDetails configuration_of(const FoundRun& run, Group group) {
                       {}};
   details.table.header = {"key", "value", "from"};
   const RecordedProvenance& p = r.provenance;
-  for (const auto& [key, value] :
-       {std::pair{"version", p.version}, std::pair{"git", p.git}, std::pair{"compiler", p.compiler},
-        std::pair{"flags", p.flags}, std::pair{"cpu", p.cpu},
-        std::pair{"threads", fmt::format("{}", p.threads)},
-        std::pair{"recording's fingerprint", r.recording.fingerprint},
-        std::pair{"peak memory",
-                  fmt::format("{:.0f} MB", static_cast<double>(r.timing.peak_rss_bytes) / 1e6)},
-        std::pair{"wall and CPU time", fmt::format("{:.1f} s, {:.1f} s", r.timing.wall_s, r.timing.cpu_s)}})
-    details.table.rows.push_back({{key, value, "the run"}, ""});
+  const bool imported = r.timing.stages_ms.empty();  // then it ran elsewhere, and was evaluated here
+  const auto add = [&](const char* key, std::string value) {
+    details.table.rows.push_back({{key, std::move(value), imported ? "the import" : "the run"}, ""});
+  };
+  add("version", p.version);
+  add("git", p.git);
+  add("compiler", p.compiler);
+  add("flags", p.flags);
+  add("cpu", p.cpu);
+  add("threads", fmt::format("{}", p.threads));
+  add("recording's fingerprint", r.recording.fingerprint);
+  if (!imported) {
+    add("peak memory", fmt::format("{:.0f} MB", static_cast<double>(r.timing.peak_rss_bytes) / 1e6));
+    add("wall and CPU time", fmt::format("{:.1f} s, {:.1f} s", r.timing.wall_s, r.timing.cpu_s));
+  }
   for (const RecordedOption& option : r.config)
     details.table.rows.push_back({{option.key, value_text(option.value), option.origin}, ""});
   for (const std::string& note : r.recording.notes)
@@ -202,7 +217,7 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
   if (PatchPictures pictures = pictures_of(group, result.warnings); !pictures.images.empty())
     page.sections.push_back({"Patches", pictures.text, std::move(pictures.images), 3});
-  if (PageScene scene = scene_of(group, detail.triangles, result.warnings); !scene.meshes.empty()) {
+  if (PageScene scene = scene_of(series, detail.triangles, result.warnings); !scene.meshes.empty()) {
     page.sections.push_back(
         {"Models", "Simplified for this page; mesh.ply of each run has all triangles.", std::move(scene), 3});
   }

@@ -231,11 +231,13 @@ Chart segment_boxes(std::span<const RunSeries> runs) {
       "translation error [% of the length]",
       "Boxes from the lower to the upper quartile with the median; whiskers to the extremes. Lengths are "
       "10 to 50 % of the true path (rpg_trajectory_evaluation).");
+  const RunSeries* const known = with_truth(runs);
+  const std::vector<double> lengths = known != nullptr ? rpg_lengths(known->truth) : std::vector<double>();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const TrajectoryPair pair = pair_of(runs[i]);
     if (pair.size() < 2) continue;
     ChartSeries series{runs[i].label, {}, SeriesStyle::boxes, false, colour_of(i)};
-    for (const double length_m : rpg_lengths(runs[i].truth)) {
+    for (const double length_m : lengths) {
       if (!(length_m > 0)) continue;
       const IndexPairs segments = rpg_motions(pair.reference, length_m, /*as_published=*/false);
       if (segments.empty()) continue;

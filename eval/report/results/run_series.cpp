@@ -57,6 +57,7 @@ RunSeries series_of(const FoundRun& run, std::string label) {
   }
   series.truth = trajectory_of(run.folder / "truth.tum", series.warnings);
   const Trajectory estimate = trajectory_of(run.folder / "trajectory.tum", series.warnings);
+  if (!estimate.empty()) series.T_first_world = estimate.front().T_world_camera.inverse();
   if (!series.frames.empty()) {
     series.start_ns = series.frames.front().timestamp_ns;
   } else if (!series.truth.empty() || !estimate.empty()) {

@@ -27,7 +27,8 @@ struct RunSeries {
   std::vector<FrameTableRow> frames;  ///< none of an imported run
   std::int64_t start_ns = 0;          ///< of the first frame, or the first pose that is known
   std::vector<ComparedPose> poses;
-  Trajectory truth;  ///< empty: not known
+  Trajectory truth;   ///< empty: not known
+  SE3 T_first_world;  ///< the first pose of the estimate, in whose frame models are shown
   std::vector<std::string> warnings;
 
   [[nodiscard]] double time_s(std::int64_t timestamp_ns) const {

@@ -61,6 +61,18 @@ TEST(TriangleTree, EqualsASearchThroughAllTriangles) {
   }
 }
 
+TEST(TriangleTree, IsTheSameHoweverManyThreadsBuiltIt) {
+  const PreciseMesh mesh = testing::sphere(1, 100);  // more triangles than one thread takes
+  const TriangleTree one(mesh, Workers(1));
+  const TriangleTree three(mesh, Workers(3));
+  std::mt19937_64 random(6);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d point = random_point(random, 1.5);
+    EXPECT_EQ(one.nearest(point).place, three.nearest(point).place);
+    EXPECT_EQ(one.nearest(point).squared_m2, three.nearest(point).squared_m2);
+  }
+}
+
 TEST(TriangleTree, RegionsOfOneTriangle) {
   const std::array<Vector3d, 3> t = {Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(0, 1, 0)};
   EXPECT_DOUBLE_EQ(squared_distance_to_triangle({0.5, 0.25, -3}, t), 9);  // inside, from below
