@@ -10,6 +10,7 @@
 
 #include "core/nearest_name.hpp"
 #include "core/toml_document.hpp"
+#include "core/toml_values.hpp"
 
 namespace fusebench {
 
@@ -20,44 +21,34 @@ namespace {
 constexpr std::string_view kRecording = "recording";
 constexpr std::string_view kCalibration = "calibration";
 
-tl::unexpected<Error> wrong(const TomlEntry& entry, std::string_view expected) {
-  return fail(ErrorCode::configuration, fmt::format("{}: {} must be {}", entry.place, entry.key, expected));
-}
-
-template <class T>
-const T* plain(const TomlEntry& entry) {
-  const auto* value = std::get_if<OptionValue>(&entry.value);
-  return value == nullptr ? nullptr : std::get_if<T>(value);
-}
-
 Result<void> read_text(const TomlEntry& entry, std::string& text) {
-  const auto* value = plain<std::string>(entry);
-  if (value == nullptr || value->empty()) return wrong(entry, "a text that is not empty");
+  const auto* value = plain_value<std::string>(entry);
+  if (value == nullptr || value->empty()) return wrong_value(entry, "a text that is not empty");
   text = *value;
   return {};
 }
 
 Result<void> read_texts(const TomlEntry& entry, std::vector<std::string>& texts) {
   const auto* list = std::get_if<TomlList>(&entry.value);
-  if (list == nullptr || list->empty()) return wrong(entry, "a list of texts that is not empty");
+  if (list == nullptr || list->empty()) return wrong_value(entry, "a list of texts that is not empty");
   for (const OptionValue& value : *list) {
     const auto* text = std::get_if<std::string>(&value);
-    if (text == nullptr || text->empty()) return wrong(entry, "a list of texts");
+    if (text == nullptr || text->empty()) return wrong_value(entry, "a list of texts");
     texts.push_back(*text);
   }
   return {};
 }
 
 Result<void> read_count(const TomlEntry& entry, std::optional<std::int64_t>& count) {
-  const auto* value = plain<std::int64_t>(entry);
-  if (value == nullptr || *value < 1) return wrong(entry, "a positive integer");
+  const auto* value = plain_value<std::int64_t>(entry);
+  if (value == nullptr || *value < 1) return wrong_value(entry, "a positive integer");
   count = *value;
   return {};
 }
 
 Result<void> read_duration(const TomlEntry& entry, std::optional<double>& duration) {
-  const auto* value = plain<double>(entry);
-  if (value == nullptr || !(*value > 0)) return wrong(entry, "a positive number of seconds");
+  const auto* value = plain_value<double>(entry);
+  if (value == nullptr || !(*value > 0)) return wrong_value(entry, "a positive number of seconds");
   duration = *value;
   return {};
 }
@@ -66,7 +57,7 @@ Result<void> read_digest(const TomlEntry& entry, std::string& digest) {
   if (auto text = read_text(entry, digest); !text) return text;
   const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
   if (digest.size() != 64 || !std::ranges::all_of(digest, is_hex)) {
-    return wrong(entry, "64 lower-case hexadecimal digits");
+    return wrong_value(entry, "64 lower-case hexadecimal digits");
   }
   return {};
 }
@@ -74,14 +65,14 @@ Result<void> read_digest(const TomlEntry& entry, std::string& digest) {
 Result<void> read_format(const TomlEntry& entry, std::string& format) {
   if (auto text = read_text(entry, format); !text) return text;
   if (format != "tum" && format != "icl" && format != "zr300" && format != "eth3d") {
-    return wrong(entry, "\"tum\", \"icl\", \"zr300\" or \"eth3d\"");
+    return wrong_value(entry, "\"tum\", \"icl\", \"zr300\" or \"eth3d\"");
   }
   return {};
 }
 
 Result<void> read_kind(const TomlEntry& entry) {
-  const auto* kind = plain<std::string>(entry);
-  if (kind == nullptr || *kind != kRecording) return wrong(entry, "\"recording\"");
+  const auto* kind = plain_value<std::string>(entry);
+  if (kind == nullptr || *kind != kRecording) return wrong_value(entry, "\"recording\"");
   return {};
 }
 
@@ -149,7 +140,7 @@ struct Catalogue {
 std::string_view text_of(const TomlDocument& document, std::string_view key) {
   for (const TomlEntry& entry : document.entries) {
     if (entry.key != key) continue;
-    const auto* text = plain<std::string>(entry);
+    const auto* text = plain_value<std::string>(entry);
     return text == nullptr ? std::string_view() : *text;
   }
   return {};

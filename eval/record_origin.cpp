@@ -1,8 +1,8 @@
 #include "eval/record_origin.hpp"
 
-#include "core/trajectory.hpp"
 #include "eval/build_info.hpp"
 #include "eval/process_meter.hpp"
+#include "eval/true_camera.hpp"
 
 namespace fusebench {
 
@@ -62,10 +62,9 @@ std::vector<StampAndInstant> frame_stamps(const Recording& recording) {
 }
 
 Trajectory true_trajectory(const Recording& recording, std::span<const StampAndInstant> stamps) {
-  constexpr std::int64_t kMaxGap_ns = 100'000'000;
   Trajectory truth;
   for (const auto& [stamp_ns, instant_ns] : stamps) {
-    const auto pose = interpolate_pose(recording.ground_truth, instant_ns, kMaxGap_ns);
+    const auto pose = true_camera(recording, instant_ns);
     if (pose) truth.push_back({stamp_ns, *pose});
   }
   return truth;

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "core/ply_file.hpp"
-#include "core/trajectory.hpp"
 #include "core/variants.hpp"
 #include "eval/pose_alignment.hpp"
 #include "eval/recording_views.hpp"
+#include "eval/true_camera.hpp"
 
 namespace fusebench {
 
@@ -60,7 +60,6 @@ RecordedNees nees_of(const RunOutput& output, const Recording& recording, const 
   return nees;
 }
 
-constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
 constexpr std::size_t kReconstructionSamples = 50'000;
 constexpr std::size_t kTruthSamples = 200'000;  // of the whole scene, of which a run may see a corner
 
@@ -73,8 +72,7 @@ struct KnownCameras {
 KnownCameras known_cameras(const RunOutput& output, const Recording& recording) {
   KnownCameras cameras;
   for (std::size_t i = 0; i < output.trajectory.size(); ++i) {
-    const auto pose =
-        interpolate_pose(recording.ground_truth, output.states[i].timestamp_ns, kMaxTruthGap_ns);
+    const auto pose = true_camera(recording, output.states[i].timestamp_ns);
     if (!pose) continue;
     cameras.reference.push_back(*pose);
     cameras.estimate.push_back(output.trajectory[i].T_world_camera);

@@ -79,10 +79,6 @@ void add_here(const PublishedTable& published, const std::vector<FoundRun>& runs
 
 bool has_common_ratio(const PublishedTable& table) { return table.ratio && table.value->name == "aie_grey"; }
 
-std::string shown(const std::optional<double>& value, double factor, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value * factor, decimals) : "-";
-}
-
 TableCells heading_of(const PublishedTable& table) {
   TableCells cells = {"group", "recording", "run here on"};
   for (const std::string& system : table.systems) cells.push_back(system + " (published)");
@@ -96,11 +92,13 @@ TableCells heading_of(const PublishedTable& table) {
 TableCells cells_of(const PublishedTable& table, const PaperRow& row) {
   const StudyValue& value = *table.value;
   TableCells cells = {row.group, row.label, row.data.empty() ? "not run" : row.data};
-  for (const auto& number : row.published) cells.push_back(shown(number, value.shown_factor, value.decimals));
-  if (table.ratio) cells.push_back(shown(row.published_ratio, 1, 2));
-  for (const auto& number : row.here) cells.push_back(shown(number, value.shown_factor, value.decimals));
-  if (table.ratio) cells.push_back(shown(row.here_ratio, 1, 2));
-  if (has_common_ratio(table)) cells.push_back(shown(row.common_ratio, 1, 2));
+  for (const auto& number : row.published)
+    cells.push_back(number_cell(number, value.shown_factor, value.decimals));
+  if (table.ratio) cells.push_back(number_cell(row.published_ratio, 1, 2));
+  for (const auto& number : row.here)
+    cells.push_back(number_cell(number, value.shown_factor, value.decimals));
+  if (table.ratio) cells.push_back(number_cell(row.here_ratio, 1, 2));
+  if (has_common_ratio(table)) cells.push_back(number_cell(row.common_ratio, 1, 2));
   return cells;
 }
 

@@ -8,6 +8,10 @@
 
 namespace fusebench {
 
+std::string number_cell(const std::optional<double>& value, double factor, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value * factor, decimals) : "-";
+}
+
 std::string markdown_table(const std::vector<TableCells>& lines, std::size_t text_columns) {
   std::vector<TableCells> escaped = lines;
   std::vector<std::size_t> widths(lines.front().size(), 3);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,9 @@
 namespace fusebench {
 
 using TableCells = std::vector<std::string>;
+
+/// With so many decimals, times a factor; "-" of what does not exist.
+[[nodiscard]] std::string number_cell(const std::optional<double>& value, double factor, int decimals);
 
 /// The first line is the heading; `text_columns` columns are left-aligned, the others right-aligned. Columns
 /// are as wide as their longest cell, so that a terminal shows a table, too.

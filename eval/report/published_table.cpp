@@ -6,42 +6,33 @@
 #include <variant>
 
 #include "core/toml_document.hpp"
+#include "core/toml_values.hpp"
 
 namespace fusebench {
 
 namespace {
 
-tl::unexpected<Error> wrong(const TomlEntry& entry, std::string_view expected) {
-  return fail(ErrorCode::configuration, fmt::format("{}: {} must be {}", entry.place, entry.key, expected));
-}
-
-template <class T>
-const T* plain(const TomlEntry& entry) {
-  const auto* value = std::get_if<OptionValue>(&entry.value);
-  return value == nullptr ? nullptr : std::get_if<T>(value);
-}
-
 Result<void> read_text(const TomlEntry& entry, std::string& text) {
-  const auto* value = plain<std::string>(entry);
-  if (value == nullptr) return wrong(entry, "a text");
+  const auto* value = plain_value<std::string>(entry);
+  if (value == nullptr) return wrong_value(entry, "a text");
   text = *value;
   return {};
 }
 
 Result<void> read_flag(const TomlEntry& entry, bool& flag) {
-  const auto* value = plain<bool>(entry);
-  if (value == nullptr) return wrong(entry, "true or false");
+  const auto* value = plain_value<bool>(entry);
+  if (value == nullptr) return wrong_value(entry, "true or false");
   flag = *value;
   return {};
 }
 
 Result<void> read_texts(const TomlEntry& entry, std::vector<std::string>& texts) {
   const auto* list = std::get_if<TomlList>(&entry.value);
-  if (list == nullptr || list->empty()) return wrong(entry, "a list of texts");
+  if (list == nullptr || list->empty()) return wrong_value(entry, "a list of texts");
   texts.clear();
   for (const OptionValue& value : *list) {
     const auto* text = std::get_if<std::string>(&value);
-    if (text == nullptr) return wrong(entry, "a list of texts");
+    if (text == nullptr) return wrong_value(entry, "a list of texts");
     texts.push_back(*text);
   }
   return {};
@@ -50,7 +41,7 @@ Result<void> read_texts(const TomlEntry& entry, std::vector<std::string>& texts)
 /// Numbers; an empty text stands for one that is not given.
 Result<void> read_numbers(const TomlEntry& entry, std::vector<std::optional<double>>& numbers) {
   const auto* list = std::get_if<TomlList>(&entry.value);
-  if (list == nullptr) return wrong(entry, "a list of numbers");
+  if (list == nullptr) return wrong_value(entry, "a list of numbers");
   for (const OptionValue& value : *list) {
     if (const auto* number = std::get_if<double>(&value)) {
       numbers.emplace_back(*number);
@@ -59,7 +50,7 @@ Result<void> read_numbers(const TomlEntry& entry, std::vector<std::optional<doub
     } else if (const auto* text = std::get_if<std::string>(&value); text != nullptr && text->empty()) {
       numbers.emplace_back(std::nullopt);
     } else {
-      return wrong(entry, "a list of numbers, or \"\" where there is none");
+      return wrong_value(entry, "a list of numbers, or \"\" where there is none");
     }
   }
   return {};
@@ -70,7 +61,7 @@ Result<void> read_value(const TomlEntry& entry, const StudyValue*& value) {
   if (auto read = read_text(entry, name); !read) return read;
   value = find_study_value(name);
   if (value == nullptr || value->of == nullptr)
-    return wrong(entry, fmt::format("a value of runs, such as ate_rmse_m (is '{}')", name));
+    return wrong_value(entry, fmt::format("a value of runs, such as ate_rmse_m (is '{}')", name));
   return {};
 }
 

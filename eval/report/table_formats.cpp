@@ -19,10 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextColumns = 5;  // recording, data, IMU, variant, status: left-aligned
 
-std::string shown(const std::optional<double>& value, double factor, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value * factor, decimals) : "-";
-}
-
 Cells header_cells() {
   Cells cells = {"recording", "data", "IMU", "variant", "status"};
   for (const TableColumn& column : table_columns()) cells.emplace_back(column.heading);
@@ -32,7 +28,7 @@ Cells header_cells() {
 
 void add_values(const TableValues& values, Cells& cells) {
   for (const TableColumn& column : table_columns())
-    cells.push_back(shown(values.*column.value, column.shown_factor, column.decimals));
+    cells.push_back(number_cell(values.*column.value, column.shown_factor, column.decimals));
 }
 
 /// The run's name is shown only where the same variant occurs twice.
@@ -48,7 +44,7 @@ Cells shown_cells(const ResultTable& table, const TableRow& row) {
                  std::string(to_string(row.status))};
   add_values(row, cells);
   cells.insert(cells.end(), {fmt::format("{}/{}", row.tracked, row.total), fmt::format("{}", row.vertices),
-                             shown(row.fps, 1, 1)});
+                             number_cell(row.fps, 1, 1)});
   return cells;
 }
 
