@@ -138,7 +138,9 @@ Result<ConsistencyResult> consistency(std::span<const StampedState> truth,
     for (NeesResult& part : result) {
       ++part.possible;
       const auto squared = normalised_error_squared(error, at.estimate.covariance, part.part);
-      if (squared) part.nees_per_dof.push_back(*squared / part.part.dof);
+      if (!squared) continue;
+      part.nees_per_dof.push_back(*squared / part.part.dof);
+      part.at_ns.push_back(at.timestamp_ns);
     }
   }
   if (result[0].possible == 0) {

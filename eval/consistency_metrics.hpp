@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -55,6 +56,7 @@ inline constexpr std::array<StatePart, 6> kStateParts = {{{"orientation", kRotat
 struct NeesResult {
   StatePart part;
   std::vector<double> nees_per_dof;  ///< in order of time
+  std::vector<std::int64_t> at_ns;   ///< of each
   std::size_t possible = 0;          ///< estimates with a truth around them
   Statistics stats;                  ///< of nees_per_dof; count is the number of frames
   double last = std::numeric_limits<double>::quiet_NaN();

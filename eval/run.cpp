@@ -15,6 +15,7 @@
 #include "eval/frame_source.hpp"
 #include "eval/frame_table.hpp"
 #include "eval/intensity_file.hpp"
+#include "eval/nees_table.hpp"
 #include "eval/patch_table.hpp"
 #include "eval/process_meter.hpp"
 #include "eval/record_origin.hpp"
@@ -254,11 +255,12 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
     return tl::unexpected(written.error());
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);
-  const std::array<std::pair<std::string_view, std::string>, 6> texts = {
+  const std::array<std::pair<std::string_view, std::string>, 7> texts = {
       {{"trajectory.tum", tum_text(progress->output.trajectory)},
        {"truth.tum", tum_text(true_trajectory(run.recording, frame_stamps(run.recording)))},
        {"frames.csv", progress->frame_table},
        {"states.csv", progress->state_table},
+       {"nees.csv", nees_table(record.metrics.nees)},
        {"log.txt", progress->log},
        {"record.json", to_json(record)}}};
   for (const auto& [name, text] : texts) {

@@ -38,7 +38,7 @@ struct MeshVerbOptions {
   std::string align = "none";
   std::filesystem::path transform;
   std::vector<std::filesystem::path> trajectories;  ///< reference and estimate
-  double icp_kept = RegistrationOptions{}.kept;
+  std::optional<double> icp_kept;
   std::optional<double> scale;
   std::vector<double> thresholds_m = MeshErrorOptions{}.thresholds_m;
   std::string samples = "200000";
@@ -111,7 +111,9 @@ Result<void> set_alignment(const MeshVerbOptions& options, MeshRequest& request)
     if (!start) return tl::unexpected(start.error());
     request.start = {file ? "file" : "trajectory", *start};
   }
-  if (options.align == "icp") request.icp = RegistrationOptions{.kept = options.icp_kept};
+  if (options.align == "icp")
+    request.icp = RegistrationOptions{.kept = options.icp_kept.value_or(RegistrationOptions{}.kept)};
+  if (options.icp_kept && !request.icp) return fail(ErrorCode::usage, "--icp-kept is for --align icp");
   return {};
 }
 
@@ -160,7 +162,9 @@ Result<void> check_numbers(const MeshVerbOptions& options) {
   if (!std::ranges::all_of(options.depth_range_m, is_finite)) return refuse("--depth-range");
   if (!is_finite(options.scale.value_or(1))) return refuse("--scale");
   if (!is_finite(options.colored_max_m.value_or(1))) return refuse("--colored-max");
-  if (!is_finite(options.icp_kept)) return refuse("--icp-kept");
+  if (options.colored_max_m && options.colored.empty())
+    return fail(ErrorCode::usage, "--colored-max is for --colored FILE.ply");
+  if (!is_finite(options.icp_kept.value_or(1))) return refuse("--icp-kept");
   if (!is_finite(options.least_observed)) return refuse("--min-observed");
   if (options.depth_range_m[0] < options.depth_range_m[1]) return {};
   return fail(ErrorCode::usage, fmt::format("--depth-range {} {}: the nearest depth comes first",
@@ -260,10 +264,11 @@ void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
                   "True and estimated trajectory (TUM, KITTI or EuRoC) in the worlds of the meshes")
       ->expected(2)
       ->type_name("TRUTH ESTIMATE");
-  verb.add_option("--icp-kept", options.icp_kept, "Of the points, those nearest to the truth that icp counts")
+  verb.add_option("--icp-kept", options.icp_kept,
+                  fmt::format("Of the points, those nearest to the truth that icp counts [{}]",
+                              RegistrationOptions{}.kept))
       ->check(CLI::Range(0.01, 1.0))
-      ->type_name("SHARE")
-      ->capture_default_str();
+      ->type_name("SHARE");
   verb.add_option("--scale", options.scale,
                   "Metres of a unit of the reconstruction (0.001: millimetres); given, no size is refused")
       ->check(CLI::Range(1e-9, 1e9))

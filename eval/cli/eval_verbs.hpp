@@ -7,6 +7,7 @@ namespace fusebench {
 
 [[nodiscard]] Verb add_eval_ate_verb(CLI::App& eval);
 [[nodiscard]] Verb add_eval_rpe_verb(CLI::App& eval);
+[[nodiscard]] Verb add_eval_nees_verb(CLI::App& eval);
 [[nodiscard]] Verb add_eval_mesh_verb(CLI::App& eval);
 
 }  // namespace fusebench

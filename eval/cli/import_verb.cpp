@@ -85,7 +85,7 @@ Verb add_import_verb(CLI::App& app) {
       ->type_name("DIR")
       ->required();
   verb->add_option("--trajectory-format", options->trajectory_format,
-                   "tum, kitti or euroc; recognised if not given")
+                   "tum, kitti, euroc or openvins; recognised if not given")
       ->type_name("NAME");
   verb->add_option("--imu", options->imu, "What it used: none, recorded or synthetic; said in every table")
       ->check(CLI::IsMember({"none", "recorded", "synthetic"}));

@@ -45,7 +45,8 @@ Result<void> check_observed(const MeshComparison& comparison, double least) {
   return fail(ErrorCode::data_corrupt,
               fmt::format("only {:.1f} % of the true surface is observed (at least {:.0f} % are asked for)",
                           100 * share, 100 * least),
-              "are the truth and the recording's poses in one world? --min-observed lowers the limit");
+              "are the truth and the recording's poses in one world? For a recording of a part of the scene, "
+              "--min-observed 0.05 (or less) lowers the limit");
 }
 
 SurfregScore surfreg_of(const PreciseMesh& reconstruction, const PreciseMesh& truth,

@@ -16,12 +16,13 @@ namespace fusebench {
 
 namespace {
 
-constexpr std::array kNames{std::pair{TrajectoryFormat::tum, "tum"},
-                            std::pair{TrajectoryFormat::kitti, "kitti"},
-                            std::pair{TrajectoryFormat::euroc, "euroc"}};
+constexpr std::array kNames{
+    std::pair{TrajectoryFormat::tum, "tum"}, std::pair{TrajectoryFormat::kitti, "kitti"},
+    std::pair{TrajectoryFormat::euroc, "euroc"}, std::pair{TrajectoryFormat::openvins, "openvins"}};
 constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
 constexpr std::size_t kEurocColumns = 17;
+constexpr std::size_t kOpenvinsColumns = 20;
 
 /// The format that the first row can only be. Of eight columns, an integer of nanoseconds is EuRoC's.
 Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
@@ -37,15 +38,17 @@ Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
     if (fields.empty() || fields[0].starts_with('#')) continue;
     if (fields.size() == kKittiColumns) return TrajectoryFormat::kitti;
     if (fields.size() == kEurocColumns) return TrajectoryFormat::euroc;
+    if (fields.size() == kOpenvinsColumns) return TrajectoryFormat::openvins;
     constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
     const bool integer = fields[0].find_first_not_of("0123456789") == std::string_view::npos;
     if (fields.size() == kTumColumns)
       return integer && fields[0].size() >= kNanosecondDigits ? TrajectoryFormat::euroc
                                                               : TrajectoryFormat::tum;
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17)",
-                            file.string(), number, fields.size()),
-                "`--format` names the format if the first row does not");
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17, openvins 20)",
+                    file.string(), number, fields.size()),
+        "`--format` names the format if the first row does not");
   }
   return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected poses)", file.string()));
 }
@@ -63,6 +66,41 @@ Result<Trajectory> read_euroc(const std::filesystem::path& file, Duplicates dupl
       TimeUnit::nanoseconds);
   if (!done) return tl::unexpected(done.error());
   return ordered(std::move(rows), duplicates, file, warnings);
+}
+
+/// From the six numbers of an upper triangle, row by row.
+Matrix3d symmetric(const double* upper) {
+  Matrix3d matrix;
+  matrix << upper[0], upper[1], upper[2], upper[1], upper[3], upper[4], upper[2], upper[4], upper[5];
+  return matrix;
+}
+
+Result<LoadedTrajectory> read_openvins(const std::filesystem::path& file,
+                                       std::vector<std::string>& warnings) {
+  TrajectoryRows rows;
+  LoadedTrajectory loaded;
+  loaded.format = TrajectoryFormat::openvins;
+  const Result<void> done = for_each_stamped_row(
+      file, "timestamp tx ty tz qx qy qz qw Pr11 Pr12 Pr13 Pr22 Pr23 Pr33 Pt11 Pt12 Pt13 Pt22 Pt23 Pt33",
+      TimeOrder::increasing, [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
+        Eigen::Matrix<double, kOpenvinsColumns - 1, 1> v;
+        if (auto read = table.numbers(1, {v.data(), kOpenvinsColumns - 1}); !read) return read;
+        const PoseCovariance covariance{symmetric(&v[7]), symmetric(&v[13])};
+        if (covariance.orientation_rad2.diagonal().minCoeff() < 0 ||
+            covariance.position_m2.diagonal().minCoeff() < 0) {
+          return table.fail_here(
+              "a variance is below zero",
+              "columns 9, 12 and 14 are variances of the orientation, 15, 18 and 20 of the "
+              "position");
+        }
+        loaded.covariances.push_back(covariance);
+        return take_pose(table, time_ns, v.head<3>(), Quaterniond(v[6], v[3], v[4], v[5]), rows);
+      });
+  if (!done) return tl::unexpected(done.error());
+  auto poses = ordered(std::move(rows), Duplicates::error, file, warnings);
+  if (!poses) return tl::unexpected(poses.error());
+  loaded.poses = std::move(*poses);
+  return loaded;
 }
 
 Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std::string>& warnings) {
@@ -109,7 +147,7 @@ Result<TrajectoryFormat> parse_trajectory_format(std::string_view text) {
     if (text == name) return format;
   }
   return fail(ErrorCode::usage, fmt::format("unknown trajectory format '{}'", text),
-              "formats are tum, kitti and euroc");
+              "formats are tum, kitti, euroc and openvins");
 }
 
 Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
@@ -124,12 +162,13 @@ Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
     if (!found) return tl::unexpected(found.error());
     format = *found;
   }
+  if (*format == TrajectoryFormat::openvins) return read_openvins(file, warnings);
   Result<Trajectory> poses = *format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
                              : *format == TrajectoryFormat::euroc
                                  ? read_euroc(file, duplicates, warnings)
                                  : read_tum_trajectory(file, warnings, duplicates);
   if (!poses) return tl::unexpected(poses.error());
-  return LoadedTrajectory{*format, std::move(*poses)};
+  return LoadedTrajectory{*format, std::move(*poses), {}};
 }
 
 }  // namespace fusebench

@@ -374,6 +374,15 @@ check_evaluation() {
   prints 'rmse' "errors of tum's motions as a file" eval rpe gt.txt est.txt --protocol tum --errors errors/rpe.csv
   [[ $(sed -n 2p errors/rpe.csv) =~ ^13050311[0-9]{11}, ]] || complain "errors of tum's motions have no stamps"
 
+  awk '{ print $0, "1e-4 0 0 1e-4 0 1e-4 1e-3 0 0 1e-3 0 1e-3" }' est.txt >openvins.txt
+  prints 'NEES / 3 mean' "NEES" eval nees gt.txt openvins.txt --align origin --errors errors/nees.csv
+  [[ $(wc -l <errors/nees.csv) == 60 ]] || complain "NEES as a file: not 59 poses within the truth"
+  prints '"metric": "nees"' "NEES as JSON" eval nees gt.txt openvins.txt --json
+  prints 'openvins.txt \(openvins\): 60 poses' "an estimate with covariances" eval ate gt.txt openvins.txt
+  refused "no covariances" 2 'no covariances' 'hint:20 columns' -- eval nees gt.txt est.txt
+  refused "a negative variance" 3 'openvins.txt:3: a variance is below zero' -- \
+    eval nees gt.txt "$(sed -i '3s/1e-3$/-1e-3/' openvins.txt && echo openvins.txt)"
+
   refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
   refused "one file" 2 'GT EST|files' -- eval ate gt.txt
   refused "no metric" 2 -- eval

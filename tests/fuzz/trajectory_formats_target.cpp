@@ -20,6 +20,9 @@ void check_read(const MemoryFile& file, std::optional<TrajectoryFormat> format, 
   }
   check(!format || loaded->format == *format, "a named format is the one that is read");
   check(!loaded->poses.empty(), "a trajectory has poses");
+  const bool with_covariances = loaded->format == TrajectoryFormat::openvins;
+  check(loaded->covariances.size() == (with_covariances ? loaded->poses.size() : 0),
+        "a covariance belongs to a pose");
   for (std::size_t i = 0; i < loaded->poses.size(); ++i) {
     const StampedPose& pose = loaded->poses[i];
     check(loaded->has_stamps() || pose.timestamp_ns == static_cast<std::int64_t>(i),
@@ -36,7 +39,8 @@ void trajectory_formats(std::string_view bytes) {
   file.write(bytes);
   for (const std::optional<TrajectoryFormat> format :
        {std::optional<TrajectoryFormat>(), std::optional(TrajectoryFormat::tum),
-        std::optional(TrajectoryFormat::kitti), std::optional(TrajectoryFormat::euroc)}) {
+        std::optional(TrajectoryFormat::kitti), std::optional(TrajectoryFormat::euroc),
+        std::optional(TrajectoryFormat::openvins)}) {
     for (const auto duplicates : {Duplicates::none, Duplicates::rare_last, Duplicates::rare_kept}) {
       check_read(file, format, duplicates);
     }

@@ -95,13 +95,16 @@ std::string facts_of(const RecordedRecording& recording) {
 
 PageTable run_facts(Group group) {
   PageTable table;
-  table.header = {"run", "status", "tracked", "lost", "IMU", "reason"};
+  const bool reasons = std::ranges::any_of(group, [](const FoundRun& r) { return !r.record.reason.empty(); });
+  table.header = {"run", "status", "tracked", "lost", "IMU"};
+  if (reasons) table.header.emplace_back("reason");
   for (const FoundRun& run : group) {
     const RunRecord& r = run.record;
     table.rows.push_back({{label_of(run, group), std::string(to_string(r.status)),
                            fmt::format("{}/{}", r.frames.tracked, r.frames.total),
-                           fmt::format("{}", r.frames.lost), r.recording.imu, r.reason},
+                           fmt::format("{}", r.frames.lost), r.recording.imu},
                           r.status == RunStatus::ok ? "" : "warning"});
+    if (reasons) table.rows.back().cells.push_back(r.reason);
   }
   return table;
 }

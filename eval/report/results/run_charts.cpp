@@ -215,6 +215,23 @@ Chart error_and_sigma(std::span<const RunSeries> runs, std::size_t buckets) {
   return chart;
 }
 
+/// Logarithmic, since an overconfident filter is off by orders of magnitude.
+Chart consistency_chart(std::span<const RunSeries> runs, std::size_t buckets, std::string_view part) {
+  Chart chart = chart_of(
+      fmt::format("Consistency of the {}", part), "time [s]", "log10 (NEES / 3)",
+      "An honest covariance has a mean NEES / 3 of 1, the 0 here; much above, it is too sure of itself.");
+  chart.from_zero = false;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::vector<Vector2d> points;
+    for (const NeesTableRow& row : runs[i].nees) {
+      if (row.part == part && row.nees_per_dof > 0)
+        points.emplace_back(runs[i].time_s(row.capture_ns), std::log10(row.nees_per_dof));
+    }
+    chart.series.push_back({runs[i].label, thinned(points, buckets), SeriesStyle::line, false, colour_of(i)});
+  }
+  return chart;
+}
+
 TrajectoryPair pair_of(const RunSeries& run) {
   TrajectoryPair pair;
   for (const ComparedPose& pose : run.poses) {
@@ -367,6 +384,7 @@ std::vector<Chart> error_charts(std::span<const RunSeries> runs, std::size_t buc
   add(charts, cumulative_errors(runs, buckets));
   add(charts, segment_boxes(runs));
   add(charts, error_and_sigma(runs, buckets));
+  for (const char* part : {"position", "orientation"}) add(charts, consistency_chart(runs, buckets, part));
   return charts;
 }
 

@@ -63,6 +63,11 @@ RunSeries series_of(const FoundRun& run, std::string label) {
   } else if (!series.truth.empty() || !estimate.empty()) {
     series.start_ns = (series.truth.empty() ? estimate : series.truth).front().timestamp_ns;
   }
+  if (fs::exists(run.folder / "nees.csv", ignored)) {
+    auto nees = read_nees_table(run.folder / "nees.csv");
+    if (nees) series.nees = std::move(*nees);
+    if (!nees) series.warnings.push_back(nees.error().message);
+  }
   const auto& ate = run.record.metrics.ate.value;
   series.poses = compared(estimate, ate ? series.truth : Trajectory{},
                           ate ? ate->alignment.T_reference_estimate : SE3{});

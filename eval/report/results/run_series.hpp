@@ -10,6 +10,7 @@
 #include "core/types.hpp"
 #include "eval/found_runs.hpp"
 #include "eval/frame_table.hpp"
+#include "eval/nees_table.hpp"
 
 namespace fusebench {
 
@@ -27,8 +28,9 @@ struct RunSeries {
   std::vector<FrameTableRow> frames;  ///< none of an imported run
   std::int64_t start_ns = 0;          ///< of the first frame, or the first pose that is known
   std::vector<ComparedPose> poses;
-  Trajectory truth;   ///< empty: not known
-  SE3 T_first_world;  ///< the first pose of the estimate, in whose frame models are shown
+  std::vector<NeesTableRow> nees;  ///< of simulated recordings, whose states are known
+  Trajectory truth;                ///< empty: not known
+  SE3 T_first_world;               ///< the first pose of the estimate, in whose frame models are shown
   std::vector<std::string> warnings;
 
   [[nodiscard]] double time_s(std::int64_t timestamp_ns) const {
