@@ -1,8 +1,12 @@
 #include "core/staged_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -44,6 +48,23 @@ std::error_code create_parents(const fs::path& path, std::vector<fs::path>& crea
   return error;
 }
 
+/// Tells others that somebody works in the folder; the system lets go of it when the process ends, however it
+/// does. -1 where the file system has no locks, and where somebody else has this one.
+int lock_folder(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0 && flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  const int why = errno;
+  if (descriptor >= 0) close(descriptor);
+  errno = why;
+  return -1;
+}
+
+bool is_older_than_a_day(const fs::path& folder) {
+  std::error_code error;
+  const auto written = fs::last_write_time(folder, error);
+  return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(24);
+}
+
 }  // namespace
 
 Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
@@ -55,6 +76,7 @@ Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
     error = create_parents(folder.final_, folder.created_);
     if (!error && fs::create_directory(temporary, error)) {
       folder.temporary_ = temporary;
+      folder.lock_ = lock_folder(temporary);
       if (fs::create_directory(folder.path(), error)) return folder;
     }
     // Others may have removed a parent that was theirs, or the folder of this name, just now.
@@ -69,11 +91,13 @@ Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept
     : final_(std::move(other.final_)),
       temporary_(std::exchange(other.temporary_, {})),
+      lock_(std::exchange(other.lock_, -1)),
       created_(std::exchange(other.created_, {})) {}
 
 StagedFolder::~StagedFolder() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  if (lock_ >= 0) close(lock_);
   // Innermost first; one that holds something else stays.
   for (auto parent = created_.rbegin(); parent != created_.rend(); ++parent) fs::remove(*parent, ignored);
 }
@@ -108,6 +132,25 @@ Result<void> StagedFolder::commit() {
     fs::remove_all(old, ignored);
   }
   return io_error(final_, error);
+}
+
+std::size_t remove_abandoned(const fs::path& parent) {
+  std::vector<fs::path> abandoned;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (!name.starts_with('.') || !name.ends_with(".tmp") || !entry->is_directory(ignored)) continue;
+    const int lock = lock_folder(entry->path());
+    const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
+    if (lock >= 0) close(lock);
+    if (lock >= 0 || (unlockable && is_older_than_a_day(entry->path()))) abandoned.push_back(entry->path());
+  }
+  for (const fs::path& folder : abandoned) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  }
+  return abandoned.size();
 }
 
 }  // namespace fusebench

@@ -3,6 +3,7 @@
 // one that is committed stays.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -36,7 +37,12 @@ class StagedFolder {
   std::filesystem::path final_;
   // Nobody else's: holds "new" and, on commit, "old", the folder that is replaced. Empty once committed.
   std::filesystem::path temporary_;
+  int lock_ = -1;                               // of the temporary folder, for as long as this process lives
   std::vector<std::filesystem::path> created_;  // parents that were not there before, outermost first
 };
+
+/// Removes what processes that were killed left of their staged folders in `parent`: a folder whose lock
+/// nobody holds. Where a file system has no locks, only those that are older than a day. Returns how many.
+std::size_t remove_abandoned(const std::filesystem::path& parent);
 
 }  // namespace fusebench

@@ -10,6 +10,9 @@ struct BuildInfo {
   std::string_view git;  ///< `git describe --always --dirty` at build time; "unknown" outside a repository
   std::string_view compiler;  ///< "GNU 12.2.0"
   std::string_view flags;
+  /// Of all that numbers depend on: sources of the estimator, the readers and the metrics, compiler and
+  /// flags. 12 hex digits; documents and the command line do not change it.
+  std::string_view estimator;
 };
 
 [[nodiscard]] const BuildInfo& build_info();

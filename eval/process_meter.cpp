@@ -1,5 +1,6 @@
 #include "eval/process_meter.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -53,8 +54,13 @@ ProcessCost ProcessMeter::cost() const {
 }
 
 std::string cpu_model() {
-  const std::string model = proc_field("/proc/cpuinfo", "model name");
-  return model.empty() ? "unknown" : model;
+  const auto field = [](const char* name) { return proc_field("/proc/cpuinfo", name); };
+  const std::string name = field("model name");
+  if (name.empty()) return "unknown";
+  // Virtual machines of different kinds share a name; libraries choose their code by what is behind it.
+  const bool wide = field("flags").find("avx512f") != std::string::npos;
+  return fmt::format("{} (family {} model {}{})", name, field("cpu family"), field("model\t"),
+                     wide ? ", AVX-512" : "");
 }
 
 std::string host_name() {

@@ -36,7 +36,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-[[nodiscard]] std::string cpu_model();  ///< "unknown" if the system does not tell
+/// "Intel(R) Xeon(R) Processor (family 6 model 143, AVX-512)"; "unknown" if the system does not tell.
+[[nodiscard]] std::string cpu_model();
 [[nodiscard]] std::string host_name();
 
 }  // namespace fusebench

@@ -88,9 +88,9 @@ void read(const Json& json, RecordedTiming& timing) {
 }
 
 Json json_of(const RecordedProvenance& provenance) {
-  return {{"version", provenance.version}, {"git", provenance.git}, {"compiler", provenance.compiler},
-          {"flags", provenance.flags},     {"cpu", provenance.cpu}, {"threads", provenance.threads},
-          {"host", provenance.host}};
+  return {{"version", provenance.version},     {"git", provenance.git},  {"compiler", provenance.compiler},
+          {"flags", provenance.flags},         {"cpu", provenance.cpu},  {"threads", provenance.threads},
+          {"estimator", provenance.estimator}, {"host", provenance.host}};
 }
 
 void read(const Json& json, RecordedProvenance& provenance) {
@@ -98,6 +98,7 @@ void read(const Json& json, RecordedProvenance& provenance) {
   provenance.git = json.at("git");
   provenance.compiler = json.at("compiler");
   provenance.flags = json.at("flags");
+  provenance.estimator = json.value("estimator", "");
   provenance.cpu = json.at("cpu");
   provenance.threads = json.at("threads");
   provenance.host = json.at("host");
@@ -117,6 +118,8 @@ RunRecord record_of(const Json& json) {
   }
   record.status = status_of(json.at("status"));
   record.reason = json.at("reason");
+  record.run_id = json.value("run_id", "");
+  record.repetition = json.value("repetition", 1);
   read(json.at("recording"), record.recording);
   record.variant = json.at("variant");
   record.config = config_of(json.at("config"));
@@ -157,6 +160,8 @@ std::string to_json(const RunRecord& record) {
       {"schema", record.schema},
       {"status", to_string(record.status)},
       {"reason", record.reason},
+      {"run_id", record.run_id},
+      {"repetition", record.repetition},
       {"recording", json_of(record.recording)},
       {"variant", record.variant},
       {"config_hash", record.config_hash},

@@ -123,6 +123,7 @@ struct RecordedProvenance {
   std::string git;
   std::string compiler;
   std::string flags;
+  std::string estimator;  ///< BuildInfo::estimator; empty in older records
   std::string cpu;
   int threads = 0;
   std::string host;
@@ -133,6 +134,8 @@ struct RunRecord {
   int schema = kRecordSchema;
   RunStatus status = RunStatus::failed;
   std::string reason = "not run";  ///< empty if ok
+  std::string run_id;  ///< run_identity(): all that the results depend on; empty if that was never known
+  int repetition = 1;  ///< of the same run, for its time
   RecordedRecording recording;
   std::string variant;
   std::vector<RecordedOption> config;  ///< every option, in declaration order

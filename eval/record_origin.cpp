@@ -50,6 +50,7 @@ RecordedProvenance provenance_here(int threads) {
           std::string(build.git),
           std::string(build.compiler),
           std::string(build.flags),
+          std::string(build.estimator),
           cpu_model(),
           threads,
           host_name()};

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "core/fingerprint.hpp"
 #include "core/marching_cubes.hpp"
@@ -12,6 +15,7 @@
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
 #include "datasets/synthetic_imu.hpp"
+#include "eval/build_info.hpp"
 #include "eval/frame_source.hpp"
 #include "eval/frame_table.hpp"
 #include "eval/intensity_file.hpp"
@@ -63,19 +67,6 @@ Result<void> provide_imu(Recording& recording, const RunSpec& spec) {
       fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
       "--imu synthetic (or auto, where there is none) makes one from the ground truth and says so in every "
       "table; --variant no-imu does without");
-}
-
-RunRecord record_of_question(const PreparedRun& run) {
-  RunRecord record;
-  record.recording =
-      recorded_recording(run.recording, run.spec.recording, run.spec.frames ? run.spec.frames->begin : 0);
-  record.variant = run.spec.variant;
-  for (const OptionRow& row : describe_options(run.spec.config.values)) {
-    record.config.push_back({row.key, parse_option_value(row.value), run.spec.config.origin(row.key)});
-  }
-  record.config_hash = config_hash(run.spec.config.values);
-  record.provenance = provenance_here(run.spec.threads);
-  return record;
 }
 
 FrameResiduals residuals_of(const FrameReport& report) {
@@ -141,8 +132,12 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
   for (const std::string& note : reading_notes(recording, run.spec.recording)) progress.log += note + "\n";
 
   const PinholeCamera& camera = recording.rig.camera;
-  auto intensity = IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
-  if (!intensity) return tl::unexpected(intensity.error());
+  std::optional<IntensityWriter> intensity;
+  if (run.spec.kept == KeptFiles::all) {
+    auto writer = IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
+    if (!writer) return tl::unexpected(writer.error());
+    intensity.emplace(std::move(*writer));
+  }
   FrameSource source(recording, run.spec.threads > 1);
   for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == RunStatus::ok; ++frame) {
     if (control.stop != nullptr && control.stop->load())
@@ -160,13 +155,16 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
       break;
     }
     take_report(progress, frame, *report, run, loaded->decode_ms);
-    progress.fastest.offer(frame, *report, loaded->frame.grey);
-    if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written) {
-      return tl::unexpected(written.error());
+    if (intensity) {
+      progress.fastest.offer(frame, *report, loaded->frame.grey);
+      if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written)
+        return tl::unexpected(written.error());
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }
-  if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
+  if (intensity) {
+    if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
+  }
   return progress;
 }
 
@@ -199,7 +197,22 @@ Result<void> write_surfaces(Progress& progress, const RecordedMetrics& metrics, 
 
 }  // namespace
 
-std::string run_hash(const Config& config, const Recording& recording) {
+std::string_view to_string(KeptFiles kept) { return kept == KeptFiles::all ? "all" : "small"; }
+
+Result<FrameWindow> parse_window(const std::string& text) {
+  FrameWindow window;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, window.begin);
+  const bool colon = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
+  const auto second = colon ? std::from_chars(first.ptr + 1, end, window.end) : first;
+  if (!colon || second.ec != std::errc{} || second.ptr != end || window.begin >= window.end) {
+    return fail(ErrorCode::usage, fmt::format("frames {} (allowed: A:B with 0 <= A < B)", text),
+                "A:B takes frames A to B-1");
+  }
+  return window;
+}
+
+std::string run_identity(const Config& config, const Recording& recording) {
   const PinholeCamera& camera = recording.rig.camera;
   Fingerprint identity;
   identity.add(config_hash(config));
@@ -208,13 +221,13 @@ std::string run_hash(const Config& config, const Recording& recording) {
   identity.add(recording.imu_note);
   identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
                            camera.cx_px, camera.cy_px));
-  return identity.hex().substr(0, 8);
+  identity.add(build_info().estimator);
+  return identity.hex();
 }
 
-Result<PreparedRun> prepare_run(RunSpec spec) {
-  if (auto related = check_relations(spec.config.values); !related) return tl::unexpected(related.error());
+Result<Recording> open_for_run(const RunSpec& spec) {
   auto recording = open_recording(spec.recording, spec.open);
-  if (!recording) return tl::unexpected(recording.error());
+  if (!recording) return recording;
   if (spec.frames) {
     if (auto cut = select_frames(*recording, spec.frames->begin, spec.frames->end); !cut) {
       return tl::unexpected(cut.error());
@@ -224,8 +237,62 @@ Result<PreparedRun> prepare_run(RunSpec spec) {
     return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
   }
   if (auto provided = provide_imu(*recording, spec); !provided) return tl::unexpected(provided.error());
-  const auto folder = spec.out / recording->name / spec.variant / run_hash(spec.config.values, *recording);
-  return PreparedRun{std::move(spec), std::move(*recording), folder};
+  return recording;
+}
+
+std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
+  // A record begins with these; all of it is a hundred times as long, and sweeps have thousands.
+  std::ifstream stream(folder / "record.json", std::ios::binary);
+  std::string begin(4096, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::size_t end = begin.find(",\n  \"repetition\"");
+  if (end == std::string::npos) return std::nullopt;
+  const auto json = nlohmann::json::parse(begin.substr(0, end) + "}", nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  const auto text = [&](const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const auto status = parse_run_status(text("status"));
+  if (!status) return std::nullopt;
+  return RecordHead{*status, text("reason"), text("run_id")};
+}
+
+PreparedRun place_run(RunSpec spec, Recording recording) {
+  PreparedRun run{std::move(spec), std::move(recording), {}, {}};
+  run.run_id = run_identity(run.spec.config.values, run.recording);
+  const std::string again = run.spec.repetition > 1 ? fmt::format("-r{}", run.spec.repetition) : "";
+  const auto parent = run.spec.out / run.recording.name / run.spec.variant;
+  for (const std::size_t digits : {std::size_t{8}, std::size_t{16}, run.run_id.size()}) {
+    run.folder = parent / (run.run_id.substr(0, digits) + again);
+    const auto there = record_head(run.folder);
+    const bool of_another = there && !there->run_id.empty() && there->run_id != run.run_id;
+    if (!of_another) break;
+  }
+  return run;
+}
+
+Result<PreparedRun> prepare_run(RunSpec spec) {
+  if (auto related = check_relations(spec.config.values); !related) return tl::unexpected(related.error());
+  auto recording = open_for_run(spec);
+  if (!recording) return tl::unexpected(recording.error());
+  return place_run(std::move(spec), std::move(*recording));
+}
+
+RunRecord record_of_question(const PreparedRun& run) {
+  RunRecord record;
+  record.recording =
+      recorded_recording(run.recording, run.spec.recording, run.spec.frames ? run.spec.frames->begin : 0);
+  record.variant = run.spec.variant;
+  for (const OptionRow& row : describe_options(run.spec.config.values)) {
+    record.config.push_back({row.key, parse_option_value(row.value), run.spec.config.origin(row.key)});
+  }
+  record.config_hash = config_hash(run.spec.config.values);
+  record.run_id = run.run_id;
+  record.repetition = run.spec.repetition;
+  record.provenance = provenance_here(run.spec.threads);
+  return record;
 }
 
 Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
@@ -251,20 +318,23 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   record.model = {mesh.vertices.size(), mesh.triangles.size(), pipeline.model().block_count()};
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
   record.timing = timing_of(*progress, cost, mesh_ms);
-  if (auto written = write_surfaces(*progress, record.metrics, *folder); !written)
-    return tl::unexpected(written.error());
+  const bool all = run.spec.kept == KeptFiles::all;
+  if (all) {
+    if (auto written = write_surfaces(*progress, record.metrics, *folder); !written)
+      return tl::unexpected(written.error());
+  }
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::array<std::pair<std::string_view, std::string>, 7> texts = {
       {{"trajectory.tum", tum_text(progress->output.trajectory)},
        {"truth.tum", tum_text(true_trajectory(run.recording, frame_stamps(run.recording)))},
        {"frames.csv", progress->frame_table},
-       {"states.csv", progress->state_table},
+       {"states.csv", all ? progress->state_table : ""},
        {"nees.csv", nees_table(record.metrics.nees)},
        {"log.txt", progress->log},
        {"record.json", to_json(record)}}};
   for (const auto& [name, text] : texts) {
-    if (text.empty()) continue;  // no truth
+    if (text.empty()) continue;  // no truth, or not kept
     if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
   }
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/config_access.hpp"
@@ -29,6 +30,15 @@ struct FrameWindow {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
+/// "A:B" to frames A to B-1. Error usage.
+[[nodiscard]] Result<FrameWindow> parse_window(const std::string& text);
+
+/// Which files a run's folder keeps. In large sweeps the others would fill the disk.
+enum class KeptFiles {
+  all,
+  small,  ///< record, trajectories, frames.csv, nees.csv and log: no model, patches, states or pixels
+};
+[[nodiscard]] std::string_view to_string(KeptFiles kept);  ///< "all", "small"
 
 struct RunSpec {
   std::filesystem::path recording;
@@ -38,6 +48,8 @@ struct RunSpec {
   EffectiveConfig config;  ///< the variant's, with all edits
   std::optional<FrameWindow> frames;
   int threads = 1;
+  int repetition = 1;  ///< the results are the same, the time is another sample
+  KeptFiles kept = KeptFiles::all;
   std::filesystem::path out;
 };
 
@@ -45,17 +57,37 @@ struct RunSpec {
 struct PreparedRun {
   RunSpec spec;
   Recording recording;           ///< the window, with the IMU that the run will use
-  std::filesystem::path folder;  ///< <out>/<recording>/<variant>/<hash8>
+  std::string run_id;            ///< run_identity()
+  std::filesystem::path folder;  ///< <out>/<recording>/<variant>/<hash8>, with "-rN" for repetition N > 1
 };
 
-/// hash8 of a run's folder, eight hex digits: identifies the values of the configuration, the content of the
-/// recording and its window, the camera, and the IMU with the way it was made (seed, sensor, fit).
-[[nodiscard]] std::string run_hash(const Config& config, const Recording& recording);
+/// 32 hex digits: identifies the values of the configuration, the content of the recording and its window,
+/// the camera, the IMU with the way it was made (seed, sensor, fit), and the version of the estimator
+/// (BuildInfo::estimator). Runs of one identity have the same results.
+[[nodiscard]] std::string run_identity(const Config& config, const Recording& recording);
 
-/// Opens the recording, cuts the window and provides the IMU. Errors: those of open_recording, select_frames
-/// and add_synthetic_imu; configuration (relations between options); usage if the variant needs an IMU and
-/// there is none.
+/// The recording as a run of that specification sees it: opened, cut to the window, with its IMU. Errors:
+/// those of open_recording, select_frames and add_synthetic_imu; usage if the variant needs an IMU and there
+/// is none.
+[[nodiscard]] Result<Recording> open_for_run(const RunSpec& spec);
+
+/// What is known of a finished run without reading all of its record.
+struct RecordHead {
+  RunStatus status = RunStatus::failed;
+  std::string reason;
+  std::string run_id;
+};
+/// Nothing if there is no record in the folder, or none that can be read.
+[[nodiscard]] std::optional<RecordHead> record_head(const std::filesystem::path& folder);
+
+/// Its place: that of its identity, with more digits if those of another one are taken there.
+[[nodiscard]] PreparedRun place_run(RunSpec spec, Recording recording);
+
+/// open_for_run() and place_run(), after checking the relations between options (error configuration).
 [[nodiscard]] Result<PreparedRun> prepare_run(RunSpec spec);
+
+/// The record before anything has come out: what is asked, and what will make it. Status failed.
+[[nodiscard]] RunRecord record_of_question(const PreparedRun& run);
 
 struct RunControl {
   std::function<void(std::size_t frame, std::size_t total)> progress = {};  ///< after each frame

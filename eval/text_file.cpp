@@ -1,6 +1,7 @@
 #include "eval/text_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <system_error>
@@ -11,7 +12,9 @@ Result<void> write_text_file(const std::filesystem::path& file, std::string_view
   namespace fs = std::filesystem;
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  const fs::path temporary = file.parent_path() / fmt::format(".{}.tmp", file.filename().string());
+  // Other processes may write the same file at the same time: the last one stays.
+  const fs::path temporary =
+      file.parent_path() / fmt::format(".{}.{}.tmp", file.filename().string(), getpid());
   std::ofstream stream(temporary, std::ios::binary);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
   stream.close();

@@ -9,7 +9,7 @@ Usage: scripts/bench.sh [DATA] [--data DATA] [ARGUMENT...]
 Installs missing packages, builds the release preset, runs configs/suites/quickstart.toml over the recordings in DATA
 (default: the environment variable FUSEBENCH_DATA) into results/runs/quickstart, and prints the table. Without DATA it
 simulates two recordings first (slow and fast motion, in results/simulated; made once) and runs over them.
-Further arguments go to `fusebench bench`, for example: --resume, --only variant=full, --out DIR.
+Further arguments go to `fusebench bench`, for example: -j 2, --only variant=full, --out DIR.
 
 Exit codes are those of `fusebench bench`: 0 ok, 2 usage, 3 data missing or corrupt, 4 a run failed or was lost.
 TEXT

@@ -60,7 +60,7 @@ sources() {
 
 check_scripts() {
   local script status=0
-  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh tests/report/*.sh .ci/run; do
+  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh tests/report/*.sh tests/slurm/*.sh .ci/run; do
     bash -n "$script" || status=1
   done
   return "$status"
@@ -99,5 +99,7 @@ step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
 if $tidy; then step clang-tidy check_tidy; fi
 step fuzz ./scripts/fuzz.sh 60
 step browser ./scripts/setup.sh chromium-driver python3-selenium
+step cluster ./scripts/setup.sh slurm-wlm munge iproute2
+step baseline ./scripts/check_baseline.sh --binary build/ci/fusebench
 step tests ctest --preset ci
 finish

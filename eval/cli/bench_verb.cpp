@@ -6,20 +6,21 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "eval/batch.hpp"
-#include "eval/batch_processes.hpp"
 #include "eval/cli/console.hpp"
+#include "eval/cli/engine_console.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
-#include "eval/experiment.hpp"
+#include "eval/engine/invocation.hpp"
+#include "eval/engine/local_engine.hpp"
+#include "eval/engine/plan_preview.hpp"
+#include "eval/engine/slurm_engine.hpp"
 #include "eval/json_text.hpp"
-#include "eval/simulated_recordings.hpp"
 #include "eval/study/bars_json.hpp"
 #include "eval/study/summary_formats.hpp"
+#include "eval/suites/experiment.hpp"
 #include "eval/text_file.hpp"
 
 namespace fusebench {
@@ -29,11 +30,13 @@ namespace {
 constexpr int kExitBarFailed = 1;
 
 struct BenchOptions {
-  std::filesystem::path suite;
-  BatchOptions batch;
-  int at_once = 1;
-  std::size_t job = 0;  // 0: all
+  Invocation invocation;
+  EngineOptions engine;
+  std::string executor = "local";
+  SlurmOptions slurm;
+  bool resume = false;
   bool threads_given = false;
+  bool dry_run = false;
   std::filesystem::path summary;
   std::filesystem::path summary_page;
   bool json = false;
@@ -45,151 +48,31 @@ struct RunCounts {
   std::size_t total = 0;
 };
 
-std::string json_of(const Suite& suite, const std::vector<BatchOutcome>& outcomes, const RunCounts& counts,
-                    const std::vector<BarResult>& bars) {
+std::string json_of(const Suite& suite, const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes,
+                    const RunCounts& counts, const std::vector<BarResult>& bars) {
   using Json = nlohmann::ordered_json;
   Json runs = Json::array();
-  for (const BatchOutcome& outcome : outcomes) {
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const BatchOutcome& outcome = outcomes[i];
     runs.push_back({{"recording", outcome.recording},
                     {"variant", outcome.variant},
+                    {"edits", to_string(plan.jobs[i].edits)},
+                    {"repetition", plan.jobs[i].spec.repetition},
                     {"status", to_string(outcome.status)},
                     {"reason", outcome.reason},
                     {"skipped", outcome.skipped},
                     {"resumed", outcome.resumed},
                     {"folder", outcome.folder.string()}});
   }
-  Json document = {{"suite", suite.name}, {"n_ok", counts.ok}, {"n_total", counts.total}, {"runs", runs}};
+  Json excluded = Json::array();
+  for (const ExcludedRun& run : plan.excluded) excluded.push_back({{"run", run.run}, {"reason", run.reason}});
+  Json document = {{"suite", suite.name},
+                   {"n_ok", counts.ok},
+                   {"n_total", counts.total},
+                   {"runs", runs},
+                   {"excluded", excluded}};
   if (!suite.bars.empty()) document["bars"] = bars_json(bars);
   return json_text(document) + "\n";
-}
-
-/// The bar while a run goes on, one line when it has ended.
-class BatchConsole {
- public:
-  explicit BatchConsole(const std::vector<BatchJob>& jobs) : jobs_(jobs) {}
-
-  [[nodiscard]] BatchControl control() {
-    BatchControl control;
-    control.started = [this](const BatchJob&, std::size_t index, std::size_t) {
-      index_ = index;
-      bar_ = ProgressBar(title(index));
-    };
-    control.progress = [this](std::size_t frame, std::size_t total) { bar_.show(frame, total); };
-    control.finished = [this](const BatchOutcome& outcome) { say(index_, outcome); };
-    control.stop = &stop_requested();
-    return control;
-  }
-
-  /// Of runs side by side only the end is told.
-  [[nodiscard]] ProcessControl process_control() {
-    return {[this](std::size_t index, const BatchOutcome& outcome) { say(index, outcome); },
-            &stop_requested()};
-  }
-
- private:
-  [[nodiscard]] std::string title(std::size_t index) const {
-    const BatchJob& job = jobs_[index];
-    return fmt::format("[{}/{}] {} {}", index + 1, jobs_.size(), job.recording.filename().string(),
-                       job.variant);
-  }
-
-  void say(std::size_t index, const BatchOutcome& outcome) {
-    bar_.clear();
-    const std::string ending =
-        outcome.status == RunStatus::ok
-            ? summary_line(outcome.record)
-            : fmt::format("{}: {}", outcome.skipped ? "skipped" : to_string(outcome.status), outcome.reason);
-    print_progress(fmt::format("{}: {}{}", title(index), outcome.resumed ? "(was there) " : "", ending));
-  }
-
-  const std::vector<BatchJob>& jobs_;
-  std::size_t index_ = 0;
-  ProgressBar bar_{""};
-};
-
-Result<void> simulate_missing(const std::vector<BatchJob>& jobs, int threads) {
-  std::string title;
-  ProgressBar bar("");
-  SimulatingControl control;
-  control.started = [&](const std::string& name, std::size_t index, std::size_t count) {
-    title = fmt::format("[{}/{}] simulating {}", index + 1, count, name);
-    bar = ProgressBar(title);
-  };
-  control.progress = [&](std::size_t done, std::size_t total) { bar.show(done, total); };
-  control.finished = [&](const SimulationReport& report) {
-    bar.clear();
-    if (report.reused) return;
-    print_progress(fmt::format("{}: {} frames, up to {:.2f} m/s and {:.2f} rad/s", title, report.frames,
-                               report.peaks.speed_mps, report.peaks.rate_radps));
-    for (const std::string& warning : report.warnings) print_progress(fmt::format("warning: {}", warning));
-  };
-  control.stop = &stop_requested();
-  auto made = make_simulated_recordings(jobs, threads, control);
-  bar.clear();
-  return made;
-}
-
-/// This program again, for one job; what is relative stays so, since it starts in the same folder.
-std::vector<std::string> command_of(const BenchOptions& options, const BatchOptions& batch,
-                                    std::size_t index) {
-  std::vector<std::string> command = {"/proc/self/exe",
-                                      "bench",
-                                      options.suite.string(),
-                                      "--job",
-                                      fmt::format("{}", index + 1),
-                                      "--out",
-                                      batch.out.string(),
-                                      "--simulated",
-                                      batch.simulated.string(),
-                                      "--threads",
-                                      fmt::format("{}", batch.threads),
-                                      "--json"};
-  const auto add = [&](std::string key, std::string value) {
-    command.push_back(std::move(key));
-    command.push_back(std::move(value));
-  };
-  if (!batch.data.empty()) add("--data", batch.data.string());
-  for (const std::string& filter : batch.only) add("--only", filter);
-  for (const std::string& assignment : batch.sets) add("--set", assignment);
-  if (batch.resume) command.emplace_back("--resume");
-  return command;
-}
-
-/// Processes that are stopped cannot tell which empty folders above theirs nobody else needs.
-void remove_empty_folders(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::vector<std::filesystem::path> inner;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    std::error_code ignored;
-    if (entry->is_directory(ignored) && !entry->is_symlink(ignored)) inner.push_back(entry->path());
-  }
-  for (const std::filesystem::path& path : inner) remove_empty_folders(path);
-  std::filesystem::remove(folder, error);  // leaves what is not empty
-}
-
-Result<std::vector<BatchOutcome>> run_jobs(const BenchOptions& options, const BatchOptions& batch,
-                                           const std::vector<BatchJob>& jobs) {
-  BatchConsole console(jobs);
-  if (options.at_once == 1) return run_batch(jobs, batch.resume, console.control());
-  const auto command = [&](std::size_t index) { return command_of(options, batch, index); };
-  std::error_code ignored;
-  const bool was_there = std::filesystem::exists(batch.out, ignored);
-  auto outcomes = run_batch_in_processes(jobs, options.at_once, command, console.process_control());
-  if (!outcomes && !was_there) remove_empty_folders(batch.out);
-  return outcomes;
-}
-
-/// All jobs, or the one of --job.
-Result<std::vector<BatchJob>> jobs_of(const Suite& suite, const BenchOptions& options,
-                                      const BatchOptions& batch) {
-  auto jobs = plan_batch(suite, batch);
-  if (!jobs || options.job == 0) return jobs;
-  if (options.job > jobs->size()) {
-    return fail(ErrorCode::usage, fmt::format("--job {} (allowed: 1 .. {}, with what --only leaves)",
-                                              options.job, jobs->size()));
-  }
-  return std::vector<BatchJob>{std::move((*jobs)[options.job - 1])};
 }
 
 RunCounts counts_of(const std::vector<BatchOutcome>& outcomes) {
@@ -203,23 +86,34 @@ RunCounts counts_of(const std::vector<BatchOutcome>& outcomes) {
   return counts;
 }
 
-std::vector<StudyRun> study_runs(const std::vector<BatchOutcome>& outcomes) {
+/// With their records.
+std::vector<StudyRun> study_runs(const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes) {
   std::vector<StudyRun> runs;
-  for (const BatchOutcome& outcome : outcomes) {
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const BatchOutcome& outcome = outcomes[i];
     if (outcome.skipped) continue;
-    runs.push_back(
-        {outcome.recording, outcome.group, outcome.half, outcome.variant, outcome.folder, outcome.record});
+    auto record = read_record(outcome.folder / "record.json");
+    if (!record) {
+      record = RunRecord{};
+      record->reason = outcome.reason;
+      record->recording.name = outcome.recording;
+      record->variant = outcome.variant;
+      record->config_hash = config_hash(plan.jobs[i].spec.config.values);
+    }
+    const bool is_there = record->status != RunStatus::failed;
+    runs.push_back({outcome.recording, outcome.group, outcome.half, outcome.variant,
+                    is_there ? outcome.folder : std::filesystem::path(), std::move(*record)});
   }
   return runs;
 }
 
 /// What the runs say together: the files that were asked for, the tables, and the bars. Nothing of that is
-/// for one job alone, or for a suite without bars unless a file is asked for.
+/// for a suite without bars unless a file is asked for.
 Result<std::vector<BarResult>> conclude(const Suite& suite, const BenchOptions& options,
-                                        const std::vector<BatchOutcome>& outcomes) {
+                                        const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes) {
   const bool files = !options.summary.empty() || !options.summary_page.empty();
-  if (options.job != 0 || (suite.bars.empty() && !files)) return std::vector<BarResult>{};
-  const Study study = gather_study(study_runs(outcomes));
+  if (suite.bars.empty() && !files) return std::vector<BarResult>{};
+  const Study study = gather_study(study_runs(plan, outcomes));
   StudySummary summary = summarise(suite.name, study, suite.bars);
   if (!options.summary.empty()) {
     if (auto written = write_text_file(options.summary, summary_json(summary, study)); !written)
@@ -241,64 +135,163 @@ int exit_code_of(const RunCounts& counts, const std::vector<BarResult>& bars) {
   return good ? 0 : kExitRunFailed;
 }
 
-Result<int> bench(const BenchOptions& options) {
-  const auto suite = read_suite(options.suite);
+Result<int> preview(const BenchOptions& options, const BatchPlan& plan) {
+  const PlanPreview preview = preview_of(plan);
+  const int at_once = options.engine.at_once;
+  print_output(options.json ? to_json(preview, plan, at_once) : to_text(preview, plan, at_once));
+  return 0;
+}
+
+Result<std::vector<BatchOutcome>> run_plan(const BenchOptions& options, const Suite& suite,
+                                           const BatchPlan& plan, int all_threads) {
+  const auto kept = keep(options.invocation);
+  if (!kept) return tl::unexpected(kept.error());
+  if (auto made = simulate_missing(plan.jobs, all_threads); !made) return tl::unexpected(made.error());
+  EngineOptions engine = options.engine;
+  engine.limits = suite.limits;
+  EngineConsole console(plan.jobs);
+  const EngineControl control = console.control();
+  std::error_code ignored;
+  const SlurmSite site{std::filesystem::absolute(*kept, ignored),
+                       std::filesystem::read_symlink("/proc/self/exe", ignored)};
+  auto outcomes = options.executor == "slurm" ? run_on_slurm(plan.jobs, engine, options.slurm, site, control)
+                                              : run_locally(plan.jobs, engine, control);
+  console.clear();
+  return outcomes;
+}
+
+/// Side by side, runs share the machine unless somebody says how many threads each has; on a cluster, a run
+/// has one, and the cluster many runs.
+Result<void> set_executor(BenchOptions& options) {
+  int& threads = options.invocation.options.threads;
+  const int at_once = options.engine.at_once;
+  if (options.executor == "local") {
+    if (!options.threads_given) threads = std::max(1, threads / at_once);
+    return {};
+  }
+  if (!options.threads_given) threads = 1;
+  options.slurm.at_once = at_once;
+  options.slurm.cpus = at_once * threads;
+  if (!options.engine.repeat_finished) return {};
+  return fail(ErrorCode::usage, "--repeat is for --executor local", "another --out starts afresh");
+}
+
+/// Returns when everything is in the queue.
+Result<int> submit(const BenchOptions& options, const Suite& suite, const BatchPlan& plan, int all_threads) {
+  const auto outcomes = run_plan(options, suite, plan, all_threads);
+  if (!outcomes) return tl::unexpected(outcomes.error());
+  const std::string out = options.invocation.options.out.string();
+  print_progress(
+      fmt::format("{}: submitted; `fusebench collect {}` shows what is there, and the same command without "
+                  "--submit waits for the rest and submits again what was lost",
+                  suite.name, out));
+  return 0;
+}
+
+Result<int> bench(BenchOptions options) {
+  const auto suite = suite_of(options.invocation);
   if (!suite) return tl::unexpected(suite.error());
-  BatchOptions batch = options.batch;
+  BatchOptions& batch = options.invocation.options;
   if (batch.out.empty()) batch.out = std::filesystem::path("results/runs") / suite->name;
   const int all_threads = batch.threads;
-  // Side by side, runs share the machine unless somebody says how many threads each has.
-  if (!options.threads_given) batch.threads = std::max(1, all_threads / options.at_once);
-  const auto jobs = jobs_of(*suite, options, batch);
-  if (!jobs) return tl::unexpected(jobs.error());
-  if (auto made = simulate_missing(*jobs, all_threads); !made) return tl::unexpected(made.error());
-  const auto outcomes = run_jobs(options, batch, *jobs);
+  if (auto sensible = set_executor(options); !sensible) return tl::unexpected(sensible.error());
+  const auto plan = plan_batch(*suite, batch);
+  if (!plan) return tl::unexpected(plan.error());
+  if (options.dry_run) return preview(options, *plan);
+  if (options.executor == "slurm" && options.slurm.submit_only)
+    return submit(options, *suite, *plan, all_threads);
+  const auto outcomes = run_plan(options, *suite, *plan, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
 
   const RunCounts counts = counts_of(*outcomes);
-  if (counts.total == 0 && options.job == 0) {
+  if (counts.total == 0 && !options.engine.only_failed) {
     return fail(ErrorCode::data_missing,
                 fmt::format("suite '{}': none of the recordings can be opened", suite->name),
                 "the lines above say why");
   }
-  print_progress(fmt::format("{}: {} of {} runs ok; `fusebench table {}` shows them", suite->name, counts.ok,
-                             counts.total, batch.out.string()));
-  const auto bars = conclude(*suite, options, *outcomes);
+  print_progress(fmt::format(
+      "{}: {} of {} runs ok{}; `fusebench table {}` shows them", suite->name, counts.ok, counts.total,
+      plan->excluded.empty() ? "" : fmt::format(", {} excluded", plan->excluded.size()), batch.out.string()));
+  const auto bars = conclude(*suite, options, *plan, *outcomes);
   if (!bars) return tl::unexpected(bars.error());
-  if (options.json) print_output(json_of(*suite, *outcomes, counts, *bars));
+  if (options.json) print_output(json_of(*suite, *plan, *outcomes, counts, *bars));
   return exit_code_of(counts, *bars);
 }
 
-}  // namespace
+void add_slurm_options(CLI::App& verb, BenchOptions& options) {
+  SlurmOptions& slurm = options.slurm;
+  verb.add_option(
+          "--executor", options.executor,
+          "Where runs run: local, or slurm: as job arrays; --out must then be on a folder that all nodes "
+          "share, and -j is the runs at a time of each task")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  verb.add_flag("--submit", slurm.submit_only, "With slurm: returns when everything is in the queue");
+  verb.add_option("--chunk", slurm.chunk, "With slurm: runs of one task; default: about a minute's")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb.add_option(
+          "--slurm-silence", slurm.silence_s,
+          "With slurm: a running task without a sign of life for so long is given up, and its runs are "
+          "submitted again")
+      ->check(CLI::Range(2.0, 86400.0))
+      ->type_name("S")
+      ->capture_default_str();
+  verb.add_option("--slurm-arg", slurm.arguments,
+                  "With slurm: an argument for sbatch, e.g. --slurm-arg=--partition=cpu; may be repeated")
+      ->type_name("ARG")
+      ->allow_extra_args(false);
+}
 
-Verb add_bench_verb(CLI::App& app) {
-  auto options = std::make_shared<BenchOptions>();
-  CLI::App* verb = app.add_subcommand("bench", "Runs a suite: every variant over every recording");
-  verb->add_option("SUITE", options->suite, "TOML file of a suite, e.g. configs/suites/quickstart.toml")
+void add_suite_options(CLI::App& verb, Invocation& invocation) {
+  BatchOptions& batch = invocation.options;
+  verb.add_option("SUITE", invocation.suite, "TOML file of a suite, e.g. configs/suites/quickstart.toml")
       ->required();
-  add_data_option(*verb, options->batch.data);
-  verb->add_option("--out", options->batch.out, "Folder of the runs; default: results/runs/<suite>")
-      ->type_name("DIR");
-  verb->add_option("--simulated", options->batch.simulated,
-                   "Folder of the recordings that the suite simulates; those that are there are used again")
+  add_data_option(verb, batch.data);
+  verb.add_option("--out", batch.out, "Folder of the runs; default: results/runs/<suite>")->type_name("DIR");
+  verb.add_option("--simulated", batch.simulated,
+                  "Folder of the recordings that the suite simulates; those that are there are used again")
       ->type_name("DIR")
       ->capture_default_str();
-  verb->add_option("--only", options->batch.only,
-                   "Only some runs: recording=TEXT (the name contains it) or variant=NAME; may be repeated")
+  verb.add_option("--only", batch.only,
+                  "Only some runs: recording=TEXT (the name contains it) or variant=NAME; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  verb->add_flag("--resume", options->batch.resume,
-                 "Leaves alone what already ended as ok or lost with the same hash");
-  add_set_option(*verb, options->batch.sets);
-  verb->add_option("-j,--jobs", options->at_once,
+  verb.add_option(
+          "--set", batch.sets,
+          "Sets one option, e.g. iekf.max_iterations=8, or sweeps it: iekf.max_iterations=1,2,4; may be "
+          "repeated, sweeps then multiply")
+      ->type_name("KEY=VALUE[,VALUE...]")
+      ->allow_extra_args(false);
+  verb.add_option("--repetitions", invocation.overrides.repetitions,
+                  "Repeats each run, for samples of its time; default: as the suite says")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  verb.add_option(
+          "--keep", invocation.overrides.kept,
+          "Files of each run: all, or small (no model, patches, states and pixels: a hundredth of the "
+          "space); default: as the suite says")
+      ->check(CLI::IsMember({"all", "small"}))
+      ->type_name("FILES");
+}
+
+Verb add(CLI::App& app, const char* name, const char* description) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* verb = app.add_subcommand(name, description);
+  add_suite_options(*verb, options->invocation);
+  verb->add_flag("--resume", options->resume,
+                 "Leaves alone what is finished. It always does: the flag is kept for scripts");
+  verb->add_flag("--repeat", options->engine.repeat_finished, "Runs again what is finished");
+  verb->add_flag("--dry-run", options->dry_run,
+                 "Prints the runs, which are finished, and how long the others will take; runs nothing");
+  verb->add_option("-j,--jobs", options->engine.at_once,
                    "Runs at a time, each in a process of its own; --threads is then by default its share of "
                    "the machine")
       ->check(CLI::Range(1, 1024))
       ->type_name("N")
       ->capture_default_str();
-  verb->add_option("--job", options->job, "Only the run of that number, counted from 1 after --only")
-      ->type_name("N");
-  add_threads_option(*verb, options->batch.threads);
+  add_slurm_options(*verb, *options);
+  add_threads_option(*verb, options->invocation.options.threads);
   verb->add_option(
           "--summary", options->summary,
           "Writes what the runs say together as JSON: by half, group and variant, against the motion "
@@ -309,13 +302,97 @@ Verb add_bench_verb(CLI::App& app) {
       ->type_name("FILE");
   add_json_flag(*verb, options->json);
   verb->footer(
-      "A run that fails or is lost is a row with its reason, and the suite goes on; the exit code is then 4. "
-      "A "
-      "suite with\nbars prints its summary and ends with 1 if a bar failed; runs that are lost are then the "
-      "bars' matter.");
+      "A finished run is never repeated: its folder is named by the hash of configuration, recording and\n"
+      "estimator. A run that fails, crashes, hangs or is lost is a row with its reason, and the suite goes "
+      "on;\n"
+      "the exit code is then 4. A suite with bars prints its summary and ends with 1 if a bar failed; runs "
+      "that\n"
+      "are lost are then the bars' matter. docs/experiments.md says what a suite can ask for.");
   return {verb, [options, verb] {
             options->threads_given = verb->count("--threads") > 0;
             return bench(*options);
+          }};
+}
+
+/// Every invocation that was kept, its failed runs only.
+Result<int> rerun(const BenchOptions& options, const std::filesystem::path& runs) {
+  const auto files = kept_invocations(runs);
+  if (!files) return tl::unexpected(files.error());
+  int worst = 0;
+  for (const std::filesystem::path& file : *files) {
+    auto invocation = read_invocation(std::filesystem::absolute(file));
+    if (!invocation) return tl::unexpected(invocation.error());
+    std::error_code ignored;
+    std::filesystem::current_path(invocation->working_folder, ignored);
+    BenchOptions again = options;
+    again.invocation = std::move(*invocation);
+    again.engine.only_failed = true;
+    const auto code = bench(std::move(again));
+    if (!code) return code;
+    worst = std::max(worst, *code);
+  }
+  return worst;
+}
+
+}  // namespace
+
+Verb add_bench_verb(CLI::App& app) {
+  return add(app, "bench", "Runs a suite: every variant over every recording, and every point of its sweeps");
+}
+
+Verb add_sweep_verb(CLI::App& app) {
+  return add(app, "sweep", "The same as bench, for suites that sweep options");
+}
+
+Verb add_slurm_task_verb(CLI::App& app) {
+  struct TaskOptions {
+    std::filesystem::path invocation;
+    std::filesystem::path tasks;
+    std::size_t task = 0;
+    EngineOptions engine;
+  };
+  auto options = std::make_shared<TaskOptions>();
+  CLI::App* verb = app.add_subcommand("slurm-task", "What a node runs for --executor slurm; not for people");
+  verb->add_option("INVOCATION", options->invocation, "Kept by bench")->required();
+  verb->add_option("TASKS", options->tasks, "The array's task file")->required();
+  verb->add_option("TASK", options->task, "Number of the task")->required();
+  verb->add_option("-j,--jobs", options->engine.at_once, "Runs at a time")->check(CLI::Range(1, 1024));
+  return {verb, [options]() -> Result<int> {
+            const auto invocation = read_invocation(options->invocation);
+            if (!invocation) return tl::unexpected(invocation.error());
+            std::error_code ignored;
+            std::filesystem::current_path(invocation->working_folder, ignored);
+            const auto suite = suite_of(*invocation);
+            if (!suite) return tl::unexpected(suite.error());
+            const auto plan = plan_batch(*suite, invocation->options);
+            if (!plan) return tl::unexpected(plan.error());
+            options->engine.limits = suite->limits;
+            EngineControl control;
+            control.stop = &stop_requested();
+            const auto done =
+                run_slurm_task(plan->jobs, options->engine, options->tasks, options->task, control);
+            if (!done) return tl::unexpected(done.error());
+            return 0;
+          }};
+}
+
+Verb add_rerun_verb(CLI::App& app) {
+  struct RerunOptions {
+    BenchOptions bench;
+    std::filesystem::path runs;
+    bool failed = false;
+  };
+  auto options = std::make_shared<RerunOptions>();
+  CLI::App* verb = app.add_subcommand("rerun", "Runs again what failed in a folder of runs");
+  verb->add_option("RUNS", options->runs, "Folder that `fusebench bench` wrote (its --out)")->required();
+  verb->add_flag("--failed", options->failed, "The failed runs; what there is to run again")->required();
+  verb->add_option("-j,--jobs", options->bench.engine.at_once, "Runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  return {verb, [options] {
+            options->bench.threads_given = true;  // as the runs were asked for
+            return rerun(options->bench, options->runs);
           }};
 }
 

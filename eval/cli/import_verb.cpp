@@ -9,8 +9,8 @@
 #include "eval/cli/reading_options.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
-#include "eval/experiment.hpp"
 #include "eval/imported_run.hpp"
+#include "eval/suites/experiment.hpp"
 
 namespace fusebench {
 

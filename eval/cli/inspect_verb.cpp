@@ -13,10 +13,10 @@
 #include "eval/cli/reading_options.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
-#include "eval/experiment.hpp"
 #include "eval/report/inspection_json.hpp"
 #include "eval/report/inspection_page.hpp"
 #include "eval/report/inspection_text.hpp"
+#include "eval/suites/experiment.hpp"
 
 namespace fusebench {
 

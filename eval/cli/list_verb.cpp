@@ -13,9 +13,10 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
-#include "eval/experiment.hpp"
+#include "eval/engine/run_folders.hpp"
 #include "eval/json_text.hpp"
 #include "eval/report/text_layout.hpp"
+#include "eval/suites/experiment.hpp"
 
 namespace fusebench {
 
@@ -29,6 +30,8 @@ struct Listing {
 
 struct ListOptions {
   std::string what;
+  std::filesystem::path runs = "results/runs";
+  std::string status;
   std::filesystem::path data;
   std::filesystem::path configs = "configs";
   bool markdown = false;
@@ -123,7 +126,20 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
   return listing;
 }
 
+Result<Listing> list_runs_of(const ListOptions& options) {
+  const auto runs = list_runs(options.runs);
+  if (!runs) return tl::unexpected(runs.error());
+  Listing listing{{"run", "status", "reason"}, {}};
+  for (const ListedRun& run : *runs) {
+    const std::string_view status = to_string(run.head.status);
+    if (!options.status.empty() && options.status != status) continue;
+    listing.rows.push_back({(options.runs / run.folder).string(), std::string(status), run.head.reason});
+  }
+  return listing;
+}
+
 Result<Listing> listing_of(const ListOptions& options) {
+  if (options.what == "runs") return list_runs_of(options);
   if (options.what == "variants") return list_variants();
   if (options.what == "metrics") return list_metrics();
   if (options.what == "options") return list_options();
@@ -179,10 +195,14 @@ Result<int> list(const ListOptions& options) {
 
 Verb add_list_verb(CLI::App& app) {
   auto options = std::make_shared<ListOptions>();
-  CLI::App* verb = app.add_subcommand("list", "Lists variants, metrics, recordings, suites or options");
-  verb->add_option("WHAT", options->what, "variants, metrics, recordings, suites or options")
+  CLI::App* verb = app.add_subcommand("list", "Lists variants, metrics, recordings, suites, options or runs");
+  verb->add_option("WHAT", options->what, "variants, metrics, recordings, suites, options or runs")
       ->required()
-      ->check(CLI::IsMember({"variants", "metrics", "recordings", "suites", "options"}));
+      ->check(CLI::IsMember({"variants", "metrics", "recordings", "suites", "options", "runs"}));
+  verb->add_option("RUNS", options->runs, "Of runs: their folder")->capture_default_str();
+  verb->add_option("-o,--only", options->status, "Of runs: those that ended so: ok, lost or failed")
+      ->check(CLI::IsMember({"ok", "lost", "failed"}))
+      ->type_name("STATUS");
   add_data_option(*verb, options->data);
   verb->add_option("--configs", options->configs, "Folder that holds suites/")
       ->type_name("DIR")

@@ -49,16 +49,18 @@ int command_line(int argc, const char* const* argv) {
   CLI::App app{"FuseBench: offline evaluation and benchmarking of RGB-D-inertial reconstruction",
                "fusebench"};
   const BuildInfo& build = build_info();
-  app.set_version_flag("--version",
-                       fmt::format("fusebench {} ({}, {})", build.version, build.git, build.compiler));
+  app.set_version_flag("--version", fmt::format("fusebench {} ({}, {}, estimator {})", build.version,
+                                                build.git, build.compiler, build.estimator));
   app.footer(
       "Exit codes: 0 ok; 1 a regression or a failed gate; 2 usage or configuration; 3 data missing or "
       "corrupt;\n"
       "4 a run failed or was lost; 5 internal error; 130 interrupted.");
-  const std::vector<Verb> verbs = {add_run_verb(app),     add_bench_verb(app),     add_eval_verb(app),
-                                   add_table_verb(app),   add_report_verb(app),    add_import_verb(app),
-                                   add_list_verb(app),    add_config_verb(app),    add_simulate_verb(app),
-                                   add_inspect_verb(app), add_calibrate_verb(app), add_smooth_verb(app)};
+  const std::vector<Verb> verbs = {
+      add_run_verb(app),        add_bench_verb(app),   add_sweep_verb(app),     add_rerun_verb(app),
+      add_slurm_task_verb(app), add_best_verb(app),    add_collect_verb(app),   add_compare_verb(app),
+      add_gc_verb(app),         add_merge_verb(app),   add_eval_verb(app),      add_table_verb(app),
+      add_report_verb(app),     add_import_verb(app),  add_list_verb(app),      add_config_verb(app),
+      add_simulate_verb(app),   add_inspect_verb(app), add_calibrate_verb(app), add_smooth_verb(app)};
   if (const auto known = check_verb(verbs, argc, argv); !known) return finish(known.error());
   try {
     app.parse(argc, argv);

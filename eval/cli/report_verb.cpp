@@ -2,14 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 
+#include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/found_runs.hpp"
 #include "eval/report/figures.hpp"
 #include "eval/report/results/results_page.hpp"
+#include "eval/report/results/sweep_sections.hpp"
 #include "eval/text_file.hpp"
 
 namespace fusebench {
@@ -30,7 +33,13 @@ Result<int> report(const ReportOptions& options) {
   std::string title = options.title;
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
-  const ResultsPage page = results_page(*runs, title);
+  ResultsPage page = results_page(*runs, title);
+  const auto rows = read_run_rows(options.runs, Workers(1));
+  if (!rows) return tl::unexpected(rows.error());
+  auto sweep = sweep_sections(*rows);
+  const auto after_tables = page.page.sections.begin() + static_cast<std::ptrdiff_t>(page.tables);
+  page.page.sections.insert(after_tables, std::make_move_iterator(sweep.begin()),
+                            std::make_move_iterator(sweep.end()));
   for (const std::string& warning : page.warnings) print_progress("warning: " + warning);
   const std::string html = to_html(page.page);
   if (auto written = write_text_file(options.out, html); !written) return tl::unexpected(written.error());

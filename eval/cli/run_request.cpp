@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "eval/cli/shared_options.hpp"
-#include "eval/experiment.hpp"
+#include "eval/suites/experiment.hpp"
 
 namespace fusebench {
 

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <thread>
 
 namespace fusebench {
@@ -60,16 +59,11 @@ Result<EffectiveConfig> effective_config(const std::string& variant, const std::
 
 Result<std::optional<FrameWindow>> parse_frames(const std::string& text) {
   if (text.empty()) return std::optional<FrameWindow>{};
-  FrameWindow window;
-  const char* const end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, window.begin);
-  const bool colon = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
-  const auto second = colon ? std::from_chars(first.ptr + 1, end, window.end) : first;
-  if (!colon || second.ec != std::errc{} || second.ptr != end || window.begin >= window.end) {
-    return fail(ErrorCode::usage, fmt::format("--frames {} (allowed: A:B with 0 <= A < B)", text),
-                "A:B takes frames A to B-1");
-  }
-  return std::optional<FrameWindow>(window);
+  const auto window = parse_window(text);
+  if (!window)
+    return tl::unexpected(
+        Error{ErrorCode::usage, fmt::format("--{}", window.error().message), window.error().hint});
+  return std::optional<FrameWindow>(*window);
 }
 
 }  // namespace fusebench

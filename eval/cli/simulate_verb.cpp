@@ -10,7 +10,7 @@
 #include "eval/cli/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/json_text.hpp"
-#include "eval/simulation_request.hpp"
+#include "eval/suites/simulation_request.hpp"
 
 namespace fusebench {
 

@@ -19,6 +19,14 @@ struct Verb {
 
 [[nodiscard]] Verb add_run_verb(CLI::App& app);
 [[nodiscard]] Verb add_bench_verb(CLI::App& app);
+[[nodiscard]] Verb add_sweep_verb(CLI::App& app);
+[[nodiscard]] Verb add_slurm_task_verb(CLI::App& app);
+[[nodiscard]] Verb add_rerun_verb(CLI::App& app);
+[[nodiscard]] Verb add_gc_verb(CLI::App& app);
+[[nodiscard]] Verb add_merge_verb(CLI::App& app);
+[[nodiscard]] Verb add_best_verb(CLI::App& app);
+[[nodiscard]] Verb add_collect_verb(CLI::App& app);
+[[nodiscard]] Verb add_compare_verb(CLI::App& app);
 [[nodiscard]] Verb add_table_verb(CLI::App& app);
 [[nodiscard]] Verb add_report_verb(CLI::App& app);
 [[nodiscard]] Verb add_import_verb(CLI::App& app);

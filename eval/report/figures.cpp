@@ -10,7 +10,7 @@
 #include <set>
 #include <thread>
 
-#include "eval/child_processes.hpp"
+#include "eval/engine/child_processes.hpp"
 #include "eval/text_file.hpp"
 
 namespace fusebench {

@@ -8,7 +8,7 @@
 
 #include "eval/consistency_metrics.hpp"
 #include "eval/statistics.hpp"
-#include "eval/suite_simulations.hpp"
+#include "eval/suites/suite_simulations.hpp"
 
 namespace fusebench {
 

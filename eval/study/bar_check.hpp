@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "eval/study/study.hpp"
-#include "eval/suite_bars.hpp"
+#include "eval/suites/suite_bars.hpp"
 
 namespace fusebench {
 

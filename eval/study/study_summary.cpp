@@ -8,7 +8,7 @@
 #include "core/variants.hpp"
 #include "eval/report/data_labels.hpp"
 #include "eval/statistics.hpp"
-#include "eval/suite_simulations.hpp"
+#include "eval/suites/suite_simulations.hpp"
 
 namespace fusebench {
 

@@ -7,7 +7,7 @@
 
 #include "eval/report/page.hpp"
 #include "eval/study/summary_formats.hpp"
-#include "eval/suite_simulations.hpp"
+#include "eval/suites/suite_simulations.hpp"
 
 namespace fusebench {
 

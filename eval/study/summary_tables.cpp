@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "eval/study/summary_formats.hpp"
-#include "eval/suite_simulations.hpp"
+#include "eval/suites/suite_simulations.hpp"
 
 namespace fusebench {
 

@@ -1,8 +1,8 @@
-#include "eval/experiment.hpp"
+#include "eval/suites/experiment.hpp"
 
 #include <gtest/gtest.h>
 
-#include "eval/batch.hpp"
+#include "eval/engine/local_engine.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -83,7 +83,8 @@ TEST_F(SuiteTest, JobsAreInAFixedOrder) {
   const auto jobs = plan_batch(*suite, options);
   ASSERT_TRUE(jobs.has_value()) << jobs.error().message;
   std::vector<std::string> order;
-  for (const BatchJob& job : *jobs) order.push_back(job.recording.filename().string() + " " + job.variant);
+  for (const BatchJob& job : jobs->jobs)
+    order.push_back(job.recording.filename().string() + " " + job.variant);
   EXPECT_EQ(order, (std::vector<std::string>{"a no-imu", "a full", "b no-imu", "b full"}));
 }
 
@@ -96,8 +97,8 @@ TEST_F(SuiteTest, OnlyFiltersJobs) {
   options.only = {"recording=rpy", "variant=dm"};
   const auto jobs = plan_batch(*suite, options);
   ASSERT_TRUE(jobs.has_value());
-  ASSERT_EQ(jobs->size(), 1U);
-  EXPECT_EQ((*jobs)[0].variant, "dm");
+  ASSERT_EQ(jobs->jobs.size(), 1U);
+  EXPECT_EQ(jobs->jobs[0].variant, "dm");
   options.only = {"variant=nothing"};
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage);
   options.only = {"frame=3"};
@@ -116,13 +117,13 @@ TEST_F(SuiteTest, ABrokenRecordingIsAnOutcomeAndARecord) {
   options.out = folder_ / "out";
   const auto jobs = plan_batch(*suite, options);
   ASSERT_TRUE(jobs.has_value());
-  const auto outcomes = run_batch(*jobs, false);
+  const auto outcomes = run_locally(jobs->jobs, {});
   ASSERT_TRUE(outcomes.has_value());
   ASSERT_EQ(outcomes->size(), 2U);
   for (const BatchOutcome& outcome : *outcomes) {
     EXPECT_EQ(outcome.status, RunStatus::failed);
-    const auto record =
-        read_record(folder_ / "out" / "freiburg1_broken" / outcome.variant / "not-started" / "record.json");
+    EXPECT_TRUE(outcome.folder.filename().string().starts_with("not-started-")) << outcome.folder;
+    const auto record = read_record(outcome.folder / "record.json");
     ASSERT_TRUE(record.has_value()) << record.error().message;
     EXPECT_EQ(record->reason, outcome.reason);
     EXPECT_FALSE(record->reason.empty());
@@ -142,7 +143,7 @@ TEST_F(SuiteTest, OfAllOnlyWhatCanBeOpenedIsARow) {
     ASSERT_TRUE(suite.has_value());
     const auto jobs = plan_batch(*suite, options);
     ASSERT_TRUE(jobs.has_value());
-    const auto outcomes = run_batch(*jobs, false);
+    const auto outcomes = run_locally(jobs->jobs, {});
     ASSERT_TRUE(outcomes.has_value());
     EXPECT_EQ(outcomes->front().skipped, skipped) << outcomes->front().reason;
     EXPECT_EQ(std::filesystem::exists(folder_ / "out"), !skipped);

@@ -77,7 +77,7 @@ RunRecord sample_record() {
   record.frames = {240, 238, 2};
   record.model = {1000, 2000, 30};
   record.timing = {1.5, 2.5, 123456789, 160.0, {{"decode", 1.25}, {"update", 3.5}}};
-  record.provenance = {"0.1.0", "abc-dirty", "GNU 12.2.0", "-O3", "a cpu", 2, "a host"};
+  record.provenance = {"0.1.0", "abc-dirty", "GNU 12.2.0", "-O3", "an estimator", "a cpu", 2, "a host"};
   return record;
 }
 

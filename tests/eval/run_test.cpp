@@ -14,7 +14,7 @@
 #include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
-#include "eval/batch.hpp"
+#include "eval/engine/local_engine.hpp"
 #include "eval/intensity_file.hpp"
 #include "tests/datasets/tum_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -223,10 +223,11 @@ TEST_F(RunTest, TheHashTellsSyntheticImusApart) {
   const auto hash = [&](const std::string& imu_note) {
     Recording recording = prepared->recording;
     recording.imu_note = imu_note;
-    return run_hash(prepared->spec.config.values, recording);
+    return run_identity(prepared->spec.config.values, recording);
   };
-  EXPECT_EQ(prepared->folder.filename().string(), hash(prepared->recording.imu_note));
-  EXPECT_EQ(hash("seed 1").size(), 8U);
+  EXPECT_EQ(prepared->run_id, hash(prepared->recording.imu_note));
+  EXPECT_EQ(prepared->folder.filename().string(), prepared->run_id.substr(0, 8));
+  EXPECT_EQ(hash("seed 1").size(), 32U);
   EXPECT_EQ(hash("seed 1"), hash("seed 1"));
   EXPECT_NE(hash("seed 1"), hash("seed 2"));
 }
@@ -334,40 +335,40 @@ class FullDisk {
   void (*handler_)(int) = SIG_DFL;
 };
 
-/// What an earlier run left in the place of one that could not be written is not its result.
-TEST_F(RunTest, ARunWhoseResultsCannotBeWrittenHasNone) {
+BatchJob job_of(const RunSpec& spec) {
   BatchJob job;
-  job.recording = kGolden;
-  job.variant = "no-imu";
-  job.spec = spec("no-imu");
-  const BatchOutcome good = run_batch({job}, false)->front();
-  ASSERT_EQ(good.status, RunStatus::ok);
-  ASSERT_FALSE(good.folder.empty());
-  const FullDisk full_disk;
-  const BatchOutcome bad = run_batch({job}, false)->front();
-  EXPECT_EQ(bad.status, RunStatus::failed);
-  EXPECT_NE(bad.reason.find("cannot be written"), std::string::npos) << bad.reason;
-  EXPECT_TRUE(bad.folder.empty());
-  EXPECT_EQ(bad.record.status, RunStatus::failed);
-  EXPECT_EQ(bad.record.variant, "no-imu");
-  EXPECT_EQ(bad.record.config_hash, good.record.config_hash);
-  const auto shown = read_record(good.folder.parent_path() / "not-started" / "record.json");
-  ASSERT_TRUE(shown.has_value()) << shown.error().message;
-  EXPECT_EQ(shown->reason, bad.reason);
+  job.recording = spec.recording;
+  job.variant = spec.variant;
+  job.spec = spec;
+  return job;
 }
 
-TEST_F(RunTest, ResumeLeavesFinishedRunsAlone) {
-  RunSpec wanted = spec("no-imu");
-  BatchJob job;
-  job.recording = kGolden;
-  job.variant = "no-imu";
-  job.spec = wanted;
-  const std::vector<BatchJob> jobs = {job};
-  ASSERT_FALSE(run_batch(jobs, true)->front().resumed);
-  const auto again = run_batch(jobs, true);
+TEST_F(RunTest, AFullDiskEndsTheEngineAndNotTheRun) {
+  const std::vector<BatchJob> jobs = {job_of(spec("no-imu"))};
+  const auto good = run_locally(jobs, {});
+  ASSERT_TRUE(good.has_value()) << good.error().message;
+  ASSERT_EQ(good->front().status, RunStatus::ok);
+  const std::string before = testing::read_bytes(good->front().folder / "record.json");
+  {
+    const FullDisk full_disk;
+    const auto bad = run_locally(jobs, {.repeat_finished = true});
+    ASSERT_FALSE(bad.has_value());
+    EXPECT_EQ(bad.error().code, ErrorCode::io);
+    EXPECT_NE(bad.error().message.find("cannot be written"), std::string::npos) << bad.error().message;
+  }
+  EXPECT_EQ(testing::read_bytes(good->front().folder / "record.json"), before);
+}
+
+TEST_F(RunTest, FinishedRunsAreLeftAlone) {
+  const std::vector<BatchJob> jobs = {job_of(spec("no-imu"))};
+  const auto first = run_locally(jobs, {});
+  ASSERT_TRUE(first.has_value()) << first.error().message;
+  EXPECT_FALSE(first->front().resumed);
+  const auto again = run_locally(jobs, {});
   EXPECT_TRUE(again->front().resumed);
   EXPECT_EQ(again->front().status, RunStatus::ok);
-  EXPECT_FALSE(run_batch(jobs, false)->front().resumed);
+  EXPECT_EQ(again->front().folder, first->front().folder);
+  EXPECT_FALSE(run_locally(jobs, {.repeat_finished = true})->front().resumed);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "eval/suite_bars.hpp"
+#include "eval/suites/suite_bars.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "eval/suite_simulations.hpp"
+#include "eval/suites/suite_simulations.hpp"
 
 #include <gtest/gtest.h>
 
-#include "eval/batch.hpp"
-#include "eval/experiment.hpp"
-#include "eval/simulated_recordings.hpp"
+#include "eval/engine/job_plan.hpp"
+#include "eval/suites/experiment.hpp"
+#include "eval/suites/simulated_recordings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -115,19 +115,19 @@ TEST_F(SuiteSimulationsTest, JobsKnowWhereTheRecordingIsAndHowItIsMade) {
   options.only = {"recording=slow_rest_2"};
   auto jobs = plan_batch(*suite, options);
   ASSERT_TRUE(jobs.has_value()) << jobs.error().message;  // what is left out needs no --data
-  ASSERT_EQ(jobs->size(), 2U);
-  EXPECT_EQ((*jobs)[0].recording, std::filesystem::path("made/zr300_slow_rest_2"));
-  EXPECT_EQ((*jobs)[0].group, "slow");
-  EXPECT_EQ((*jobs)[1].variant, "dm");
-  ASSERT_TRUE((*jobs)[0].simulation.has_value());
-  EXPECT_EQ((*jobs)[0].simulation->seed, 2U);
+  ASSERT_EQ(jobs->jobs.size(), 2U);
+  EXPECT_EQ(jobs->jobs[0].recording, std::filesystem::path("made/zr300_slow_rest_2"));
+  EXPECT_EQ(jobs->jobs[0].group, "slow");
+  EXPECT_EQ(jobs->jobs[1].variant, "dm");
+  ASSERT_TRUE(jobs->jobs[0].simulation.has_value());
+  EXPECT_EQ(jobs->jobs[0].simulation->seed, 2U);
 
   options.only = {"recording=path"};
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::data_missing);
   options.data = folder_ / "data";
   jobs = plan_batch(*suite, options);
   ASSERT_TRUE(jobs.has_value()) << jobs.error().message;
-  EXPECT_EQ((*jobs)[0].simulation->trajectory, folder_ / "data" / "paths" / "p.txt");
+  EXPECT_EQ(jobs->jobs[0].simulation->trajectory, folder_ / "data" / "paths" / "p.txt");
 
   options.only = {"recording=freiburg1"};
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::data_missing);
@@ -137,10 +137,10 @@ TEST_F(SuiteSimulationsTest, JobsKnowWhereTheRecordingIsAndHowItIsMade) {
   }
   jobs = plan_batch(*suite, options);
   ASSERT_TRUE(jobs.has_value()) << jobs.error().message;
-  ASSERT_EQ(jobs->size(), 2U);
-  EXPECT_EQ((*jobs)[0].recording.filename(), "freiburg1_a");
-  EXPECT_EQ((*jobs)[1].recording.filename(), "freiburg1_b");
-  EXPECT_EQ((*jobs)[1].group, "fr1");
+  ASSERT_EQ(jobs->jobs.size(), 2U);
+  EXPECT_EQ(jobs->jobs[0].recording.filename(), "freiburg1_a");
+  EXPECT_EQ(jobs->jobs[1].recording.filename(), "freiburg1_b");
+  EXPECT_EQ(jobs->jobs[1].group, "fr1");
 }
 
 TEST_F(SuiteSimulationsTest, RecordingsAreMadeOnceAndUsedAgain) {
@@ -155,9 +155,9 @@ TEST_F(SuiteSimulationsTest, RecordingsAreMadeOnceAndUsedAgain) {
   ASSERT_TRUE(jobs.has_value()) << jobs.error().message;
   std::vector<bool> reused;
   SimulatingControl control;
-  control.finished = [&](const SimulationReport& report) { reused.push_back(report.reused); };
+  control.finished = [&](const std::vector<std::string>& lines) { reused.push_back(lines.empty()); };
   for (int repetition = 0; repetition < 2; ++repetition) {
-    const auto made = make_simulated_recordings(*jobs, 1, control);
+    const auto made = make_simulated_recordings(jobs->jobs, 1, control);
     ASSERT_TRUE(made.has_value()) << made.error().message;
   }
   EXPECT_EQ(reused, (std::vector<bool>{false, true}));  // once for both variants

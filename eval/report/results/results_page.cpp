@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -24,6 +25,7 @@ namespace fusebench {
 namespace {
 
 constexpr double kLargestError_m = 0.05;
+constexpr std::size_t kMostDrawn = 12;  // of a recording: more curves nobody can tell apart
 constexpr std::array<std::string_view, 3> kPicturedVariants = {"full", "dm", "literal"};
 
 /// How much of each run a page of so many runs shows.
@@ -201,6 +203,18 @@ void add_charts(Page& page, std::string title, std::vector<Chart> charts) {
   if (!charts.empty()) page.sections.push_back({std::move(title), "", std::move(charts), 3});
 }
 
+std::vector<FoundRun> runs_to_draw(Group group) {
+  std::vector<FoundRun> runs(group.begin(), group.end());
+  if (runs.size() <= kMostDrawn) return runs;
+  std::ranges::stable_sort(runs, {}, [](const FoundRun& run) {
+    const auto& ate = run.record.metrics.ate.value;
+    return ate && run.record.status == RunStatus::ok ? ate->stats.rmse
+                                                     : std::numeric_limits<double>::infinity();
+  });
+  runs.resize(kMostDrawn);
+  return runs;
+}
+
 void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   Page& page = result.page;
   const auto started =
@@ -208,8 +222,13 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   const RecordedRecording& recording = (started == group.end() ? group.begin() : started)->record.recording;
   page.sections.push_back(
       {recording.name, started == group.end() ? "No run began." : facts_of(recording), run_facts(group)});
+  const std::vector<FoundRun> drawn = runs_to_draw(group);
+  if (drawn.size() < group.size()) {
+    page.sections.back().text +=
+        fmt::format(" Of its {} runs, the {} with the smallest ATE are drawn.", group.size(), drawn.size());
+  }
   std::vector<RunSeries> series;
-  for (const FoundRun& run : group) {
+  for (const FoundRun& run : drawn) {
     if (run.record.frames.total == 0) continue;  // failed before its first frame: there is nothing to draw
     series.push_back(series_of(run, label_of(run, group)));
     for (const std::string& warning : series.back().warnings) result.warnings.push_back(warning);
@@ -218,7 +237,7 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   add_charts(page, "Position over time", position_charts(series, detail.buckets));
   add_charts(page, "Errors", error_charts(series, detail.buckets));
   add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
-  if (PatchPictures pictures = pictures_of(group, result.warnings); !pictures.images.empty())
+  if (PatchPictures pictures = pictures_of(drawn, result.warnings); !pictures.images.empty())
     page.sections.push_back({"Patches", pictures.text, std::move(pictures.images), 3});
   if (PageScene scene = scene_of(series, detail.triangles, result.warnings); !scene.meshes.empty()) {
     page.sections.push_back(
@@ -226,7 +245,7 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   }
   add_charts(page, "Health and time", tracking_charts(series, detail.buckets));
   std::vector<PageDetails> details;
-  for (const FoundRun& run : group) details.push_back(configuration_of(run, group));
+  for (const FoundRun& run : drawn) details.push_back(configuration_of(run, group));
   page.sections.push_back({"Configuration and provenance", "", std::move(details), 3});
 }
 
@@ -242,7 +261,10 @@ ResultsPage results_page(const std::vector<FoundRun>& runs, const std::string& t
   std::vector<std::string> remarks = table.footer;
   remarks.insert(remarks.end(), table.notes.begin(), table.notes.end());
   result.page.sections.push_back({"How to read the columns", "", lines_table(remarks), 3});
-  const Detail detail = detail_for(runs.size());
+  result.tables = result.page.sections.size();
+  std::size_t drawn = 0;
+  for (const Group group : groups_of(runs)) drawn += std::min(group.size(), kMostDrawn);
+  const Detail detail = detail_for(drawn);
   for (const Group group : groups_of(runs)) add_recording(result, group, detail);
   return result;
 }

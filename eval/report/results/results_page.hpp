@@ -1,6 +1,7 @@
 // A folder of runs as one page: tables, charts, patches and meshes.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace fusebench {
 
 struct ResultsPage {
   Page page;
+  std::size_t tables = 0;             ///< of the sections: those before the first recording
   std::vector<std::string> warnings;  ///< what could not be read and is therefore not shown
 };
 

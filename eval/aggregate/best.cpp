@@ -1,0 +1,131 @@
+#include "eval/aggregate/best.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "eval/aggregate/option_order.hpp"
+#include "eval/found_runs.hpp"
+#include "eval/report/data_labels.hpp"
+
+namespace fusebench {
+
+namespace {
+
+/// In the order in which groups are shown: variants as tables list them, numbers by value.
+struct GroupKey {
+  std::string kind;
+  std::size_t rank = 0;
+  std::string label;
+
+  bool operator<(const GroupKey& other) const {
+    if (kind != other.kind) return kind < other.kind;
+    if (rank != other.rank) return rank < other.rank;
+    return OptionValueLess()(label, other.label);
+  }
+};
+
+GroupKey key_of(const RunRow& row, const std::string& group, const std::string& kind) {
+  if (group == "none") return {kind, 0, "all"};
+  if (group == "recording") return {kind, 0, row.recording};
+  if (group == "variant") return {kind, variant_rank(row.variant), row.variant};
+  return {kind, 0, std::string(option_of(row, group))};
+}
+
+Result<void> check_group(const std::string& group, const std::vector<std::string>& edited) {
+  if (group == "none" || group == "recording" || group == "variant") return {};
+  if (std::ranges::find(edited, group) != edited.end()) return {};
+  return fail(ErrorCode::usage,
+              fmt::format("--group {}: no run edits this option (allowed: recording | variant | none{}{})",
+                          group, edited.empty() ? "" : " | ", fmt::join(edited, " | ")));
+}
+
+void rank(std::vector<BestRow>& rows) {
+  // Stable: configurations that are equal stay in the order of variants and options.
+  std::ranges::stable_sort(rows, [](const BestRow& a, const BestRow& b) {
+    const auto key = [](const ConfigurationSummary& c) {
+      return std::tuple(!c.complete(), c.failed.size() + c.not_run.size(), !c.mean, c.mean.value_or(0));
+    };
+    return key(a.configuration) < key(b.configuration);
+  });
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].configuration.mean) continue;
+    const bool tied = i > 0 && rows[i - 1].configuration.mean == rows[i].configuration.mean &&
+                      rows[i].configuration.complete() && rows[i - 1].configuration.complete();
+    rows[i].rank = tied ? *rows[i - 1].rank : i + 1;
+  }
+}
+
+std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric& metric,
+                                  const std::set<std::string>& without_number) {
+  std::vector<std::string> notes;
+  if (const std::size_t damaged = unreadable_count(rows); damaged > 0)
+    notes.push_back(fmt::format("{} of {} records cannot be read and are left out.", damaged, rows.size()));
+  const auto unknown =
+      std::ranges::count_if(rows, [](const RunRow& row) { return row.readable && !row.options_known; });
+  if (unknown > 0) {
+    notes.push_back(fmt::format(
+        "{} failed runs never wrote their options and are left out: no other run has their configuration.",
+        unknown));
+  }
+  if (!without_number.empty()) {
+    notes.push_back(
+        fmt::format("No run has {} of {}: left out.", metric.key, fmt::join(without_number, ", ")));
+  }
+  notes.push_back(fmt::format(
+      "{}: mean over a group's recordings of the mean over their ok runs; less is better. "
+      "Configurations that lost, failed or did not run some of them come after those that did all; "
+      "their means are of fewer recordings and do not compare.",
+      metric.key));
+  std::vector<DataWords> words;
+  for (const RunRow& row : rows) words.push_back({row.data, row.imu, row.truth});
+  for (std::string& footnote : data_footnotes(words)) notes.push_back(std::move(footnote));
+  return notes;
+}
+
+}  // namespace
+
+std::string incomplete_note(const ConfigurationSummary& configuration) {
+  std::string note;
+  if (!configuration.failed.empty())
+    note = fmt::format("failed or lost: {}", fmt::join(configuration.failed, ", "));
+  if (!configuration.not_run.empty()) {
+    note += fmt::format("{}not run: {}", note.empty() ? "" : "; ", fmt::join(configuration.not_run, ", "));
+  }
+  return note;
+}
+
+Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRequest& request) {
+  check(request.metric != nullptr && request.metric->less_is_better, "a metric that ranks");
+  BestTable table{request.metric, request.group, edited_options(rows), {}, {}};
+  if (auto allowed = check_group(request.group, table.options); !allowed)
+    return tl::unexpected(allowed.error());
+  const auto kinds = recording_kinds(rows);
+  std::map<GroupKey, std::vector<const RunRow*>> members;
+  for (const RunRow& row : rows) {
+    if (row.attributable()) members[key_of(row, request.group, kinds.at(row.recording))].push_back(&row);
+  }
+  std::set<std::string> without_number;
+  for (const auto& [key, runs] : members) {
+    ConfigurationSummaries summaries = summarise_configurations(runs, *request.metric);
+    without_number.insert(summaries.without_number.begin(), summaries.without_number.end());
+    if (summaries.configurations.empty()) continue;
+    BestGroup group{key.label, key.kind, std::move(summaries.recordings), 0, {}};
+    for (ConfigurationSummary& summary : summaries.configurations)
+      group.rows.push_back({std::nullopt, std::move(summary)});
+    group.configurations = group.rows.size();
+    rank(group.rows);
+    if (request.most > 0 && group.rows.size() > request.most)
+      group.rows.erase(group.rows.begin() + static_cast<std::ptrdiff_t>(request.most), group.rows.end());
+    table.groups.push_back(std::move(group));
+  }
+  table.notes = notes_of(rows, *request.metric, without_number);
+  return table;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,60 @@
+// The best configurations of a folder of runs.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "eval/aggregate/configurations.hpp"
+#include "eval/aggregate/run_rows.hpp"
+
+namespace fusebench {
+
+struct BestRequest {
+  const RunMetric* metric = nullptr;  ///< of find_run_metric()
+  std::string group = "recording";    ///< "recording", "variant", "none" or the key of an edited option
+  std::size_t most = 10;              ///< configurations that a group shows; 0: all
+};
+
+struct BestRow {
+  std::optional<std::size_t> rank;  ///< from 1, the same for equal means; absent without a mean
+  ConfigurationSummary configuration;
+};
+
+/// The runs of one recording, variant or value of an option, on data of one kind.
+struct BestGroup {
+  std::string label;
+  std::string kind;  ///< of recording_kinds()
+  std::vector<std::string> recordings;
+  std::size_t configurations = 0;  ///< of which `rows` are the first
+  std::vector<BestRow> rows;
+};
+
+struct BestTable {
+  const RunMetric* metric = nullptr;
+  std::string group;
+  std::vector<std::string> options;  ///< keys that any of the configurations edits
+  std::vector<BestGroup> groups;
+  std::vector<std::string> notes;  ///< what a reader must know: what was left out, and the protocol
+};
+
+/// Those that did all of a group's recordings by their mean, then the others by how many they did and their
+/// mean. Error usage: a group that no run can be put into, with the keys that are edited.
+[[nodiscard]] Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRequest& request);
+
+/// Why a configuration stands behind others: "failed or lost: fr1_rpy; not run: fr1_xyz". Empty if it did
+/// all.
+[[nodiscard]] std::string incomplete_note(const ConfigurationSummary& configuration);
+
+enum class BestFormat { markdown, csv, json };
+/// Error usage.
+[[nodiscard]] Result<BestFormat> parse_best_format(std::string_view text);
+
+/// Markdown shows the units of headings; CSV (RFC 4180) and JSON are SI.
+[[nodiscard]] std::string render_best(const BestTable& table, BestFormat format);
+
+}  // namespace fusebench

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "eval/aggregate/best.hpp"
+#include "eval/json_text.hpp"
+#include "eval/report/plain_table.hpp"
+
+namespace fusebench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string option_cell(const RunOptions& options, const std::string& key) {
+  for (const auto& [name, value] : options) {
+    if (name == key) return value;
+  }
+  return {};
+}
+
+std::string markdown(const BestTable& table) {
+  TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant"};
+  header.insert(header.end(), table.options.begin(), table.options.end());
+  const std::size_t text_columns = header.size();
+  header.insert(header.end(), {"rank", std::string(table.metric->heading), "ok", "incomplete"});
+  std::vector<TableCells> lines = {header};
+  std::string more;
+  for (const BestGroup& group : table.groups) {
+    for (const BestRow& row : group.rows) {
+      TableCells cells = {group.label, group.kind, row.configuration.variant};
+      for (const std::string& key : table.options)
+        cells.push_back(option_cell(row.configuration.options, key));
+      cells.push_back(row.rank ? fmt::format("{}", *row.rank) : "-");
+      cells.push_back(
+          number_cell(row.configuration.mean, table.metric->shown_factor, table.metric->decimals));
+      cells.push_back(fmt::format("{}/{}", row.configuration.n_ok, row.configuration.n_total));
+      cells.push_back(incomplete_note(row.configuration));
+      lines.push_back(std::move(cells));
+    }
+    if (group.rows.size() < group.configurations) {
+      more += fmt::format("- {} ({}): {} of {} configurations shown\n", group.label, group.kind,
+                          group.rows.size(), group.configurations);
+    }
+  }
+  std::string text = markdown_table(lines, text_columns) + "\n" + more;
+  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
+  return text;
+}
+
+std::string csv(const BestTable& table) {
+  std::string text = "group,data,rank,variant";
+  for (const std::string& key : table.options) text += fmt::format(",{}", csv_cell(key));
+  text += ",metric,unit,mean,n_ok,n_total,recordings,note\n";
+  for (const BestGroup& group : table.groups) {
+    for (const BestRow& row : group.rows) {
+      const ConfigurationSummary& configuration = row.configuration;
+      text += fmt::format("{},{},{},{}", csv_cell(group.label), csv_cell(group.kind),
+                          row.rank ? fmt::format("{}", *row.rank) : "", csv_cell(configuration.variant));
+      for (const std::string& key : table.options)
+        text += fmt::format(",{}", csv_cell(option_cell(configuration.options, key)));
+      text += fmt::format(",{},{},{},{},{},{},{}\n", table.metric->key, table.metric->unit,
+                          configuration.mean ? fmt::format("{}", *configuration.mean) : "",
+                          configuration.n_ok, configuration.n_total, group.recordings.size(),
+                          csv_cell(incomplete_note(configuration)));
+    }
+  }
+  return text;
+}
+
+Json json_of(const BestRow& row) {
+  Json options = Json::object();
+  for (const auto& [key, value] : row.configuration.options) options[key] = value;
+  return {{"rank", row.rank ? Json(*row.rank) : Json(nullptr)},
+          {"variant", row.configuration.variant},
+          {"options", std::move(options)},
+          {"mean", row.configuration.mean ? Json(*row.configuration.mean) : Json(nullptr)},
+          {"n_ok", row.configuration.n_ok},
+          {"n_total", row.configuration.n_total},
+          {"complete", row.configuration.complete()},
+          {"failed", row.configuration.failed},
+          {"not_run", row.configuration.not_run}};
+}
+
+std::string json(const BestTable& table) {
+  Json groups = Json::array();
+  for (const BestGroup& group : table.groups) {
+    Json rows = Json::array();
+    for (const BestRow& row : group.rows) rows.push_back(json_of(row));
+    groups.push_back({{"group", group.label},
+                      {"data", group.kind},
+                      {"recordings", group.recordings},
+                      {"configurations", group.configurations},
+                      {"rows", std::move(rows)}});
+  }
+  const Json document = {{"metric", table.metric->key}, {"unit", table.metric->unit},
+                         {"group_by", table.group},     {"options", table.options},
+                         {"groups", std::move(groups)}, {"notes", table.notes}};
+  return json_text(document) + "\n";
+}
+
+}  // namespace
+
+Result<BestFormat> parse_best_format(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, BestFormat>, 3> kFormats = {
+      {{"markdown", BestFormat::markdown}, {"csv", BestFormat::csv}, {"json", BestFormat::json}}};
+  for (const auto& [name, format] : kFormats) {
+    if (name == text) return format;
+  }
+  return fail(ErrorCode::usage, fmt::format("--format {} (allowed: markdown | csv | json)", text));
+}
+
+std::string render_best(const BestTable& table, BestFormat format) {
+  switch (format) {
+    case BestFormat::markdown:
+      return markdown(table);
+    case BestFormat::csv:
+      return csv(table);
+    case BestFormat::json:
+      return json(table);
+  }
+  return {};
+}
+
+}  // namespace fusebench

@@ -1,0 +1,121 @@
+#include "eval/aggregate/configurations.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "eval/aggregate/option_order.hpp"
+#include "eval/found_runs.hpp"
+#include "eval/report/data_labels.hpp"
+
+namespace fusebench {
+
+namespace {
+
+struct Key {
+  std::size_t rank = 0;
+  std::string variant;
+  RunOptions options;
+
+  bool operator<(const Key& other) const {
+    if (variant != other.variant) return std::tie(rank, variant) < std::tie(other.rank, other.variant);
+    return RunOptionsLess()(options, other.options);
+  }
+};
+
+struct Tally {
+  std::size_t runs = 0;
+  std::vector<double> values;  ///< of ok runs
+};
+
+using Tallies = std::map<std::string, Tally>;  // by recording
+
+ConfigurationSummary summary_of(const Key& key, const Tallies& tallies,
+                                const std::vector<std::string>& recordings) {
+  ConfigurationSummary summary;
+  summary.variant = key.variant;
+  summary.options = key.options;
+  std::vector<double> means;
+  for (const std::string& recording : recordings) {
+    const auto found = tallies.find(recording);
+    if (found == tallies.end()) {
+      summary.not_run.push_back(recording);
+      continue;
+    }
+    const Tally& tally = found->second;
+    summary.n_total += tally.runs;
+    summary.n_ok += tally.values.size();
+    if (tally.values.size() < tally.runs) summary.failed.push_back(recording);
+    if (!tally.values.empty()) means.push_back(ordered_mean(tally.values));
+  }
+  if (!means.empty()) summary.mean = ordered_mean(std::move(means));
+  return summary;
+}
+
+}  // namespace
+
+double ordered_mean(std::vector<double> values) {
+  check(!values.empty(), "a mean is of something");
+  std::ranges::sort(values);
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> runs,
+                                                const RunMetric& metric) {
+  struct Recording {
+    bool any_ok = false;
+    bool any_value = false;
+  };
+  std::map<std::string, std::size_t> ranks;
+  std::map<Key, Tallies> tallies;
+  std::map<std::string, Recording> recordings;
+  for (const RunRow* run : runs) {
+    if (!run->attributable()) continue;
+    const auto [rank, is_new] = ranks.try_emplace(run->variant, 0);
+    if (is_new) rank->second = variant_rank(run->variant);
+    Tally& tally = tallies[Key{rank->second, run->variant, run->options}][run->recording];
+    Recording& recording = recordings[run->recording];
+    ++tally.runs;
+    if (run->status != RunStatus::ok) continue;
+    recording.any_ok = true;
+    if (!(run->*metric.value)) continue;
+    recording.any_value = true;
+    tally.values.push_back(*(run->*metric.value));
+  }
+  ConfigurationSummaries summaries;
+  for (const auto& [name, recording] : recordings) {
+    const bool measured = recording.any_value || !recording.any_ok;
+    (measured ? summaries.recordings : summaries.without_number).push_back(name);
+  }
+  if (summaries.recordings.empty()) return summaries;
+  for (const auto& [key, of_key] : tallies)
+    summaries.configurations.push_back(summary_of(key, of_key, summaries.recordings));
+  std::erase_if(summaries.configurations, [](const ConfigurationSummary& s) { return s.n_total == 0; });
+  return summaries;
+}
+
+std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows) {
+  // A run that failed early knows nothing of its recording, so that any other one's word counts.
+  struct Words {
+    bool simulated = false;
+    bool pseudo_truth = false;
+    bool synthetic_imu = false;
+  };
+  std::map<std::string, Words> words;
+  for (const RunRow& row : rows) {
+    Words& recording = words[row.recording];
+    recording.simulated |= row.data == "simulated";
+    recording.pseudo_truth |= row.truth == kPseudoTruthWord;
+    recording.synthetic_imu |= row.imu == "synthetic IMU";
+  }
+  std::map<std::string, std::string> kinds;
+  for (const auto& [name, recording] : words) {
+    std::string& kind = kinds[name];
+    kind = data_cell({recording.simulated ? "simulated" : "recorded", "",
+                      recording.pseudo_truth ? kPseudoTruthWord : std::string_view()});
+    if (recording.synthetic_imu) kind += ", synthetic IMU";
+  }
+  return kinds;
+}
+
+}  // namespace fusebench

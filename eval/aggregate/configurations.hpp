@@ -1,0 +1,47 @@
+// Runs put together by configuration: a variant and the options that were edited.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/aggregate/run_rows.hpp"
+
+namespace fusebench {
+
+struct ConfigurationSummary {
+  std::string variant;
+  RunOptions options;
+  /// Mean over recordings of the mean over their ok runs; absent without any.
+  std::optional<double> mean;
+  std::size_t n_ok = 0;              ///< runs that are ok and have the number
+  std::size_t n_total = 0;           ///< runs on the measured recordings
+  std::vector<std::string> failed;   ///< recordings on which a run failed, was lost or has no number
+  std::vector<std::string> not_run;  ///< recordings without a run
+
+  /// Whether the mean is over every measured recording and run.
+  [[nodiscard]] bool complete() const { return mean && failed.empty() && not_run.empty(); }
+};
+
+struct ConfigurationSummaries {
+  std::vector<std::string> recordings;  ///< that are measured
+  /// Recordings that have ok runs, none of which has the number (no ground truth, say): left out.
+  std::vector<std::string> without_number;
+  std::vector<ConfigurationSummary> configurations;  ///< by variant in the order of all_variants(), options
+};
+
+/// Runs whose configuration is not known are left out. Does not depend on the order of the runs.
+[[nodiscard]] ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> runs,
+                                                              const RunMetric& metric);
+
+/// What kind of data each recording is of, as one word: means never mix recorded with simulated data, an
+/// independent truth with a pseudo one, or a synthetic IMU with a sensor.
+[[nodiscard]] std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows);
+
+/// Added in the order of size, so that the sum does not depend on the order of the values. Not of none.
+[[nodiscard]] double ordered_mean(std::vector<double> values);
+
+}  // namespace fusebench

@@ -1,0 +1,293 @@
+#include "eval/aggregate/record_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fusebench {
+
+namespace {
+
+using Scalar = std::variant<std::nullptr_t, bool, std::int64_t, double, std::string_view>;
+
+template <std::string RunRow::*Member>
+bool text(RunRow& row, const Scalar& value) {
+  const auto* given = std::get_if<std::string_view>(&value);
+  if (given != nullptr) row.*Member = *given;
+  return given != nullptr;
+}
+
+template <std::size_t RunRow::*Member>
+bool count(RunRow& row, const Scalar& value) {
+  const auto* given = std::get_if<std::int64_t>(&value);
+  if (given == nullptr || *given < 0) return false;
+  row.*Member = static_cast<std::size_t>(*given);
+  return true;
+}
+
+template <std::optional<double> RunNumbers::*Member>
+bool number(RunRow& row, const Scalar& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+    row.*Member = static_cast<double>(*whole);
+  } else if (const auto* given = std::get_if<double>(&value)) {
+    if (std::isfinite(*given)) row.*Member = *given;
+  } else {
+    return std::holds_alternative<std::nullptr_t>(value);
+  }
+  return true;
+}
+
+/// A time of zero is that of a run that was not timed.
+template <std::optional<double> RunNumbers::*Member>
+bool timing(RunRow& row, const Scalar& value) {
+  if (!number<Member>(row, value)) return false;
+  if (row.*Member && *(row.*Member) <= 0) (row.*Member).reset();
+  return true;
+}
+
+bool schema(RunRow&, const Scalar& value) {
+  const auto* given = std::get_if<std::int64_t>(&value);
+  return given != nullptr && *given == kRecordSchema;
+}
+
+bool status(RunRow& row, const Scalar& value) {
+  const auto* given = std::get_if<std::string_view>(&value);
+  const auto parsed = given == nullptr ? std::nullopt : parse_run_status(*given);
+  if (parsed) row.status = *parsed;
+  return parsed.has_value();
+}
+
+struct Field {
+  std::string_view path;
+  bool (*set)(RunRow& row, const Scalar& value);
+  bool required = false;
+};
+
+// Those with the same beginning stand together.
+constexpr auto kFields = std::to_array<Field>({
+    {"schema", schema, true},
+    {"status", status, true},
+    {"reason", text<&RunRow::reason>, true},
+    {"recording.name", text<&RunRow::recording>, true},
+    {"recording.data", text<&RunRow::data>},
+    {"recording.imu", text<&RunRow::imu>},
+    {"recording.truth", text<&RunRow::truth>},
+    {"variant", text<&RunRow::variant>, true},
+    {"config_hash", text<&RunRow::config_hash>, true},
+    {"metrics.ate.stats.rmse", number<&RunNumbers::ate_rmse_m>},
+    {"metrics.rpe.frame.translation.stats.rmse", number<&RunNumbers::rpe_frame_m>},
+    {"metrics.rpe.second.translation.stats.rmse", number<&RunNumbers::rpe_second_m>},
+    {"metrics.rpe.second.rotation.stats.rmse", number<&RunNumbers::rpe_second_rad>},
+    {"metrics.aie.aie", number<&RunNumbers::aie_grey>},
+    {"metrics.mesh.accuracy.mean", number<&RunNumbers::mesh_accuracy_m>},
+    {"metrics.mesh.completeness.mean", number<&RunNumbers::mesh_completeness_m>},
+    {"frames.total", count<&RunRow::total>, true},
+    {"frames.tracked", count<&RunRow::tracked>, true},
+    {"frames.lost", count<&RunRow::lost>, true},
+    {"timing.wall_s", timing<&RunNumbers::wall_s>, true},
+    {"timing.cpu_s", timing<&RunNumbers::cpu_s>, true},
+    {"timing.peak_rss_bytes", timing<&RunNumbers::peak_rss_bytes>, true},
+    {"timing.fps", timing<&RunNumbers::fps>, true},
+});
+constexpr std::string_view kConfig = "config";
+
+/// Follows the events of the parser; whatever no field begins with is passed over.
+class RecordHandler {
+ public:
+  explicit RecordHandler(RunRow& row) : row_(row) {}
+
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+  [[nodiscard]] bool has_config() const { return has_config_; }
+  /// The path of a field that must be there and was not; empty if there is none.
+  [[nodiscard]] std::string_view missing() const {
+    for (std::size_t i = 0; i < kFields.size(); ++i) {
+      if (kFields[i].required && !seen_[i]) return kFields[i].path;
+    }
+    return has_config_seen_ ? std::string_view() : kConfig;
+  }
+
+  bool null() { return scalar(nullptr); }
+  bool boolean(bool value) { return scalar(value); }
+  bool number_integer(std::int64_t value) { return scalar(value); }
+  bool number_unsigned(std::uint64_t value) {
+    if (std::in_range<std::int64_t>(value)) return scalar(static_cast<std::int64_t>(value));
+    return scalar(static_cast<double>(value));
+  }
+  bool number_float(double value, const std::string&) { return scalar(value); }
+  bool string(const std::string& value) { return scalar(std::string_view(value)); }
+  bool binary(const std::vector<std::uint8_t>&) { return false; }  // JSON text has none
+
+  bool start_object(std::size_t) {
+    levels_.push_back(levels_.empty() ? Level{0, kFields.size(), 0, Kind::fields} : next_);
+    if (levels_.back().kind == Kind::option) option_.clear();
+    return true;
+  }
+  bool end_object() {
+    const Kind kind = levels_.back().kind;
+    levels_.pop_back();
+    return kind != Kind::option || finish_option();
+  }
+  bool start_array(std::size_t) {
+    next_ = {};
+    levels_.push_back(next_);
+    return true;
+  }
+  bool end_array() {
+    levels_.pop_back();
+    return true;
+  }
+
+  bool key(const std::string& key) {
+    const Level& level = levels_.back();
+    switch (level.kind) {
+      case Kind::fields:
+        next_ = narrowed(level, key);
+        if (levels_.size() == 1 && key == kConfig) {
+          next_ = {0, 0, 0, Kind::config};
+          has_config_seen_ = true;
+        }
+        break;
+      case Kind::config:
+        option_key_ = key;
+        next_ = {0, 0, 0, Kind::option};
+        break;
+      case Kind::option:
+        member_ = key;
+        next_ = {0, 0, 0, Kind::option_member};
+        break;
+      case Kind::option_member:
+        next_ = {};
+        break;
+    }
+    return true;
+  }
+
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
+    problem_ = error.what();
+    return false;
+  }
+
+ private:
+  enum class Kind { fields, config, option, option_member };
+  /// Where in the document we are: the fields [first, last) share this beginning of `prefix` characters.
+  struct Level {
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::size_t prefix = 0;
+    Kind kind = Kind::fields;
+  };
+  struct Option {
+    std::string value;
+    std::string origin;
+    void clear() {
+      value.clear();
+      origin.clear();
+    }
+  };
+
+  static Level narrowed(const Level& level, std::string_view key) {
+    Level next{level.first, level.first, level.prefix + key.size(), Kind::fields};
+    const auto begins = [&](std::size_t i) {
+      const std::string_view rest = kFields[i].path.substr(std::min(level.prefix, kFields[i].path.size()));
+      return rest.starts_with(key) && (rest.size() == key.size() || rest[key.size()] == '.');
+    };
+    while (next.first < level.last && !begins(next.first)) ++next.first;
+    next.last = next.first;
+    while (next.last < level.last && begins(next.last)) ++next.last;
+    if (next.first < next.last && kFields[next.first].path.size() > next.prefix) ++next.prefix;  // the point
+    return next;
+  }
+
+  bool scalar(const Scalar& value) {
+    if (levels_.empty()) return true;  // the document is one value: fields will be missing
+    if (next_.kind == Kind::option_member) return option_member(value);
+    if (next_.kind != Kind::fields) return wrong(kConfig);
+    if (next_.first == next_.last || levels_.back().first == levels_.back().last) return true;
+    const Field& field = kFields[next_.first];
+    if (field.path.size() != next_.prefix) return true;  // null in place of a block: it holds no numbers
+    seen_[next_.first] = true;
+    return field.set(row_, value) || wrong(field.path);
+  }
+
+  bool option_member(const Scalar& value) {
+    if (levels_.back().kind != Kind::option) return true;
+    const auto* given = std::get_if<std::string_view>(&value);
+    if (member_ == "origin") {
+      if (given == nullptr) return wrong(option_key_);
+      option_.origin = *given;
+    } else if (member_ == "value") {
+      if (std::holds_alternative<std::nullptr_t>(value)) return wrong(option_key_);
+      option_.value = text_of(value);
+    }
+    return true;
+  }
+
+  static std::string text_of(const Scalar& value) {
+    if (const auto* given = std::get_if<bool>(&value)) return *given ? "true" : "false";
+    if (const auto* given = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *given);
+    if (const auto* given = std::get_if<double>(&value)) return fmt::format("{}", *given);
+    const auto* given = std::get_if<std::string_view>(&value);
+    return given == nullptr ? std::string() : std::string(*given);
+  }
+
+  bool finish_option() {
+    if (option_.origin.empty()) return wrong(option_key_);
+    has_config_ = true;
+    if (option_.origin != "default" && !option_.origin.starts_with("variant "))
+      row_.options.emplace_back(option_key_, option_.value);
+    return true;
+  }
+
+  bool wrong(std::string_view path) {
+    problem_ = fmt::format("{} has a value that this program does not read", path);
+    return false;
+  }
+
+  RunRow& row_;
+  std::vector<Level> levels_;
+  Level next_;
+  std::string option_key_;
+  std::string member_;
+  Option option_;
+  bool has_config_ = false;
+  bool has_config_seen_ = false;
+  std::array<bool, kFields.size()> seen_{};
+  std::string problem_;
+};
+
+RunRow damaged(RunRow row, const std::string& problem) {
+  static_cast<RunNumbers&>(row) = {};
+  row.status = RunStatus::failed;
+  row.readable = false;
+  row.reason = "record.json: " + problem;
+  row.options.clear();
+  row.total = row.tracked = row.lost = 0;
+  return row;
+}
+
+}  // namespace
+
+RunRow scan_record(std::string_view json) {
+  RunRow row;
+  RecordHandler handler(row);
+  if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler))
+    return damaged(std::move(row), handler.problem());
+  if (const auto missing = handler.missing(); !missing.empty())
+    return damaged(std::move(row), fmt::format("{} is missing", missing));
+  std::ranges::sort(row.options);
+  // A run that was never started says nothing of its options; one of another program has none.
+  row.options_known = handler.has_config() || row.status != RunStatus::failed;
+  const std::size_t processed = row.tracked + row.lost;
+  if (row.cpu_s && processed > 0) row.cpu_ms_per_frame = 1e3 * *row.cpu_s / static_cast<double>(processed);
+  return row;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,64 @@
+// What aggregations keep of each run of a folder with tens of thousands of them.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "eval/aggregate/run_metrics.hpp"
+#include "eval/record.hpp"
+
+namespace fusebench {
+
+/// Key and value text of the options that somebody edited, beyond what the variant says; by key.
+using RunOptions = std::vector<std::pair<std::string, std::string>>;
+
+/// What stands in place of the value of an option that a run does not edit.
+inline constexpr std::string_view kUnsetOption = "unset";
+
+/// One run, without what no aggregation asks for.
+struct RunRow : RunNumbers {
+  std::string recording;
+  std::string data = "recorded";  ///< "recorded", "simulated"
+  std::string imu = "none";       ///< "none", "recorded", "synthetic IMU"
+  std::string truth;              ///< "none", "given", kPseudoTruthWord
+  std::string variant;
+  std::string run;     ///< name of its folder
+  std::string folder;  ///< relative to the root, with "/"
+  RunStatus status = RunStatus::failed;
+  std::string reason;  ///< empty if ok
+  std::size_t total = 0;
+  std::size_t tracked = 0;
+  std::size_t lost = 0;
+  RunOptions options;
+  std::string config_hash;
+  bool readable = true;  ///< false: the record is damaged; `reason` says how
+  /// False for a run that failed before it wrote its options, where no other run has the same configuration.
+  bool options_known = true;
+
+  /// Whether it is known which configuration the run is of.
+  [[nodiscard]] bool attributable() const { return readable && options_known; }
+};
+
+/// The value of an option, or kUnsetOption.
+[[nodiscard]] std::string_view option_of(const RunRow& row, std::string_view key);
+
+/// Keys of all options that any run edits, sorted.
+[[nodiscard]] std::vector<std::string> edited_options(std::span<const RunRow> rows);
+
+[[nodiscard]] std::size_t unreadable_count(std::span<const RunRow> rows);
+
+/// Every record.json below `root` (hidden folders are unfinished runs and are skipped), by recording, variant
+/// in the order of all_variants(), options, run; the same for any number of threads. A record that cannot be
+/// read is a failed row with the reason. A failed run that never wrote its options has those of a run of the
+/// same variant and configuration hash. Error data_missing: no folder, or no records at all.
+[[nodiscard]] Result<std::vector<RunRow>> read_run_rows(const std::filesystem::path& root,
+                                                        const Workers& workers);
+
+}  // namespace fusebench

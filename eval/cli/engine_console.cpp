@@ -1,0 +1,95 @@
+#include "eval/cli/engine_console.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "eval/record.hpp"
+#include "eval/suites/simulated_recordings.hpp"
+
+namespace fusebench {
+
+namespace {
+
+constexpr std::size_t kMostRows = 50;  // of runs that were there already, told one by one
+
+std::string duration(double time_s) {
+  if (time_s < 90) return fmt::format("{:.0f} s", time_s);
+  if (time_s < 5400) return fmt::format("{:.0f} min", time_s / 60);
+  return fmt::format("{:.1f} h", time_s / 3600);
+}
+
+std::string ending_of(const BatchOutcome& outcome) {
+  if (outcome.skipped) return "skipped: " + outcome.reason;
+  if (outcome.status != RunStatus::ok)
+    return fmt::format("{}: {}", to_string(outcome.status), outcome.reason);
+  const auto record = read_record(outcome.folder / "record.json");
+  return record ? summary_line(*record) : record.error().message;
+}
+
+}  // namespace
+
+EngineConsole::EngineConsole(std::span<const BatchJob> jobs)
+    : jobs_(jobs), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+EngineControl EngineConsole::control() {
+  return {[this](std::size_t index, const BatchOutcome& outcome) { tell(index, outcome); },
+          [this](const EngineState& state) { show(state); }, &stop_requested()};
+}
+
+void EngineConsole::clear() {
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void EngineConsole::tell(std::size_t index, const BatchOutcome& outcome) {
+  ++told_;
+  if (outcome.resumed && ++resumed_ > kMostRows) return;
+  clear();
+  const bool more = outcome.resumed && resumed_ == kMostRows;
+  print_progress(fmt::format("[{}/{}] {}: {}{}{}", told_, jobs_.size(), to_string(jobs_[index]),
+                             outcome.resumed && !outcome.skipped ? "(was there) " : "", ending_of(outcome),
+                             more ? "; others that were there are not told" : ""));
+}
+
+void EngineConsole::show(const EngineState& state) {
+  if (!terminal_) return;
+  std::string line = fmt::format("[{}/{}] {}", state.ended, state.jobs, rate_text(state));
+  for (const std::string& job : state.running) line += " | " + job;
+  constexpr std::size_t kWidth = 150;
+  if (line.size() > kWidth) line = line.substr(0, kWidth - 3) + "...";
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+}
+
+std::string rate_text(const EngineState& state) {
+  const std::size_t made = state.ended - state.resumed;
+  std::string text = fmt::format("{} failed", state.failed);
+  const double done = static_cast<double>(made) + state.share_running;
+  if (done <= 0.1 || state.elapsed_s <= 0) return text;
+  const double left = static_cast<double>(state.jobs - state.ended) - state.share_running;
+  return text + fmt::format(", {:.1f} runs/min, {} left", 60 * done / state.elapsed_s,
+                            duration(std::max(0.0, left) * state.elapsed_s / done));
+}
+
+Result<void> simulate_missing(const std::vector<BatchJob>& jobs, int threads) {
+  std::string title;
+  ProgressBar bar("");
+  SimulatingControl control;
+  control.started = [&](const std::string& name, std::size_t index, std::size_t count) {
+    title = fmt::format("[{}/{}] simulating {}", index + 1, count, name);
+    bar = ProgressBar(title);
+  };
+  control.progress = [&](std::size_t done, std::size_t total) { bar.show(done, total); };
+  control.finished = [&](const std::vector<std::string>& lines) {
+    bar.clear();
+    for (const std::string& line : lines) print_progress(fmt::format("{}: {}", title, line));
+  };
+  control.stop = &stop_requested();
+  auto made = make_simulated_recordings(jobs, threads, control);
+  bar.clear();
+  return made;
+}
+
+}  // namespace fusebench

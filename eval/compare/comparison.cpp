@@ -1,0 +1,334 @@
+#include "eval/compare/comparison.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/toml_document.hpp"
+
+namespace fusebench {
+
+namespace {
+
+constexpr const char* kUpdate = "update the baseline: scripts/update_baseline.sh \"REASON\"";
+
+GateResult regression(std::string gate, std::string message) {
+  return {std::move(gate), GateVerdict::regression, true, std::move(message)};
+}
+
+GateResult note(std::string gate, std::string message) {
+  return {std::move(gate), GateVerdict::note, false, std::move(message)};
+}
+
+GateResult improvement(std::string gate, const std::string& message, const Gates& gates) {
+  return {std::move(gate), GateVerdict::improvement, gates.improvements_fail,
+          fmt::format("{}; {}", message, kUpdate)};
+}
+
+std::string status_text(const RunRecord& record) {
+  return record.reason.empty() ? std::string(to_string(record.status))
+                               : fmt::format("{} ({})", to_string(record.status), record.reason);
+}
+
+GateResult status_gate(const RunRecord& base, const RunRecord& fresh, const Gates& gates) {
+  const std::string change = fmt::format("{} -> {}", status_text(base), status_text(fresh));
+  if (fresh.status < base.status) return regression("status", change);
+  if (fresh.status > base.status) return improvement("status", change, gates);
+  if (fresh.status == RunStatus::ok) return {"status", GateVerdict::unchanged, false, {}};
+  return note("status", fmt::format("both {}: {}", to_string(fresh.status), fresh.reason));
+}
+
+std::string change_text(double base, double fresh, std::string_view unit) {
+  std::string text = fmt::format("{} -> {} ({}{}", quantity_text(base, unit), quantity_text(fresh, unit),
+                                 fresh > base ? "+" : "", quantity_text(fresh - base, unit));
+  if (base != 0) text += fmt::format(", {:+.3g} %", 100 * (fresh - base) / std::abs(base));
+  return text + ")";
+}
+
+GateResult judge(const GatedMetric& metric, const MetricTolerance& tolerance, double base, double fresh,
+                 const Gates& gates) {
+  const std::string key(metric.key);
+  GateResult result{key, GateVerdict::unchanged, false, {}, std::string(metric.unit), base, fresh};
+  const double allowed = std::max(tolerance.absolute, tolerance.relative * std::abs(base));
+  const double change = fresh - base;
+  if (std::abs(change) <= allowed) return result;
+  const std::string text = fmt::format("{}, allowed is {}", change_text(base, fresh, metric.unit),
+                                       quantity_text(allowed, metric.unit));
+  const bool better = (tolerance.better == BetterValue::smaller && change < 0) ||
+                      (tolerance.better == BetterValue::larger && change > 0);
+  GateResult judged = better ? improvement(key, text, gates) : regression(key, text);
+  result.verdict = judged.verdict;
+  result.fails = judged.fails;
+  result.message = std::move(judged.message);
+  return result;
+}
+
+void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateResult>& results) {
+  const RunRecord& base = pair.base.front().record;
+  const RunRecord& fresh = pair.fresh.front().record;
+  for (std::size_t i = 0; i < gated_metrics().size(); ++i) {
+    const GatedMetric& metric = gated_metrics()[i];
+    const auto before = metric.of(base);
+    const auto after = metric.of(fresh);
+    if (before.value && after.value) {
+      const auto tolerance = gates.tolerance(i, pair.key.recording, pair.key.variant);
+      results.push_back(judge(metric, tolerance, *before.value, *after.value, gates));
+    } else if (before.value) {
+      GateResult gone =
+          regression(std::string(metric.key),
+                     fmt::format("{} -> none: {}", quantity_text(*before.value, metric.unit), after.reason));
+      gone.unit = metric.unit;
+      gone.base = before.value;
+      results.push_back(std::move(gone));
+    } else if (after.value) {
+      GateResult added =
+          note(std::string(metric.key), fmt::format("new: {}; the baseline has none: {}",
+                                                    quantity_text(*after.value, metric.unit), before.reason));
+      added.unit = metric.unit;
+      added.fresh = after.value;
+      results.push_back(std::move(added));
+    }
+  }
+}
+
+/// Options that nobody set, by their keys.
+std::map<std::string, std::string> defaults_of(const RunRecord& record) {
+  std::map<std::string, std::string> defaults;
+  for (const RecordedOption& option : record.config) {
+    if (option.origin == "default" || option.origin.starts_with("variant "))
+      defaults[option.key] = to_toml(option.value);
+  }
+  return defaults;
+}
+
+void add_config_gates(const RunRecord& base, const RunRecord& fresh, const Gates& gates,
+                      std::vector<GateResult>& results) {
+  const auto before = defaults_of(base);
+  const auto after = defaults_of(fresh);
+  // A run that never began, or that was made elsewhere, has no configuration to compare.
+  if (before.empty() || after.empty()) return;
+  std::vector<std::string> changed;
+  std::vector<std::string> others;
+  for (const auto& [key, value] : before) {
+    const auto now = after.find(key);
+    if (now == after.end()) {
+      others.push_back(fmt::format("{} is gone", key));
+    } else if (now->second != value) {
+      changed.push_back(fmt::format("{}: {} -> {}", key, value, now->second));
+    }
+  }
+  for (const auto& [key, value] : after) {
+    if (!before.contains(key)) others.push_back(fmt::format("{} = {} is new", key, value));
+  }
+  if (!others.empty()) results.push_back(note("config", fmt::format("options: {}", fmt::join(others, ", "))));
+  if (changed.empty()) {
+    if (others.empty()) results.push_back({"config", GateVerdict::unchanged, false, {}});
+    return;
+  }
+  const std::string text =
+      fmt::format("a default changed: {}; if it was meant, {}", fmt::join(changed, ", "), kUpdate);
+  results.push_back(gates.changed_defaults_fail ? regression("config", text) : note("config", text));
+}
+
+/// How a repetition differs from the first run of its side; empty if it does not.
+Result<std::string> difference(const FoundRun& first, const FoundRun& other) {
+  if (first.record.status != other.record.status)
+    return fmt::format("status {} and {}", status_text(first.record), status_text(other.record));
+  if (first.record.recording.fingerprint != other.record.recording.fingerprint)
+    return std::string("the recording's content");
+  for (const GatedMetric& metric : gated_metrics()) {
+    const auto a = metric.of(first.record).value;
+    const auto b = metric.of(other.record).value;
+    if (a == b) continue;
+    const auto text = [&](const std::optional<double>& v) {
+      return v ? fmt::format("{} {}", *v, metric.unit) : "none";
+    };
+    return fmt::format("{} is {} and {}", metric.key, text(a), text(b));
+  }
+  if (!has_trajectory(first.folder) || !has_trajectory(other.folder)) return std::string();
+  const auto divergence = first_divergence(first.folder, other.folder);
+  if (!divergence) return tl::unexpected(divergence.error());
+  return *divergence ? fmt::format("the trajectory {}", (*divergence)->text()) : std::string();
+}
+
+Result<void> add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results) {
+  for (const auto& [side, runs] : {std::pair("BASE", &pair.base), std::pair("NEW", &pair.fresh)}) {
+    for (std::size_t i = 1; i < runs->size(); ++i) {
+      const auto differs = difference(runs->front(), (*runs)[i]);
+      if (!differs) return tl::unexpected(differs.error());
+      if (differs->empty()) continue;
+      results.push_back(
+          regression("repetitions", fmt::format("repetitions of {} differ: {} ({} and {})", side, *differs,
+                                                runs->front().folder.string(), (*runs)[i].folder.string())));
+      break;
+    }
+  }
+  const bool repeated = pair.base.size() > 1 || pair.fresh.size() > 1;
+  const bool differ =
+      std::ranges::any_of(results, [](const GateResult& r) { return r.gate == "repetitions"; });
+  if (repeated && !differ) results.push_back({"repetitions", GateVerdict::unchanged, false, {}});
+  return {};
+}
+
+Result<void> add_divergence(ComparedRun& run, const Gates& gates) {
+  const auto& base = run.runs.base.front().folder;
+  const auto& fresh = run.runs.fresh.front().folder;
+  if (!has_trajectory(base)) {
+    if (has_trajectory(fresh)) run.gates.push_back(note("trajectory", "BASE keeps no trajectory to compare"));
+    return {};
+  }
+  if (!has_trajectory(fresh)) {
+    run.gates.push_back(regression("trajectory", "NEW has no trajectory.tum, and BASE has one"));
+    return {};
+  }
+  auto divergence = first_divergence(base, fresh);
+  if (!divergence) return tl::unexpected(divergence.error());
+  run.divergence = std::move(*divergence);
+  run.is_identical = !run.divergence.has_value();
+  GateResult result{"trajectory", GateVerdict::unchanged, false, {}};
+  if (run.divergence) {
+    result = gates.divergence_fails ? regression("trajectory", run.divergence->text())
+                                    : note("trajectory", run.divergence->text());
+  }
+  run.gates.push_back(std::move(result));
+  return {};
+}
+
+/// A run that never opened its recording does not know its content.
+bool other_data(const RunRecord& base, const RunRecord& fresh) {
+  const std::string& before = base.recording.fingerprint;
+  const std::string& after = fresh.recording.fingerprint;
+  return !before.empty() && !after.empty() && before != after;
+}
+
+std::string other_data_text(const RunRecord& base, const RunRecord& fresh) {
+  const RecordedRecording& before = base.recording;
+  const RecordedRecording& after = fresh.recording;
+  return fmt::format(
+      "the data{} changed: not comparable (fingerprint {}, {} frames -> {}, {} frames); get the baseline's "
+      "recording back, or {}",
+      before.frames == after.frames ? "" : " or the frame window", before.fingerprint, before.frames,
+      after.fingerprint, after.frames, kUpdate);
+}
+
+Result<ComparedRun> compare_pair(RunPair pair, const Gates& gates, const std::vector<FoundRun>& confirming) {
+  ComparedRun run{std::move(pair), {}, std::nullopt, false};
+  if (run.runs.fresh.empty()) {
+    run.gates.push_back(regression("run", "missing in NEW"));
+    return run;
+  }
+  if (run.runs.base.empty()) {
+    run.gates.push_back(
+        note("run", fmt::format("new, no baseline: {}", status_text(run.runs.fresh.front().record))));
+    return run;
+  }
+  run.gates.push_back({"run", GateVerdict::unchanged, false, {}});
+  const RunRecord& base = run.runs.base.front().record;
+  const RunRecord& fresh = run.runs.fresh.front().record;
+  if (other_data(base, fresh)) {
+    run.gates.push_back(regression("data", other_data_text(base, fresh)));
+    return run;
+  }
+  run.gates.push_back({"data", GateVerdict::unchanged, false, {}});
+  run.gates.push_back(status_gate(base, fresh, gates));
+  add_config_gates(base, fresh, gates, run.gates);
+  if (auto added = add_repetition_gates(run.runs, run.gates); !added) return tl::unexpected(added.error());
+  // Where one side failed the other's numbers would only repeat it.
+  if (base.status != RunStatus::failed && fresh.status != RunStatus::failed) {
+    if (fresh.status == base.status) add_metric_gates(run.runs, gates, run.gates);
+    if (auto added = add_divergence(run, gates); !added) return tl::unexpected(added.error());
+  }
+  if (base.status != RunStatus::ok || fresh.status != RunStatus::ok) return run;
+  std::vector<FoundRun> again;
+  for (const FoundRun& found : confirming) {
+    if (key_of(found.record) == run.runs.key) again.push_back(found);
+  }
+  for (GateResult& result : timed_gates(run.runs, gates, again, !confirming.empty()))
+    run.gates.push_back(std::move(result));
+  return run;
+}
+
+void add_unused_overrides(const Gates& gates, RunComparison& comparison) {
+  for (const GateOverride& gate : gates.overrides) {
+    const bool used = std::ranges::any_of(comparison.runs, [&](const ComparedRun& run) {
+      return gate.is_for(run.runs.key.recording, run.runs.key.variant);
+    });
+    if (!used)
+      comparison.notes.push_back(fmt::format("{}: this override is for none of the runs", gate.place));
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(GateVerdict verdict) {
+  switch (verdict) {
+    case GateVerdict::regression:
+      return "REGRESSION";
+    case GateVerdict::improvement:
+      return "IMPROVEMENT";
+    case GateVerdict::suspect:
+      return "SUSPECT";
+    case GateVerdict::note:
+      return "note";
+    case GateVerdict::unchanged:
+      break;
+  }
+  return "unchanged";
+}
+
+bool RunComparison::passed() const { return failures() == 0; }
+
+std::size_t RunComparison::count(GateVerdict verdict) const {
+  std::size_t number = 0;
+  for (const ComparedRun& run : runs) {
+    for (const GateResult& gate : run.gates) {
+      if (gate.verdict == verdict) ++number;
+    }
+  }
+  return number;
+}
+
+std::size_t RunComparison::failures() const {
+  std::size_t number = 0;
+  for (const ComparedRun& run : runs) {
+    for (const GateResult& gate : run.gates) {
+      if (gate.fails) ++number;
+    }
+  }
+  return number;
+}
+
+std::size_t RunComparison::identical() const {
+  std::size_t number = 0;
+  for (const ComparedRun& run : runs) {
+    if (run.is_identical) ++number;
+  }
+  return number;
+}
+
+std::vector<const ComparedRun*> RunComparison::diverging() const {
+  std::vector<const ComparedRun*> result;
+  for (const ComparedRun& run : runs) {
+    if (run.divergence) result.push_back(&run);
+  }
+  std::ranges::stable_sort(result, {}, [](const ComparedRun* run) { return run->divergence->frame; });
+  return result;
+}
+
+Result<RunComparison> compare_runs(const std::vector<FoundRun>& base, const std::vector<FoundRun>& fresh,
+                                   const Gates& gates, const std::vector<FoundRun>& confirming) {
+  RunComparison comparison;
+  for (RunPair& pair : pair_runs(base, fresh)) {
+    auto run = compare_pair(std::move(pair), gates, confirming);
+    if (!run) return tl::unexpected(run.error());
+    comparison.runs.push_back(std::move(*run));
+  }
+  add_unused_overrides(gates, comparison);
+  return comparison;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,72 @@
+// Two folders of runs against each other: what got worse, what got better, and where it began.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "eval/compare/divergence.hpp"
+#include "eval/compare/gates.hpp"
+#include "eval/compare/run_pairs.hpp"
+
+namespace fusebench {
+
+/// In the order in which people read them.
+enum class GateVerdict {
+  regression,
+  improvement,  ///< beyond the tolerance: the baseline is out of date
+  suspect,      ///< slower or larger, but measured once: a rerun decides
+  note,         ///< said, never failing
+  unchanged,
+};
+[[nodiscard]] std::string_view to_string(GateVerdict verdict);  ///< "REGRESSION", "note"
+
+/// One gate of one pair of runs.
+struct GateResult {
+  std::string gate;  ///< "run", "data", "status", "repetitions", "config", "trajectory", or a metric's key
+  GateVerdict verdict = GateVerdict::unchanged;
+  bool fails = false;
+  std::string message;  ///< one sentence, with numbers and units; empty if unchanged
+  std::string unit = {};
+  std::optional<double> base = {};   ///< of times: the median
+  std::optional<double> fresh = {};  ///< of NEW
+  std::optional<double> p = {};      ///< of the rank test, if it was made
+  std::string not_gated = {};        ///< of times: why they decide nothing; else empty
+};
+
+struct ComparedRun {
+  RunPair runs;
+  std::vector<GateResult> gates;
+  std::optional<Divergence> divergence;
+  bool is_identical = false;  ///< both have a trajectory, and it is the same
+};
+
+struct RunComparison {
+  std::vector<ComparedRun> runs;
+  std::vector<std::string> notes;  ///< of no single run
+
+  [[nodiscard]] bool passed() const;
+  [[nodiscard]] std::size_t count(GateVerdict verdict) const;  ///< gates
+  [[nodiscard]] std::size_t failures() const;                  ///< gates
+  [[nodiscard]] std::size_t identical() const;                 ///< runs
+  /// Runs that diverge, the earliest frame first.
+  [[nodiscard]] std::vector<const ComparedRun*> diverging() const;
+};
+
+/// Deterministic numbers are taken from the first run of each side. `confirming` are the runs of a rerun of
+/// NEW (empty: none was made): a time or a size that failed is a regression only if it fails there as well,
+/// against the same baseline. Errors: those of first_divergence().
+[[nodiscard]] Result<RunComparison> compare_runs(const std::vector<FoundRun>& base,
+                                                 const std::vector<FoundRun>& fresh, const Gates& gates,
+                                                 const std::vector<FoundRun>& confirming = {});
+
+/// The gates of times and memory of a pair, see timed_gates.cpp. confirming: runs of the same experiment.
+[[nodiscard]] std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
+                                                  std::span<const FoundRun> confirming,
+                                                  bool confirmation_given);
+
+}  // namespace fusebench

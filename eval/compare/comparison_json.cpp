@@ -1,0 +1,77 @@
+#include <nlohmann/json.hpp>
+
+#include "eval/compare/comparison_formats.hpp"
+#include "eval/json_text.hpp"
+
+namespace fusebench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kComparisonSchema = 1;
+
+Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+Json json_of(const std::vector<FoundRun>& runs) {
+  Json json = Json::array();
+  for (const FoundRun& run : runs) json.push_back(run.folder.string());
+  return json;
+}
+
+Json json_of(const GateResult& gate) {
+  return {{"gate", gate.gate},          {"verdict", to_string(gate.verdict)},
+          {"fails", gate.fails},        {"unit", gate.unit},
+          {"base", json_of(gate.base)}, {"new", json_of(gate.fresh)},
+          {"p", json_of(gate.p)},       {"message", gate.message},
+          {"not_gated", gate.not_gated}};
+}
+
+Json json_of(const std::optional<Divergence>& divergence) {
+  if (!divergence) return nullptr;
+  return {{"frame", divergence->frame},
+          {"stamp", divergence->stamp},
+          {"moved_m", json_of(divergence->moved_m)},
+          {"turned_rad", json_of(divergence->turned_rad)},
+          {"only_in", divergence->only_in}};
+}
+
+Json json_of(const ComparedRun& run) {
+  Json gates = Json::array();
+  for (const GateResult& gate : run.gates) gates.push_back(json_of(gate));
+  const RunKey& key = run.runs.key;
+  return {{"label", run.runs.label},
+          {"recording", key.recording},
+          {"variant", key.variant},
+          {"first_frame", key.first_frame},
+          {"frames", key.frames},
+          {"imu", key.imu},
+          {"options", key.options},
+          {"base", json_of(run.runs.base)},
+          {"new", json_of(run.runs.fresh)},
+          {"bit_identical", run.is_identical},
+          {"divergence", json_of(run.divergence)},
+          {"gates", gates}};
+}
+
+}  // namespace
+
+std::string comparison_json(const RunComparison& comparison) {
+  Json runs = Json::array();
+  for (const ComparedRun& run : comparison.runs) runs.push_back(json_of(run));
+  Json moved_first = Json::array();
+  for (const ComparedRun* run : comparison.diverging()) moved_first.push_back(run->runs.label);
+  return json_text(Json{{"schema", kComparisonSchema},
+                        {"passed", comparison.passed()},
+                        {"failures", comparison.failures()},
+                        {"regressions", comparison.count(GateVerdict::regression)},
+                        {"improvements", comparison.count(GateVerdict::improvement)},
+                        {"suspects", comparison.count(GateVerdict::suspect)},
+                        {"notes", comparison.notes},
+                        {"bit_identical", comparison.identical()},
+                        {"diverging", moved_first},
+                        {"runs", runs}}) +
+         "\n";
+}
+
+}  // namespace fusebench

@@ -1,0 +1,122 @@
+#include "eval/compare/run_pairs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "core/toml_document.hpp"
+
+namespace fusebench {
+
+namespace {
+
+bool was_set(const RecordedOption& option) {
+  return option.origin != "default" && !option.origin.starts_with("variant ");
+}
+
+auto order_of(const RunKey& key) {
+  return std::tuple(key.recording, variant_rank(key.variant), key.variant, key.options, key.imu,
+                    key.first_frame, key.frames);
+}
+
+bool never_opened(const std::vector<FoundRun>& runs) {
+  return !runs.empty() && std::ranges::all_of(runs, [](const FoundRun& run) {
+    return run.record.status == RunStatus::failed && run.record.recording.fingerprint.empty();
+  });
+}
+
+bool alike(const RunKey& a, const RunKey& b) {
+  return a.recording == b.recording && a.variant == b.variant && a.options == b.options;
+}
+
+/// Whether the runs of `lone`, which have no counterpart, belong to `pair`.
+bool belongs(const RunPair& lone, const RunPair& pair) {
+  if (&lone == &pair || !alike(lone.key, pair.key)) return false;
+  const bool is_base = !lone.base.empty();
+  const auto& own = is_base ? lone.base : lone.fresh;
+  const auto& others = is_base ? pair.fresh : pair.base;
+  if (others.empty()) return false;
+  if (never_opened(own)) return true;
+  const bool other_alone = (is_base ? pair.base : pair.fresh).empty();
+  return other_alone && lone.key.first_frame == pair.key.first_frame && lone.key.imu == pair.key.imu &&
+         own.front().record.recording.fingerprint != others.front().record.recording.fingerprint &&
+         lone.key.frames != pair.key.frames && !never_opened(others);
+}
+
+void move_runs(std::vector<FoundRun>& from, std::vector<FoundRun>& to) {
+  for (FoundRun& run : from) to.push_back(std::move(run));
+  from.clear();
+  std::ranges::sort(to, {}, [](const FoundRun& run) { return run.folder.string(); });
+}
+
+void join_lone_runs(std::vector<RunPair>& pairs) {
+  for (RunPair& lone : pairs) {
+    if (lone.base.empty() == lone.fresh.empty()) continue;
+    RunPair* only = nullptr;
+    std::size_t found = 0;
+    for (RunPair& pair : pairs) {
+      if (!belongs(lone, pair)) continue;
+      only = &pair;
+      ++found;
+    }
+    if (found != 1) continue;
+    move_runs(lone.base, only->base);
+    move_runs(lone.fresh, only->fresh);
+  }
+  std::erase_if(pairs, [](const RunPair& pair) { return pair.base.empty() && pair.fresh.empty(); });
+}
+
+std::string short_label(const RunKey& key) {
+  const std::string options = key.options.empty() ? "" : fmt::format(" [{}]", key.options);
+  return fmt::format("{}/{}{}", key.recording, key.variant, options);
+}
+
+void set_labels(std::vector<RunPair>& pairs) {
+  std::map<std::string, std::size_t> uses;
+  for (const RunPair& pair : pairs) ++uses[short_label(pair.key)];
+  for (RunPair& pair : pairs) {
+    pair.label = short_label(pair.key);
+    if (uses[pair.label] < 2) continue;
+    pair.label += fmt::format(" (frames {}:{}, IMU: {})", pair.key.first_frame,
+                              pair.key.first_frame + pair.key.frames, pair.key.imu);
+  }
+}
+
+}  // namespace
+
+RunKey key_of(const RunRecord& record) {
+  std::vector<std::string> options;
+  for (const RecordedOption& option : record.config) {
+    if (was_set(option)) options.push_back(fmt::format("{}={}", option.key, to_toml(option.value)));
+  }
+  std::ranges::sort(options);
+  return {record.recording.name,   record.variant,       record.recording.first_frame,
+          record.recording.frames, record.recording.imu, fmt::format("{}", fmt::join(options, ", "))};
+}
+
+std::vector<RunPair> pair_runs(const std::vector<FoundRun>& base, const std::vector<FoundRun>& fresh) {
+  std::map<decltype(order_of(RunKey{})), RunPair> by_key;
+  for (const auto& [runs, side] : {std::pair(&base, &RunPair::base), std::pair(&fresh, &RunPair::fresh)}) {
+    for (const FoundRun& run : *runs) {
+      const RunKey key = key_of(run.record);
+      RunPair& pair = by_key[order_of(key)];
+      pair.key = key;
+      (pair.*side).push_back(run);
+    }
+  }
+  std::vector<RunPair> pairs;
+  for (auto& [order, pair] : by_key) {
+    for (auto* runs : {&pair.base, &pair.fresh})
+      std::ranges::sort(*runs, {}, [](const FoundRun& run) { return run.folder.string(); });
+    pairs.push_back(std::move(pair));
+  }
+  join_lone_runs(pairs);
+  set_labels(pairs);
+  return pairs;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,42 @@
+// Which runs of two folders are the same experiment.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "eval/found_runs.hpp"
+
+namespace fusebench {
+
+/// What was asked of a run. Options count only if somebody set them (in a file or by --set): a default that
+/// has changed since must not make another experiment of it, or the change would go unseen.
+struct RunKey {
+  std::string recording;
+  std::string variant;
+  std::size_t first_frame = 0;
+  std::size_t frames = 0;
+  std::string imu;      ///< "none", "recorded", "synthetic IMU"
+  std::string options;  ///< "iekf.max_iterations=3, tsdf.voxel_m=0.02"; empty if nothing was set
+
+  friend bool operator==(const RunKey&, const RunKey&) = default;
+};
+
+/// The runs of one experiment on both sides; several on a side are repetitions, by folder.
+struct RunPair {
+  RunKey key;
+  std::string label;  ///< "fr1_rpy/full", with what else tells it from the others
+  std::vector<FoundRun> base;
+  std::vector<FoundRun> fresh;  ///< of NEW
+};
+
+[[nodiscard]] RunKey key_of(const RunRecord& record);
+
+/// Every run is in one pair, of which a side may be empty. A run that failed before its recording was open
+/// does not know its frames: it goes to the only pair of its recording, variant and options, if there is one.
+/// So does a run over other images of as many or as few frames. By recording, then variant in the order of
+/// all_variants().
+[[nodiscard]] std::vector<RunPair> pair_runs(const std::vector<FoundRun>& base,
+                                             const std::vector<FoundRun>& fresh);
+
+}  // namespace fusebench

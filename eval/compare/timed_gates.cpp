@@ -1,0 +1,140 @@
+// Times and memory are never the same twice: a ratio of medians must be large and the ranks must agree that
+// it is no chance, and a rerun must see it again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "eval/compare/comparison.hpp"
+#include "eval/compare/rank_test.hpp"
+#include "eval/statistics.hpp"
+
+namespace fusebench {
+
+namespace {
+
+std::vector<double> numbers_of(std::span<const FoundRun> runs, const TimedQuantity& quantity) {
+  std::vector<double> numbers;
+  for (const FoundRun& run : runs) {
+    if (const auto value = quantity.of(run.record)) numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+/// What makes times of two groups of runs not comparable; empty if nothing does.
+std::string different_machines(std::span<const FoundRun> base, std::span<const FoundRun> fresh) {
+  std::set<std::string> hosts;
+  std::set<std::string> cpus;
+  std::set<int> threads;
+  for (const auto runs : {base, fresh}) {
+    for (const FoundRun& run : runs) {
+      hosts.insert(run.record.provenance.host);
+      cpus.insert(run.record.provenance.cpu);
+      threads.insert(run.record.provenance.threads);
+    }
+  }
+  if (cpus.size() > 1) return "other CPU models";
+  if (hosts.size() > 1) return "other hosts";
+  if (threads.size() > 1) return "other numbers of threads";
+  return {};
+}
+
+struct TimedTest {
+  bool gated = false;
+  std::string why_not;
+  double base = 0;  // medians
+  double fresh = 0;
+  RankTest slower;
+  RankTest faster;
+
+  [[nodiscard]] double ratio() const { return fresh / base; }
+};
+
+TimedTest test_of(std::span<const FoundRun> base, std::span<const FoundRun> fresh,
+                  const TimedQuantity& quantity, const Gates& gates) {
+  const std::vector<double> before = numbers_of(base, quantity);
+  const std::vector<double> after = numbers_of(fresh, quantity);
+  TimedTest test;
+  test.base = statistics(before).median;
+  test.fresh = statistics(after).median;
+  test.slower = test_larger(before, after);
+  test.faster = test_larger(after, before);
+  const std::size_t fewest = std::min(before.size(), after.size());
+  test.why_not = different_machines(base, fresh);
+  if (test.why_not.empty() && fewest < gates.min_repetitions) {
+    test.why_not =
+        fmt::format("{} repetition{}; {} are needed", fewest, fewest == 1 ? "" : "s", gates.min_repetitions);
+  }
+  test.gated = test.why_not.empty();
+  return test;
+}
+
+bool is_slower(const TimedTest& test, double factor, double alpha) {
+  return test.gated && test.ratio() > factor && test.slower.p < alpha;
+}
+
+/// The verdict on what looks slower.
+void judge_slower(const RunPair& pair, const TimedQuantity& quantity, const Gates& gates, double factor,
+                  std::span<const FoundRun> confirming, bool confirmation_given, GateResult& result) {
+  result.verdict = GateVerdict::suspect;
+  result.fails = true;
+  if (!confirmation_given) {
+    result.message += "; confirm it: run NEW again and give that folder to --confirm";
+    return;
+  }
+  if (confirming.empty()) {
+    result.message += "; not confirmed: --confirm has no such run";
+    return;
+  }
+  const TimedTest again = test_of(pair.base, confirming, quantity, gates);
+  if (!again.gated) {
+    result.message += fmt::format("; not confirmed: the rerun is not gated: {}", again.why_not);
+  } else if (is_slower(again, factor, gates.alpha)) {
+    result.verdict = GateVerdict::regression;
+    result.message += fmt::format("; confirmed by the rerun: {:.6g} {}, ratio {:.3f}, p = {:.2g}",
+                                  again.fresh, quantity.unit, again.ratio(), again.slower.p);
+  } else {
+    result.verdict = GateVerdict::note;
+    result.fails = false;
+    result.message += fmt::format("; cleared by the rerun: {:.6g} {}, ratio {:.3f}, p = {:.2g}", again.fresh,
+                                  quantity.unit, again.ratio(), again.slower.p);
+  }
+}
+
+}  // namespace
+
+std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
+                                    std::span<const FoundRun> confirming, bool confirmation_given) {
+  std::vector<GateResult> results;
+  for (std::size_t i = 0; i < timed_quantities().size(); ++i) {
+    const TimedQuantity& quantity = timed_quantities()[i];
+    if (numbers_of(pair.base, quantity).empty() || numbers_of(pair.fresh, quantity).empty()) continue;
+    const TimedTest test = test_of(pair.base, pair.fresh, quantity, gates);
+    const double factor = gates.factor(i, pair.key.recording, pair.key.variant);
+    GateResult result{std::string(quantity.key),
+                      GateVerdict::unchanged,
+                      false,
+                      {},
+                      std::string(quantity.unit),
+                      test.base,
+                      test.fresh};
+    const std::string change = fmt::format("{:.6g} {} -> {:.6g} {} (ratio {:.3f})", test.base, quantity.unit,
+                                           test.fresh, quantity.unit, test.ratio());
+    if (!test.gated) {
+      result.verdict = GateVerdict::note;
+      result.message = fmt::format("{}, not gated: {}", change, test.why_not);
+      result.not_gated = test.why_not;
+    } else if (result.p = test.slower.p; is_slower(test, factor, gates.alpha)) {
+      result.message = fmt::format("{}, above the factor {:g} with p = {:.2g} < {:g}", change, factor,
+                                   test.slower.p, gates.alpha);
+      judge_slower(pair, quantity, gates, factor, confirming, confirmation_given, result);
+    } else if (test.ratio() * factor < 1 && test.faster.p < gates.alpha) {
+      result.verdict = GateVerdict::note;
+      result.message = fmt::format("{}, better with p = {:.2g}", change, test.faster.p);
+    }
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,113 @@
+#include "eval/engine/invocation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <system_error>
+
+#include "core/fingerprint.hpp"
+#include "eval/engine/run_claim.hpp"
+#include "eval/json_text.hpp"
+#include "eval/text_file.hpp"
+
+namespace fusebench {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+fs::path invocations_folder(const fs::path& out) { return engine_folder(out) / "invocations"; }
+
+Result<std::string> text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::string absolute_text(const fs::path& path) {
+  std::error_code ignored;
+  return path.empty() ? "" : fs::absolute(path, ignored).lexically_normal().string();
+}
+
+}  // namespace
+
+Result<Suite> suite_of(const Invocation& invocation) {
+  auto suite = read_suite(invocation.suite);
+  if (!suite) return suite;
+  const SuiteOverrides& overrides = invocation.overrides;
+  if (overrides.repetitions > 0) suite->repetitions = overrides.repetitions;
+  for (const KeptFiles kept : {KeptFiles::all, KeptFiles::small}) {
+    if (overrides.kept == to_string(kept)) suite->kept = kept;
+  }
+  return suite;
+}
+
+Result<fs::path> keep(const Invocation& invocation) {
+  const auto suite = text_of(invocation.suite);
+  if (!suite) return tl::unexpected(suite.error());
+  const BatchOptions& options = invocation.options;
+  std::error_code ignored;
+  const Json json = {{"working_folder", fs::current_path(ignored).string()},
+                     {"data", absolute_text(options.data)},
+                     {"simulated", absolute_text(options.simulated)},
+                     {"threads", options.threads},
+                     {"sets", options.sets},
+                     {"only", options.only},
+                     {"repetitions", invocation.overrides.repetitions},
+                     {"keep", invocation.overrides.kept}};
+  const std::string text = json_text(json) + "\n";
+  Fingerprint identity;
+  identity.add(*suite);
+  identity.add(text);
+  const std::string name = identity.hex().substr(0, 8);
+  const fs::path folder = invocations_folder(options.out);
+  fs::path file = folder / (name + ".json");
+  if (fs::exists(file, ignored)) return file;
+  if (auto written = write_text_file(folder / (name + ".toml"), *suite); !written)
+    return tl::unexpected(written.error());
+  if (auto written = write_text_file(file, text); !written) return tl::unexpected(written.error());
+  return file;
+}
+
+Result<Invocation> read_invocation(const fs::path& file) {
+  const auto text = text_of(file);
+  if (!text) return tl::unexpected(text.error());
+  try {
+    const Json json = Json::parse(*text);
+    Invocation invocation;
+    invocation.suite = fs::path(file).replace_extension(".toml");
+    invocation.options.data = json.at("data").get<std::string>();
+    // <out>/.fusebench/invocations/<name>.json; the folder may have been moved.
+    invocation.options.out = file.parent_path().parent_path().parent_path();
+    invocation.options.simulated = json.at("simulated").get<std::string>();
+    invocation.options.threads = json.at("threads");
+    invocation.options.sets = json.at("sets").get<std::vector<std::string>>();
+    invocation.options.only = json.at("only").get<std::vector<std::string>>();
+    invocation.overrides = {json.at("repetitions"), json.at("keep")};
+    invocation.working_folder = json.at("working_folder").get<std::string>();
+    return invocation;
+  } catch (const Json::exception& error) {
+    return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+Result<std::vector<fs::path>> kept_invocations(const fs::path& out) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(invocations_folder(out), error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".json") files.push_back(entry->path());
+  }
+  std::ranges::sort(files);
+  if (!files.empty()) return files;
+  return fail(ErrorCode::data_missing, fmt::format("{}: no suite was run into this folder", out.string()),
+              "`fusebench bench SUITE --out DIR` writes one");
+}
+
+}  // namespace fusebench

@@ -1,0 +1,89 @@
+#include "eval/engine/job_outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
+
+#include "core/config_access.hpp"
+#include "core/staged_folder.hpp"
+
+namespace fusebench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path not_started_folder(const BatchJob& job) {
+  std::string name = "not-started-" + config_hash(job.spec.config.values).substr(0, 8);
+  if (job.spec.repetition > 1) name += fmt::format("-r{}", job.spec.repetition);
+  return job.spec.out / job.recording.filename() / job.variant / name;
+}
+
+std::string reason_of(const JobEnd& end) { return end.error ? end.error->message : end.reason; }
+
+}  // namespace
+
+BatchOutcome outcome_without_results(const BatchJob& job, std::string reason) {
+  BatchOutcome outcome;
+  outcome.recording = job.recording.filename().string();
+  outcome.variant = job.variant;
+  outcome.group = job.group;
+  outcome.half = job.half;
+  outcome.reason = std::move(reason);
+  return outcome;
+}
+
+Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason) {
+  BatchOutcome outcome = outcome_without_results(job, std::move(reason));
+  RunRecord record;
+  record.reason = outcome.reason;
+  record.recording.name = outcome.recording;
+  record.variant = outcome.variant;
+  record.repetition = job.spec.repetition;
+  record.config_hash = config_hash(job.spec.config.values);
+  outcome.folder = not_started_folder(job);
+  auto folder = StagedFolder::create(outcome.folder);
+  if (!folder) return tl::unexpected(folder.error());
+  if (auto written = folder->write("record.json", to_json(record)); !written)
+    return tl::unexpected(written.error());
+  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
+  return outcome;
+}
+
+void forget_not_started(const BatchJob& job) {
+  std::error_code ignored;
+  fs::remove_all(not_started_folder(job), ignored);
+}
+
+Result<BatchOutcome> record_failed(const BatchJob& job, const PreparedRun& run, const JobEnd& end) {
+  BatchOutcome outcome = outcome_without_results(job, reason_of(end));
+  const auto there = record_head(run.folder);
+  if (there && there->status != RunStatus::failed && there->run_id == run.run_id) return outcome;
+  RunRecord record = record_of_question(run);
+  record.reason = outcome.reason;
+  record.frames.total = run.recording.frames.size();
+  record.timing.cpu_s = end.cpu_s;
+  record.timing.wall_s = end.wall_s;
+  record.timing.peak_rss_bytes = end.peak_rss_bytes;
+  outcome.folder = run.folder;
+  auto folder = StagedFolder::create(run.folder);
+  if (!folder) return tl::unexpected(folder.error());
+  const std::string log =
+      fmt::format("{}{}failed: {}\n", end.output,
+                  end.output.empty() || end.output.ends_with('\n') ? "" : "\n", outcome.reason);
+  for (const auto& [name, text] : {std::pair("record.json", to_json(record)), std::pair("log.txt", log)}) {
+    if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
+  }
+  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
+  return outcome;
+}
+
+BatchOutcome outcome_of_finished(const BatchJob& job, const fs::path& folder, const RecordHead& head) {
+  BatchOutcome outcome = outcome_without_results(job, head.reason);
+  outcome.status = head.status;
+  outcome.folder = folder;
+  return outcome;
+}
+
+}  // namespace fusebench

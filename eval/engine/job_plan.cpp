@@ -1,0 +1,241 @@
+#include "eval/engine/job_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace fusebench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A recording of the suite with what its jobs need to know.
+struct Planned {
+  fs::path folder;
+  std::string group;
+  std::string half;
+  std::vector<std::string> variants;
+  std::optional<SimulationRequest> simulation = {};
+};
+
+/// Whether a job is among those asked for.
+Result<bool> wanted(const std::vector<std::string>& only, const std::string& recording,
+                    const std::string& variant) {
+  for (const std::string& filter : only) {
+    const auto equals = filter.find('=');
+    const std::string key = filter.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : filter.substr(equals + 1);
+    if ((key != "recording" && key != "variant") || value.empty()) {
+      return fail(ErrorCode::usage,
+                  fmt::format("--only {} (allowed: recording=TEXT | variant=NAME)", filter));
+    }
+    if (key == "recording" && recording.find(value) == std::string::npos) return false;
+    if (key == "variant" && variant != value) return false;
+  }
+  return true;
+}
+
+/// Whether --only can leave something of a recording that the suite calls by that name ("begin*" as well).
+bool may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
+  if (name.ends_with('*')) name.remove_suffix(1);
+  return std::all_of(only.begin(), only.end(), [&](const std::string& filter) {
+    constexpr std::string_view key = "recording=";
+    return !filter.starts_with(key) || name.find(filter.substr(key.size())) != std::string_view::npos;
+  });
+}
+
+Result<std::vector<Planned>> existing_recordings(const Suite& suite, const BatchOptions& options) {
+  std::vector<Planned> planned;
+  if (suite.all) {
+    if (options.data.empty()) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("suite '{}' runs over all recordings, and no folder is given", suite.name),
+                  "--data or FUSEBENCH_DATA names the folder of recordings");
+    }
+    const auto folders = recordings_under(options.data);
+    if (!folders) return tl::unexpected(folders.error());
+    for (const fs::path& folder : *folders) {
+      planned.push_back({folder, folder.filename().string(), std::string(kHeldOutHalf), suite.variants});
+    }
+  }
+  for (const SuiteRecording& recording : suite.recordings) {
+    const auto folders = find_recordings(recording.name, options.data);
+    if (!folders) {
+      if (!may_be_wanted(options.only, recording.name)) continue;
+      return tl::unexpected(folders.error());
+    }
+    for (const fs::path& folder : *folders) {
+      planned.push_back({folder, recording.group.empty() ? folder.filename().string() : recording.group,
+                         recording.half, recording.variants.empty() ? suite.variants : recording.variants});
+    }
+  }
+  return planned;
+}
+
+Result<Planned> simulated_recording(const SuiteSimulation& simulation, const BatchOptions& options) {
+  SimulationRequest request = simulation.request;
+  if (!request.trajectory.empty() && request.trajectory.is_relative()) {
+    if (options.data.empty()) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("{}: the trajectory {} is under --data, which is not given", simulation.place,
+                              request.trajectory.string()),
+                  "--data or FUSEBENCH_DATA names the folder of recordings");
+    }
+    request.trajectory = options.data / request.trajectory;
+  }
+  return Planned{options.simulated / simulation.name, simulation.group, simulation.half, simulation.variants,
+                 std::move(request)};
+}
+
+Result<std::vector<Planned>> recordings_of(const Suite& suite, const BatchOptions& options) {
+  auto planned = existing_recordings(suite, options);
+  if (!planned) return planned;
+  for (const SuiteSimulation& simulation : suite.simulations) {
+    if (!may_be_wanted(options.only, simulation.name)) continue;
+    auto recording = simulated_recording(simulation, options);
+    if (!recording) return tl::unexpected(recording.error());
+    planned->push_back(std::move(*recording));
+  }
+  // Runs go by the names of recordings: two of one name would overwrite each other's.
+  std::set<std::string> names;
+  for (const Planned& recording : *planned) {
+    const std::string name = recording.folder.filename().string();
+    if (names.insert(name).second || suite.all) continue;
+    return fail(ErrorCode::configuration,
+                fmt::format("suite '{}' has two recordings of the name '{}'", suite.name, name));
+  }
+  return planned;
+}
+
+/// The configuration of a variant at a point of the sweep, after --set.
+Result<EffectiveConfig> config_of(const Suite& suite, const Variant& variant,
+                                  const std::vector<std::string>& sets, const SweepPoint& point) {
+  auto config = suite_config(suite, variant);
+  if (!config) return config;
+  for (const std::string& assignment : sets) {
+    if (auto set = config->set_assignment(assignment); !set) return tl::unexpected(set.error());
+  }
+  for (const auto& [key, value] : point) {
+    if (auto set = config->set(key, value, "sweep"); !set) return tl::unexpected(set.error());
+  }
+  return config;
+}
+
+/// What all runs of a suite have in common.
+struct Common {
+  const Suite& suite;
+  const BatchOptions& options;
+  std::vector<std::string> sets;  ///< those that sweep nothing
+  std::vector<SweepPoint> points;
+};
+
+/// One run, but for its recording's window and its repetition.
+Result<BatchJob> job_of(const Common& common, const Planned& recording, const std::string& variant_name,
+                        const SweepPoint& point) {
+  const auto variant = find_variant(variant_name);
+  if (!variant) return tl::unexpected(variant.error());
+  auto config = config_of(common.suite, *variant, common.sets, point);
+  if (!config) return tl::unexpected(config.error());
+  RunSpec spec;
+  spec.recording = recording.folder;
+  spec.imu = common.suite.imu;
+  spec.variant = variant_name;
+  spec.config = std::move(*config);
+  spec.threads = common.options.threads;
+  spec.kept = common.suite.kept;
+  spec.out = common.options.out;
+  const bool optional = common.suite.all && !recording.simulation;
+  return BatchJob{recording.folder, variant_name,   std::move(spec),      optional,
+                  recording.group,  recording.half, recording.simulation, point};
+}
+
+const Exclusion* exclusion_of(const Suite& suite, const BatchJob& job) {
+  if (suite.exclusions.empty()) return nullptr;
+  const auto rows = describe_options(job.spec.config.values);
+  const auto found = std::ranges::find_if(suite.exclusions, [&](const Exclusion& exclusion) {
+    return exclusion.covers(job.recording.filename().string(), job.variant, rows);
+  });
+  return found == suite.exclusions.end() ? nullptr : &*found;
+}
+
+/// All runs over one recording, once each.
+Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan& plan,
+                      std::vector<BatchJob>& jobs) {
+  for (const std::string& variant : recording.variants) {
+    const auto take = wanted(common.options.only, recording.folder.filename().string(), variant);
+    if (!take) return tl::unexpected(take.error());
+    if (!*take) continue;
+    for (const SweepPoint& point : common.points) {
+      auto job = job_of(common, recording, variant, point);
+      if (!job) return tl::unexpected(job.error());
+      if (const Exclusion* exclusion = exclusion_of(common.suite, *job)) {
+        plan.excluded.push_back({to_string(*job), exclusion->reason});
+        continue;
+      }
+      if (auto related = check_relations(job->spec.config.values); !related) {
+        const Error& error = related.error();
+        if (point.empty()) return related;
+        return fail(error.code, fmt::format("{}: {}", to_string(*job), error.message),
+                    "[[exclude]] with these options and a reason leaves the point out");
+      }
+      jobs.push_back(std::move(*job));
+    }
+  }
+  return {};
+}
+
+/// In the order of the plan: windows, then repetitions, then the runs.
+void multiply(const Suite& suite, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
+  std::vector<std::optional<FrameWindow>> windows(suite.windows.begin(), suite.windows.end());
+  if (windows.empty()) windows.emplace_back();
+  for (const auto& window : windows) {
+    for (int repetition = 1; repetition <= suite.repetitions; ++repetition) {
+      for (const BatchJob& job : jobs) {
+        plan.jobs.push_back(job);
+        plan.jobs.back().spec.frames = window;
+        plan.jobs.back().spec.repetition = repetition;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string to_string(const BatchJob& job) {
+  std::string text = fmt::format("{} {}", job.recording.filename().string(), job.variant);
+  if (!job.edits.empty()) text += fmt::format(" {}", to_string(job.edits));
+  if (job.spec.frames) text += fmt::format(" frames {}:{}", job.spec.frames->begin, job.spec.frames->end);
+  if (job.spec.repetition > 1) text += fmt::format(" repetition {}", job.spec.repetition);
+  return text;
+}
+
+Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options) {
+  Common common{suite, options, options.sets, {}};
+  std::vector<SweepBlock> blocks = suite.sweeps;
+  auto swept = take_swept_sets(common.sets);
+  if (!swept) return tl::unexpected(swept.error());
+  if (*swept) blocks.push_back(std::move(**swept));
+  auto points = sweep_points(blocks);
+  if (!points) return tl::unexpected(points.error());
+  common.points = std::move(*points);
+
+  const auto recordings = recordings_of(suite, options);
+  if (!recordings) return tl::unexpected(recordings.error());
+  BatchPlan plan;
+  for (const Planned& recording : *recordings) {
+    std::vector<BatchJob> jobs;
+    if (auto added = add_runs(common, recording, plan, jobs); !added) return tl::unexpected(added.error());
+    multiply(suite, jobs, plan);
+  }
+  if (plan.jobs.empty() && plan.excluded.empty()) {
+    return fail(ErrorCode::usage, fmt::format("--only leaves nothing of suite '{}'", suite.name),
+                "recording=TEXT keeps the recordings whose name contains it, variant=NAME one variant");
+  }
+  return plan;
+}
+
+}  // namespace fusebench

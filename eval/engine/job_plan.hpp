@@ -1,0 +1,60 @@
+// The runs that a suite asks for, in a fixed order.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "eval/run.hpp"
+#include "eval/suites/experiment.hpp"
+#include "eval/suites/sweep_design.hpp"
+
+namespace fusebench {
+
+struct BatchOptions {
+  std::filesystem::path data;
+  std::filesystem::path out;
+  std::filesystem::path simulated = "results/simulated";  ///< where the suite's simulated recordings are
+  int threads = 1;
+  /// key=value, after the suite's own edits; with several values (key=1,2,4) a sweep over them.
+  std::vector<std::string> sets;
+  /// "recording=TEXT" (name contains it) or "variant=NAME" (exactly); all must hold.
+  std::vector<std::string> only;
+};
+
+/// One run of the suite.
+struct BatchJob {
+  std::filesystem::path recording;
+  std::string variant;
+  RunSpec spec;
+  bool optional = false;  ///< from `all = true`: skipped if its format or camera is unknown
+  std::string group;      ///< of the recording, for summaries
+  std::string half;       ///< "tuning" or "held-out"
+  std::optional<SimulationRequest> simulation = {};  ///< that makes the recording if it is not there
+  SweepPoint edits = {};                             ///< those of the sweep
+};
+
+/// "fr1_rpy full tsdf.voxel_m=0.02 frames 0:100 repetition 2", as far as it says something.
+[[nodiscard]] std::string to_string(const BatchJob& job);
+
+/// A run that the suite leaves out.
+struct ExcludedRun {
+  std::string run;  ///< as to_string() of its job
+  std::string reason;
+};
+
+struct BatchPlan {
+  std::vector<BatchJob> jobs;
+  std::vector<ExcludedRun> excluded;
+};
+
+/// By recording (those of the suite, then the simulated ones), window, repetition, variant as they are
+/// listed, and point of the sweep: repetitions of one run are apart, so that a slow minute of the machine
+/// does not meet all of them. What --only leaves out need not be there. Errors: data_missing (a recording or
+/// a trajectory that is not there), configuration (--set, a recording named twice, a point of the sweep that
+/// no run can have), usage (--only that names no key or leaves nothing).
+[[nodiscard]] Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options);
+
+}  // namespace fusebench

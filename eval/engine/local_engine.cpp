@@ -1,0 +1,309 @@
+#include "eval/engine/local_engine.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <iterator>
+#include <list>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/staged_folder.hpp"
+#include "eval/engine/forked_job.hpp"
+#include "eval/engine/machine_memory.hpp"
+#include "eval/engine/opened_recordings.hpp"
+#include "eval/engine/run_claim.hpp"
+
+namespace fusebench {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLookAround(100);
+constexpr std::chrono::seconds kGrace(10);  // for runs that are asked to stop
+
+struct RunningJob {
+  RunningJob(std::size_t of, PreparedRun prepared, std::optional<RunClaim> held, ForkedJob forked)
+      : index(of), run(std::move(prepared)), claim(std::move(held)), process(std::move(forked)) {}
+  std::size_t index;
+  PreparedRun run;
+  std::optional<RunClaim> claim;
+  ForkedJob process;
+};
+
+class Engine {
+ public:
+  Engine(std::span<const BatchJob> jobs, const EngineOptions& options, const EngineControl& control)
+      : jobs_(jobs), options_(options), control_(control), outcomes_(jobs.size()) {
+    for (std::size_t i = 0; i < jobs.size(); ++i) waiting_.push_back(i);
+    if (options_.limits.memory_bytes == 0) options_.limits.memory_bytes = total_memory_bytes();
+  }
+
+  [[nodiscard]] Result<std::vector<BatchOutcome>> run() {
+    if (!jobs_.empty()) remove_free_claims(jobs_.front().spec.out);
+    while (!waiting_.empty() || !running_.empty()) {
+      if (is_stopped()) return stop_all();
+      if (!fatal_ && has_room()) {
+        const bool started = start_next();
+        if (started && has_room()) continue;
+      }
+      if (fatal_ && running_.empty()) return tl::unexpected(give_up());
+      listen();
+      take_ended();
+      tell_progress();
+    }
+    if (fatal_) return tl::unexpected(give_up());
+    return std::move(outcomes_);
+  }
+
+ private:
+  [[nodiscard]] bool is_stopped() const { return control_.stop != nullptr && control_.stop->load(); }
+
+  [[nodiscard]] bool has_room() const {
+    if (waiting_.empty() || running_.size() >= static_cast<std::size_t>(options_.at_once)) return false;
+    if (running_.empty()) return true;
+    // What running jobs will still grow to is not to be had.
+    std::uint64_t promised = expected_bytes_;
+    for (const RunningJob& job : running_) {
+      const std::uint64_t resident = job.process.resident_bytes();
+      promised += expected_bytes_ > resident ? expected_bytes_ - resident : 0;
+    }
+    return promised < available_memory_bytes();
+  }
+
+  /// False if no job that waits can be started now: another engine has them.
+  bool start_next() {
+    for (std::size_t tries = waiting_.size(); tries > 0 && !fatal_; --tries) {
+      const std::size_t index = waiting_.front();
+      waiting_.pop_front();
+      if (!start(index)) {
+        waiting_.push_back(index);  // somebody else is at it: we look again later
+        continue;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  /// False if another engine is at it.
+  bool start(std::size_t index) {
+    const BatchJob& job = jobs_[index];
+    const Result<Recording>& recording = opened_.of(job.spec);
+    if (!recording) {
+      end_unopened(index, recording.error());
+      return true;
+    }
+    PreparedRun run = place_run(job.spec, *recording);
+    avoid_collision(run);
+    if (ended_already(index, run)) return true;
+    auto claim = RunClaim::take(job.spec.out, claim_name(run));
+    if (!claim) {
+      fatal_ = claim.error();
+      return true;
+    }
+    if (!*claim) return false;
+    if (ended_already(index, run)) return true;  // by whoever had the claim just now
+    prepare_place(job, run);
+    auto process =
+        ForkedJob::start([&](const JobVoice& voice) { work(run, voice); },
+                         {options_.limits.time_s, options_.limits.stall_s, options_.limits.memory_bytes});
+    if (!process) {
+      fatal_ = process.error();
+      return true;
+    }
+    running_.emplace_back(index, std::move(run), std::move(*claim), std::move(*process));
+    return true;
+  }
+
+  /// In the child.
+  void work(const PreparedRun& run, const JobVoice& voice) const {
+    const auto record = execute_run(
+        run, {[&](std::size_t frame, std::size_t total) { voice.progress(frame, total); }, control_.stop});
+    if (record) {
+      voice.finished(to_string(record->status));
+    } else {
+      voice.failed(record.error());
+    }
+  }
+
+  void end_unopened(std::size_t index, const Error& error) {
+    const BatchJob& job = jobs_[index];
+    if (job.optional && error.code == ErrorCode::configuration) {
+      BatchOutcome outcome = outcome_without_results(job, error.message);
+      outcome.skipped = true;
+      end(index, std::move(outcome));
+      return;
+    }
+    auto outcome = record_not_started(job, error.message);
+    if (outcome) {
+      end(index, std::move(*outcome));
+    } else {
+      fatal_ = outcome.error();
+    }
+  }
+
+  /// Two identities of this plan may begin with the same digits before either has a record.
+  void avoid_collision(PreparedRun& run) {
+    const auto [place, is_new] = places_.emplace(run.folder, run.run_id);
+    if (is_new || place->second == run.run_id) return;
+    const std::string again = run.spec.repetition > 1 ? fmt::format("-r{}", run.spec.repetition) : "";
+    run.folder = run.folder.parent_path() / (run.run_id + again);
+    places_.emplace(run.folder, run.run_id);
+  }
+
+  bool ended_already(std::size_t index, const PreparedRun& run) {
+    const auto head = record_head(run.folder);
+    const bool is_ours = head && head->run_id == run.run_id;
+    if (options_.only_failed && !(is_ours && head->status == RunStatus::failed)) {
+      const auto outcome = outcome_without_results(jobs_[index], "not among the failed runs");
+      end_resumed(index, is_ours ? outcome_of_finished(jobs_[index], run.folder, *head) : outcome, !is_ours);
+      return true;
+    }
+    if (options_.repeat_finished || !is_ours || head->status == RunStatus::failed) return false;
+    end_resumed(index, outcome_of_finished(jobs_[index], run.folder, *head), false);
+    return true;
+  }
+
+  void end_resumed(std::size_t index, BatchOutcome outcome, bool skipped) {
+    outcome.resumed = true;
+    outcome.skipped = skipped;
+    ++state_.resumed;
+    end(index, std::move(outcome));
+  }
+
+  static std::string claim_name(const PreparedRun& run) {
+    return fmt::format("{}-{}", run.run_id, run.spec.repetition);
+  }
+
+  void prepare_place(const BatchJob& job, const PreparedRun& run) {
+    forget_not_started(job);
+    // Once a folder: it may hold thousands of runs.
+    if (tidied_.insert(run.folder.parent_path()).second) remove_abandoned(run.folder.parent_path());
+  }
+
+  /// Until something is to be heard, or it is time to look at clocks and at Ctrl-C.
+  void listen() const {
+    std::vector<pollfd> descriptors;
+    for (const RunningJob& job : running_) descriptors.push_back({job.process.descriptor(), POLLIN, 0});
+    ::poll(descriptors.data(), descriptors.size(), static_cast<int>(kLookAround.count()));
+  }
+
+  void take_ended() {
+    for (auto job = running_.begin(); job != running_.end();) {
+      const auto end = job->process.poll();
+      if (end) {
+        expected_bytes_ = std::max(expected_bytes_, end->peak_rss_bytes);
+        take_end(*job, *end);
+      }
+      job = end ? running_.erase(job) : std::next(job);
+    }
+  }
+
+  void take_end(const RunningJob& job, const JobEnd& end) {
+    // A run that cannot write its results says nothing of itself, but of the disk.
+    const bool disk = end.error && end.error->code == ErrorCode::io;
+    if (disk && !fatal_) fatal_ = end.error;
+    if (disk || (is_stopped() && !end.finished)) return;
+    const BatchJob& planned = jobs_[job.index];
+    if (end.finished) {
+      const auto head = record_head(job.run.folder);
+      if (head && head->run_id == job.run.run_id) {
+        this->end(job.index, outcome_of_finished(planned, job.run.folder, *head));
+        return;
+      }
+    }
+    auto outcome = record_failed(planned, job.run, end);
+    if (outcome) {
+      this->end(job.index, std::move(*outcome));
+    } else if (!fatal_) {
+      fatal_ = outcome.error();
+    }
+  }
+
+  void end(std::size_t index, BatchOutcome outcome) {
+    ++state_.ended;
+    if (!outcome.skipped && outcome.status != RunStatus::ok) ++state_.failed;
+    outcomes_[index] = std::move(outcome);
+    if (control_.finished) control_.finished(index, outcomes_[index]);
+  }
+
+  void tell_progress() {
+    if (!control_.progress) return;
+    state_.jobs = jobs_.size();
+    state_.elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+    state_.running.clear();
+    state_.share_running = 0;
+    for (const RunningJob& job : running_) {
+      const std::size_t total = job.process.total();
+      if (total > 0)
+        state_.share_running += static_cast<double>(job.process.done()) / static_cast<double>(total);
+      state_.running.push_back(
+          fmt::format("{} {}/{}", to_string(jobs_[job.index]), job.process.done(), total));
+    }
+    control_.progress(state_);
+  }
+
+  [[nodiscard]] Error give_up() const {
+    Error error = *fatal_;
+    error.message += fmt::format("; {} of {} runs are finished and kept", state_.ended, jobs_.size());
+    error.hint = "the same command goes on where it ended, once the cause is gone";
+    return error;
+  }
+
+  /// All are asked at once, so that it takes no longer than the slowest.
+  Result<std::vector<BatchOutcome>> stop_all() {
+    std::set<fs::path> places;
+    for (const RunningJob& job : running_) places.insert(job.run.folder.parent_path());
+    for (RunningJob& job : running_) job.process.interrupt();
+    const auto until = Clock::now() + kGrace;
+    while (!running_.empty() && Clock::now() < until) {
+      listen();
+      take_ended();
+    }
+    running_.clear();  // kills what would not stop
+    for (const fs::path& place : places) {
+      remove_abandoned(place);
+      // Those that several runs were about to use, none of them could remove.
+      std::error_code ignored;
+      fs::remove(place, ignored);
+      fs::remove(place.parent_path(), ignored);
+    }
+    return fail(
+        ErrorCode::run_failed,
+        fmt::format("stopped by the user; {} of {} runs are finished and kept", state_.ended, jobs_.size()),
+        "the same command goes on where it ended");
+  }
+
+  std::span<const BatchJob> jobs_;
+  EngineOptions options_;
+  const EngineControl& control_;
+  std::vector<BatchOutcome> outcomes_;
+  std::deque<std::size_t> waiting_;
+  std::list<RunningJob> running_;
+  OpenedRecordings opened_;
+  std::map<fs::path, std::string> places_;  // of which identity
+  std::set<fs::path> tidied_;
+  std::optional<Error> fatal_;
+  std::uint64_t expected_bytes_ = 300'000'000;  // of a run, until one has ended that needed more
+  EngineState state_;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace
+
+Result<std::vector<BatchOutcome>> run_locally(std::span<const BatchJob> jobs, const EngineOptions& options,
+                                              const EngineControl& control) {
+  check(options.at_once >= 1, "at least one process at a time");
+  return Engine(jobs, options, control).run();
+}
+
+}  // namespace fusebench

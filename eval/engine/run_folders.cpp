@@ -1,0 +1,133 @@
+#include "eval/engine/run_folders.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+
+#include "core/staged_folder.hpp"
+#include "eval/build_info.hpp"
+#include "eval/engine/run_claim.hpp"
+#include "eval/record.hpp"
+
+namespace fusebench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t size_of(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored)) bytes += entry->file_size(ignored);
+  }
+  return bytes;
+}
+
+tl::unexpected<Error> not_listed(const fs::path& root, const std::error_code& error) {
+  return fail(ErrorCode::data_missing,
+              fmt::format("{}: cannot be listed: {}", root.string(), error.message()));
+}
+
+bool is_garbage(const fs::path& folder, const RecordHead& head, const Garbage& garbage) {
+  if (garbage.failed && head.status == RunStatus::failed) return true;
+  if (!garbage.stale) return false;
+  const auto record = read_record(folder / "record.json");
+  // Imported runs come from elsewhere, and have no estimator of ours.
+  return record && !record->config.empty() && record->provenance.estimator != build_info().estimator;
+}
+
+Result<void> copy_run(const fs::path& from, const fs::path& to) {
+  auto staged = StagedFolder::create(to);
+  if (!staged) return tl::unexpected(staged.error());
+  std::error_code error;
+  fs::copy(from, staged->path(), fs::copy_options::recursive, error);
+  if (error) {
+    return fail(ErrorCode::io,
+                fmt::format("{}: cannot be copied to {}: {}", from.string(), to.string(), error.message()));
+  }
+  return staged->commit();
+}
+
+}  // namespace
+
+Result<std::vector<ListedRun>> list_runs(const fs::path& root) {
+  std::vector<ListedRun> runs;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(root, error);
+  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') && entry->is_directory()) {
+      entry.disable_recursion_pending();
+    } else if (name == "record.json") {
+      const fs::path folder = entry->path().parent_path();
+      const RecordHead unreadable{RunStatus::failed, "its record cannot be read", ""};
+      runs.push_back({folder.lexically_relative(root), record_head(folder).value_or(unreadable)});
+    }
+  }
+  if (error) return not_listed(root, error);
+  std::ranges::sort(runs, {}, &ListedRun::folder);
+  return runs;
+}
+
+Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garbage) {
+  const auto runs = list_runs(root);
+  if (!runs) return tl::unexpected(runs.error());
+  GarbageReport report;
+  std::set<fs::path> parents;
+  for (const ListedRun& run : *runs) {
+    const fs::path folder = root / run.folder;
+    parents.insert(folder.parent_path());
+    if (!is_garbage(folder, run.head, garbage)) continue;
+    ++report.runs;
+    report.bytes += size_of(folder);
+    std::error_code error;
+    if (!garbage.only_look) fs::remove_all(folder, error);
+    if (error)
+      return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", folder.string(), error.message()));
+  }
+  if (!garbage.only_look) report.temporaries += remove_free_claims(root);
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(root, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (!entry->is_directory(ignored)) continue;
+    if (entry->path().filename().string().starts_with('.')) {
+      parents.insert(entry->path().parent_path());
+      entry.disable_recursion_pending();
+    }
+  }
+  for (const fs::path& parent : parents) {
+    if (!garbage.only_look) report.temporaries += remove_abandoned(parent);
+  }
+  return report;
+}
+
+Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
+  const auto runs = list_runs(from);
+  if (!runs) return tl::unexpected(runs.error());
+  MergeReport report;
+  for (const ListedRun& run : *runs) {
+    const fs::path target = into / run.folder;
+    const auto there = record_head(target);
+    const bool same = there && there->run_id == run.head.run_id;
+    const bool finished_there = same && there->status != RunStatus::failed;
+    if (finished_there || (same && run.head.status == RunStatus::failed)) {
+      ++report.there;
+      if (finished_there && run.head.status != RunStatus::failed && there->status != run.head.status)
+        ++report.differing;
+      continue;
+    }
+    const fs::path free_place =
+        there && !same ? target.parent_path() / (run.head.run_id + "-merged") : target;
+    if (auto copied = copy_run(from / run.folder, free_place); !copied) return tl::unexpected(copied.error());
+    ++report.copied;
+  }
+  return report;
+}
+
+}  // namespace fusebench

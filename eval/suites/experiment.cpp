@@ -1,0 +1,343 @@
+#include "eval/suites/experiment.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "core/nearest_name.hpp"
+#include "datasets/open_recording.hpp"
+#include "datasets/recording_catalogue.hpp"
+#include "eval/suites/suite_entries.hpp"
+
+namespace fusebench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array<std::string_view, 14> kSuiteKeys = {
+    "name", "recordings", "all",  "variants", "imu",   "config",  "simulations",
+    "bars", "frames",     "keep", "limits",   "sweep", "exclude", "repetitions"};
+constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "half", "variants"};
+constexpr std::string_view kConfigPrefix = "config.";
+constexpr std::string_view kLimitPrefix = "limits.";
+
+tl::unexpected<Error> unknown_suite_key(const std::string& place, const std::string& key) {
+  return unknown_key(place, key, kSuiteKeys, "a suite");
+}
+
+Result<void> read_imu(const TomlEntry& entry, Suite& suite) {
+  const auto text = plain_entry<std::string>(entry);
+  if (!text) return wrong_entry(entry, "\"recorded\", \"synthetic\" or \"auto\"");
+  const auto choice = parse_imu_choice(*text);
+  if (!choice)
+    return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, choice.error().message));
+  suite.imu = *choice;
+  return {};
+}
+
+Result<void> read_kept(const TomlEntry& entry, Suite& suite) {
+  for (const KeptFiles kept : {KeptFiles::all, KeptFiles::small}) {
+    if (plain_entry<std::string>(entry) != to_string(kept)) continue;
+    suite.kept = kept;
+    return {};
+  }
+  return wrong_entry(entry, "\"all\" or \"small\"");
+}
+
+Result<void> read_repetitions(const TomlEntry& entry, Suite& suite) {
+  constexpr std::int64_t kMost = 1000;
+  const auto count = plain_entry<std::int64_t>(entry);
+  if (!count || *count < 1 || *count > kMost)
+    return wrong_entry(entry, fmt::format("an integer, 1 .. {}", kMost));
+  suite.repetitions = static_cast<int>(*count);
+  return {};
+}
+
+Result<void> read_entry(const TomlEntry& entry, Suite& suite) {
+  const auto store = [](auto value, auto& target) -> Result<void> {
+    if (!value) return tl::unexpected(value.error());
+    target = std::move(*value);
+    return {};
+  };
+  if (entry.key == "name") return store(text_entry(entry), suite.name);
+  if (entry.key == "all") return store(flag_entry(entry), suite.all);
+  if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
+  if (entry.key == "imu") return read_imu(entry, suite);
+  if (entry.key == "keep") return read_kept(entry, suite);
+  if (entry.key == "repetitions") return read_repetitions(entry, suite);
+  if (entry.key == "frames") return store(windows_entry(entry), suite.windows);
+  if (entry.key.starts_with(kLimitPrefix))
+    return read_limit(entry, std::string_view(entry.key).substr(kLimitPrefix.size()), suite.limits);
+  if (entry.key == "recordings") {
+    const auto list = names_entry(entry);
+    if (!list) return tl::unexpected(list.error());
+    for (const std::string& name : *list) suite.recordings.push_back({.name = name});
+    return {};
+  }
+  if (entry.key.starts_with(kConfigPrefix)) {
+    suite.config.push_back({entry.key.substr(kConfigPrefix.size()), entry.value, entry.place});
+    return {};
+  }
+  if (list_of_key(entry.key)) return {};  // read table by table
+  return unknown_suite_key(entry.place, entry.key);
+}
+
+Result<void> read_recording(const EntryTable& table, Suite& suite) {
+  SuiteRecording recording;
+  for (const TomlEntry& entry : table.entries) {
+    if (entry.key == "variants") {
+      auto list = variants_entry(entry);
+      if (!list) return tl::unexpected(list.error());
+      recording.variants = std::move(*list);
+      continue;
+    }
+    const std::array<std::pair<std::string_view, std::string*>, 3> texts = {
+        {{"name", &recording.name}, {"group", &recording.group}, {"half", &recording.half}}};
+    const auto* const target =
+        std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.first == entry.key; });
+    if (target == texts.end()) return unknown_key(entry.place, entry.key, kRecordingKeys, "a recording");
+    auto text = text_entry(entry);
+    if (!text) return tl::unexpected(text.error());
+    *target->second = std::move(*text);
+    if (recording.half != kTuningHalf && recording.half != kHeldOutHalf)
+      return wrong_entry(entry, "\"tuning\" or \"held-out\"");
+  }
+  if (recording.name.empty())
+    return fail(ErrorCode::configuration, fmt::format("{}: the key 'name' is missing", table.place));
+  suite.recordings.push_back(std::move(recording));
+  return {};
+}
+
+Result<void> read_tables(const TomlDocument& document, Suite& suite) {
+  for (const EntryTable& table : entry_tables(document, "recordings")) {
+    if (auto read = read_recording(table, suite); !read) return read;
+  }
+  auto simulations = read_simulations(entry_tables(document, "simulations"), suite.variants);
+  if (!simulations) return tl::unexpected(simulations.error());
+  suite.simulations = std::move(*simulations);
+  auto sweeps = read_sweeps(entry_tables(document, "sweep"));
+  if (!sweeps) return tl::unexpected(sweeps.error());
+  suite.sweeps = std::move(*sweeps);
+  auto exclusions = read_exclusions(entry_tables(document, "exclude"));
+  if (!exclusions) return tl::unexpected(exclusions.error());
+  suite.exclusions = std::move(*exclusions);
+  auto bars = read_bars(entry_tables(document, "bars"));
+  if (!bars) return tl::unexpected(bars.error());
+  suite.bars = std::move(*bars);
+  return {};
+}
+
+/// The suite's variants, and those of its recordings.
+std::vector<std::string> variants_of(const Suite& suite) {
+  std::vector<std::string> all = suite.variants;
+  const auto add = [&](const std::vector<std::string>& more) {
+    for (const std::string& name : more) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+  };
+  for (const SuiteRecording& recording : suite.recordings) add(recording.variants);
+  for (const SuiteSimulation& simulation : suite.simulations) add(simulation.variants);
+  return all;
+}
+
+/// A bar on a group that no recording is in would never decide anything.
+Result<void> check_groups(const Suite& suite) {
+  std::vector<std::string> groups;
+  for (const SuiteSimulation& simulation : suite.simulations) groups.push_back(simulation.group);
+  for (const SuiteRecording& recording : suite.recordings) {
+    // Without a group, recordings go by the names of their folders.
+    if (recording.group.empty()) return {};
+    groups.push_back(recording.group);
+  }
+  const std::vector<std::string_view> known(groups.begin(), groups.end());
+  for (const Bar& bar : suite.bars) {
+    for (const std::string& group : bar.groups) {
+      if (suite.all || std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
+      return fail(ErrorCode::configuration, fmt::format("{}: no recording is in the group '{}' (nearest: {})",
+                                                        bar.place, group, nearest_name(group, known)));
+    }
+  }
+  return {};
+}
+
+Result<void> check_suite(const Suite& suite, const fs::path& file) {
+  const auto lacks = [&](std::string_view what) {
+    return fail(ErrorCode::configuration, fmt::format("{}: {}", file.string(), what));
+  };
+  if (suite.name.empty()) return lacks("the key 'name' is missing");
+  if (suite.variants.empty()) return lacks("the key 'variants' is missing");
+  const bool simulates = !suite.simulations.empty();
+  if (suite.all ? !suite.recordings.empty() : suite.recordings.empty() && !simulates)
+    return lacks("either 'recordings' or 'all = true' is needed, or [[simulations]]");
+  if (auto good = check_groups(suite); !good) return good;
+  // Each edit must be one that a configuration takes, before hours are spent on the runs before it.
+  for (const std::string& name : variants_of(suite)) {
+    const auto config = suite_config(suite, *find_variant(name));
+    if (!config) return tl::unexpected(config.error());
+    if (auto related = check_relations(config->values); !related) {
+      return lacks(fmt::format("variant {}: {}", name, related.error().message));
+    }
+  }
+  return {};
+}
+
+/// The folders in a folder, except hidden ones.
+std::vector<fs::path> folders_in(const fs::path& parent, std::error_code& error) {
+  std::vector<fs::path> folders;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored) && !entry->path().filename().string().starts_with('.')) {
+      folders.push_back(entry->path());
+    }
+  }
+  return folders;
+}
+
+/// A recording of the catalogue that is not under `data`.
+tl::unexpected<Error> not_there(const CatalogueEntry& entry, const fs::path& data) {
+  const std::string folder = (data / entry.folders.front()).string();
+  return fail(
+      ErrorCode::data_missing,
+      fmt::format("{} ({}) is a known recording, but there is no folder {}", entry.name, entry.title, folder),
+      entry.downloads.empty()
+          ? fmt::format("{}; unpack it to {}", entry.download_note, folder)
+          : fmt::format("fetch it with scripts/fetch_datasets.sh {} --data {}", entry.name, data.string()));
+}
+
+/// The recording under `data` whose folder has that name, or an error that names the nearest.
+Result<fs::path> find_folder_named(const std::string& name, const fs::path& data) {
+  std::vector<std::string> present;
+  if (const auto folders = recordings_under(data)) {
+    for (const fs::path& folder : *folders) {
+      if (folder.filename() == name) return folder;
+      present.push_back(folder.filename().string());
+    }
+  }
+  std::vector<std::string_view> known(present.begin(), present.end());
+  for (const CatalogueEntry& entry : recording_catalogue()) known.push_back(entry.name);
+  const std::string there = present.empty()
+                                ? "there are none under --data"
+                                : fmt::format("under --data there are: {}", fmt::join(present, ", "));
+  return fail(ErrorCode::data_missing, fmt::format("no recording '{}' here or under {}", name, data.string()),
+              fmt::format("did you mean {}? {}", nearest_name(name, known), there));
+}
+
+}  // namespace
+
+Result<Suite> read_suite(const fs::path& file) {
+  const auto document = read_toml(file);
+  if (!document) return tl::unexpected(document.error());
+  constexpr std::array<std::string_view, 3> lists = {"recordings", "simulations", "bars"};
+  constexpr std::array<std::string_view, 2> lists_of_options = {"sweep",
+                                                                "exclude"};  // with tables of their own
+  for (const TomlTable& table : document->tables) {
+    const auto list = list_of_key(table.key);
+    const bool plain = list && std::find(lists.begin(), lists.end(), *list) != lists.end();
+    const bool of_options =
+        list && std::find(lists_of_options.begin(), lists_of_options.end(), *list) != lists_of_options.end();
+    const bool known =
+        list ? of_options || (plain && table.key.ends_with(']'))
+             : table.key == "config" || table.key.starts_with(kConfigPrefix) || table.key == "limits";
+    if (!known) return unknown_suite_key(table.place, table.key);
+  }
+  Suite suite;
+  for (const TomlEntry& entry : document->entries) {
+    if (auto read = read_entry(entry, suite); !read) return tl::unexpected(read.error());
+  }
+  if (auto read = read_tables(*document, suite); !read) return tl::unexpected(read.error());
+  if (auto complete = check_suite(suite, file); !complete) return tl::unexpected(complete.error());
+  return suite;
+}
+
+Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant) {
+  EffectiveConfig config = variant_config(variant);
+  for (const TomlEntry& entry : suite.config) {
+    const auto* value = std::get_if<OptionValue>(&entry.value);
+    if (value == nullptr) return wrong_entry(entry, "one value, not a list");
+    if (auto set = config.set(entry.key, *value, entry.place); !set) return tl::unexpected(set.error());
+  }
+  return config;
+}
+
+Result<ImuChoice> parse_imu_choice(const std::string& text) {
+  if (text == "recorded") return ImuChoice::recorded;
+  if (text == "synthetic") return ImuChoice::synthetic;
+  if (text == "auto") return ImuChoice::automatic;
+  return fail(ErrorCode::configuration, fmt::format("imu = {} (allowed: recorded | synthetic | auto)", text));
+}
+
+Result<std::vector<fs::path>> recordings_under(const fs::path& data) {
+  std::error_code error;
+  std::vector<fs::path> folders;
+  for (const fs::path& folder : folders_in(data, error)) {
+    if (recognise_format(folder)) {
+      folders.push_back(folder);
+      continue;
+    }
+    std::error_code ignored;  // a folder that may not be read holds nothing for us
+    for (const fs::path& inner : folders_in(folder, ignored)) {
+      if (recognise_format(inner)) folders.push_back(inner);
+    }
+  }
+  if (error) {
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: cannot be listed: {}", data.string(), error.message()),
+                "--data or FUSEBENCH_DATA names the folder of recordings");
+  }
+  if (folders.empty()) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: holds no recordings", data.string()),
+                "scripts/fetch_datasets.sh downloads published ones; `fusebench list recordings` names them");
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+Result<std::vector<fs::path>> find_recordings(const std::string& name, const fs::path& data) {
+  if (!name.ends_with('*')) {
+    auto folder = find_recording(name, data);
+    if (!folder) return tl::unexpected(folder.error());
+    return std::vector<fs::path>{std::move(*folder)};
+  }
+  const std::string beginning = name.substr(0, name.size() - 1);
+  std::vector<fs::path> found;
+  if (const auto folders = recordings_under(data)) {
+    for (const fs::path& folder : *folders) {
+      if (folder.filename().string().starts_with(beginning)) found.push_back(folder);
+    }
+  }
+  if (!found.empty()) return found;
+  return fail(ErrorCode::data_missing,
+              fmt::format("no recording whose name begins with '{}' under '{}'", beginning, data.string()),
+              "--data or FUSEBENCH_DATA names the folder of recordings");
+}
+
+Result<fs::path> find_recording(const std::string& name, const fs::path& data) {
+  std::error_code ignored;
+  if (fs::is_directory(name, ignored)) {
+    // "folder/" and "." have no last name.
+    const fs::path folder = fs::weakly_canonical(name, ignored);
+    return ignored ? fs::path(name) : folder;
+  }
+  const CatalogueEntry* entry = find_catalogue_entry(name);
+  if (data.empty()) {
+    return fail(ErrorCode::data_missing,
+                entry == nullptr
+                    ? fmt::format("{}: no such folder", name)
+                    : fmt::format("{} is a known recording, but no folder of recordings is given", name),
+                "--data or FUSEBENCH_DATA names the folder of recordings");
+  }
+  if (fs::is_directory(data / name, ignored)) return data / name;
+  if (entry != nullptr) {
+    const auto folder = catalogue_folder(*entry, data);
+    if (folder) return *folder;
+    return not_there(*entry, data);
+  }
+  return find_folder_named(name, data);
+}
+
+}  // namespace fusebench

@@ -1,0 +1,94 @@
+// Experiments are data: a suite is a TOML file that names recordings, variants and edits of the
+// configuration.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config_access.hpp"
+#include "core/error.hpp"
+#include "core/toml_document.hpp"
+#include "core/variants.hpp"
+#include "eval/run.hpp"
+#include "eval/suites/suite_bars.hpp"
+#include "eval/suites/suite_runs.hpp"
+#include "eval/suites/suite_simulations.hpp"
+#include "eval/suites/sweep_design.hpp"
+
+namespace fusebench {
+
+/// A recording that exists, as a suite names it.
+///
+///     [[recordings]]                      # or, at the top of the file: recordings = ["fr1_rpy", ...]
+///     name = "rgbd_dataset_freiburg1_*"   # a final * takes all folders under --data that begin so
+///     group = "fr1"                       # default: the recording's own name
+///     half = "tuning"                     # or "held-out" (default)
+///     variants = ["full"]                 # default: those of the suite
+struct SuiteRecording {
+  std::string name;
+  std::string group = {};  ///< empty: the recording's name
+  std::string half = std::string(kHeldOutHalf);
+  std::vector<std::string> variants = {};
+};
+
+/// A suite runs every variant over every recording.
+///
+///     name = "quickstart"             # required
+///     recordings = ["fr1_rpy", ...]   # folders, names of folders under --data or of the catalogue; or
+///     all = true                      # every recording under --data; or simulated ones (SuiteSimulation)
+///     variants = ["full", "dm"]       # required
+///     imu = "synthetic"               # or "auto", "recorded" (default): see ImuChoice
+///     [config]                        # edits for all runs, as in a configuration file
+///     iekf.max_iterations = 8
+///     repetitions = 3                 # of each run, for its time; default 1
+///     frames = ["0:100", "100:200"]   # windows of the recordings, each a run; default: all frames
+///     keep = "small"                  # files of each run, see KeptFiles; default "all"
+///     [limits]                        # see RunLimits
+///     [[sweep]]                       # see SweepBlock
+///     [[exclude]]                     # see Exclusion
+///     [[simulations]]                 # see SuiteSimulation
+///     [[bars]]                        # what the runs must reach: see Bar
+struct Suite {
+  std::string name;
+  bool all = false;
+  std::vector<SuiteRecording> recordings;
+  std::vector<SuiteSimulation> simulations;
+  std::vector<std::string> variants;
+  ImuChoice imu = ImuChoice::recorded;
+  std::vector<TomlEntry> config;  ///< keys without "config."
+  int repetitions = 1;
+  std::vector<FrameWindow> windows;  ///< empty: all frames
+  KeptFiles kept = KeptFiles::all;
+  RunLimits limits;
+  std::vector<SweepBlock> sweeps;
+  std::vector<Exclusion> exclusions;
+  std::vector<Bar> bars;
+};
+
+/// Errors name file:line: data_missing (no such file), configuration (unknown key or variant, wrong type, a
+/// value that the option does not take, a missing or doubled key).
+[[nodiscard]] Result<Suite> read_suite(const std::filesystem::path& file);
+
+/// The configuration of one of the suite's variants, before --set.
+[[nodiscard]] Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant);
+
+/// "recorded", "synthetic" or "auto". Error configuration.
+[[nodiscard]] Result<ImuChoice> parse_imu_choice(const std::string& text);
+
+/// A folder as it is named, else the folder of that name under `data` (may be empty), else the recording of
+/// that name in the catalogue (datasets/recording_catalogue.hpp). Error data_missing that says what is known:
+/// how to fetch a recording of the catalogue, or what is under `data`, with the nearest name.
+[[nodiscard]] Result<std::filesystem::path> find_recording(const std::string& name,
+                                                           const std::filesystem::path& data);
+
+/// The same; a name that ends with * stands for all folders under `data` that begin so, by path. Error
+/// data_missing.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> find_recordings(const std::string& name,
+                                                                         const std::filesystem::path& data);
+
+/// The folders under `data` that hold a recording of any format, directly or one level deeper
+/// (<scene>/<sequence>), by path. Errors: data_missing if `data` is no folder or has none.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> recordings_under(const std::filesystem::path& data);
+
+}  // namespace fusebench

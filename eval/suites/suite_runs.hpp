@@ -1,0 +1,56 @@
+// What a suite says of its runs besides recordings, variants and options: windows, repetitions, limits, and
+// what is left out.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/options.hpp"
+#include "eval/run.hpp"
+#include "eval/suites/suite_entries.hpp"
+#include "eval/suites/sweep_design.hpp"
+
+namespace fusebench {
+
+/// Runs that are not made, and why.
+///
+///     [[exclude]]
+///     reason = "no IMU was recorded"   # required; shown wherever the plan is
+///     recording = "icl_*"              # a name, or with a final * its beginning; default: all
+///     variant = "full"                 # default: all
+///     tsdf.voxel_m = 0.02              # options that must have these values; default: any
+struct Exclusion {
+  std::string reason;
+  std::string recording;
+  std::string variant;
+  SweepPoint options;
+
+  /// `options_of_run`: all of a run's effective options.
+  [[nodiscard]] bool covers(std::string_view recording_name, std::string_view variant_name,
+                            const std::vector<OptionRow>& options_of_run) const;
+};
+/// Errors: configuration, with file:line.
+[[nodiscard]] Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables);
+
+/// What each run may use. A run that needs more is a row with that reason.
+///
+///     [limits]
+///     time_s = 3600      # from start to end; default: none
+///     stall_s = 600      # without a finished frame; default 600
+///     memory_mb = 4000   # default: what the machine has
+struct RunLimits {
+  double time_s = 0;
+  double stall_s = 600;
+  std::uint64_t memory_bytes = 0;  ///< 0: the machine's
+};
+/// Of one entry of [limits], by its key there. Errors: configuration, with file:line.
+[[nodiscard]] Result<void> read_limit(const TomlEntry& entry, std::string_view key, RunLimits& limits);
+
+/// frames = "0:100", or a list of such windows: each is a run of its own. Errors: configuration, with
+/// file:line.
+[[nodiscard]] Result<std::vector<FrameWindow>> windows_entry(const TomlEntry& entry);
+
+}  // namespace fusebench

@@ -1,0 +1,189 @@
+#!/usr/bin/env bash
+# The engine from outside: a sweep that is killed again and again, that meets a full disk and a read-only folder, and two
+# engines on one folder all end with the bytes of an undisturbed one.
+set -uo pipefail
+
+usage() {
+  cat <<'TEXT'
+Usage: tests/cli/engine_test.sh BINARY kills|disks|engines|regressions [RUNS]
+RUNS: of the sweep; default 200.
+TEXT
+}
+
+if (($# < 2)); then
+  usage >&2
+  exit 2
+fi
+binary=$(realpath -- "$1")
+group=$2
+runs=${3:-200}
+unset FUSEBENCH_DATA
+
+work=$(mktemp -d)
+mounted=
+tidy() {
+  if [[ -n $mounted ]]; then umount "$mounted"; fi
+  rm -rf "$work"
+}
+trap tidy EXIT
+cd "$work" || exit 2
+failures=0
+
+complain() {
+  failures=$((failures + 1))
+  printf 'FAILED: %s\n' "$1" >&2
+  if [[ -s stderr ]]; then tail -n 5 stderr | sed 's/^/    stderr: /' >&2; fi
+}
+
+cat >tiny.toml <<TEXT
+name = "tiny"
+variants = ["no-imu"]
+keep = "small"
+frames = "0:2"
+[[simulations]]
+name = "tiny"
+format = "tum"
+preset = "slow"
+start = "motion"
+seed = 1
+duration_s = 0.1
+size = "160x120"
+blur_samples = 1
+[[sweep]]
+design = "latin-hypercube"
+samples = $runs
+tsdf.voxel_m = { from = 0.01, to = 0.02 }
+iekf.max_iterations = { from = 1, to = 8 }
+TEXT
+
+# engine OUT [ARGUMENT...]: the sweep into a folder.
+engine() {
+  "$binary" bench tiny.toml --simulated simulated --out "$1" -j 2 --threads 1 "${@:2}" >stdout 2>stderr
+}
+
+# content OUT: every file of its runs with its bytes, but for what is never the same twice: timing and provenance of a
+# record, and the milliseconds of frames.csv. Hidden files as well: nothing may be left of a killed engine.
+content() {
+  (cd "$1" && find . -path ./.fusebench/invocations -prune -o -type f -print | LC_ALL=C sort | while read -r file; do
+    case $file in
+      *.json) sed '/^  "timing"/,$d' "$file" ;;
+      */frames.csv) cut -d, -f1-28 "$file" ;;
+      *) cat "$file" ;;
+    esac | md5sum | sed "s|-|$file|"
+  done)
+}
+
+same_as_undisturbed() {
+  content "$1" >"content_$2"
+  if ! cmp -s content_undisturbed "content_$2"; then
+    diff content_undisturbed "content_$2" | head -n 5 >&2
+    complain "$2: not the bytes of the undisturbed sweep"
+  fi
+}
+
+undisturbed() {
+  engine undisturbed || complain "the undisturbed sweep: exit code $?"
+  content undisturbed >content_undisturbed
+  [[ $(grep -c record.json content_undisturbed) == "$runs" ]] || complain "the undisturbed sweep: not $runs runs"
+}
+
+check_kills() {
+  undisturbed
+  RANDOM=7
+  local before=0 finished process
+  for kill in 1 2 3 4 5 6 7 8 9 10; do
+    engine killed &
+    process=$!
+    sleep "0.$((300 + RANDOM % 600))"
+    # The engine is a child of the subshell that runs the function.
+    pkill -KILL -P "$process"
+    wait "$process" 2>/dev/null
+    finished=$(find killed -name record.json -not -path '*/.*/*' 2>/dev/null | wc -l)
+    ((finished >= before)) || complain "kill $kill: $before runs were finished, and then $finished"
+    before=$finished
+  done
+  ((before < runs)) || printf 'note: all runs were finished before the last kill\n' >&2
+  sleep 0.5 # children die with their engine, a moment later
+  engine killed || complain "after the kills: exit code $?"
+  same_as_undisturbed killed killed
+  engine killed --json || complain "again: exit code $?"
+  [[ $(grep -c '"resumed": true' stdout) == "$runs" ]] || complain "again: something was run twice"
+}
+
+check_disks() {
+  undisturbed
+  mkdir disk
+  if ! mount -t tmpfs -o size=1500k none disk 2>/dev/null; then
+    printf 'skipped: no file system can be mounted here\n'
+    exit 77
+  fi
+  mounted=$work/disk
+  local status
+  engine disk/out
+  status=$?
+  ((status == 4)) || complain "a full disk: exit code $status instead of 4"
+  grep -q 'cannot be written' stderr || complain "a full disk: not said"
+  grep -qE '[0-9]+ of [0-9]+ runs are finished and kept' stderr || complain "a full disk: what is kept is not said"
+  local kept
+  kept=$(find disk/out -name record.json -not -path '*/.*/*' | wc -l)
+  ((kept > 0 && kept < runs)) || complain "a full disk: $kept runs kept"
+  while read -r file; do
+    "$binary" table "$(dirname "$file")" >/dev/null 2>stderr || complain "a full disk: $file is not whole"
+  done < <(find disk/out -name record.json -not -path '*/.*/*' | head -n 5)
+  mount -o remount,size=500m disk
+  mount -o remount,ro disk
+  engine disk/out
+  status=$?
+  ((status == 4)) || complain "a read-only folder: exit code $status instead of 4"
+  grep -q 'Read-only' stderr || complain "a read-only folder: not said"
+  mount -o remount,rw disk
+  engine disk/out || complain "with room again: exit code $?"
+  same_as_undisturbed disk/out disk
+}
+
+check_engines() {
+  undisturbed
+  engine shared --json &
+  local first=$!
+  "$binary" bench tiny.toml --simulated simulated --out shared -j 2 --threads 1 --json >second.json 2>second.err ||
+    complain "the second engine: exit code $?"
+  wait "$first" || complain "the first engine: exit code $?"
+  same_as_undisturbed shared shared
+  local made=$(($(grep -c '"resumed": false' stdout) + $(grep -c '"resumed": false' second.json)))
+  ((made == runs)) || complain "two engines: $made runs were made for $runs"
+
+  # A run that is killed from outside is a row with its reason, and is run again on request.
+  sed 's/^frames.*/frames = "0:3"/; s/^samples.*/samples = 6/' tiny.toml >few.toml
+  "$binary" bench few.toml --simulated simulated --out few -j 1 --threads 1 >stdout 2>stderr &
+  local process=$!
+  # Once a run is claimed, a child of the engine is a run.
+  until compgen -G 'few/.fusebench/claims/*' >/dev/null; do sleep 0.002; done
+  sleep 0.02
+  for _ in 1 2 3 4 5; do
+    pkill -KILL -P "$process"
+    sleep 0.01
+  done
+  wait "$process"
+  local status=$?
+  ((status == 4)) || complain "a killed run: exit code $status instead of 4"
+  "$binary" list runs few -o failed >listed 2>stderr || complain "list runs"
+  grep -q 'signal 9 (Killed)' listed || complain "a killed run: its reason is not listed"
+  "$binary" rerun --failed few >stdout 2>stderr || complain "rerun --failed: exit code $?"
+  [[ $("$binary" list runs few -o failed | wc -l) == 1 ]] || complain "rerun --failed: something is still failed"
+  [[ $("$binary" list runs few -o ok | wc -l) == 7 ]] || complain "rerun --failed: not 6 good runs"
+}
+
+case $group in
+  kills) check_kills ;;
+  disks) check_disks ;;
+  engines) check_engines ;;
+  *)
+    usage >&2
+    exit 2
+    ;;
+esac
+if ((failures > 0)); then
+  printf '%s: %d checks failed\n' "$group" "$failures" >&2
+  exit 1
+fi
+printf '%s: passed with %d runs\n' "$group" "$runs"

@@ -1,0 +1,144 @@
+#include "eval/aggregate/best.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/eval/aggregate/sample_rows.hpp"
+
+namespace fusebench {
+namespace {
+
+using testing::metric_of;
+using testing::sample_bad_row;
+using testing::sample_row;
+using testing::shuffled;
+
+/// Levels 1, 2, 3 on two recordings: 2 is the best; 3 would be, had it not lost one.
+std::vector<RunRow> three_levels() {
+  return {sample_row("desk", {{"levels", "1"}}, 0.02),
+          sample_row("room", {{"levels", "1"}}, 0.06),
+          sample_row("desk", {{"levels", "2"}}, 0.01),
+          sample_row("room", {{"levels", "2"}}, 0.05),
+          sample_row("desk", {{"levels", "3"}}, 0.005),
+          sample_bad_row("room", {{"levels", "3"}}, RunStatus::lost)};
+}
+
+BestTable best(const std::vector<RunRow>& rows, const std::string& group, std::size_t most = 10) {
+  return best_configurations(rows, {&metric_of("ate"), group, most}).value();
+}
+
+TEST(Best, RanksByTheMeanOverRecordingsAndPutsIncompleteOnesLast) {
+  const BestTable table = best(three_levels(), "none");
+  ASSERT_EQ(table.groups.size(), 1U);
+  const auto& rows = table.groups[0].rows;
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].configuration.options, (RunOptions{{"levels", "2"}}));
+  EXPECT_NEAR(*rows[0].configuration.mean, 0.03, 1e-15);
+  EXPECT_TRUE(rows[0].configuration.complete());
+  EXPECT_EQ(rows[1].configuration.options, (RunOptions{{"levels", "1"}}));
+  EXPECT_EQ(rows[2].configuration.options, (RunOptions{{"levels", "3"}}));
+  EXPECT_EQ(rows[2].rank, 3U);
+  EXPECT_EQ(rows[2].configuration.n_ok, 1U);
+  EXPECT_EQ(rows[2].configuration.n_total, 2U);
+  EXPECT_EQ(incomplete_note(rows[2].configuration), "failed or lost: room");
+}
+
+TEST(Best, GroupsByRecordingVariantAndOption) {
+  const BestTable by_recording = best(three_levels(), "recording");
+  ASSERT_EQ(by_recording.groups.size(), 2U);
+  EXPECT_EQ(by_recording.groups[0].label, "desk");
+  EXPECT_EQ(by_recording.groups[0].rows[0].configuration.options[0].second, "3");
+  EXPECT_FALSE(by_recording.groups[1].rows[2].rank.has_value());  // lost, without any number
+  EXPECT_EQ(best(three_levels(), "variant").groups.at(0).label, "full");
+  const BestTable by_level = best(three_levels(), "levels");
+  ASSERT_EQ(by_level.groups.size(), 3U);
+  EXPECT_EQ(by_level.groups[1].label, "2");
+}
+
+TEST(Best, AConfigurationThatDidNotRunSomewhereSaysSo) {
+  auto rows = three_levels();
+  rows.push_back(sample_row("desk", {{"levels", "4"}}, 0.001));
+  const BestTable table = best(rows, "none");
+  EXPECT_EQ(incomplete_note(table.groups[0].rows[2].configuration), "not run: room");
+  EXPECT_EQ(table.groups[0].rows[2].configuration.options[0].second, "4");
+}
+
+TEST(Best, EqualMeansShareARank) {
+  const BestTable table =
+      best({sample_row("desk", {{"levels", "1"}}, 0.02), sample_row("desk", {{"levels", "2"}}, 0.02),
+            sample_row("desk", {{"levels", "3"}}, 0.03)},
+           "none");
+  EXPECT_EQ(table.groups[0].rows[0].rank, 1U);
+  EXPECT_EQ(table.groups[0].rows[1].rank, 1U);
+  EXPECT_EQ(table.groups[0].rows[2].rank, 3U);
+}
+
+TEST(Best, ARecordingWithoutTheNumberIsLeftOutAndNamed) {
+  auto rows = three_levels();
+  for (const char* level : {"1", "2", "3"}) {
+    rows.push_back(sample_row("walk", {{"levels", level}}, 0));
+    rows.back().ate_rmse_m.reset();
+  }
+  const BestTable table = best(rows, "none");
+  EXPECT_EQ(table.groups[0].recordings, (std::vector<std::string>{"desk", "room"}));
+  EXPECT_TRUE(table.groups[0].rows[0].configuration.complete());
+  EXPECT_EQ(table.notes.at(0), "No run has ate_rmse_m of walk: left out.");
+}
+
+TEST(Best, DataOfDifferentKindsAreNotInOneMean) {
+  auto rows = three_levels();
+  for (RunRow& row : rows) {
+    if (row.recording == "room" && row.status == RunStatus::ok) row.data = "simulated";
+  }
+  const BestTable table = best(rows, "none");
+  ASSERT_EQ(table.groups.size(), 2U);
+  EXPECT_EQ(table.groups[0].kind, "recorded");
+  EXPECT_EQ(table.groups[1].kind, "simulated");
+  EXPECT_EQ(table.groups[1].rows.size(), 3U);  // the lost run, which knows no better, too
+  EXPECT_NE(render_best(table, BestFormat::markdown).find("simulated: images"), std::string::npos);
+}
+
+TEST(Best, RunsOfUnknownConfigurationAreCountedNotRanked) {
+  auto rows = three_levels();
+  rows.push_back(sample_bad_row("desk", {}, RunStatus::failed));
+  rows.back().readable = false;
+  rows.push_back(sample_bad_row("desk", {}, RunStatus::failed));
+  rows.back().options_known = false;
+  const BestTable table = best(rows, "none");
+  EXPECT_EQ(table.groups[0].rows.size(), 3U);
+  EXPECT_EQ(table.notes.at(0), "1 of 8 records cannot be read and are left out.");
+  EXPECT_TRUE(table.notes.at(1).starts_with("1 failed runs never wrote their options"));
+}
+
+TEST(Best, DoesNotDependOnTheOrderOfRuns) {
+  const auto rows = three_levels();
+  const std::string expected = render_best(best(rows, "none"), BestFormat::json);
+  for (unsigned seed = 0; seed < 20; ++seed)
+    EXPECT_EQ(render_best(best(shuffled(rows, seed), "none"), BestFormat::json), expected);
+}
+
+TEST(Best, FormatsCarryTheSameNumbers) {
+  const BestTable table = best(three_levels(), "none", 2);
+  const std::string csv = render_best(table, BestFormat::csv);
+  EXPECT_NE(csv.find("all,recorded,2,full,1,ate_rmse_m,m,0.04,2,2,2,\n"), std::string::npos) << csv;
+  const auto document = nlohmann::json::parse(render_best(table, BestFormat::json));
+  EXPECT_EQ(document.at("groups").at(0).at("rows").at(1).at("mean"), 0.04);
+  EXPECT_EQ(document.at("groups").at(0).at("configurations"), 3);
+  const std::string markdown = render_best(table, BestFormat::markdown);
+  EXPECT_NE(markdown.find("4.00 | 2/2 |"), std::string::npos) << markdown;
+  EXPECT_NE(markdown.find("2 of 3 configurations shown"), std::string::npos) << markdown;
+}
+
+TEST(Best, ErrorsAreTyped) {
+  const auto refused = best_configurations(three_levels(), {&metric_of("ate"), "level", 10});
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::usage);
+  EXPECT_NE(refused.error().message.find("none | levels"), std::string::npos) << refused.error().message;
+  EXPECT_EQ(find_run_metric("fps").error().code, ErrorCode::usage);  // more is better
+  EXPECT_EQ(parse_best_format("pdf").error().code, ErrorCode::usage);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,65 @@
+#include "eval/aggregate/long_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/eval/aggregate/sample_rows.hpp"
+
+namespace fusebench {
+namespace {
+
+using testing::sample_bad_row;
+using testing::sample_row;
+
+std::vector<RunRow> two_runs() {
+  std::vector<RunRow> rows = {sample_row("desk", {{"a.b", "1"}}, 0.0123, 7.5),
+                              sample_bad_row("desk", {{"c", "x, \"y\""}}, RunStatus::failed)};
+  rows[0].run = "01234567";
+  rows[1].run = "not-started";
+  rows[1].reason = "no, \"never\"";
+  rows[1].total = 0;
+  return rows;
+}
+
+TEST(LongTable, CsvHasALineForEachNumberAndOneForARunWithout) {
+  EXPECT_EQ(long_table(two_runs(), {}),
+            "recording,data,imu,truth,variant,run,status,reason,a.b,c,metric,unit,value\n"
+            "desk,recorded,none,given,full,01234567,ok,,1,,frames,frames,100\n"
+            "desk,recorded,none,given,full,01234567,ok,,1,,frames_tracked,frames,100\n"
+            "desk,recorded,none,given,full,01234567,ok,,1,,frames_lost,frames,0\n"
+            "desk,recorded,none,given,full,01234567,ok,,1,,ate_rmse_m,m,0.0123\n"
+            "desk,recorded,none,given,full,01234567,ok,,1,,cpu_ms_per_frame,ms,7.5\n"
+            "desk,recorded,none,given,full,not-started,failed,\"no, \"\"never\"\"\",,\"x, \"\"y\"\"\",,,\n");
+}
+
+TEST(LongTable, WithoutTimingOnlyTheInputsCount) {
+  auto rows = two_runs();
+  const std::string before = long_table(rows, {LongFormat::csv, true});
+  EXPECT_EQ(before.find("cpu_ms_per_frame"), std::string::npos);
+  rows[0].cpu_ms_per_frame = 8;
+  rows[0].fps = 100;
+  EXPECT_EQ(long_table(rows, {LongFormat::csv, true}), before);
+}
+
+TEST(LongTable, JsonLinesAreDocumentsWithTheSameNumbers) {
+  auto rows = two_runs();
+  rows[0].recording = "de\xffsk";  // no UTF-8
+  std::istringstream lines(long_table(rows, {LongFormat::json_lines, false}));
+  std::vector<nlohmann::json> documents;
+  for (std::string line; std::getline(lines, line);) documents.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(documents.size(), 6U);
+  EXPECT_EQ(documents[3].at("metric"), "ate_rmse_m");
+  EXPECT_EQ(documents[3].at("value"), 0.0123);
+  EXPECT_EQ(documents[3].at("a.b"), "1");
+  EXPECT_TRUE(documents[3].at("c").is_null());
+  EXPECT_TRUE(documents[5].at("metric").is_null());
+  EXPECT_EQ(documents[5].at("reason"), "no, \"never\"");
+}
+
+TEST(LongTable, ErrorsAreTyped) { EXPECT_EQ(parse_long_format("xml").error().code, ErrorCode::usage); }
+
+}  // namespace
+}  // namespace fusebench

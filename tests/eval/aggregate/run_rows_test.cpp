@@ -1,0 +1,200 @@
+#include "eval/aggregate/run_rows.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "eval/aggregate/long_table.hpp"
+#include "eval/aggregate/record_scan.hpp"
+#include "eval/found_runs.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+namespace {
+
+RunRecord sample_record(const std::string& recording, const std::string& variant, double ate_m) {
+  RunRecord record;
+  record.status = RunStatus::ok;
+  record.reason.clear();
+  record.recording.name = recording;
+  record.recording.truth = "given";
+  record.recording.imu = "recorded";
+  record.recording.notes = {"a note, with a \"mesh\"", "frames"};
+  record.variant = variant;
+  record.config_hash = "0011223344556677";
+  record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},
+                   {"depth.max_m", 2.5, "sweep.toml:3"},
+                   {"terms.visibility_test", true, "variant dm"},
+                   {"terms.prior", std::string("imu"), "default"}};
+  AteResult ate;
+  ate.stats = statistics(std::vector<double>{ate_m});
+  record.metrics.ate = {ate, {}};
+  RpeResult rpe;
+  rpe.translation = statistics(std::vector<double>{0.002});
+  rpe.rotation = statistics(std::vector<double>{0.003});
+  record.metrics.rpe_second = {rpe, {}};
+  RecordedMesh mesh;
+  mesh.poses.accuracy.stats = statistics(std::vector<double>{0.004});
+  mesh.poses.completeness.stats = statistics(std::vector<double>{0.005});
+  mesh.first_camera.accuracy.stats = statistics(std::vector<double>{9.0});
+  record.metrics.mesh = {mesh, {}};
+  record.frames = {100, 70, 10};
+  record.timing = {20, 4, 1'000'000, 4, {{"update", 3.0}}};
+  return record;
+}
+
+TEST(RecordScan, KeepsWhatTheRecordHas) {
+  const RunRow row = scan_record(to_json(sample_record("desk", "dm", 0.0123)));
+  ASSERT_TRUE(row.readable) << row.reason;
+  EXPECT_EQ(std::tie(row.recording, row.data, row.imu, row.truth, row.variant),
+            std::tuple("desk", "recorded", "recorded", "given", "dm"));
+  EXPECT_EQ(row.status, RunStatus::ok);
+  EXPECT_EQ(row.ate_rmse_m, 0.0123);
+  EXPECT_EQ(row.rpe_second_m, 0.002);
+  EXPECT_EQ(row.rpe_second_rad, 0.003);
+  EXPECT_FALSE(row.rpe_frame_m.has_value());
+  EXPECT_FALSE(row.aie_grey.has_value());
+  EXPECT_EQ(row.mesh_accuracy_m, 0.004);  // the main one, not that of the first camera
+  EXPECT_EQ(row.mesh_completeness_m, 0.005);
+  EXPECT_EQ(row.wall_s, 20);
+  EXPECT_EQ(row.cpu_s, 4);
+  EXPECT_EQ(row.cpu_ms_per_frame, 50);  // of 80 processed frames
+  EXPECT_EQ(row.peak_rss_bytes, 1e6);
+  EXPECT_EQ(std::tuple(row.total, row.tracked, row.lost), std::tuple(100U, 70U, 10U));
+}
+
+TEST(RecordScan, OnlyEditedOptionsAreKeptByKey) {
+  const RunRow row = scan_record(to_json(sample_record("desk", "dm", 0.0123)));
+  EXPECT_EQ(row.options, (RunOptions{{"depth.max_m", "2.5"}, {"iekf.max_iterations", "8"}}));
+}
+
+TEST(RecordScan, NumbersThatDoNotExistAreAbsent) {
+  RunRecord record = sample_record("desk", "full", 0.01);
+  record.metrics = {};
+  record.timing = {};
+  const RunRow row = scan_record(to_json(record));
+  ASSERT_TRUE(row.readable) << row.reason;
+  for (const RunMetric& metric : run_metrics()) EXPECT_FALSE((row.*metric.value).has_value()) << metric.key;
+}
+
+TEST(RecordScan, DamagedRecordsSayWhatIsWrong) {
+  const std::string good = to_json(sample_record("desk", "dm", 0.0123));
+  const RunRow half = scan_record(good.substr(0, good.size() / 2));
+  EXPECT_FALSE(half.readable);
+  EXPECT_EQ(half.status, RunStatus::failed);
+  EXPECT_EQ(half.recording, "desk");
+  EXPECT_FALSE(half.ate_rmse_m.has_value());
+  EXPECT_NE(half.reason.find("parse error"), std::string::npos) << half.reason;
+  auto document = nlohmann::json::parse(good);
+  document["schema"] = 99;
+  EXPECT_EQ(scan_record(document.dump()).reason,
+            "record.json: schema has a value that this program does not read");
+  document = nlohmann::json::parse(good);
+  document["frames"]["total"] = "many";
+  EXPECT_NE(scan_record(document.dump()).reason.find("frames.total"), std::string::npos);
+  document = nlohmann::json::parse(good);
+  document.erase("config");
+  EXPECT_EQ(scan_record(document.dump()).reason, "record.json: config is missing");
+  document = nlohmann::json::parse(good);
+  document["config"]["depth.max_m"] = 3;
+  EXPECT_FALSE(scan_record(document.dump()).readable);
+  for (const char* text : {"", "7", "[]", "{}", "[{\"schema\": 1}]", "null", "{\"config\": [[{\"a\": {}}]]}"})
+    EXPECT_FALSE(scan_record(text).readable) << text;
+}
+
+class RunRowsTest : public testing::InTemporaryFolder {
+ protected:
+  void write_record(const std::string& run, const RunRecord& record) const {
+    write("runs/" + run + "/record.json", to_json(record));
+  }
+  std::vector<RunRow> rows(int threads = 2) const {
+    const auto read = read_run_rows(folder_ / "runs", Workers(threads));
+    EXPECT_TRUE(read.has_value()) << read.error().message;
+    return read.value_or(std::vector<RunRow>());
+  }
+};
+
+TEST_F(RunRowsTest, AnyNumberOfThreadsReadsTheSame) {
+  for (int i = 0; i < 200; ++i) {
+    RunRecord record =
+        sample_record(fmt::format("rec{}", i % 3), i % 2 == 0 ? "full" : "dm", 0.01 * (1 + i % 7));
+    record.config[0].value = std::int64_t{i % 11};
+    write_record(fmt::format("{}/{}", i % 4, i), record);
+  }
+  const std::string expected = long_table(rows(1), {});
+  EXPECT_EQ(rows(1).size(), 200U);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(long_table(rows(threads), {}), expected);
+  const auto sorted = rows();
+  EXPECT_EQ(sorted.front().recording, "rec0");
+  EXPECT_EQ(sorted.front().variant, "full");
+  EXPECT_EQ(sorted.front().options[1].second, "0");
+  // 10 comes after 9 although its text does not.
+  std::string last;
+  for (const RunRow& row : sorted) {
+    if (row.recording == "rec0" && row.variant == "full") last = row.options[1].second;
+  }
+  EXPECT_EQ(last, "10");
+}
+
+TEST_F(RunRowsTest, HasTheNumbersThatFindRunsHas) {
+  write_record("desk/dm/01234567", sample_record("desk", "dm", 0.0123));
+  write_record("desk/full/89abcdef", sample_record("desk", "full", 0.02));
+  const auto found = find_runs(folder_ / "runs");
+  ASSERT_TRUE(found.has_value());
+  const auto read = rows();
+  ASSERT_EQ(read.size(), found->size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].variant, (*found)[i].record.variant);
+    EXPECT_EQ(read[i].run, (*found)[i].folder.filename().string());
+    EXPECT_EQ(read[i].ate_rmse_m, (*found)[i].record.metrics.ate.value->stats.rmse);
+  }
+  EXPECT_EQ(read[0].folder, "desk/full/89abcdef");
+}
+
+TEST_F(RunRowsTest, ADamagedRecordIsARow) {
+  write_record("desk/dm/01234567", sample_record("desk", "dm", 0.0123));
+  write("runs/desk/full/89abcdef/record.json", "half");
+  const auto read = rows();
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(unreadable_count(read), 1U);
+  EXPECT_FALSE(read[0].readable);
+  EXPECT_EQ(read[0].folder, "desk/full/89abcdef");
+  EXPECT_FALSE(read[0].attributable());
+}
+
+TEST_F(RunRowsTest, ARunThatNeverStartedHasTheOptionsOfItsConfiguration) {
+  write_record("desk/full/01234567", sample_record("desk", "full", 0.0123));
+  RunRecord failed;
+  failed.reason = "no such folder";
+  failed.recording.name = "room";
+  failed.variant = "full";
+  failed.config_hash = "0011223344556677";
+  write_record("room/full/not-started", failed);
+  failed.config_hash = "ffffffffffffffff";
+  write_record("room/full/not-started-2", failed);
+  const auto read = rows();
+  ASSERT_EQ(read.size(), 3U);
+  const auto by_run = [&](const std::string& run) { return *std::ranges::find(read, run, &RunRow::run); };
+  EXPECT_EQ(by_run("not-started").options, read[0].options);
+  EXPECT_TRUE(by_run("not-started").options_known);
+  EXPECT_TRUE(by_run("not-started-2").options.empty());
+  EXPECT_FALSE(by_run("not-started-2").options_known);
+}
+
+TEST_F(RunRowsTest, UnfinishedRunsAreNotRead) {
+  write_record("desk/full/01234567", sample_record("desk", "full", 0.0123));
+  write("runs/desk/full/.89abcdef.99.tmp/record.json", "half");
+  EXPECT_EQ(rows().size(), 1U);
+}
+
+TEST_F(RunRowsTest, ErrorsAreTyped) {
+  const Workers workers(1);
+  EXPECT_EQ(read_run_rows(folder_ / "absent", workers).error().code, ErrorCode::data_missing);
+  EXPECT_EQ(read_run_rows(folder_, workers).error().code, ErrorCode::data_missing);
+}
+
+}  // namespace
+}  // namespace fusebench

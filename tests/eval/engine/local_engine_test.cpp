@@ -1,0 +1,220 @@
+// The engine over the five golden frames: order, isolation, sharing, and what is never done twice.
+#include "eval/engine/local_engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+
+#include "core/staged_folder.hpp"
+#include "eval/engine/invocation.hpp"
+#include "eval/engine/plan_preview.hpp"
+#include "eval/engine/run_claim.hpp"
+#include "eval/engine/run_folders.hpp"
+#include "tests/datasets/tum_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LocalEngineTest : public testing::InTemporaryFolder {
+ protected:
+  /// Over two of the golden frames, with further lines of the suite.
+  [[nodiscard]] BatchPlan plan(const std::string& lines = "") const {
+    const fs::path data = folder_ / "data";
+    if (!fs::exists(data)) {
+      fs::create_directories(data);
+      fs::copy(testing::golden_tum_folder(), data / "freiburg1_walk", fs::copy_options::recursive);
+    }
+    const fs::path file =
+        write("suite.toml",
+              "name = \"s\"\nrecordings = [\"freiburg1_walk\"]\nvariants = [\"no-imu\"]\nframes = \"0:2\"\n"
+              "keep = \"small\"\n" +
+                  lines);
+    const auto suite = read_suite(file);
+    EXPECT_TRUE(suite.has_value()) << suite.error().message;
+    BatchOptions options;
+    options.data = data;
+    options.out = folder_ / "out";
+    auto planned = plan_batch(*suite, options);
+    EXPECT_TRUE(planned.has_value()) << planned.error().message;
+    return std::move(*planned);
+  }
+};
+
+constexpr const char* kThree = "[[sweep]]\niekf.max_iterations = [1, 2, 3]\n";
+
+TEST_F(LocalEngineTest, OutcomesAreInTheOrderOfTheJobsAndTheSameForAnyNumberAtOnce) {
+  const BatchPlan three = plan(kThree);
+  const auto one = run_locally(three.jobs, {.at_once = 1});
+  ASSERT_TRUE(one.has_value()) << one.error().message;
+  ASSERT_EQ(one->size(), 3U);
+  std::vector<std::string> trajectories;
+  for (const BatchOutcome& outcome : *one) {
+    EXPECT_EQ(outcome.status, RunStatus::ok) << outcome.reason;
+    trajectories.push_back(testing::read_bytes(outcome.folder / "trajectory.tum"));
+    EXPECT_FALSE(fs::exists(outcome.folder / "mesh.ply"));  // small
+  }
+  const auto three_at_once = run_locally(three.jobs, {.at_once = 3, .repeat_finished = true});
+  ASSERT_TRUE(three_at_once.has_value());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ((*three_at_once)[i].folder, (*one)[i].folder);
+    EXPECT_EQ(testing::read_bytes((*one)[i].folder / "trajectory.tum"), trajectories[i]);
+  }
+}
+
+TEST_F(LocalEngineTest, RepetitionsHaveFoldersOfTheirOwn) {
+  const BatchPlan repeated = plan("repetitions = 2\n");
+  const auto outcomes = run_locally(repeated.jobs, {});
+  ASSERT_TRUE(outcomes.has_value());
+  ASSERT_EQ(outcomes->size(), 2U);
+  EXPECT_EQ((*outcomes)[1].folder.string(), (*outcomes)[0].folder.string() + "-r2");
+  EXPECT_EQ(testing::read_bytes((*outcomes)[0].folder / "trajectory.tum"),
+            testing::read_bytes((*outcomes)[1].folder / "trajectory.tum"));
+}
+
+TEST_F(LocalEngineTest, ARunWithoutMemoryIsARowAndTheOthersGoOn) {
+  BatchPlan two = plan("[[sweep]]\niekf.max_iterations = [1, 2]\n");
+  EngineOptions options;
+  options.limits.memory_bytes = 60'000'000;
+  const auto starved = run_locally(two.jobs, options);
+  ASSERT_TRUE(starved.has_value()) << starved.error().message;
+  for (const BatchOutcome& outcome : *starved) {
+    EXPECT_EQ(outcome.status, RunStatus::failed);
+    EXPECT_NE(outcome.reason.find("memory"), std::string::npos) << outcome.reason;
+    const auto record = read_record(outcome.folder / "record.json");
+    ASSERT_TRUE(record.has_value()) << record.error().message;
+    EXPECT_EQ(record->reason, outcome.reason);
+    EXPECT_TRUE(
+        testing::read_bytes(outcome.folder / "log.txt").ends_with("failed: " + outcome.reason + "\n"));
+  }
+  EXPECT_EQ(preview_of(two).failed, 2U);
+  // Failed runs are tried again, and give way to good ones.
+  const auto fed = run_locally(two.jobs, {});
+  for (const BatchOutcome& outcome : *fed) EXPECT_EQ(outcome.status, RunStatus::ok) << outcome.reason;
+}
+
+TEST_F(LocalEngineTest, OnlyFailedRunsLeavesTheRestAlone) {
+  const BatchPlan three = plan(kThree);
+  const std::vector<BatchJob> first(three.jobs.begin(), three.jobs.begin() + 1);
+  ASSERT_TRUE(run_locally(first, {}).has_value());
+  const std::vector<BatchJob> second(three.jobs.begin() + 1, three.jobs.begin() + 2);
+  EngineOptions starving;
+  starving.limits.memory_bytes = 60'000'000;
+  ASSERT_TRUE(run_locally(second, starving).has_value());
+  const auto again = run_locally(three.jobs, {.only_failed = true});
+  ASSERT_TRUE(again.has_value());
+  EXPECT_TRUE((*again)[0].resumed);
+  EXPECT_FALSE((*again)[1].resumed);
+  EXPECT_EQ((*again)[1].status, RunStatus::ok);
+  EXPECT_TRUE((*again)[2].skipped);
+  EXPECT_EQ(list_runs(folder_ / "out")->size(), 2U);
+}
+
+TEST_F(LocalEngineTest, AStopLeavesNothingHalf) {
+  std::atomic<bool> stop = false;
+  const BatchPlan three = plan(kThree);
+  EngineControl control;
+  control.stop = &stop;
+  control.finished = [&](std::size_t, const BatchOutcome&) { stop = true; };
+  const auto stopped = run_locally(three.jobs, {}, control);
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_NE(stopped.error().message.find("1 of 3 runs are finished"), std::string::npos)
+      << stopped.error().message;
+  EXPECT_EQ(list_runs(folder_ / "out")->size(), 1U);
+  const auto gone_on = run_locally(three.jobs, {});
+  ASSERT_TRUE(gone_on.has_value());
+  EXPECT_TRUE((*gone_on)[0].resumed);
+  EXPECT_FALSE((*gone_on)[2].resumed);
+}
+
+TEST_F(LocalEngineTest, WhatAnotherEngineWorksOnIsWaitedFor) {
+  const BatchPlan one = plan();
+  const PreparedRun run = *prepare_run(one.jobs[0].spec);
+  auto claim = RunClaim::take(folder_ / "out", run.run_id + "-1");
+  ASSERT_TRUE(claim.has_value() && claim->has_value());
+  EXPECT_FALSE(RunClaim::take(folder_ / "out", run.run_id + "-1")->has_value());
+  std::size_t looks = 0;
+  EngineControl control;
+  control.progress = [&](const EngineState& state) {
+    EXPECT_TRUE(state.running.empty() || looks >= 3);
+    if (++looks == 3) claim->reset();
+  };
+  const auto outcomes = run_locally(one.jobs, {}, control);
+  ASSERT_TRUE(outcomes.has_value());
+  EXPECT_GE(looks, 3U);
+  EXPECT_EQ(outcomes->front().status, RunStatus::ok);
+}
+
+TEST_F(LocalEngineTest, AnUnwritableFolderEndsItAtOnce) {
+  write("out", "a file where the folder should be");
+  const BatchPlan one = plan();
+  const auto outcomes = run_locally(one.jobs, {});
+  ASSERT_FALSE(outcomes.has_value());
+  EXPECT_EQ(outcomes.error().code, ErrorCode::io);
+  EXPECT_NE(outcomes.error().message.find("0 of 1 runs are finished"), std::string::npos);
+}
+
+TEST_F(LocalEngineTest, ExclusionsHaveReasons) {
+  const BatchPlan planned =
+      plan(std::string(kThree) + "[[exclude]]\nreason = \"too few\"\niekf.max_iterations = 1\n");
+  EXPECT_EQ(planned.jobs.size(), 2U);
+  ASSERT_EQ(planned.excluded.size(), 1U);
+  EXPECT_EQ(planned.excluded[0].reason, "too few");
+  const std::string text = to_text(preview_of(planned), planned, 2);
+  EXPECT_NE(text.find("too few"), std::string::npos);
+  EXPECT_NE(text.find("2 runs: 0 finished, 0 failed before, 2 to do, 0 unknown; 1 excluded"),
+            std::string::npos)
+      << text;
+}
+
+TEST_F(LocalEngineTest, FoldersAreMergedAndTidied) {
+  const BatchPlan three = plan(kThree);
+  ASSERT_TRUE(run_locally(three.jobs, {}).has_value());
+  const auto first = merge_runs(folder_ / "out", folder_ / "all");
+  ASSERT_TRUE(first.has_value()) << first.error().message;
+  EXPECT_EQ(first->copied, 3U);
+  const auto second = merge_runs(folder_ / "out", folder_ / "all");
+  EXPECT_EQ(second->there, 3U);
+  EXPECT_EQ(second->differing, 0U);
+  const auto before = list_runs(folder_ / "out");
+  const auto after = list_runs(folder_ / "all");
+  ASSERT_EQ(after->size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ((*after)[i].folder, (*before)[i].folder);
+  // What a killed process left, and what a living one works on.
+  const fs::path place = folder_ / "all" / "freiburg1_walk" / "no-imu";
+  fs::create_directories(place / ".dead.77.tmp" / "new");
+  const auto living = StagedFolder::create(place / "living");
+  ASSERT_TRUE(living.has_value());
+  const auto report = collect_garbage(folder_ / "all", {});
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->temporaries, 1U);
+  EXPECT_FALSE(fs::exists(place / ".dead.77.tmp"));
+  EXPECT_TRUE(fs::exists(living->path()));
+}
+
+TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
+  const fs::path suite = write("mine.toml", "name = \"m\"\nall = true\nvariants = [\"full\"]\n");
+  Invocation invocation{suite, {}, {3, "small"}};
+  invocation.options.out = folder_ / "out";
+  invocation.options.data = folder_ / "data";
+  invocation.options.sets = {"iekf.max_iterations=1,2"};
+  const auto file = keep(invocation);
+  ASSERT_TRUE(file.has_value()) << file.error().message;
+  EXPECT_EQ(*keep(invocation), *file);
+  EXPECT_EQ(kept_invocations(folder_ / "out")->size(), 1U);
+  const auto back = read_invocation(*file);
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(back->options.sets, invocation.options.sets);
+  EXPECT_EQ(back->options.data, folder_ / "data");
+  EXPECT_EQ(back->overrides.repetitions, 3);
+  const auto read = suite_of(*back);
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->kept, KeptFiles::small);
+  EXPECT_EQ(read->repetitions, 3);
+}
+
+}  // namespace
+}  // namespace fusebench
