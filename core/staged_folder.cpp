@@ -77,6 +77,8 @@ Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
     if (!error && fs::create_directory(temporary, error)) {
       folder.temporary_ = temporary;
       folder.lock_ = lock_folder(temporary);
+      // Somebody took the empty folder for one that was left by a dead process, and is removing it.
+      if (folder.lock_ < 0 && errno == EWOULDBLOCK) continue;
       if (fs::create_directory(folder.path(), error)) return folder;
     }
     // Others may have removed a parent that was theirs, or the folder of this name, just now.
@@ -134,23 +136,28 @@ Result<void> StagedFolder::commit() {
   return io_error(final_, error);
 }
 
-std::size_t remove_abandoned(const fs::path& parent) {
-  std::vector<fs::path> abandoned;
+std::size_t remove_abandoned(const fs::path& parent, bool only_count) {
+  std::vector<fs::path> hidden;
   std::error_code error;
   for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     std::error_code ignored;
-    if (!name.starts_with('.') || !name.ends_with(".tmp") || !entry->is_directory(ignored)) continue;
-    const int lock = lock_folder(entry->path());
+    if (name.starts_with('.') && name.ends_with(".tmp") && entry->is_directory(ignored))
+      hidden.push_back(entry->path());
+  }
+  std::size_t count = 0;
+  for (const fs::path& folder : hidden) {
+    const int lock = lock_folder(folder);
     const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
-    if (lock >= 0) close(lock);
-    if (lock >= 0 || (unlockable && is_older_than_a_day(entry->path()))) abandoned.push_back(entry->path());
-  }
-  for (const fs::path& folder : abandoned) {
     std::error_code ignored;
-    fs::remove_all(folder, ignored);
+    if (lock >= 0 || (unlockable && is_older_than_a_day(folder))) {
+      ++count;
+      // The lock is held meanwhile, so that whoever has just made the folder learns it.
+      if (!only_count) fs::remove_all(folder, ignored);
+    }
+    if (lock >= 0) close(lock);
   }
-  return abandoned.size();
+  return count;
 }
 
 }  // namespace fusebench

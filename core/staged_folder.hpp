@@ -42,7 +42,8 @@ class StagedFolder {
 };
 
 /// Removes what processes that were killed left of their staged folders in `parent`: a folder whose lock
-/// nobody holds. Where a file system has no locks, only those that are older than a day. Returns how many.
-std::size_t remove_abandoned(const std::filesystem::path& parent);
+/// nobody holds. Where a file system has no locks, only those that are older than a day. Returns how many, or
+/// how many there are to remove.
+std::size_t remove_abandoned(const std::filesystem::path& parent, bool only_count = false);
 
 }  // namespace fusebench

@@ -247,7 +247,11 @@ std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
   stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   begin.resize(static_cast<std::size_t>(stream.gcount()));
   const std::size_t end = begin.find(",\n  \"repetition\"");
-  if (end == std::string::npos) return std::nullopt;
+  if (end == std::string::npos) {  // older, or with a very long reason
+    const auto record = read_record(folder / "record.json");
+    if (!record) return std::nullopt;
+    return RecordHead{record->status, record->reason, record->run_id};
+  }
   const auto json = nlohmann::json::parse(begin.substr(0, end) + "}", nullptr, false);
   if (!json.is_object()) return std::nullopt;
   const auto text = [&](const char* key) {
@@ -259,7 +263,7 @@ std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
   return RecordHead{*status, text("reason"), text("run_id")};
 }
 
-PreparedRun place_run(RunSpec spec, Recording recording) {
+PreparedRun place_run(RunSpec spec, Recording recording, const TakenFolders& taken) {
   PreparedRun run{std::move(spec), std::move(recording), {}, {}};
   run.run_id = run_identity(run.spec.config.values, run.recording);
   const std::string again = run.spec.repetition > 1 ? fmt::format("-r{}", run.spec.repetition) : "";
@@ -267,8 +271,9 @@ PreparedRun place_run(RunSpec spec, Recording recording) {
   for (const std::size_t digits : {std::size_t{8}, std::size_t{16}, run.run_id.size()}) {
     run.folder = parent / (run.run_id.substr(0, digits) + again);
     const auto there = record_head(run.folder);
+    const auto planned = taken.find(run.folder);
     const bool of_another = there && !there->run_id.empty() && there->run_id != run.run_id;
-    if (!of_another) break;
+    if (!of_another && (planned == taken.end() || planned->second == run.run_id)) break;
   }
   return run;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -80,8 +81,11 @@ struct RecordHead {
 /// Nothing if there is no record in the folder, or none that can be read.
 [[nodiscard]] std::optional<RecordHead> record_head(const std::filesystem::path& folder);
 
-/// Its place: that of its identity, with more digits if those of another one are taken there.
-[[nodiscard]] PreparedRun place_run(RunSpec spec, Recording recording);
+/// Folders of runs that are planned, with their identities.
+using TakenFolders = std::map<std::filesystem::path, std::string>;
+
+/// Its place: that of its identity, with more digits if those are taken by another one, there or in `taken`.
+[[nodiscard]] PreparedRun place_run(RunSpec spec, Recording recording, const TakenFolders& taken = {});
 
 /// open_for_run() and place_run(), after checking the relations between options (error configuration).
 [[nodiscard]] Result<PreparedRun> prepare_run(RunSpec spec);

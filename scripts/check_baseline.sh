@@ -46,7 +46,12 @@ cpu_of() {
 }
 
 estimator=$("$binary" --version | sed -n 's/.*estimator \([0-9a-f]*\).*/\1/p')
-runs=$out/runs/$estimator
+if [[ -z $estimator ]]; then
+  printf 'check_baseline: %s does not tell the version of its estimator\n' "$binary" >&2
+  exit 2
+fi
+# A suite that changed leaves no runs of the old one beside the new ones.
+runs=$out/runs/$estimator-$(cksum <configs/suites/baseline.toml | cut -d' ' -f1)
 "$binary" bench configs/suites/baseline.toml --simulated "$out/simulated" --out "$runs" -j 2 --threads 1 >&2
 gates=configs/gates.toml
 if [[ $(cpu_of "$runs") != "$(cpu_of results/baseline)" ]]; then

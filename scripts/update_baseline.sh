@@ -28,12 +28,13 @@ fi
 
 out=build/baseline
 estimator=$("$binary" --version | sed -n 's/.*estimator \([0-9a-f]*\).*/\1/p')
+runs=$out/runs/$estimator-$(cksum <configs/suites/baseline.toml | cut -d' ' -f1)
 status=0
 if [[ -d results/baseline ]]; then
   ./scripts/check_baseline.sh --binary "$binary" --out "$out" || status=$?
   if ((status > 1)); then exit "$status"; fi
 else
-  "$binary" bench configs/suites/baseline.toml --simulated "$out/simulated" --out "$out/runs/$estimator" -j 2 --threads 1
+  "$binary" bench configs/suites/baseline.toml --simulated "$out/simulated" --out "$runs" -j 2 --threads 1
 fi
 
 staged=$(mktemp -d results/.baseline.XXXXXX)
@@ -44,12 +45,12 @@ else
   printf '# Why the baseline moved\n\n' >"$staged/HISTORY.md"
 fi
 printf -- '- %s, after %s: %s\n' "$(date -u +%F)" "$(git describe --always)" "$reason" >>"$staged/HISTORY.md"
-(cd "$out/runs/$estimator" && find . -name record.json -not -path '*/.*/*' | LC_ALL=C sort) | while read -r record; do
+(cd "$runs" && find . -name record.json -not -path '*/.*/*' | LC_ALL=C sort) | while read -r record; do
   folder=$staged/$(dirname "$record")
   mkdir -p "$folder"
   # Which host it was is nobody's business; the CPU model says which limits hold.
-  sed 's/^    "host": ".*"$/    "host": "reference"/' "$out/runs/$estimator/$record" >"$folder/record.json"
-  cp "$out/runs/$estimator/$(dirname "$record")/trajectory.tum" "$folder/"
+  sed 's/^    "host": ".*"$/    "host": "reference"/' "$runs/$record" >"$folder/record.json"
+  cp "$runs/$(dirname "$record")/trajectory.tum" "$folder/"
 done
 chmod -R u=rwX,go=rX "$staged"
 rm -rf results/baseline

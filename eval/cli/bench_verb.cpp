@@ -166,6 +166,8 @@ Result<void> set_executor(BenchOptions& options) {
   int& threads = options.invocation.options.threads;
   const int at_once = options.engine.at_once;
   if (options.executor == "local") {
+    if (options.slurm.submit_only || options.slurm.chunk > 0 || !options.slurm.arguments.empty())
+      return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg are for --executor slurm");
     if (!options.threads_given) threads = std::max(1, threads / at_once);
     return {};
   }
@@ -197,14 +199,26 @@ Result<int> bench(BenchOptions options) {
   if (auto sensible = set_executor(options); !sensible) return tl::unexpected(sensible.error());
   const auto plan = plan_batch(*suite, batch);
   if (!plan) return tl::unexpected(plan.error());
+  for (const std::string& warning : plan->warnings) print_progress("warning: " + warning);
   if (options.dry_run) return preview(options, *plan);
+  if (plan->jobs.empty()) {
+    return fail(ErrorCode::usage,
+                fmt::format("all {} runs of suite '{}' are excluded, the first one because: {}",
+                            plan->excluded.size(), suite->name, plan->excluded.front().reason),
+                "[[exclude]] without recording, variant and options leaves everything out");
+  }
   if (options.executor == "slurm" && options.slurm.submit_only)
     return submit(options, *suite, *plan, all_threads);
   const auto outcomes = run_plan(options, *suite, *plan, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
 
   const RunCounts counts = counts_of(*outcomes);
-  if (counts.total == 0 && !options.engine.only_failed) {
+  if (options.engine.only_failed) {
+    print_progress(
+        fmt::format("{}: {} runs were run again, {} of them ok", suite->name, counts.total, counts.ok));
+    return counts.failed == 0 ? 0 : kExitRunFailed;
+  }
+  if (counts.total == 0) {
     return fail(ErrorCode::data_missing,
                 fmt::format("suite '{}': none of the recordings can be opened", suite->name),
                 "the lines above say why");
@@ -314,16 +328,26 @@ Verb add(CLI::App& app, const char* name, const char* description) {
           }};
 }
 
+/// Relative folders in a suite are relative to where its command was given.
+Result<void> enter(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::current_path(folder, error);
+  if (!error) return {};
+  return fail(ErrorCode::data_missing,
+              fmt::format("{}: the folder where the suite was started cannot be entered: {}", folder.string(),
+                          error.message()));
+}
+
 /// Every invocation that was kept, its failed runs only.
 Result<int> rerun(const BenchOptions& options, const std::filesystem::path& runs) {
-  const auto files = kept_invocations(runs);
+  std::error_code ignored;
+  const auto files = kept_invocations(std::filesystem::absolute(runs, ignored));
   if (!files) return tl::unexpected(files.error());
   int worst = 0;
   for (const std::filesystem::path& file : *files) {
-    auto invocation = read_invocation(std::filesystem::absolute(file));
+    auto invocation = read_invocation(file);
     if (!invocation) return tl::unexpected(invocation.error());
-    std::error_code ignored;
-    std::filesystem::current_path(invocation->working_folder, ignored);
+    if (auto entered = enter(invocation->working_folder); !entered) return tl::unexpected(entered.error());
     BenchOptions again = options;
     again.invocation = std::move(*invocation);
     again.engine.only_failed = true;
@@ -360,8 +384,8 @@ Verb add_slurm_task_verb(CLI::App& app) {
   return {verb, [options]() -> Result<int> {
             const auto invocation = read_invocation(options->invocation);
             if (!invocation) return tl::unexpected(invocation.error());
-            std::error_code ignored;
-            std::filesystem::current_path(invocation->working_folder, ignored);
+            if (auto entered = enter(invocation->working_folder); !entered)
+              return tl::unexpected(entered.error());
             const auto suite = suite_of(*invocation);
             if (!suite) return tl::unexpected(suite.error());
             const auto plan = plan_batch(*suite, invocation->options);

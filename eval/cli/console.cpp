@@ -29,7 +29,14 @@ void print_error(const Error& error) {
   if (!error.hint.empty()) fmt::print(stderr, "  hint: {}\n", error.hint);
 }
 
-void print_output(std::string_view text) { fmt::print(stdout, "{}", text); }
+void print_output(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+bool output_arrived() {
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && std::ferror(stdout) == 0) return true;
+  print_error({ErrorCode::io, "standard output cannot be written", "is there room where it goes to?"});
+  return false;
+}
 
 void print_progress(std::string_view line) { fmt::print(stderr, "{}\n", line); }
 

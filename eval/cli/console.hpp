@@ -16,7 +16,9 @@ inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have 
 
 /// "error: <sentence>" and "  hint: ..." on standard error.
 void print_error(const Error& error);
-void print_output(std::string_view text);    ///< standard output
+void print_output(std::string_view text);  ///< standard output
+/// Once, at the end: false, with an error, if standard output could not take all of it (a full disk).
+[[nodiscard]] bool output_arrived();
 void print_progress(std::string_view line);  ///< a line on standard error
 
 /// Set by Ctrl-C (and SIGTERM) once install_stop_handler() was called; runs check it at each frame.

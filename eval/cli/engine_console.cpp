@@ -44,6 +44,7 @@ void EngineConsole::clear() {
 }
 
 void EngineConsole::tell(std::size_t index, const BatchOutcome& outcome) {
+  if (outcome.resumed && outcome.skipped) return;  // was not asked for
   ++told_;
   if (outcome.resumed && ++resumed_ > kMostRows) return;
   clear();

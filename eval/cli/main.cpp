@@ -80,7 +80,8 @@ int command_line(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   try {
-    return fusebench::command_line(argc, argv);
+    const int code = fusebench::command_line(argc, argv);
+    return fusebench::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
   } catch (const std::exception& error) {
     fusebench::print_error({fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
     return fusebench::exit_code(fusebench::ErrorCode::internal);

@@ -8,7 +8,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/config_access.hpp"
 #include "core/toml_document.hpp"
+#include "core/variants.hpp"
 
 namespace fusebench {
 
@@ -16,6 +18,17 @@ namespace {
 
 bool was_set(const RecordedOption& option) {
   return option.origin != "default" && !option.origin.starts_with("variant ");
+}
+
+/// Of a variant of this program; of another one the plain ones.
+Config defaults_of(const std::string& variant) {
+  const auto found = find_variant(variant);
+  return found ? variant_config(*found).values : Config{};
+}
+
+bool is_default(const Config& defaults, const RecordedOption& option) {
+  Config set = defaults;
+  return set_option(set, option.key, option.value) && config_hash(set) == config_hash(defaults);
 }
 
 auto order_of(const RunKey& key) {
@@ -90,8 +103,11 @@ void set_labels(std::vector<RunPair>& pairs) {
 
 RunKey key_of(const RunRecord& record) {
   std::vector<std::string> options;
+  const Config defaults = defaults_of(record.variant);
   for (const RecordedOption& option : record.config) {
-    if (was_set(option)) options.push_back(fmt::format("{}={}", option.key, to_toml(option.value)));
+    // Whoever sets an option to what it is anyway asks for the same run as who does not.
+    if (was_set(option) && !is_default(defaults, option))
+      options.push_back(fmt::format("{}={}", option.key, to_toml(option.value)));
   }
   std::ranges::sort(options);
   return {record.recording.name,   record.variant,       record.recording.first_frame,

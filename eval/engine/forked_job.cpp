@@ -272,8 +272,9 @@ JobEnd ForkedJob::ended(int status, const rusage& usage) {
                                 : end.output.find("bad_alloc") != std::string::npos && !end.finished;
   if (memory && limits_.memory_bytes > 0) {
     end.error = Error{ErrorCode::run_failed,
-                      fmt::format("out of memory after frame {} of {}: the limit is {} MB (limits.memory_mb)",
-                                  done_, total_, limits_.memory_bytes / 1'000'000),
+                      fmt::format("out of memory{}: the limit is {} MB (limits.memory_mb)",
+                                  total_ > 0 ? fmt::format(" after frame {} of {}", done_, total_) : "",
+                                  limits_.memory_bytes / 1'000'000),
                       ""};
     end.reason.clear();
   }

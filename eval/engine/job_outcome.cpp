@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 
 fs::path not_started_folder(const BatchJob& job) {
   std::string name = "not-started-" + config_hash(job.spec.config.values).substr(0, 8);
+  if (job.spec.frames) name += fmt::format("-{}-{}", job.spec.frames->begin, job.spec.frames->end);
   if (job.spec.repetition > 1) name += fmt::format("-r{}", job.spec.repetition);
   return job.spec.out / job.recording.filename() / job.variant / name;
 }
@@ -41,6 +42,11 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
   record.recording.name = outcome.recording;
   record.variant = outcome.variant;
   record.repetition = job.spec.repetition;
+  if (job.simulation) record.recording.data = "simulated";
+  if (job.spec.frames) {
+    record.recording.first_frame = job.spec.frames->begin;
+    record.recording.frames = job.spec.frames->end - job.spec.frames->begin;
+  }
   record.config_hash = config_hash(job.spec.config.values);
   outcome.folder = not_started_folder(job);
   auto folder = StagedFolder::create(outcome.folder);
@@ -49,6 +55,22 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
     return tl::unexpected(written.error());
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
   return outcome;
+}
+
+bool was_not_started(const BatchJob& job) {
+  std::error_code ignored;
+  return fs::exists(not_started_folder(job), ignored);
+}
+
+bool is_finished(const PreparedRun& run, const RecordHead& head) {
+  if (head.status == RunStatus::failed || head.run_id != run.run_id) return false;
+  std::error_code ignored;
+  return run.spec.kept == KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
+}
+
+bool is_unreadable(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / "record.json", ignored) && !record_head(folder);
 }
 
 void forget_not_started(const BatchJob& job) {

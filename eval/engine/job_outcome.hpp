@@ -30,8 +30,13 @@ struct BatchOutcome {
 /// A job whose recording could not even be opened: a record under
 /// <out>/<recording>/<variant>/not-started-<hash8 of the configuration>/, so that tables show it. Error io.
 [[nodiscard]] Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason);
+[[nodiscard]] bool was_not_started(const BatchJob& job);  ///< there is such a record
 /// Takes that record away, if there is one: the job has started.
 void forget_not_started(const BatchJob& job);
+
+/// Whether the run is there, ok or lost, with the files that are to be kept of it.
+[[nodiscard]] bool is_finished(const PreparedRun& run, const RecordHead& head);
+[[nodiscard]] bool is_unreadable(const std::filesystem::path& folder);  ///< has a record that is damaged
 
 /// A run whose process left no results: a record in the run's place that says why, with what the process
 /// cost, and a log that ends with what it printed. A finished run of an earlier time that is there stays.

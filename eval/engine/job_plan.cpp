@@ -162,9 +162,28 @@ const Exclusion* exclusion_of(const Suite& suite, const BatchJob& job) {
   return found == suite.exclusions.end() ? nullptr : &*found;
 }
 
+/// Of two values of one option it would be a matter of order which counts.
+Result<void> check_swept_once(const std::vector<SweepBlock>& blocks, const std::vector<std::string>& sets) {
+  std::set<std::string> keys;
+  const auto twice = [](const std::string& place, const std::string& key) {
+    return fail(ErrorCode::configuration, fmt::format("{}: {} is swept as well", place, key),
+                "take it out of the [[sweep]], or leave --set away");
+  };
+  for (const SweepBlock& block : blocks) {
+    for (const SweepAxis& axis : block.axes) {
+      if (!keys.insert(axis.key).second) return twice(axis.place, axis.key);
+    }
+  }
+  for (const std::string& set : sets) {
+    const std::string key = set.substr(0, set.find('='));
+    if (keys.contains(key)) return twice("--set " + set, key);
+  }
+  return {};
+}
+
 /// All runs over one recording, once each.
 Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan& plan,
-                      std::vector<BatchJob>& jobs) {
+                      std::set<const Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const std::string& variant : recording.variants) {
     const auto take = wanted(common.options.only, recording.folder.filename().string(), variant);
     if (!take) return tl::unexpected(take.error());
@@ -173,6 +192,7 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
       auto job = job_of(common, recording, variant, point);
       if (!job) return tl::unexpected(job.error());
       if (const Exclusion* exclusion = exclusion_of(common.suite, *job)) {
+        met.insert(exclusion);
         plan.excluded.push_back({to_string(*job), exclusion->reason});
         continue;
       }
@@ -219,6 +239,7 @@ Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options) {
   auto swept = take_swept_sets(common.sets);
   if (!swept) return tl::unexpected(swept.error());
   if (*swept) blocks.push_back(std::move(**swept));
+  if (auto once = check_swept_once(blocks, common.sets); !once) return tl::unexpected(once.error());
   auto points = sweep_points(blocks);
   if (!points) return tl::unexpected(points.error());
   common.points = std::move(*points);
@@ -226,10 +247,17 @@ Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options) {
   const auto recordings = recordings_of(suite, options);
   if (!recordings) return tl::unexpected(recordings.error());
   BatchPlan plan;
+  std::set<const Exclusion*> met;
   for (const Planned& recording : *recordings) {
     std::vector<BatchJob> jobs;
-    if (auto added = add_runs(common, recording, plan, jobs); !added) return tl::unexpected(added.error());
+    if (auto added = add_runs(common, recording, plan, met, jobs); !added)
+      return tl::unexpected(added.error());
     multiply(suite, jobs, plan);
+  }
+  for (const Exclusion& exclusion : suite.exclusions) {
+    if (!met.contains(&exclusion) && options.only.empty())
+      plan.warnings.push_back(
+          fmt::format("{}: the exclusion '{}' meets no run", exclusion.place, exclusion.reason));
   }
   if (plan.jobs.empty() && plan.excluded.empty()) {
     return fail(ErrorCode::usage, fmt::format("--only leaves nothing of suite '{}'", suite.name),

@@ -48,6 +48,7 @@ struct ExcludedRun {
 struct BatchPlan {
   std::vector<BatchJob> jobs;
   std::vector<ExcludedRun> excluded;
+  std::vector<std::string> warnings;  ///< exclusions that meet no run
 };
 
 /// By recording (those of the suite, then the simulated ones), window, repetition, variant as they are

@@ -8,7 +8,6 @@
 #include <deque>
 #include <iterator>
 #include <list>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,6 +28,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookAround(100);
+constexpr std::chrono::milliseconds kWaitForOthers(500);
 constexpr std::chrono::seconds kGrace(10);  // for runs that are asked to stop
 
 struct RunningJob {
@@ -45,16 +45,16 @@ class Engine {
   Engine(std::span<const BatchJob> jobs, const EngineOptions& options, const EngineControl& control)
       : jobs_(jobs), options_(options), control_(control), outcomes_(jobs.size()) {
     for (std::size_t i = 0; i < jobs.size(); ++i) waiting_.push_back(i);
-    if (options_.limits.memory_bytes == 0) options_.limits.memory_bytes = total_memory_bytes();
   }
 
   [[nodiscard]] Result<std::vector<BatchOutcome>> run() {
     if (!jobs_.empty()) remove_free_claims(jobs_.front().spec.out);
     while (!waiting_.empty() || !running_.empty()) {
       if (is_stopped()) return stop_all();
-      if (!fatal_ && has_room()) {
+      if (!fatal_ && has_room() && Clock::now() >= next_try_) {
         const bool started = start_next();
         if (started && has_room()) continue;
+        if (!started) next_try_ = Clock::now() + kWaitForOthers;
       }
       if (fatal_ && running_.empty()) return tl::unexpected(give_up());
       listen();
@@ -102,8 +102,9 @@ class Engine {
       end_unopened(index, recording.error());
       return true;
     }
-    PreparedRun run = place_run(job.spec, *recording);
-    avoid_collision(run);
+    // Two identities of this plan may begin with the same digits before either has a record.
+    PreparedRun run = place_run(job.spec, *recording, places_);
+    places_.emplace(run.folder, run.run_id);
     if (ended_already(index, run)) return true;
     auto claim = RunClaim::take(job.spec.out, claim_name(run));
     if (!claim) {
@@ -143,6 +144,10 @@ class Engine {
       end(index, std::move(outcome));
       return;
     }
+    if (options_.only_failed && !was_not_started(job)) {
+      end_resumed(index, outcome_without_results(job, "not among the failed runs"), true);
+      return;
+    }
     auto outcome = record_not_started(job, error.message);
     if (outcome) {
       end(index, std::move(*outcome));
@@ -151,29 +156,23 @@ class Engine {
     }
   }
 
-  /// Two identities of this plan may begin with the same digits before either has a record.
-  void avoid_collision(PreparedRun& run) {
-    const auto [place, is_new] = places_.emplace(run.folder, run.run_id);
-    if (is_new || place->second == run.run_id) return;
-    const std::string again = run.spec.repetition > 1 ? fmt::format("-r{}", run.spec.repetition) : "";
-    run.folder = run.folder.parent_path() / (run.run_id + again);
-    places_.emplace(run.folder, run.run_id);
-  }
-
   bool ended_already(std::size_t index, const PreparedRun& run) {
     const auto head = record_head(run.folder);
     const bool is_ours = head && head->run_id == run.run_id;
-    if (options_.only_failed && !(is_ours && head->status == RunStatus::failed)) {
+    const bool has_failed = (is_ours && head->status == RunStatus::failed) || is_unreadable(run.folder) ||
+                            was_not_started(jobs_[index]);
+    if (options_.only_failed && !has_failed) {
       const auto outcome = outcome_without_results(jobs_[index], "not among the failed runs");
-      end_resumed(index, is_ours ? outcome_of_finished(jobs_[index], run.folder, *head) : outcome, !is_ours);
+      end_resumed(index, outcome, true);
       return true;
     }
-    if (options_.repeat_finished || !is_ours || head->status == RunStatus::failed) return false;
+    if (options_.repeat_finished || !is_ours || !is_finished(run, *head)) return false;
     end_resumed(index, outcome_of_finished(jobs_[index], run.folder, *head), false);
     return true;
   }
 
   void end_resumed(std::size_t index, BatchOutcome outcome, bool skipped) {
+    if (!skipped) forget_not_started(jobs_[index]);
     outcome.resumed = true;
     outcome.skipped = skipped;
     ++state_.resumed;
@@ -290,11 +289,12 @@ class Engine {
   std::deque<std::size_t> waiting_;
   std::list<RunningJob> running_;
   OpenedRecordings opened_;
-  std::map<fs::path, std::string> places_;  // of which identity
+  TakenFolders places_;
   std::set<fs::path> tidied_;
   std::optional<Error> fatal_;
   std::uint64_t expected_bytes_ = 300'000'000;  // of a run, until one has ended that needed more
   EngineState state_;
+  Clock::time_point next_try_ = Clock::now();
   Clock::time_point start_ = Clock::now();
 };
 

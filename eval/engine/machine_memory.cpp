@@ -31,19 +31,26 @@ std::optional<std::uint64_t> number_in(const char* file) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::uint64_t total_memory_bytes() {
-  const std::uint64_t machine = meminfo_bytes("MemTotal:").value_or(kUnknown);
-  return std::min(machine, number_in("/sys/fs/cgroup/memory.max").value_or(kUnknown));
+std::uint64_t cached_file_bytes() {
+  std::ifstream stream("/sys/fs/cgroup/memory.stat");
+  std::uint64_t sum = 0;
+  std::string key;
+  for (std::uint64_t bytes = 0; stream >> key >> bytes;) {
+    if (key == "inactive_file" || key == "active_file") sum += bytes;
+  }
+  return sum;
 }
+
+}  // namespace
 
 std::uint64_t available_memory_bytes() {
   const std::uint64_t machine = meminfo_bytes("MemAvailable:").value_or(kUnknown);
   const auto limit = number_in("/sys/fs/cgroup/memory.max");
   const auto used = number_in("/sys/fs/cgroup/memory.current");
   if (!limit || !used) return machine;
-  return std::min(machine, *limit > *used ? *limit - *used : 0);
+  // What files have in memory is given back when somebody needs it.
+  const std::uint64_t needed = *used - std::min(*used, cached_file_bytes());
+  return std::min(machine, *limit > needed ? *limit - needed : 0);
 }
 
 }  // namespace fusebench

@@ -7,7 +7,5 @@ namespace fusebench {
 
 /// Bytes that can be taken without swapping; a large number where nothing tells.
 [[nodiscard]] std::uint64_t available_memory_bytes();
-/// Bytes in all.
-[[nodiscard]] std::uint64_t total_memory_bytes();
 
 }  // namespace fusebench

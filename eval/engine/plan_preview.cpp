@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "eval/engine/job_outcome.hpp"
 #include "eval/engine/opened_recordings.hpp"
 #include "eval/json_text.hpp"
 #include "eval/report/text_layout.hpp"
@@ -60,15 +61,16 @@ Seen look_at(const BatchJob& job, OpenedRecordings& opened, KnownTimes& times) {
   const auto& recording = opened.of(job.spec);
   if (!recording) {
     seen.run.note = recording.error().message;
+    if (was_not_started(job)) seen.run.state = JobState::failed;
     return seen;
   }
   const PreparedRun prepared = place_run(job.spec, *recording);
   seen.frames = prepared.recording.frames.size();
   const auto head = record_head(prepared.folder);
   const bool ours = head && head->run_id == prepared.run_id;
-  seen.run.state = !ours                               ? JobState::waiting
-                   : head->status == RunStatus::failed ? JobState::failed
-                                                       : JobState::finished;
+  seen.run.state = ours && is_finished(prepared, *head)        ? JobState::finished
+                   : ours && head->status == RunStatus::failed ? JobState::failed
+                                                               : JobState::waiting;
   if (seen.run.state != JobState::finished) return seen;
   if (const auto record = read_record(prepared.folder / "record.json"))
     times.add(kind_of(job), record->timing.wall_s);

@@ -53,7 +53,7 @@ RunClaim::~RunClaim() {
   close(descriptor_);
 }
 
-std::size_t remove_free_claims(const fs::path& out) {
+std::size_t remove_free_claims(const fs::path& out, bool only_count) {
   std::size_t count = 0;
   std::error_code error;
   for (fs::directory_iterator entry(engine_folder(out) / "claims", error), end; !error && entry != end;
@@ -61,7 +61,8 @@ std::size_t remove_free_claims(const fs::path& out) {
     const int descriptor = open(entry->path().c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) continue;
     std::error_code ignored;
-    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fs::remove(entry->path(), ignored)) ++count;
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && (only_count || fs::remove(entry->path(), ignored)))
+      ++count;
     close(descriptor);
   }
   return count;

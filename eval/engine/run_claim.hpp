@@ -33,7 +33,8 @@ class RunClaim {
   int descriptor_ = -1;
 };
 
-/// Removes the files of claims that nobody holds: engines that were killed left them. Returns how many.
-std::size_t remove_free_claims(const std::filesystem::path& out);
+/// Removes the files of claims that nobody holds: engines that were killed left them. Returns how many, or
+/// how many there are to remove.
+std::size_t remove_free_claims(const std::filesystem::path& out, bool only_count = false);
 
 }  // namespace fusebench

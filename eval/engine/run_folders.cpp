@@ -33,12 +33,38 @@ tl::unexpected<Error> not_listed(const fs::path& root, const std::error_code& er
               fmt::format("{}: cannot be listed: {}", root.string(), error.message()));
 }
 
+/// Under a hidden name first, so that a kill in the middle leaves no half of a run.
+std::error_code remove_whole(const fs::path& folder) {
+  std::error_code error;
+  const fs::path hidden = folder.parent_path() / fmt::format(".{}.gc.tmp", folder.filename().string());
+  fs::rename(folder, hidden, error);
+  if (!error) fs::remove_all(hidden, error);
+  return error;
+}
+
 bool is_garbage(const fs::path& folder, const RecordHead& head, const Garbage& garbage) {
   if (garbage.failed && head.status == RunStatus::failed) return true;
   if (!garbage.stale) return false;
   const auto record = read_record(folder / "record.json");
   // Imported runs come from elsewhere, and have no estimator of ours.
   return record && !record->config.empty() && record->provenance.estimator != build_info().estimator;
+}
+
+/// Where place_run() looks next for an identity whose first digits are another's there.
+fs::path longer_place(const fs::path& target, const std::string& run_id) {
+  constexpr std::size_t kDigits = 16;
+  const std::string name = target.filename().string();
+  const std::size_t repetition = name.find("-r");
+  return target.parent_path() /
+         (run_id.substr(0, kDigits) + (repetition == std::string::npos ? "" : name.substr(repetition)));
+}
+
+/// What was asked for goes along, so that failed runs can be run again there.
+void copy_invocations(const fs::path& from, const fs::path& into) {
+  std::error_code ignored;
+  fs::create_directories(engine_folder(into), ignored);
+  fs::copy(engine_folder(from) / "invocations", engine_folder(into) / "invocations",
+           fs::copy_options::recursive | fs::copy_options::skip_existing, ignored);
 }
 
 Result<void> copy_run(const fs::path& from, const fs::path& to) {
@@ -66,7 +92,8 @@ Result<std::vector<ListedRun>> list_runs(const fs::path& root) {
     } else if (name == "record.json") {
       const fs::path folder = entry->path().parent_path();
       const RecordHead unreadable{RunStatus::failed, "its record cannot be read", ""};
-      runs.push_back({folder.lexically_relative(root), record_head(folder).value_or(unreadable)});
+      const auto head = record_head(folder);
+      runs.push_back({folder.lexically_relative(root), head.value_or(unreadable), head.has_value()});
     }
   }
   if (error) return not_listed(root, error);
@@ -82,15 +109,14 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
   for (const ListedRun& run : *runs) {
     const fs::path folder = root / run.folder;
     parents.insert(folder.parent_path());
-    if (!is_garbage(folder, run.head, garbage)) continue;
+    if (!run.readable || !is_garbage(folder, run.head, garbage)) continue;  // what it is, nobody knows
     ++report.runs;
     report.bytes += size_of(folder);
-    std::error_code error;
-    if (!garbage.only_look) fs::remove_all(folder, error);
+    const auto error = garbage.only_look ? std::error_code() : remove_whole(folder);
     if (error)
       return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", folder.string(), error.message()));
   }
-  if (!garbage.only_look) report.temporaries += remove_free_claims(root);
+  report.temporaries += remove_free_claims(root, garbage.only_look);
   std::error_code error;
   for (fs::recursive_directory_iterator entry(root, error), end; !error && entry != end;
        entry.increment(error)) {
@@ -102,7 +128,7 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
     }
   }
   for (const fs::path& parent : parents) {
-    if (!garbage.only_look) report.temporaries += remove_abandoned(parent);
+    report.temporaries += remove_abandoned(parent, garbage.only_look);
   }
   return report;
 }
@@ -114,6 +140,7 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
   for (const ListedRun& run : *runs) {
     const fs::path target = into / run.folder;
     const auto there = record_head(target);
+    std::error_code ignored;
     const bool same = there && there->run_id == run.head.run_id;
     const bool finished_there = same && there->status != RunStatus::failed;
     if (finished_there || (same && run.head.status == RunStatus::failed)) {
@@ -122,11 +149,12 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
         ++report.differing;
       continue;
     }
-    const fs::path free_place =
-        there && !same ? target.parent_path() / (run.head.run_id + "-merged") : target;
+    const bool taken = !same && fs::exists(target, ignored);
+    const fs::path free_place = taken ? longer_place(target, run.head.run_id) : target;
     if (auto copied = copy_run(from / run.folder, free_place); !copied) return tl::unexpected(copied.error());
     ++report.copied;
   }
+  copy_invocations(from, into);
   return report;
 }
 

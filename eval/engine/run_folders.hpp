@@ -15,6 +15,7 @@ namespace fusebench {
 struct ListedRun {
   std::filesystem::path folder;  ///< relative to the root
   RecordHead head;
+  bool readable = true;  ///< false: what is called a record there cannot be read
 };
 
 /// Every run below a folder, by path; only the beginnings of records are read, so that tens of thousands take

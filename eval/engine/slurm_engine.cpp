@@ -15,6 +15,10 @@
 #include <thread>
 #include <utility>
 
+#include "core/config_access.hpp"
+#include "core/fingerprint.hpp"
+#include "eval/build_info.hpp"
+#include "eval/engine/forked_job.hpp"
 #include "eval/engine/opened_recordings.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/engine/slurm_queue.hpp"
@@ -31,6 +35,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kMostAttempts = 3;
 constexpr std::size_t kMostTasks = 1000;  // of an array: Slurm's default limit
 constexpr double kQueueEvery_s = 2;
+constexpr double kVanished_s = 6;  // out of the queue, and results that a network file system shows late
 constexpr double kLongestLook_s = 5;
 constexpr std::chrono::milliseconds kLookAround(200);
 
@@ -62,6 +67,17 @@ std::string text_of(const fs::path& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
+}
+
+/// Numbers of jobs mean the same to whoever has this one.
+std::string plan_digest(std::span<const BatchJob> jobs) {
+  Fingerprint digest;
+  digest.add(build_info().estimator);
+  for (const BatchJob& job : jobs) {
+    digest.add(to_string(job));
+    digest.add(config_hash(job.spec.config.values));
+  }
+  return digest.hex();
 }
 
 std::string quoted(const fs::path& path) {
@@ -184,7 +200,7 @@ class SlurmEngine {
   /// The task file has a line a task, the numbers of its jobs in the plan; the script is what a node runs.
   Result<void> submit_array(std::span<Chunk> chunks) {
     const fs::path part = folder_ / fmt::format("{}", arrays_++);
-    std::string lines;
+    std::string lines = plan_digest(jobs_) + "\n";
     for (const Chunk& chunk : chunks) lines += fmt::format("{}\n", fmt::join(chunk.jobs, " "));
     const std::string script = fmt::format(
         "#!/bin/sh\nexec {} slurm-task {} {} \"$SLURM_ARRAY_TASK_ID\" -j {}\n", quoted(site_.program),
@@ -196,7 +212,11 @@ class SlurmEngine {
     }
     std::size_t largest = 0;
     for (const Chunk& chunk : chunks) largest = std::max(largest, chunk.jobs.size());
-    const double time_s = options_.limits.time_s * static_cast<double>(largest);
+    // A run that takes too long is ended by its own limit, and says so; Slurm's is for what hangs beyond
+    // that.
+    constexpr double kMargin_s = 900;
+    const double limit_s = options_.limits.time_s * static_cast<double>(largest);
+    const double time_s = limit_s > 0 ? 1.1 * limit_s + kMargin_s : 0;
     const auto job = queue_.submit({name_,
                                     part / "task.sh",
                                     part / "logs",
@@ -205,13 +225,20 @@ class SlurmEngine {
                                     time_s,
                                     {excluded_.begin(), excluded_.end()},
                                     slurm_.arguments});
-    if (!job && job.error().code == ErrorCode::usage) return tl::unexpected(job.error());
+    // A controller that is silent from the start is the user's to look at; later it is waited for.
+    const bool must_be_known = arrays_ == 1 || slurm_.submit_only;
+    if (!job && (must_be_known || job.error().code == ErrorCode::usage)) {
+      queue_.cancel_all(name_);
+      return tl::unexpected(job.error());
+    }
     for (std::size_t task = 0; task < chunks.size(); ++task) {
       Chunk& chunk = chunks[task];
       // Where nobody answered the array may be in the queue or not: it counts as vanished if nothing comes.
       chunk.task = job ? fmt::format("{}_{}", *job, task) : "";
       chunk.alive = part / fmt::format("alive-{}", task);
-      for (const std::size_t index : chunk.jobs) ++awaited_.at(index).attempts;
+      if (job) {
+        for (const std::size_t index : chunk.jobs) ++awaited_.at(index).attempts;
+      }
       chunks_.push_back(std::move(chunk));
     }
     return {};
@@ -219,6 +246,9 @@ class SlurmEngine {
 
   /// A failed record of before does not count.
   [[nodiscard]] std::optional<RecordHead> result_of(const Awaited& awaited) const {
+    // Listing a folder makes a network file system look again for what was not there the last time.
+    std::error_code unlisted;
+    static_cast<void>(fs::directory_iterator(awaited.folder.parent_path(), unlisted));
     auto head = record_head(awaited.folder);
     if (!head || head->run_id != awaited.run_id) return std::nullopt;
     std::error_code ignored;
@@ -228,17 +258,21 @@ class SlurmEngine {
     return head;
   }
 
+  void take_results(Chunk& chunk) {
+    std::erase_if(chunk.jobs, [&](std::size_t index) {
+      const Awaited& awaited = awaited_.at(index);
+      const auto head = result_of(awaited);
+      if (head) end(index, outcome_of_finished(jobs_[index], awaited.folder, *head));
+      return head.has_value();
+    });
+  }
+
   void look_at_results() {
     // A look at thousands of folders on a network takes its time; the looks stay a tenth of ours.
     if (since(last_look_) < std::min(10 * look_s_, kLongestLook_s)) return;
     const auto start = Clock::now();
     for (Chunk& chunk : chunks_) {
-      std::erase_if(chunk.jobs, [&](std::size_t index) {
-        const Awaited& awaited = awaited_.at(index);
-        const auto head = result_of(awaited);
-        if (head) end(index, outcome_of_finished(jobs_[index], awaited.folder, *head));
-        return head.has_value();
-      });
+      take_results(chunk);
       std::string sign = text_of(chunk.alive);
       if (sign != chunk.last_sign) {
         chunk.last_sign = std::move(sign);
@@ -262,7 +296,8 @@ class SlurmEngine {
       }
       chunk.unseen_since.reset();
       const bool was_running = !chunk.node.empty();
-      chunk.node = found->second.state == "PENDING" ? "" : found->second.node;
+      // Nodes that are being powered up and tasks that are suspended are silent for a reason.
+      chunk.node = found->second.state == "RUNNING" ? found->second.node : "";
       if (chunk.node.empty() || !was_running) chunk.last_change = Clock::now();
       if (since(chunk.last_change) < slurm_.silence_s) continue;
       stuck.push_back(chunk.task);
@@ -277,7 +312,8 @@ class SlurmEngine {
   /// A result may come a moment after its task has left the queue, on a network file system.
   void give_up_vanished() {
     for (Chunk& chunk : chunks_) {
-      if (!chunk.unseen_since || since(*chunk.unseen_since) < kQueueEvery_s) continue;
+      if (!chunk.unseen_since || since(*chunk.unseen_since) < kVanished_s) continue;
+      take_results(chunk);
       std::vector<std::size_t> again;
       for (const std::size_t index : chunk.jobs) {
         if (awaited_.at(index).attempts < kMostAttempts) {
@@ -381,6 +417,15 @@ Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions&
                             const fs::path& task_file, std::size_t task, const EngineControl& control) {
   std::istringstream lines(text_of(task_file));
   std::string line;
+  std::getline(lines, line);
+  if (line != plan_digest(jobs)) {
+    return fail(
+        ErrorCode::configuration,
+        fmt::format("{}: the plan is not the one that was submitted: recordings, suite or program have "
+                    "changed since",
+                    task_file.string()),
+        "submit it again");
+  }
   for (std::size_t i = 0; i <= task && std::getline(lines, line); ++i) {
   }
   std::vector<BatchJob> mine;
@@ -395,17 +440,18 @@ Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions&
   }
   if (mine.empty())
     return fail(ErrorCode::data_missing, fmt::format("{}: has no task {}", task_file.string(), task));
+  // In a process of its own: opening a large recording takes longer than a sign of life may.
   const fs::path alive = task_file.parent_path() / fmt::format("alive-{}", task);
-  EngineControl heard = control;
-  auto last = Clock::now() - std::chrono::hours(1);
-  std::size_t count = 0;
-  heard.progress = [&](const EngineState& state) {
-    constexpr double kEvery_s = 1;
-    if (since(last) < kEvery_s) return;
-    last = Clock::now();
-    static_cast<void>(write_text_file(alive, fmt::format("{} {} {}\n", host_name(), ++count, state.ended)));
-  };
-  const auto outcomes = run_locally(mine, options, heard);
+  const auto pulse = ForkedJob::start(
+      [&](const JobVoice&) {
+        for (std::size_t count = 0;; ++count) {
+          static_cast<void>(write_text_file(alive, fmt::format("{} {}\n", host_name(), count)));
+          std::this_thread::sleep_for(std::chrono::seconds(1));
+        }
+      },
+      {});
+  if (!pulse) return tl::unexpected(pulse.error());
+  const auto outcomes = run_locally(mine, options, control);
   if (!outcomes) return tl::unexpected(outcomes.error());
   return {};
 }

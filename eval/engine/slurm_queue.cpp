@@ -74,8 +74,12 @@ Result<std::string> SlurmQueue::submit(const SlurmArray& array) const {
   const std::string why = answer.errors.empty() ? "no answer" : first_line(answer.errors);
   // What waits for a controller may succeed later; what it refuses will not.
   const bool silent = answer.errors.empty() || why.find("contact") != std::string::npos ||
-                      why.find("imed out") != std::string::npos || why.find("onnect") != std::string::npos;
-  return fail(silent ? ErrorCode::run_failed : ErrorCode::usage, fmt::format("sbatch: {}", why),
+                      why.find("imed out") != std::string::npos || why.find("onnect") != std::string::npos ||
+                      why.find("resolve_ctls") != std::string::npos;
+  if (silent)
+    return fail(ErrorCode::run_failed, fmt::format("no Slurm controller answers (sbatch: {})", why),
+                "is slurmctld running, and does SLURM_CONF or /etc/slurm/slurm.conf name it? `sinfo` shows");
+  return fail(ErrorCode::usage, fmt::format("sbatch: {}", why),
               "--slurm-arg passes arguments (partition, account) to sbatch");
 }
 

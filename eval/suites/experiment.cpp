@@ -27,6 +27,10 @@ constexpr std::string_view kConfigPrefix = "config.";
 constexpr std::string_view kLimitPrefix = "limits.";
 
 tl::unexpected<Error> unknown_suite_key(const std::string& place, const std::string& key) {
+  constexpr std::array<std::string_view, 4> lists = {"sweep", "exclude", "simulations", "bars"};
+  if (std::find(lists.begin(), lists.end(), key) != lists.end())
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: {} is a list of tables: write [[{}]]", place, key, key));
   return unknown_key(place, key, kSuiteKeys, "a suite");
 }
 

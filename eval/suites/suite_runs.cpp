@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/config_access.hpp"
+#include "core/variants.hpp"
 
 namespace fusebench {
 
@@ -21,6 +22,7 @@ bool matches(std::string_view pattern, std::string_view name) {
 
 Result<Exclusion> read_exclusion(const EntryTable& table) {
   Exclusion exclusion;
+  exclusion.place = table.place;
   EffectiveConfig scratch;  // whether the options exist and take the values
   for (const TomlEntry& entry : table.entries) {
     std::string* const text = entry.key == "reason"      ? &exclusion.reason
@@ -31,6 +33,9 @@ Result<Exclusion> read_exclusion(const EntryTable& table) {
       auto read = text_entry(entry);
       if (!read) return tl::unexpected(read.error());
       *text = std::move(*read);
+      if (entry.key != "variant") continue;
+      if (const auto known = find_variant(exclusion.variant); !known)
+        return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, known.error().message));
       continue;
     }
     const auto* value = std::get_if<OptionValue>(&entry.value);

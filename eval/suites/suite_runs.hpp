@@ -27,6 +27,7 @@ struct Exclusion {
   std::string recording;
   std::string variant;
   SweepPoint options;
+  std::string place;
 
   /// `options_of_run`: all of a run's effective options.
   [[nodiscard]] bool covers(std::string_view recording_name, std::string_view variant_name,
@@ -40,11 +41,12 @@ struct Exclusion {
 ///     [limits]
 ///     time_s = 3600      # from start to end; default: none
 ///     stall_s = 600      # without a finished frame; default 600
-///     memory_mb = 4000   # default: what the machine has
+///     memory_mb = 4000   # of its own data (heap and stacks, and what it shares with the engine); default:
+///     none
 struct RunLimits {
   double time_s = 0;
   double stall_s = 600;
-  std::uint64_t memory_bytes = 0;  ///< 0: the machine's
+  std::uint64_t memory_bytes = 0;  ///< 0: none
 };
 /// Of one entry of [limits], by its key there. Errors: configuration, with file:line.
 [[nodiscard]] Result<void> read_limit(const TomlEntry& entry, std::string_view key, RunLimits& limits);

@@ -115,9 +115,24 @@ Result<void> read_entry(const TomlEntry& entry, SweepBlock& block) {
   return {};
 }
 
+/// Each value must be one that the option takes, before hours are spent on the runs before it.
+Result<void> check_values(const SweepAxis& axis) {
+  EffectiveConfig scratch;
+  for (const OptionValue& value : axis.values) {
+    if (auto set = scratch.set(axis.key, value, axis.place); !set) return set;
+  }
+  return {};
+}
+
 Result<void> check_axis(const SweepAxis& axis, SweepDesign design) {
-  if (!axis.range) return {};
+  if (!axis.range) return check_values(axis);
   const SweepAxis::Range& range = *axis.range;
+  if (std::isnan(range.from) || std::isnan(range.to))
+    return wrong(axis.place,
+                 fmt::format("the range of {} lacks {}", axis.key, std::isnan(range.from) ? "from" : "to"));
+  if (draws(design) && range.steps > 0)
+    return wrong(axis.place,
+                 fmt::format("the range of {} has steps, and a design that draws has samples", axis.key));
   if (!(range.from < range.to))
     return wrong(axis.place, fmt::format("the range of {} is from {:g} to {:g}: from must be less", axis.key,
                                          range.from, range.to));
@@ -271,6 +286,7 @@ Result<std::optional<SweepBlock>> take_swept_sets(std::vector<std::string>& sets
       axis.values.push_back(parse_option_value(std::string_view(set).substr(begin, end - begin)));
       begin = end + 1;
     }
+    if (auto good = check_values(axis); !good) return tl::unexpected(good.error());
     block.axes.push_back(std::move(axis));
   }
   sets = std::move(plain);

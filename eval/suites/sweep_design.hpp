@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,8 +20,8 @@ namespace fusebench {
 /// One option of a sweep: the values that are tried, or the range that they are drawn from.
 struct SweepAxis {
   struct Range {
-    double from = 0;
-    double to = 0;
+    double from = std::numeric_limits<double>::quiet_NaN();
+    double to = std::numeric_limits<double>::quiet_NaN();
     std::size_t steps = 0;  ///< of grid and zip: so many values, both ends among them
     bool log = false;       ///< equal ratios in place of equal differences
   };

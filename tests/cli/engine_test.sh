@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/engine_test.sh BINARY kills|disks|engines|regressions [RUNS]
+Usage: tests/cli/engine_test.sh BINARY kills|disks|engines|verbs [RUNS]
 RUNS: of the sweep; default 200.
 TEXT
 }
@@ -173,10 +173,64 @@ check_engines() {
   [[ $("$binary" list runs few -o ok | wc -l) == 7 ]] || complain "rerun --failed: not 6 good runs"
 }
 
+# says CODE PATTERN ARGUMENT...: the program ends with the code and prints the pattern on standard output or error.
+says() {
+  local code=$1 pattern=$2 status
+  shift 2
+  "$binary" "$@" >stdout 2>stderr
+  status=$?
+  ((status == code)) || complain "$*: exit code $status instead of $code"
+  cat stdout stderr | grep -qE -- "$pattern" || complain "$*: does not print '$pattern'"
+}
+
+check_verbs() {
+  undisturbed
+  local suite=(bench tiny.toml --simulated simulated)
+  says 0 "$runs runs: 0 finished, 0 failed before, $runs to do" "${suite[@]}" --out elsewhere --dry-run
+  [[ ! -e elsewhere ]] || complain "--dry-run writes something"
+  says 0 "\"n_finished\": $runs" "${suite[@]}" --out undisturbed --dry-run --json
+  says 2 "unknown option 'tsdf.voxel' in a sweep" "${suite[@]}" --out elsewhere --set tsdf.voxel=1,2
+  "$binary" "${suite[@]}" --out nowhere --executor slurm >stdout 2>stderr && complain "slurm without a cluster succeeds"
+  grep -qE 'there is no sbatch here|no Slurm controller answers' stderr || complain "slurm without a cluster: not said"
+  says 2 'for --executor slurm' "${suite[@]}" --out nowhere --submit
+  says 2 'is swept as well' "${suite[@]}" --out nowhere --set tsdf.voxel_m=0.02
+
+  says 0 'ate_rmse_m|aie_grey' collect undisturbed
+  [[ $(cut -d, -f6 stdout | sort -u | wc -l) == $((runs + 1)) ]] || complain "collect: not every run"
+  says 0 '"metric"' collect undisturbed --format jsonl
+  says 0 '\| +1 \|' best undisturbed --by aie --group none
+  says 2 'allowed|one of' best undisturbed --by beauty
+  says 3 'absent' collect absent
+  says 0 "$runs runs" report undisturbed --out sweep.html
+  grep -q 'Best configurations' sweep.html || complain "the report says nothing of the sweep"
+
+  # Two folders, made apart, become one.
+  says 0 "$runs of $runs runs ok" "${suite[@]}" --out left --set iekf.max_lost_frames=7
+  says 0 'runs copied, 0 were there' merge undisturbed left --into together
+  says 0 '0 runs copied' merge undisturbed --into together
+  says 0 'removed 0 left by killed processes, 0 runs' gc together
+  says 0 'would remove .* 0 runs' gc together --failed --stale --dry-run
+
+  says 0 'PASS' compare undisturbed undisturbed
+  cp -r undisturbed worse
+  local record
+  record=$(find worse -name record.json -not -path '*/.*/*' | LC_ALL=C sort | head -n 1)
+  sed -i 's/"tracked": [0-9]*/"tracked": 0/' "$record"
+  says 1 'REGRESSION' compare undisturbed worse
+  for format in markdown json junit gbench github-benchmark openmetrics; do
+    says 1 . compare undisturbed worse --format "$format"
+    if grep -qiw nan stdout; then complain "compare --format $format: prints NaN"; fi
+  done
+  rm -r "$(dirname "$record")"
+  says 1 'missing' compare undisturbed worse
+  says 3 'absent' compare undisturbed absent
+}
+
 case $group in
   kills) check_kills ;;
   disks) check_disks ;;
   engines) check_engines ;;
+  verbs) check_verbs ;;
   *)
     usage >&2
     exit 2

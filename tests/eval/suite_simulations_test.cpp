@@ -78,7 +78,7 @@ TEST_F(SuiteSimulationsTest, WhatMakesNoSenseIsRefusedWithItsLine) {
   expect_refused("[[simulations]]\nname = \"../{seed}\"\npreset = \"slow\"\nseed = 1\n", ":5", "no name");
   expect_refused("[[simulations]]\npreset = \"slow\"\n", ":4", "'name' is missing");
   expect_refused("[[simulation]]\nname = \"a\"\n", ":4", "nearest: simulations");
-  expect_refused("[simulations]\nname = \"a\"\n", ":4", "unknown key");
+  expect_refused("[simulations]\nname = \"a\"\n", ":4", "write [[simulations]]");
   expect_refused(std::string(kLists) +
                      "[[bars]]\ntitle = \"t\"\ngroups = [\"slwo\"]\nvariant = \"full\"\n"
                      "metric = \"fps\"\nstatistic = \"mean\"\nat_least = 1\n",

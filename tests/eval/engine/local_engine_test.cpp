@@ -170,6 +170,53 @@ TEST_F(LocalEngineTest, ExclusionsHaveReasons) {
       << text;
 }
 
+TEST_F(LocalEngineTest, WindowsThatAreNotThereAreRowsOfTheirOwn) {
+  BatchPlan planned = plan();
+  const BatchJob first = planned.jobs[0];
+  for (const FrameWindow window : {FrameWindow{2, 10}, FrameWindow{5, 8}}) {
+    planned.jobs.push_back(first);
+    planned.jobs.back().spec.frames = window;
+  }
+  const auto outcomes = run_locally(planned.jobs, {});
+  ASSERT_TRUE(outcomes.has_value()) << outcomes.error().message;
+  EXPECT_EQ((*outcomes)[0].status, RunStatus::ok);
+  EXPECT_NE((*outcomes)[1].folder, (*outcomes)[2].folder);
+  EXPECT_EQ(list_runs(folder_ / "out")->size(), 3U);
+  EXPECT_EQ(preview_of(planned).failed, 2U);
+  // Once it is there, its row that said otherwise is gone, and the other one stays.
+  planned.jobs[1].spec.frames = FrameWindow{2, 10};
+  const auto again = run_locally(planned.jobs, {.only_failed = true});
+  ASSERT_TRUE(again.has_value());
+  EXPECT_TRUE((*again)[0].skipped);
+  EXPECT_FALSE((*again)[1].skipped);
+  EXPECT_EQ(list_runs(folder_ / "out")->size(), 3U);
+}
+
+TEST_F(LocalEngineTest, FilesThatWereNotKeptAreMadeWhenTheyAreAskedFor) {
+  BatchPlan one = plan();
+  const auto small = run_locally(one.jobs, {});
+  ASSERT_TRUE(small.has_value());
+  one.jobs[0].spec.kept = KeptFiles::all;
+  const auto all = run_locally(one.jobs, {});
+  ASSERT_TRUE(all.has_value());
+  EXPECT_FALSE(all->front().resumed);
+  EXPECT_EQ(all->front().folder, small->front().folder);
+  EXPECT_TRUE(fs::exists(all->front().folder / "mesh.ply"));
+  one.jobs[0].spec.kept = KeptFiles::small;
+  EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);  // more than what is asked for
+}
+
+TEST_F(LocalEngineTest, WhatCannotBeReadIsNeverGarbage) {
+  write("out/r/full/00000000/record.json", "{ half of a rec");
+  const auto listed = list_runs(folder_ / "out");
+  ASSERT_TRUE(listed.has_value());
+  ASSERT_EQ(listed->size(), 1U);
+  EXPECT_EQ(listed->front().head.status, RunStatus::failed);
+  const auto report = collect_garbage(folder_ / "out", {.failed = true, .stale = true, .only_look = false});
+  EXPECT_EQ(report->runs, 0U);
+  EXPECT_TRUE(fs::exists(folder_ / "out/r/full/00000000/record.json"));
+}
+
 TEST_F(LocalEngineTest, FoldersAreMergedAndTidied) {
   const BatchPlan three = plan(kThree);
   ASSERT_TRUE(run_locally(three.jobs, {}).has_value());

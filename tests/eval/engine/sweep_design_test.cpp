@@ -124,6 +124,12 @@ TEST(SweepDesign, WhatMakesNoSenseIsRefusedWithItsLine) {
   expect_refused("[[sweep]]\ndesign = \"zip\"\ntsdf.voxel_m = [0.01]\ntsdf.truncation_m = [0.04, 0.05]\n",
                  "lists of one length");
   expect_refused("[[sweep]]\ntsdf.voxel_m = [0.01]\n[[sweep]]\ntsdf.voxel_m = [0.02]\n", "swept twice");
+  expect_refused("[[sweep]]\ntsdf.voxel_m = { from = 0.01, steps = 3 }\n",
+                 "s.toml:2: the range of tsdf.voxel_m lacks to");
+  expect_refused(
+      "[[sweep]]\ndesign = \"random\"\nsamples = 3\ntsdf.voxel_m = { from = 0.01, to = 0.02, steps = 3 }\n",
+      "has steps");
+  expect_refused("[[sweep]]\ntsdf.voxel_m = [0.01, 99.0]\n", "s.toml:2");
   const auto blocks = read("[[sweep]]\ndesign = \"random\"\nsamples = 10000000\ntsdf.voxel_m = [0.01]\n");
   ASSERT_TRUE(blocks.has_value());
   EXPECT_EQ(sweep_points(*blocks).error().code, ErrorCode::configuration);
