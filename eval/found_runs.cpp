@@ -21,27 +21,37 @@ std::size_t variant_rank(const std::string& name) {
   return static_cast<std::size_t>(found - variants.begin());
 }
 
-Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
+Result<std::vector<fs::path>> record_files(const fs::path& runs) {
   std::error_code error;
-  std::vector<FoundRun> found;
+  std::vector<fs::path> files;
   fs::recursive_directory_iterator entry(runs, error);
   for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (name.starts_with('.') && entry->is_directory()) {
       entry.disable_recursion_pending();
     } else if (name == "record.json") {
-      auto record = read_record(entry->path());
-      if (!record) return tl::unexpected(record.error());
-      found.push_back({entry->path().parent_path(), std::move(*record)});
+      files.push_back(entry->path());
     }
   }
-  if (error) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
-  }
-  if (found.empty()) {
-    return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", runs.string()),
-                "`fusebench run` and `fusebench bench` write them to their --out");
+  if (!error) return files;
+  return fail(ErrorCode::data_missing,
+              fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
+}
+
+tl::unexpected<Error> holds_no_runs(const fs::path& runs) {
+  return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", runs.string()),
+              "`fusebench run` and `fusebench bench` write them to their --out");
+}
+
+Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
+  const auto files = record_files(runs);
+  if (!files) return tl::unexpected(files.error());
+  if (files->empty()) return holds_no_runs(runs);
+  std::vector<FoundRun> found;
+  for (const fs::path& file : *files) {
+    auto record = read_record(file);
+    if (!record) return tl::unexpected(record.error());
+    found.push_back({file.parent_path(), std::move(*record)});
   }
   std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
     const auto key = [](const FoundRun& run) {

@@ -21,29 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Result<std::vector<fs::path>> record_files(const fs::path& root) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  fs::recursive_directory_iterator entry(root, error);
-  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with('.') && entry->is_directory()) {
-      entry.disable_recursion_pending();
-    } else if (name == "record.json") {
-      files.push_back(entry->path());
-    }
-  }
-  if (error) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("{}: cannot be listed: {}", root.string(), error.message()));
-  }
-  if (files.empty()) {
-    return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", root.string()),
-                "`fusebench run` and `fusebench bench` write them to their --out");
-  }
-  return files;
-}
-
 RunRow read_row(const fs::path& root, const fs::path& file) {
   RunRow row;
   std::error_code error;
@@ -119,6 +96,7 @@ Result<std::vector<RunRow>> read_run_rows(const fs::path& root, const Workers& w
   constexpr std::size_t kRecordsPerChunk = 32;
   const auto files = record_files(root);
   if (!files) return tl::unexpected(files.error());
+  if (files->empty()) return holds_no_runs(root);
   auto chunks = workers.map_chunks<std::vector<RunRow>>(files->size(), kRecordsPerChunk,
                                                         [&](std::size_t begin, std::size_t end) {
                                                           std::vector<RunRow> rows;

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "eval/record.hpp"
+#include "eval/report/text_layout.hpp"
 #include "eval/suites/simulated_recordings.hpp"
 
 namespace fusebench {
@@ -14,12 +15,6 @@ namespace fusebench {
 namespace {
 
 constexpr std::size_t kMostRows = 50;  // of runs that were there already, told one by one
-
-std::string duration(double time_s) {
-  if (time_s < 90) return fmt::format("{:.0f} s", time_s);
-  if (time_s < 5400) return fmt::format("{:.0f} min", time_s / 60);
-  return fmt::format("{:.1f} h", time_s / 3600);
-}
 
 std::string ending_of(const BatchOutcome& outcome) {
   if (outcome.skipped) return "skipped: " + outcome.reason;
@@ -71,7 +66,7 @@ std::string rate_text(const EngineState& state) {
   if (done <= 0.1 || state.elapsed_s <= 0) return text;
   const double left = static_cast<double>(state.jobs - state.ended) - state.share_running;
   return text + fmt::format(", {:.1f} runs/min, {} left", 60 * done / state.elapsed_s,
-                            duration(std::max(0.0, left) * state.elapsed_s / done));
+                            duration_text(std::max(0.0, left) * state.elapsed_s / done));
 }
 
 Result<void> simulate_missing(const std::vector<BatchJob>& jobs, int threads) {

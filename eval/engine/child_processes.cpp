@@ -29,18 +29,6 @@ std::string content(std::FILE* file) {
   return text;
 }
 
-/// A file without a name. Whatever else this process starts does not inherit it.
-std::FILE* nameless_file() {
-  std::error_code error;
-  std::string name = (std::filesystem::temp_directory_path(error) / "fusebench-XXXXXX").string();
-  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor < 0) return nullptr;
-  unlink(name.c_str());
-  std::FILE* const file = fdopen(descriptor, "w+b");
-  if (file == nullptr) close(descriptor);
-  return file;
-}
-
 }  // namespace
 
 std::string ChildEnd::how() const {
@@ -52,8 +40,8 @@ std::string ChildEnd::how() const {
 
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command) {
   check(!command.empty(), "a command has a program");
-  File output(nameless_file());
-  File errors(nameless_file());
+  NamelessFile output = nameless_file();
+  NamelessFile errors = nameless_file();
   if (!output || !errors) {
     return fail(ErrorCode::io, fmt::format("no temporary file: {}", std::strerror(errno)),
                 "is there space in the folder for temporary files?");

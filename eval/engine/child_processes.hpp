@@ -3,13 +3,12 @@
 
 #include <sys/types.h>
 
-#include <cstdio>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.hpp"
+#include "eval/engine/nameless_file.hpp"
 
 namespace fusebench {
 
@@ -42,19 +41,14 @@ class ChildProcess {
   void interrupt();
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-  };
-  using File = std::unique_ptr<std::FILE, CloseFile>;
-
-  ChildProcess(pid_t process, File output, File errors)
+  ChildProcess(pid_t process, NamelessFile output, NamelessFile errors)
       : process_(process), output_(std::move(output)), errors_(std::move(errors)) {}
   [[nodiscard]] ChildEnd with_output(ChildEnd end);
 
   pid_t process_ = -1;  // -1: ended
   bool interrupted_ = false;
-  File output_;
-  File errors_;
+  NamelessFile output_;
+  NamelessFile errors_;
 };
 
 }  // namespace fusebench

@@ -55,18 +55,6 @@ std::size_t count_of(std::string_view text) {
   return count;
 }
 
-/// A file without a name: nothing is left of it, however this process ends.
-std::FILE* nameless_file() {
-  std::error_code error;
-  std::string name = (std::filesystem::temp_directory_path(error) / "fusebench-XXXXXX").string();
-  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor < 0) return nullptr;
-  unlink(name.c_str());
-  std::FILE* const file = fdopen(descriptor, "w+b");
-  if (file == nullptr) close(descriptor);
-  return file;
-}
-
 /// The child's last words where its own code found none.
 void run_guarded(const std::function<void(const JobVoice& voice)>& work, const JobVoice& voice) {
   try {
@@ -128,7 +116,7 @@ void JobVoice::finished(std::string_view text) const { say(fmt::format("{}\t{}\n
 
 Result<ForkedJob> ForkedJob::start(const std::function<void(const JobVoice& voice)>& work,
                                    const JobLimits& limits) {
-  File output(nameless_file());
+  NamelessFile output = nameless_file();
   std::array<int, 2> ends{};
   if (!output || pipe2(ends.data(), O_CLOEXEC) != 0) {
     return fail(ErrorCode::io, fmt::format("no process can be started: {}", std::strerror(errno)),

@@ -7,14 +7,13 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "eval/engine/nameless_file.hpp"
 
 struct rusage;
 
@@ -76,12 +75,7 @@ class ForkedJob {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct CloseFile {
-    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-  };
-  using File = std::unique_ptr<std::FILE, CloseFile>;
-
-  ForkedJob(pid_t process, int pipe, File output, const JobLimits& limits)
+  ForkedJob(pid_t process, int pipe, NamelessFile output, const JobLimits& limits)
       : process_(process), pipe_(pipe), output_(std::move(output)), limits_(limits) {}
   bool hear();
   void take(std::string_view line);
@@ -91,7 +85,7 @@ class ForkedJob {
 
   pid_t process_ = -1;  // -1: ended
   int pipe_ = -1;
-  File output_;
+  NamelessFile output_;
   JobLimits limits_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_sign_ = start_;

@@ -17,7 +17,6 @@ namespace fusebench {
 
 namespace {
 
-constexpr double kGuessPerFrame_s = 0.05;
 constexpr std::array<std::string_view, 4> kStateNames = {"finished", "failed before", "to do", "unknown"};
 
 std::string_view name_of(JobState state) { return kStateNames[static_cast<std::size_t>(state)]; }
@@ -77,19 +76,13 @@ Seen look_at(const BatchJob& job, OpenedRecordings& opened, KnownTimes& times) {
   return seen;
 }
 
-std::string duration(double time_s) {
-  if (time_s < 90) return fmt::format("{:.0f} s", time_s);
-  if (time_s < 5400) return fmt::format("{:.0f} min", time_s / 60);
-  return fmt::format("{:.1f} h", time_s / 3600);
-}
-
 std::string summary(const PlanPreview& preview, const BatchPlan& plan, int at_once) {
   std::string text = fmt::format(
       "{} runs: {} finished, {} failed before, {} to do, {} unknown; {} excluded\n", preview.runs.size(),
       preview.finished, preview.failed, preview.waiting, preview.unknown, plan.excluded.size());
   if (preview.finished == preview.runs.size()) return text;
-  text += fmt::format("about {} of work, {} with {} at a time", duration(preview.time_s),
-                      duration(preview.time_s / at_once), at_once);
+  text += fmt::format("about {} of work, {} with {} at a time", duration_text(preview.time_s),
+                      duration_text(preview.time_s / at_once), at_once);
   if (preview.guessed > 0)
     text += fmt::format(" ({} of the runs by a guess of {:.0f} ms a frame: none like them has finished here)",
                         preview.guessed, 1000 * kGuessPerFrame_s);
@@ -127,8 +120,8 @@ PlanPreview preview_of(const BatchPlan& plan) {
 std::string to_text(const PlanPreview& preview, const BatchPlan& plan, int at_once) {
   std::vector<std::vector<std::string>> lines = {{"run", "state", "time", "note"}};
   for (const PlannedRun& run : preview.runs) {
-    lines.push_back(
-        {run.name, std::string(name_of(run.state)), run.time_s > 0 ? duration(run.time_s) : "-", run.note});
+    lines.push_back({run.name, std::string(name_of(run.state)),
+                     run.time_s > 0 ? duration_text(run.time_s) : "-", run.note});
   }
   for (const ExcludedRun& run : plan.excluded) lines.push_back({run.run, "excluded", "-", run.reason});
   return aligned_columns(lines) + "\n" + summary(preview, plan, at_once);

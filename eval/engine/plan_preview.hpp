@@ -10,6 +10,9 @@
 
 namespace fusebench {
 
+/// Of a run that nothing is known of.
+inline constexpr double kGuessPerFrame_s = 0.05;
+
 enum class JobState {
   finished,  ///< is there, ok or lost
   failed,    ///< is there as failed: would be tried again

@@ -9,6 +9,7 @@
 #include "core/staged_folder.hpp"
 #include "eval/build_info.hpp"
 #include "eval/engine/run_claim.hpp"
+#include "eval/found_runs.hpp"
 #include "eval/record.hpp"
 
 namespace fusebench {
@@ -26,11 +27,6 @@ std::uint64_t size_of(const fs::path& folder) {
     if (entry->is_regular_file(ignored)) bytes += entry->file_size(ignored);
   }
   return bytes;
-}
-
-tl::unexpected<Error> not_listed(const fs::path& root, const std::error_code& error) {
-  return fail(ErrorCode::data_missing,
-              fmt::format("{}: cannot be listed: {}", root.string(), error.message()));
 }
 
 /// Under a hidden name first, so that a kill in the middle leaves no half of a run.
@@ -82,21 +78,15 @@ Result<void> copy_run(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 Result<std::vector<ListedRun>> list_runs(const fs::path& root) {
+  const auto files = record_files(root);
+  if (!files) return tl::unexpected(files.error());
+  const RecordHead unreadable{RunStatus::failed, "its record cannot be read", ""};
   std::vector<ListedRun> runs;
-  std::error_code error;
-  fs::recursive_directory_iterator entry(root, error);
-  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with('.') && entry->is_directory()) {
-      entry.disable_recursion_pending();
-    } else if (name == "record.json") {
-      const fs::path folder = entry->path().parent_path();
-      const RecordHead unreadable{RunStatus::failed, "its record cannot be read", ""};
-      const auto head = record_head(folder);
-      runs.push_back({folder.lexically_relative(root), head.value_or(unreadable), head.has_value()});
-    }
+  for (const fs::path& file : *files) {
+    const fs::path folder = file.parent_path();
+    const auto head = record_head(folder);
+    runs.push_back({folder.lexically_relative(root), head.value_or(unreadable), head.has_value()});
   }
-  if (error) return not_listed(root, error);
   std::ranges::sort(runs, {}, &ListedRun::folder);
   return runs;
 }

@@ -20,6 +20,7 @@
 #include "eval/build_info.hpp"
 #include "eval/engine/forked_job.hpp"
 #include "eval/engine/opened_recordings.hpp"
+#include "eval/engine/plan_preview.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/engine/slurm_queue.hpp"
 #include "eval/process_meter.hpp"
@@ -171,7 +172,6 @@ class SlurmEngine {
     constexpr std::size_t kFewest = 8;  // chunks, so that several nodes have something to do
     std::size_t size = slurm_.chunk;
     if (size == 0) {
-      constexpr double kGuessPerFrame_s = 0.05;
       double work_s = 0;
       for (const std::size_t index : missing)
         work_s += kGuessPerFrame_s * static_cast<double>(awaited_.at(index).frames);

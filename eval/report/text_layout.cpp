@@ -31,4 +31,10 @@ std::string markdown_cell(std::string_view text) {
   return cell;
 }
 
+std::string duration_text(double time_s) {
+  if (time_s < 90) return fmt::format("{:.0f} s", time_s);
+  if (time_s < 5400) return fmt::format("{:.0f} min", time_s / 60);
+  return fmt::format("{:.1f} h", time_s / 3600);
+}
+
 }  // namespace fusebench
