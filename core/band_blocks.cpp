@@ -1,207 +1,207 @@
 #include "core/band_blocks.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
+
+#include "core/lanes.hpp"
 
 namespace fusebench {
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 16;
+constexpr std::size_t kRowsPerChunk = 32;
+constexpr int kPixels = static_cast<int>(kLanes);
 
-// The set of blocks in the order in which they were first met.
-class OrderedBlocks {
- public:
-  OrderedBlocks() { recent_.fill(BlockIndex::Constant(std::numeric_limits<int>::max())); }
-
-  void add(const BlockIndex& index) {
-    // Most rays run through the blocks of the rays before.
-    BlockIndex& recent =
-        recent_[static_cast<std::size_t>((index.x() & 3) | (index.y() & 3) << 2 | (index.z() & 3) << 4)];
-    if (index == recent) return;
-    recent = index;
-    if (table_.insert(index)) blocks_.push_back(index);
-  }
-  [[nodiscard]] std::vector<BlockIndex> take() { return std::move(blocks_); }
-
- private:
-  BlockTable table_;
-  std::vector<BlockIndex> blocks_;
-  std::array<BlockIndex, 64> recent_;
+/// What the segments of eight rays do along one axis of the lattice, in units of blocks.
+struct AxisSegments {
+  Int8 begin;      ///< block in which the segment begins
+  Int8 crossings;  ///< faces that it crosses, negative if downwards
+  Float8 next;     ///< fraction of the segment at which it crosses the first of them
+  Float8 delta;    ///< fraction between two crossings
 };
 
-// Both sides are computed before the choice, so that the compiler makes vector instructions of a loop: it may
-// not compute what the program would skip.
-template <class T>
-T select(bool condition, T yes, T no) {
-  return condition ? yes : no;
+/// From origin + near * ray to origin + far * ray.
+AxisSegments segments_along(float origin, Float8 ray, Float8 near, Float8 far) {
+  const Float8 never = all_lanes(std::numeric_limits<float>::infinity());
+  const Float8 from = origin + near * ray;
+  const Float8 to = origin + far * ray;
+  const Int8 begin = floor_to_int(from);
+  const Int8 crossings = floor_to_int(to) - begin;
+  const Float8 floor_from = to_float(begin);
+  const Float8 length = abs(to - from);
+  const Float8 between = 1.0F / (crossings == 0 ? all_lanes(1.0F) : length);
+  const Float8 rest = crossings > 0 ? floor_from + 1.0F - from : from - floor_from;
+  return {begin, crossings, crossings == 0 ? never : rest * between, crossings == 0 ? never : between};
 }
 
-// What the segments of a row of pixels do along one axis of the lattice, in units of blocks.
-struct AxisSegments {
-  explicit AxisSegments(std::size_t width)
-      : ray_by_u(width), begin(width), crossings(width), next(width), delta(width) {}
+/// The way of eight segments through the blocks. Segments run through the same blocks if they begin in the
+/// same one and cross the same faces in the same order: mostly those of neighbouring pixels.
+struct Paths {
+  std::array<Int8, 3> begin;
+  std::array<Int8, 3> crossings;
+  Int8 order;  ///< of the crossings; -1 if an axis is crossed more than twice, or nothing was measured
 
-  // From origin + near * ray to origin + far * ray, ray = ray_by_u + ray_by_v.
-  void set(double origin, double ray_by_v, const std::vector<double>& near, const std::vector<double>& far) {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    const std::size_t count = begin.size();
-    const double* const ray_by_column = ray_by_u.data();
-    const double* const near_m = near.data();
-    const double* const far_m = far.data();
-    int* const begins = begin.data();
-    int* const crosses = crossings.data();
-    double* const nexts = next.data();
-    double* const deltas = delta.data();
-#pragma GCC ivdep
-    for (std::size_t i = 0; i < count; ++i) {
-      const double ray = ray_by_column[i] + ray_by_v;
-      const double from = origin + near_m[i] * ray;
-      const double to = origin + far_m[i] * ray;
-      const double floor_from = std::floor(from);
-      const double floor_to = std::floor(to);
-      const double between = std::abs(1.0 / (to - from));
-      const double rest = select(floor_to > floor_from, floor_from + 1.0 - from, from - floor_from);
-      begins[i] = static_cast<int>(floor_from);
-      crosses[i] = static_cast<int>(floor_to) - static_cast<int>(floor_from);
-      deltas[i] = select(floor_to == floor_from, kNever, between);
-      nexts[i] = select(floor_to == floor_from, kNever, rest * between);
+  /// Bit i is set if pixel i has another way than the pixel before it; `last` is the one before the first.
+  [[nodiscard]] unsigned changes(const Paths& last) const {
+    Int8 same = (order != -1) & (order == shifted(last.order, order));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      same &= (begin[axis] == shifted(last.begin[axis], begin[axis])) &
+              (crossings[axis] == shifted(last.crossings[axis], crossings[axis]));
     }
+    return ~lane_bits(same) & 0xFF;
   }
-
-  std::vector<double> ray_by_u;  // part of the ray that depends on the column
-  std::vector<int> begin;        // block in which the segment begins
-  std::vector<int> crossings;    // faces that it crosses, negative if downwards
-  std::vector<double> next;      // fraction of the segment at which it crosses the first of them
-  std::vector<double> delta;     // fraction between two crossings
+  /// The last lane of one, followed by all but the last of the other.
+  static Int8 shifted(Int8 last, Int8 now) {
+    return __builtin_shuffle(last, now, Int8{7, 8, 9, 10, 11, 12, 13, 14});
+  }
 };
 
-// The rays of a row of pixels, cut to the band around their measurements.
-class RowSegments {
- public:
-  RowSegments(const PinholeCamera& camera, const SE3& T_world_camera, double block_m, const TsdfConfig& tsdf,
-              const DepthConfig& depth)
-      : camera_(camera),
-        tsdf_(tsdf),
-        depth_(depth),
-        rays_(T_world_camera.rotation_matrix() / block_m),
-        origin_(T_world_camera.translation / block_m),
-        near_m_(static_cast<std::size_t>(camera.width_px)),
-        far_m_(near_m_),
-        axes_{AxisSegments(near_m_.size()), AxisSegments(near_m_.size()), AxisSegments(near_m_.size())} {
-    for (int x = 0; x < camera.width_px; ++x) {
-      const Vector3d by_u = rays_.col(0) * camera.back_project(x, 0, 1.0).x();
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        axes_[axis].ray_by_u[static_cast<std::size_t>(x)] = by_u[static_cast<Eigen::Index>(axis)];
+/// One bit for each comparison of a crossing of one axis with one of another.
+Int8 order_of(const std::array<AxisSegments, 3>& axes) {
+  const Float8 never = all_lanes(std::numeric_limits<float>::infinity());
+  Int8 often{};
+  std::array<std::array<Float8, 2>, 3> at;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisSegments& segments = axes[axis];
+    const Int8 magnitude = segments.crossings < 0 ? -segments.crossings : segments.crossings;
+    often |= magnitude > 2;
+    at[axis] = {segments.next, magnitude > 1 ? segments.next + segments.delta : never};
+  }
+  Int8 order{};
+  int bit = 1;
+  for (const auto& [a, b] : {std::pair{0U, 1U}, std::pair{0U, 2U}, std::pair{1U, 2U}}) {
+    for (const Float8& of_a : at[a]) {
+      for (const Float8& of_b : at[b]) {
+        order |= (of_a <= of_b) & bit;
+        bit *= 2;
       }
     }
   }
+  return order | often;  // true is -1
+}
 
-  void set_row(const DepthImage& depth_m, int y) {
-    cut(&depth_m.data[depth_m.index(0, y)]);
-    const Vector3d by_v = rays_.col(1) * camera_.back_project(0, y, 1.0).y() + rays_.col(2);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto k = static_cast<Eigen::Index>(axis);
-      axes_[axis].set(origin_[k], by_v[k], near_m_, far_m_);
+/// The rays of a camera's pixels, cut to the band around their measurements.
+class PixelSegments {
+ public:
+  PixelSegments(const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
+                const TsdfConfig& tsdf, const DepthConfig& depth)
+      : rays_((T_world_camera.rotation_matrix() / block_m).cast<float>()),
+        camera_block_((T_world_camera.translation / block_m).array().floor().cast<int>()),
+        origin_((T_world_camera.translation / block_m - camera_block_.cast<double>()).cast<float>()),
+        per_fx_(static_cast<float>(1.0 / camera.fx_px)),
+        per_fy_(static_cast<float>(1.0 / camera.fy_px)),
+        cx_(static_cast<float>(camera.cx_px)),
+        cy_(static_cast<float>(camera.cy_px)),
+        nearest_m_(static_cast<float>(depth.min_m)),
+        farthest_m_(static_cast<float>(depth.max_m)),
+        truncation_m_(static_cast<float>(std::max(tsdf.truncation_m, 2.0 * tsdf.voxel_m))),
+        floor_m_(static_cast<float>(tsdf.truncation_sigmas * depth.noise_floor_m)),
+        quadratic_per_m_(static_cast<float>(tsdf.truncation_sigmas * depth.noise_quadratic_per_m)),
+        noise_offset_m_(static_cast<float>(depth.noise_offset_m)) {}
+
+  /// Adds the blocks of every stride-th pixel of a row.
+  void add_row(const float* row_m, int width, int y, int stride, OrderedBlocks& blocks) {
+    last_.order = all_lanes(-1);
+    const Float8 ray_y = all_lanes((static_cast<float>(y) - cy_) * per_fy_);
+    const Float8 columns = static_cast<float>(stride) * kLaneNumber;
+    for (int x = 0; x < width; x += stride * kPixels) {
+      std::array<float, 2 * kLanes> pixels_m{};
+      std::memcpy(pixels_m.data(), row_m + x,
+                  static_cast<std::size_t>(std::min(stride * kPixels, width - x)) * sizeof(float));
+      Float8 depth_m = load(pixels_m.data());
+      if (stride == 2) {
+        depth_m = __builtin_shuffle(depth_m, load(&pixels_m[kLanes]), Int8{0, 2, 4, 6, 8, 10, 12, 14});
+      }
+      add_pixels(depth_m, (static_cast<float>(x) - cx_ + columns) * per_fx_, ray_y, blocks);
     }
   }
 
-  // Adds the blocks on the segment of a column: the traversal of Amanatides & Woo 1987. The number of steps
-  // is known beforehand, so rounding can at worst pick a neighbour at a corner, never run away.
-  void add_blocks(std::size_t x, OrderedBlocks& blocks) {
-    if (far_m_[x] == 0.0) return;  // not measured
-    const std::array<int, 3> crossings = {axes_[0].crossings[x], axes_[1].crossings[x],
-                                          axes_[2].crossings[x]};
-    std::array<double, 3> next = {axes_[0].next[x], axes_[1].next[x], axes_[2].next[x]};
-    BlockIndex at(axes_[0].begin[x], axes_[1].begin[x], axes_[2].begin[x]);
-    // Segments that cross at most one face of an axis run through the same blocks if they begin in the same
-    // one and cross the same faces in the same order: mostly those of neighbouring pixels.
-    const int order =
-        (next[0] <= next[1] ? 1 : 0) | (next[0] <= next[2] ? 2 : 0) | (next[1] <= next[2] ? 4 : 0);
-    const Path path = {at, crossings, order};
-    const bool one_face =
-        (std::abs(crossings[0]) <= 1) & (std::abs(crossings[1]) <= 1) & (std::abs(crossings[2]) <= 1);
-    if (one_face && path.same_as(last_path_)) return;
-    last_path_ = path;
+ private:
+  void add_pixels(Float8 depth_m, Float8 ray_x, Float8 ray_y, OrderedBlocks& blocks) {
+    const Int8 measured = (depth_m >= nearest_m_) & (depth_m <= farthest_m_);
+    const Float8 from_offset_m = depth_m - noise_offset_m_;
+    const Float8 band_m =
+        max(all_lanes(truncation_m_), floor_m_ + quadratic_per_m_ * from_offset_m * from_offset_m);
+    const Float8 near_m = measured ? max(Float8{}, depth_m - band_m) : Float8{};
+    const Float8 far_m = measured ? depth_m + band_m : Float8{};
+    std::array<AxisSegments, 3> axes;
+    Paths paths;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<Eigen::Index>(axis);
+      const Float8 ray = rays_(k, 0) * ray_x + rays_(k, 1) * ray_y + rays_(k, 2);
+      axes[axis] = segments_along(origin_[k], ray, near_m, far_m);
+      paths.begin[axis] = axes[axis].begin;
+      paths.crossings[axis] = axes[axis].crossings;
+    }
+    paths.order = measured ? order_of(axes) : all_lanes(-1);
+    const unsigned walk = paths.changes(last_) & lane_bits(measured);
+    for (unsigned bits = walk; bits != 0; bits &= bits - 1) {
+      add_blocks(axes, static_cast<std::size_t>(std::countr_zero(bits)), blocks);
+    }
+    last_ = paths;
+  }
 
+  // Adds the blocks on the segment of a pixel: the traversal of Amanatides & Woo 1987. The number of steps
+  // is known beforehand, so rounding can at worst pick a neighbour at a corner, never run away.
+  void add_blocks(const std::array<AxisSegments, 3>& axes, std::size_t lane, OrderedBlocks& blocks) const {
+    const std::array<int, 3> crossings = {axes[0].crossings[lane], axes[1].crossings[lane],
+                                          axes[2].crossings[lane]};
+    std::array<float, 3> next = {axes[0].next[lane], axes[1].next[lane], axes[2].next[lane]};
+    BlockIndex at = camera_block_ + BlockIndex(axes[0].begin[lane], axes[1].begin[lane], axes[2].begin[lane]);
     blocks.add(at);
     for (int steps = std::abs(crossings[0]) + std::abs(crossings[1]) + std::abs(crossings[2]); steps > 0;
          --steps) {
       const std::size_t axis =
           next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : (next[1] <= next[2] ? 1 : 2);
       at[static_cast<Eigen::Index>(axis)] += crossings[axis] > 0 ? 1 : -1;
-      next[axis] += axes_[axis].delta[x];
+      next[axis] += axes[axis].delta[lane];
       blocks.add(at);
     }
   }
 
- private:
-  // Which way a segment takes through the blocks, if it crosses at most one face of each axis.
-  struct Path {
-    BlockIndex begin = BlockIndex::Zero();
-    std::array<int, 3> crossings{};
-    int order = -1;
-
-    // Without branches: it mostly holds, and all of it is at hand.
-    [[nodiscard]] bool same_as(const Path& other) const {
-      return ((begin.x() ^ other.begin.x()) | (begin.y() ^ other.begin.y()) | (begin.z() ^ other.begin.z()) |
-              (crossings[0] ^ other.crossings[0]) | (crossings[1] ^ other.crossings[1]) |
-              (crossings[2] ^ other.crossings[2]) | (order ^ other.order)) == 0;
-    }
-  };
-
-  // Where the bands begin and end; both 0 where nothing was measured.
-  void cut(const float* measured_m) {
-    const std::size_t count = near_m_.size();
-    double* const near_m = near_m_.data();
-    double* const far_m = far_m_.data();
-    const TsdfConfig tsdf = tsdf_;
-    const DepthConfig depth = depth_;
-#pragma GCC ivdep
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto z_m = static_cast<double>(measured_m[i]);
-      const double band_m = half_band_m(z_m, tsdf, depth);
-      const bool measured = (z_m >= depth.min_m) & (z_m <= depth.max_m);
-      near_m[i] = select(measured, std::max(0.0, z_m - band_m), 0.0);
-      far_m[i] = select(measured, z_m + band_m, 0.0);
-    }
-  }
-
-  const PinholeCamera& camera_;
-  const TsdfConfig& tsdf_;
-  const DepthConfig& depth_;
-  Matrix3d rays_;  // columns: the ray by u, by v (on the plane z = 1) and along
-                   // the optical axis
-  Vector3d origin_;
-  std::vector<double> near_m_;  // z-depth
-  std::vector<double> far_m_;
-  std::array<AxisSegments, 3> axes_;
-  Path last_path_;
+  // Lattice coordinates from here on are relative to the camera's block, so that they stay small.
+  Eigen::Matrix3f rays_;  // columns: the ray by u, by v (on the plane z = 1) and along the optical axis
+  BlockIndex camera_block_;
+  Eigen::Vector3f origin_;
+  float per_fx_, per_fy_, cx_, cy_;  // pixels
+  float nearest_m_, farthest_m_;
+  float truncation_m_;
+  float floor_m_, quadratic_per_m_, noise_offset_m_;  // half band by depth noise
+  Paths last_{};                                      // of the pixels before
 };
 
 }  // namespace
 
-std::vector<BlockIndex> band_blocks(const DepthImage& depth_m, const PinholeCamera& camera,
-                                    const SE3& T_world_camera, double block_m, const TsdfConfig& tsdf,
-                                    const DepthConfig& depth, const Workers& workers) {
-  const auto blocks_of_rows = [&](std::size_t begin, std::size_t end) {
-    OrderedBlocks blocks;
-    RowSegments segments(camera, T_world_camera, block_m, tsdf, depth);
-    for (std::size_t y = begin; y < end; ++y) {
-      segments.set_row(depth_m, static_cast<int>(y));
-      for (std::size_t x = 0; x < static_cast<std::size_t>(depth_m.width); ++x)
-        segments.add_blocks(x, blocks);
+void OrderedBlocks::clear() {
+  table_.clear();
+  blocks_.clear();
+  forget_recent();
+}
+
+void OrderedBlocks::forget_recent() {
+  recent_.fill(BlockIndex::Constant(std::numeric_limits<int>::max()));  // nothing reaches that far
+}
+
+void BandBlocks::find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera,
+                      double block_m, const TsdfConfig& tsdf, const DepthConfig& depth,
+                      const Workers& workers) {
+  const double block_px = block_m * std::min(camera.fx_px, camera.fy_px) / depth.max_m;
+  const int stride = block_px >= kFinePixels ? 2 : 1;
+  const auto rows = static_cast<std::size_t>(depth_m.height);
+  chunks_.resize((rows + kRowsPerChunk - 1) / kRowsPerChunk);
+  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    OrderedBlocks& blocks = chunks_[begin / kRowsPerChunk];
+    blocks.clear();
+    PixelSegments segments(camera, T_world_camera, block_m, tsdf, depth);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); y += stride) {
+      segments.add_row(&depth_m.data[depth_m.index(0, y)], depth_m.width, y, stride, blocks);
     }
-    return blocks.take();
-  };
-  OrderedBlocks merged;
-  const auto chunks = workers.map_chunks<std::vector<BlockIndex>>(static_cast<std::size_t>(depth_m.height),
-                                                                  kRowsPerChunk, blocks_of_rows);
-  for (const std::vector<BlockIndex>& chunk : chunks) {
-    for (const BlockIndex& index : chunk) merged.add(index);
+  });
+  found_.clear();
+  for (const OrderedBlocks& chunk : chunks_) {
+    for (const BlockIndex& index : chunk.blocks()) found_.add(index);
   }
-  return merged.take();
 }
 
 }  // namespace fusebench

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "core/block_table.hpp"
@@ -19,12 +21,50 @@ namespace fusebench {
                   tsdf.truncation_sigmas * depth_sigma_m(depth_m, depth));
 }
 
-/// Every block that a ray of a measured pixel passes from half a band in front of the measurement to as far
-/// behind it (both along z), once each, in the order of the pixels (row-major), then from front to back.
-/// Depth outside [min_m, max_m] of `depth` is skipped. The same for every number of threads.
-[[nodiscard]] std::vector<BlockIndex> band_blocks(const DepthImage& depth_m, const PinholeCamera& camera,
-                                                  const SE3& T_world_camera, double block_m,
-                                                  const TsdfConfig& tsdf, const DepthConfig& depth,
-                                                  const Workers& workers);
+/// A set of blocks in the order in which they were first met.
+class OrderedBlocks {
+ public:
+  OrderedBlocks() { forget_recent(); }
+
+  void clear();
+  void add(const BlockIndex& index) {
+    // Most rays run through the blocks of the rays before.
+    BlockIndex& recent =
+        recent_[static_cast<std::size_t>((index.x() & 3) | (index.y() & 3) << 2 | (index.z() & 3) << 4)];
+    if (index == recent) return;
+    recent = index;
+    if (table_.insert(index)) blocks_.push_back(index);
+  }
+  [[nodiscard]] const std::vector<BlockIndex>& blocks() const { return blocks_; }
+
+ private:
+  void forget_recent();
+
+  BlockTable table_;
+  std::vector<BlockIndex> blocks_;
+  std::array<BlockIndex, 64> recent_;
+};
+
+/// The blocks of one depth image after the other; keeps its memory.
+class BandBlocks {
+ public:
+  /// Finds every block that a ray of a measured pixel passes from half a band in front of the measurement to
+  /// as far behind it (both along z). Depth outside [min_m, max_m] of `depth` is skipped. Where a block is at
+  /// least kFinePixels wide in the image as far away as max_m, every second pixel of every second row stands
+  /// for its neighbours: what it may miss are corners, a fraction of a block wide. Single precision
+  /// from the camera on: a ray that misses a corner of a block by less than a micrometre may count as a hit.
+  void find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
+            const TsdfConfig& tsdf, const DepthConfig& depth, const Workers& workers);
+
+  static constexpr double kFinePixels = 8;
+
+  /// Those found, once each, in the order of the pixels (row-major), then from front to back. The same for
+  /// every number of threads.
+  [[nodiscard]] const std::vector<BlockIndex>& blocks() const { return found_.blocks(); }
+
+ private:
+  std::vector<OrderedBlocks> chunks_;
+  OrderedBlocks found_;
+};
 
 }  // namespace fusebench

@@ -1,5 +1,6 @@
 #include "core/block_table.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace fusebench {
@@ -10,6 +11,11 @@ bool BlockTable::insert(const BlockIndex& index) {
   if (entry.slot >= 0) return false;
   entry = {index.x(), index.y(), index.z(), static_cast<std::int32_t>(size_++)};
   return true;
+}
+
+void BlockTable::clear() {
+  std::fill(entries_.begin(), entries_.end(), Entry{});
+  size_ = 0;
 }
 
 void BlockTable::grow() {

@@ -24,6 +24,8 @@ class BlockTable {
 
   /// Adds a block with the next slot; false if it was there before.
   bool insert(const BlockIndex& index);
+  /// Removes all blocks and keeps the memory.
+  void clear();
 
  private:
   static constexpr std::size_t kInitialCapacity = 1024;

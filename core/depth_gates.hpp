@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/config.hpp"
+#include "core/lanes.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {
@@ -12,8 +13,16 @@ namespace fusebench {
   return config.noise_floor_m + config.noise_quadratic_per_m * z * z;
 }
 
+/// The same for eight measurements.
+[[nodiscard]] inline Float8 depth_sigma_m(Float8 depth_m, const DepthConfig& config) {
+  const Float8 z = depth_m - static_cast<float>(config.noise_offset_m);
+  return static_cast<float>(config.noise_floor_m) + static_cast<float>(config.noise_quadratic_per_m) * z * z;
+}
+
 /// Depth without what cannot be trusted: values outside [min, max] and pixels at a depth edge become 0.
 [[nodiscard]] DepthImage gate_depth(const DepthImage& depth_m, const DepthConfig& config);
+/// The same into another image, whose memory is used again.
+void gate_depth(const DepthImage& depth_m, const DepthConfig& config, DepthImage& gated_m);
 
 /// True if there is depth at the pixel and at the eight around it at a distance of reach_px, as far as they
 /// are in the image, without a jump of more than `edge_jump` of the middle's depth. Reach 0: the pixel alone.

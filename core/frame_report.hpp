@@ -1,7 +1,6 @@
 // What the pipeline says of each frame.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,6 +14,7 @@
 #include "core/intensity_residual.hpp"
 #include "core/patch_measurement.hpp"
 #include "core/patches.hpp"
+#include "core/stage_times.hpp"
 
 namespace fusebench {
 
@@ -26,11 +26,6 @@ enum class FrameStatus {
                 ///< found again: the prediction was kept, the frame not fused
 };
 [[nodiscard]] std::string_view to_string(FrameStatus status);
-
-/// Stages whose time is reported.
-enum class Stage { preprocess, predict, update, fuse, refresh };
-inline constexpr std::array<std::string_view, 5> kStageNames = {"preprocess", "predict", "update", "fuse",
-                                                                "refresh"};
 
 /// What the images alone say about the pose of a frame, given the frame that its patches were cut from and
 /// the model: cost(T_world_imu * d) = information and gradient around the pose. Batch estimators use it.
@@ -70,7 +65,7 @@ struct FrameReport {
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
   double blur_px = 0;          ///< predicted length of motion blur at the image centre
   TrackedPixels pixels;        ///< of all tracked patches, by patch, then pixel
-  std::array<double, kStageNames.size()> stage_ms{};  ///< wall time; the only part that is not reproducible
+  StageTimes stages;           ///< wall time; the only part that is not reproducible
 };
 
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.

@@ -21,6 +21,12 @@ struct Image {
         data(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), fill) {}
 
   [[nodiscard]] bool empty() const { return data.empty(); }
+  /// What the pixels are then is not said; memory is kept.
+  void resize(int width_px, int height_px) {
+    width = width_px;
+    height = height_px;
+    data.resize(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
+  }
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
@@ -53,6 +59,8 @@ struct IntensitySample {
 /// Grey-level pyramid, level 0 = the image, each level half the size (5x5 binomial filter in integer
 /// arithmetic, hence the same on every machine). Pixel (x, y) of level l lies at (x, y) * 2^l of level 0.
 [[nodiscard]] std::vector<GreyImage> build_pyramid(const GreyImage& image, int levels);
+/// The same into memory that is used again.
+void build_pyramid(const GreyImage& image, int levels, std::vector<GreyImage>& pyramid);
 
 /// Grey image by ITU-R BT.601 weights in integer arithmetic (0.299 R + 0.587 G + 0.114 B).
 [[nodiscard]] GreyImage to_grey(const ColorImage& color);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -63,64 +64,85 @@ struct BlockVertices {
 class BlockCells {
  public:
   BlockCells(const TsdfVolume& volume, const SortedBlocks& sorted, double min_weight)
-      : volume_(volume), sorted_(sorted), min_weight_(static_cast<float>(min_weight)), sampler_(volume) {}
+      : volume_(volume), sorted_(sorted), min_weight_(static_cast<float>(min_weight)) {}
 
   void append(std::size_t rank, std::vector<EdgeTriangle>& triangles) {
     load(volume_.block_indices()[sorted_.slots[rank]]);
     for (int z = 0; z < kBlockSide; ++z) {
       for (int y = 0; y < kBlockSide; ++y) {
-        for (int x = 0; x < kBlockSide; ++x) append_cell({x, y, z}, triangles);
-      }
-    }
-  }
-
- private:
-  static constexpr int kSide = kBlockSide + 1;  // the upper corners of the last cells lie in the next block
-  static constexpr std::uint8_t kObserved = 1;
-  static constexpr std::uint8_t kInside = 2;
-
-  static std::size_t at(const VoxelIndex& local) {
-    return static_cast<std::size_t>(local.x() + kSide * (local.y() + kSide * local.z()));
-  }
-  static std::size_t neighbour_of(const VoxelIndex& local) {
-    return static_cast<std::size_t>(local.x() >> 3 | (local.y() >> 3) << 1 | (local.z() >> 3) << 2);
-  }
-
-  void load(const BlockIndex& index) {
-    for (int n = 0; n < 8; ++n) {
-      const int slot = volume_.find_block(index + BlockIndex(n & 1, (n >> 1) & 1, n >> 2));
-      // Edges of a missing block are never used: its voxels are unobserved.
-      neighbour_rank_[static_cast<std::size_t>(n)] =
-          slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
-    }
-    const VoxelIndex corner = index * kBlockSide;
-    std::size_t i = 0;
-    for (int z = 0; z < kSide; ++z) {
-      for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x, ++i) {
-          const Voxel* voxel = sampler_.observed(corner + VoxelIndex(x, y, z));
-          const bool seen = voxel != nullptr && voxel->weight >= min_weight_;
-          sign_[i] = !seen ? std::uint8_t{0}
-                           : static_cast<std::uint8_t>(kObserved | (voxel->distance_m < 0.0F ? kInside : 0));
+        for (std::uint64_t cells = crossed_cells(y, z); cells != 0; cells &= cells - 1) {
+          append_cell({std::countr_zero(cells) / 8, y, z}, triangles);
         }
       }
     }
   }
 
+ private:
+  static constexpr std::size_t kSide = kBlockSide + 1;  // the upper corners of the last cells: the next block
+  static constexpr std::size_t kSlice = kSide * kSide;
+  static constexpr std::array<std::size_t, 8> kCorner = {
+      0, 1, kSide, kSide + 1, kSlice, kSlice + 1, kSlice + kSide, kSlice + kSide + 1};
+  static constexpr std::uint8_t kObserved = 1;
+  static constexpr std::uint8_t kInside = 2;
+
+  static std::size_t neighbour_of(const VoxelIndex& local) {
+    return static_cast<std::size_t>(local.x() >> 3 | (local.y() >> 3) << 1 | (local.z() >> 3) << 2);
+  }
+
+  void load(const BlockIndex& index) {
+    sign_.fill(0);
+    for (std::size_t n = 0; n < 8; ++n) {
+      const int slot = volume_.find_block(index + BlockIndex(n & 1 ? 1 : 0, n & 2 ? 1 : 0, n & 4 ? 1 : 0));
+      // Edges of a missing block are never used: its voxels are unobserved.
+      neighbour_rank_[n] = slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
+      if (slot >= 0) load_neighbour(n, static_cast<std::size_t>(slot));
+    }
+  }
+
+  // The signs of the voxels of a block at the corners of the cells: all of its own, a layer of the others.
+  void load_neighbour(std::size_t n, std::size_t slot) {
+    const auto range = [&](std::size_t bit) -> std::size_t { return (n & bit) != 0 ? 1 : kBlockSide; };
+    const float* const distances_m = volume_.distances_m() + slot * kBlockVoxels;
+    const float* const weights = volume_.weights() + slot * kBlockVoxels;
+    const std::size_t begin =
+        (n & 1 ? kBlockSide : 0) + (n & 2 ? kBlockSide * kSide : 0) + (n & 4 ? kBlockSide * kSlice : 0);
+    for (std::size_t z = 0; z < range(4); ++z) {
+      for (std::size_t y = 0; y < range(2); ++y) {
+        std::uint8_t* const signs = &sign_[begin + kSide * y + kSlice * z];
+        const std::size_t row = kBlockSide * (y + kBlockSide * z);
+        for (std::size_t x = 0; x < range(1); ++x) {
+          const float distance_m = distances_m[row + x];
+          const bool seen = (distance_m == distance_m) & (weights[row + x] >= min_weight_);
+          signs[x] =
+              static_cast<std::uint8_t>((seen ? kObserved : 0) | (seen & (distance_m < 0.0F) ? kInside : 0));
+        }
+      }
+    }
+  }
+
+  // The cells of a row that are observed and whose corners have both signs: 1 in the byte of each.
+  [[nodiscard]] std::uint64_t crossed_cells(int y, int z) const {
+    static_assert(std::endian::native == std::endian::little);
+    const std::size_t first = kSide * static_cast<std::size_t>(y) + kSlice * static_cast<std::size_t>(z);
+    std::uint64_t all = ~std::uint64_t{0};
+    std::uint64_t some = 0;
+    for (const std::size_t corner : kCorner) {
+      std::uint64_t signs = 0;
+      std::memcpy(&signs, &sign_[first + corner], sizeof(signs));
+      all &= signs;
+      some |= signs;
+    }
+    static_assert(kObserved == 1 && kInside == 2);
+    return all & ((some & ~all) >> 1) & 0x0101010101010101U;
+  }
+
   void append_cell(const VoxelIndex& base, std::vector<EdgeTriangle>& triangles) const {
-    constexpr std::size_t kRow = kSide;
-    constexpr std::size_t kSlice = kSide * kSide;
-    constexpr std::array<std::size_t, 8> kCorner = {0,      1,          kRow,          kRow + 1,
-                                                    kSlice, kSlice + 1, kSlice + kRow, kSlice + kRow + 1};
-    const std::size_t first = at(base);
-    std::uint8_t all = kObserved;
+    const auto local = base.cast<std::size_t>();
+    const std::size_t first = local.x() + kSide * local.y() + kSlice * local.z();
     unsigned pattern = 0;
     for (std::size_t corner = 0; corner < 8; ++corner) {
-      const std::uint8_t sign = sign_[first + kCorner[corner]];
-      all &= sign;
-      pattern |= static_cast<unsigned>(sign / kInside) << corner;
+      pattern |= static_cast<unsigned>(sign_[first + kCorner[corner]] / kInside) << corner;
     }
-    if (all == 0) return;
     for (const CellTriangle& triangle : cell_triangles()[pattern]) {
       triangles.push_back({key(base, triangle[0]), key(base, triangle[1]), key(base, triangle[2])});
     }
@@ -135,7 +157,6 @@ class BlockCells {
   const TsdfVolume& volume_;
   const SortedBlocks& sorted_;
   float min_weight_;
-  TsdfSampler sampler_;
   std::array<std::size_t, 8> neighbour_rank_{};
   std::array<std::uint8_t, kSide * kSide * kSide> sign_{};
 };
@@ -156,8 +177,8 @@ bool blend(const Voxel& low, const Voxel& high, float share, Rgb& color) {
 bool write_vertex(const VoxelIndex& index, Eigen::Index axis, double voxel_m, TsdfSampler& sampler,
                   std::size_t vertex, Mesh& mesh) {
   const VoxelIndex next = index + VoxelIndex(VoxelIndex::Unit(axis));
-  const Voxel& low = *sampler.observed(index);
-  const Voxel& high = *sampler.observed(next);
+  const Voxel low = sampler.voxel(index);
+  const Voxel high = sampler.voxel(next);
   const double low_m = low.distance_m;
   const double share = low_m / (low_m - static_cast<double>(high.distance_m));
   const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m;

@@ -1,125 +1,271 @@
 #include "core/motion_compensation.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+
+#include "core/error.hpp"
+#include "core/lane_points.hpp"
 
 namespace fusebench {
 
 namespace {
 
 constexpr std::size_t kRowsPerChunk = 16;
-/// Back-projection and projection round: without this a border pixel that did not move could count as
-/// outside.
-constexpr double kRounding_px = 1e-6;
+/// A border pixel whose motion rounds to hardly more than none is inside.
+constexpr float kRounding_px = 1e-4F;
+/// Each iteration leaves some hundredths of the error: as much as an image is sheared from row to row.
+constexpr int kIterationsFromNothing = 4;
+constexpr int kIterationsFromNeighbour = 2;
 
-/// Camera motion between the instant of each row and that of the frame: X_frame = R X_row + t.
-struct RowMotion {
-  Matrix3d R_frame_row;
-  Vector3d t_frame_row_m;
+using Byte8 [[gnu::vector_size(8)]] = std::uint8_t;
+
+/// Eight displacements, pixels.
+struct Displacement8 {
+  Float8 x{};
+  Float8 y{};
 };
 
-std::vector<RowMotion> row_motions(int rows, double delay_s, double readout_s,
-                                   const CameraVelocity& velocity) {
-  std::vector<RowMotion> motions(static_cast<std::size_t>(rows));
-  for (int v = 0; v < rows; ++v) {
-    const double after_s = delay_s + (static_cast<double>(v) / (rows - 1) - 0.5) * readout_s;
-    motions[static_cast<std::size_t>(v)] = {so3_exp(after_s * velocity.angular_radps).toRotationMatrix(),
-                                            after_s * velocity.linear_mps};
+/// When the rows of an image are exposed, after the frame's instant.
+struct RowTimes {
+  RowTimes(int rows, double delay_s, double readout_s)
+      : first_s(static_cast<float>(delay_s - 0.5 * readout_s)),
+        step_s(static_cast<float>(readout_s / (rows - 1))) {}
+
+  [[nodiscard]] Float8 at(Float8 row) const { return first_s + step_s * row; }
+
+  float first_s;
+  float step_s;
+};
+
+/// A constant velocity of the camera.
+struct Motion {
+  explicit Motion(const CameraVelocity& velocity)
+      : turn(velocity.angular_radps.cast<float>()),
+        linear(velocity.linear_mps.cast<float>()),
+        squared_turn(turn.squaredNorm()) {}
+
+  [[nodiscard]] Points turned(const Points& a) const {
+    return {turn.y() * a.z - turn.z() * a.y, turn.z() * a.x - turn.x() * a.z,
+            turn.x() * a.y - turn.y() * a.x};
   }
-  return motions;
+
+  /// Rotated by what the camera turns in this time: Rodrigues' formula with its sine and cosine as series,
+  /// to 1e-7 up to half a radian.
+  [[nodiscard]] Points rotated(const Points& a, Float8 time_s) const {
+    const Float8 squared_angle = squared_turn * time_s * time_s;
+    const Float8 sine = time_s * (1.0F - squared_angle * (1.0F / 6 - squared_angle * (1.0F / 120)));
+    const Float8 cosine =
+        time_s * time_s * (0.5F - squared_angle * (1.0F / 24 - squared_angle * (1.0F / 720)));
+    const Points once = turned(a);
+    const Points twice = turned(once);
+    return {a.x + sine * once.x + cosine * twice.x, a.y + sine * once.y + cosine * twice.y,
+            a.z + sine * once.z + cosine * twice.z};
+  }
+
+  Eigen::Vector3f turn;    // rad/s
+  Eigen::Vector3f linear;  // m/s
+  float squared_turn;
+};
+
+/// 1 / depth; 0 where there is no depth, which counts as infinitely far: rotation alone.
+Float8 inverse_depth(Float8 depth_m) {
+  const Int8 measured = depth_m > 0.0F;
+  return measured ? 1.0F / (measured ? depth_m : all_lanes(1.0F)) : Float8{};
 }
 
-bool is_inside(const Vector2d& pixel_px, const PinholeCamera& camera) {
-  return pixel_px.x() >= -kRounding_px && pixel_px.x() <= camera.width_px - 1 + kRounding_px &&
-         pixel_px.y() >= -kRounding_px && pixel_px.y() <= camera.height_px - 1 + kRounding_px;
-}
+/// Interpolates one channel of four neighbours, given as bytes of words, and rounds.
+struct Bilinear {
+  Float8 right;  // shares
+  Float8 down;
 
-/// std::lround for numbers from 0 on; that one is a call, eleven times a pixel.
-int rounded(double value) {
-  const int floored = static_cast<int>(value);
-  return value - floored >= 0.5 ? floored + 1 : floored;  // the difference is exact
-}
+  [[nodiscard]] Int8 operator()(Int8 upper_left, Int8 upper_right, Int8 lower_left, Int8 lower_right) const {
+    const Float8 upper = mixed(upper_left, upper_right);
+    const Float8 lower = mixed(lower_left, lower_right);
+    return to_int(upper + down * (lower - upper) + 0.5F);
+  }
+  [[nodiscard]] Float8 mixed(Int8 a, Int8 b) const {
+    const Float8 from = to_float(a);
+    return from + right * (to_float(b) - from);
+  }
+};
 
-int nearest_index(double coordinate, int size) { return rounded(std::clamp(coordinate, 0.0, size - 1.0)); }
+/// Byte number `at` of each word.
+Int8 byte_of(Int8 words, int at) { return (words >> (8 * at)) & 0xFF; }
 
-/// Neighbouring pixels come from neighbouring sources: each search starts with the displacement of the pixel
-/// before it in the row, and only the first of a row starts from nothing.
-int search_iterations(int u) { return u == 0 ? 8 : 2; }
+/// Compensates a tile of an image, row by row: the search for the source of a pixel starts with the
+/// displacement of the pixel above it. The columns of a tile do not wait for each other, so that a processor
+/// can work on several at once.
+class Tile {
+ public:
+  static constexpr int kMostGroups = 8;  ///< of eight columns
 
-/// Fixed point for each pixel of a row: the source is the depth pixel that its own motion carries onto the
-/// pixel.
-void compensate_depth_row(const DepthImage& source_m, const PinholeCamera& camera,
-                          const std::vector<RowMotion>& motions, int v, DepthImage& target_m) {
-  Vector2d displacement = Vector2d::Zero();
-  for (int u = 0; u < camera.width_px; ++u) {
-    const Vector2d wanted(u, v);
-    double carried_m = 0;
-    for (int iteration = 0; iteration < search_iterations(u); ++iteration) {
-      const Vector2d from = wanted + displacement;
-      const int x = nearest_index(from.x(), camera.width_px);
-      const int y = nearest_index(from.y(), camera.height_px);
-      const RowMotion& motion = motions[static_cast<std::size_t>(y)];
-      const double measured_m = source_m(x, y);
-      const Vector3d ray = camera.back_project(from.x(), from.y(), 1.0);
-      // Without a measurement the point counts as far away: rotation alone.
-      const Vector3d carried = measured_m > 0
-                                   ? Vector3d(motion.R_frame_row * (measured_m * ray) + motion.t_frame_row_m)
-                                   : Vector3d(motion.R_frame_row * ray);
-      if (carried.z() <= 0) break;
-      carried_m = measured_m > 0 ? carried.z() : 0.0;
-      displacement += wanted - camera.project(carried);
+  Tile(const RgbdFrame& source, const PinholeCamera& camera, const SensorTiming& timing,
+       const CameraVelocity& velocity, RgbdFrame& target)
+      : source_(source),
+        target_(target),
+        depth_times_(camera.height_px, seconds_between(0, source.depth_offset_ns), timing.depth_readout_s),
+        color_times_(camera.height_px, 0.0, timing.color_readout_s),
+        motion_(velocity),
+        fx_(static_cast<float>(camera.fx_px)),
+        fy_(static_cast<float>(camera.fy_px)),
+        cx_(static_cast<float>(camera.cx_px)),
+        cy_(static_cast<float>(camera.cy_px)),
+        width_(camera.width_px),
+        last_x_(static_cast<float>(camera.width_px - 1)),
+        last_y_(static_cast<float>(camera.height_px - 1)) {}
+
+  void compensate(int first_column, int first_row, int end_row) const {
+    std::array<Group, kMostGroups> tile;
+    std::size_t count = 0;
+    for (int x = first_column; x < width_ && count < tile.size(); x += static_cast<int>(kLanes)) {
+      // The last group of a row repeats columns of the one before it.
+      tile[count++].column = std::min(x, width_ - static_cast<int>(kLanes));
     }
-    const bool inside = is_inside(wanted + displacement, camera);
-    target_m(u, v) = inside ? static_cast<float>(carried_m) : 0.0F;
-    if (!inside) displacement.setZero();
+    const std::span<Group> groups = std::span(tile).first(count);
+    for (int row = first_row; row < end_row; ++row) {
+      const int iterations = row == first_row ? kIterationsFromNothing : kIterationsFromNeighbour;
+      const Float8 v = all_lanes(static_cast<float>(row));
+      for (int i = 0; i < iterations; ++i) {
+        for (Group& group : groups) carry_depth(group, v);
+      }
+      for (Group& group : groups) keep_inside(group, v);
+      for (int i = 0; i < iterations; ++i) {
+        for (Group& group : groups) search_color(group, v);
+      }
+      for (const Group& group : groups) write(group, row);
+    }
   }
-}
 
-/// Where the point behind a pixel was when its row was read: found by repeating with the row that it lands
-/// in.
-std::optional<Vector2d> color_source(const PinholeCamera& camera, const std::vector<RowMotion>& motions,
-                                     int u, int v, double depth_m) {
-  const Vector3d ray = camera.back_project(u, v, 1.0);
-  double row = v;
-  Vector2d source(u, v);
-  for (int iteration = 0; iteration < 3; ++iteration) {
-    const RowMotion& motion = motions[static_cast<std::size_t>(nearest_index(row, camera.height_px))];
-    const Vector3d then =
-        depth_m > 0 ? Vector3d(motion.R_frame_row.transpose() * (depth_m * ray - motion.t_frame_row_m))
-                    : Vector3d(motion.R_frame_row.transpose() * ray);
-    if (then.z() <= 0) return std::nullopt;
-    source = camera.project(then);
-    row = source.y();
+ private:
+  [[nodiscard]] Points ray(Float8 u, Float8 v) const {
+    return {(u - cx_) * (1.0F / fx_), (v - cy_) * (1.0F / fy_), all_lanes(1.0F)};
   }
-  return source;
-}
 
-Rgb sample_color(const ColorImage& image, double x, double y) {
-  const int x0 = std::clamp(static_cast<int>(x), 0, image.width - 2);
-  const int y0 = std::clamp(static_cast<int>(y), 0, image.height - 2);
-  const double ax = x - x0;
-  const double ay = y - y0;
-  Rgb result{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double upper = (1 - ax) * image(x0, y0)[c] + ax * image(x0 + 1, y0)[c];
-    const double lower = (1 - ax) * image(x0, y0 + 1)[c] + ax * image(x0 + 1, y0 + 1)[c];
-    result[c] = static_cast<std::uint8_t>(rounded((1 - ay) * upper + ay * lower));
+  [[nodiscard]] Int8 is_inside(Float8 x, Float8 y) const {
+    return (x >= -kRounding_px) & (x <= last_x_ + kRounding_px) & (y >= -kRounding_px) &
+           (y <= last_y_ + kRounding_px);
   }
-  return result;
-}
 
-void compensate_color_row(const RgbdFrame& source, const PinholeCamera& camera,
-                          const std::vector<RowMotion>& motions, int v, RgbdFrame& target) {
-  for (int u = 0; u < camera.width_px; ++u) {
-    const Vector2d from = color_source(camera, motions, u, v, target.depth_m(u, v)).value_or(Vector2d(u, v));
-    const double x = std::clamp(from.x(), 0.0, camera.width_px - 1.0);
-    const double y = std::clamp(from.y(), 0.0, camera.height_px - 1.0);
-    target.grey(u, v) = static_cast<std::uint8_t>(rounded(sample_bilinear(source.grey, x, y).value));
-    target.color(u, v) = sample_color(source.color, x, y);
-    if (!is_inside(from, camera)) target.depth_m(u, v) = 0;  // no colour, no use
+  /// Displacement from the pixel of a ray to that of where it was carried; none behind the camera. Written as
+  /// a difference of rays, so that what stays in place is displaced by exactly nothing.
+  [[nodiscard]] Displacement8 between(const Points& ray, const Points& carried) const {
+    const Int8 in_front = carried.z > 0.0F;
+    const Float8 inverse_z = 1.0F / (in_front ? carried.z : all_lanes(1.0F));
+    return {in_front ? fx_ * (carried.x * inverse_z - ray.x) : Float8{},
+            in_front ? fy_ * (carried.y * inverse_z - ray.y) : Float8{}};
   }
-}
+
+  /// Eight pixels of a row.
+  struct Group {
+    [[nodiscard]] Float8 u() const { return static_cast<float>(column) + kLaneNumber; }
+
+    int column = 0;          ///< of the first
+    Displacement8 of_depth;  ///< to its source
+    Displacement8 of_color;
+    Float8 depth_m{};
+    Float8 inverse_depth{};
+  };
+
+  /// One iteration: the depth at pixels, from the depth pixels that their own motion carries there.
+  void carry_depth(Group& group, Float8 v) const {
+    const Float8 from_x = group.u() + group.of_depth.x;
+    const Float8 from_y = v + group.of_depth.y;
+    const Int8 x = to_int(clamp(from_x, 0.0F, last_x_) + 0.5F);
+    const Int8 y = to_int(clamp(from_y, 0.0F, last_y_) + 0.5F);
+    const Float8 measured_m = gather(source_.depth_m.data.data(), y * width_ + x);
+    const Float8 time_s = depth_times_.at(to_float(y));
+    const Float8 shift = time_s * inverse_depth(measured_m);
+    const Points from = ray(from_x, from_y);
+    const Points carried =
+        motion_.rotated(from, time_s) +
+        Points{shift * motion_.linear.x(), shift * motion_.linear.y(), shift * motion_.linear.z()};
+    const Displacement8 forth = between(from, carried);
+    group.of_depth = {-forth.x, -forth.y};
+    group.depth_m = measured_m > 0.0F ? measured_m * carried.z : Float8{};
+  }
+
+  /// No depth from outside.
+  void keep_inside(Group& group, Float8 v) const {
+    const Int8 inside = is_inside(group.u() + group.of_depth.x, v + group.of_depth.y);
+    group.of_depth.x = inside ? group.of_depth.x : Float8{};
+    group.of_depth.y = inside ? group.of_depth.y : Float8{};
+    group.depth_m = inside & (group.depth_m > 0.0F) ? group.depth_m : Float8{};
+    group.inverse_depth = inverse_depth(group.depth_m);
+  }
+
+  /// One iteration from pixels to where the points behind them were when their rows were read, which depends
+  /// on the row where they land.
+  void search_color(Group& group, Float8 v) const {
+    const Points now = ray(group.u(), v);
+    const Float8 time_s = color_times_.at(clamp(v + group.of_color.y, 0.0F, last_y_));
+    const Float8 shift = time_s * group.inverse_depth;
+    const Points back =
+        now - Points{shift * motion_.linear.x(), shift * motion_.linear.y(), shift * motion_.linear.z()};
+    group.of_color = between(now, motion_.rotated(back, -time_s));
+  }
+
+  void write(const Group& group, int row) const {
+    const Float8 x = group.u() + group.of_color.x;
+    const Float8 y = static_cast<float>(row) + group.of_color.y;
+    const std::size_t pixel = target_.depth_m.index(group.column, row);
+    // No colour, no use.
+    store(is_inside(x, y) ? group.depth_m : Float8{}, &target_.depth_m.data[pixel]);
+    sample(clamp(x, 0.0F, last_x_), clamp(y, 0.0F, last_y_), pixel);
+  }
+
+  /// Writes grey and colour of eight pixels, whose sources are at (x, y) inside the image.
+  void sample(Float8 x, Float8 y, std::size_t pixel) const {
+    const Int8 left = to_int(min(x, all_lanes(last_x_ - 1.0F)));
+    const Int8 top = to_int(min(y, all_lanes(last_y_ - 1.0F)));
+    const Bilinear mix{x - to_float(left), y - to_float(top)};
+    const Int8 upper = top * width_ + left;
+    write_grey(mix, upper, pixel);
+    if (!source_.color.empty()) write_color(mix, upper, pixel);
+  }
+
+  void write_grey(const Bilinear& mix, Int8 upper, std::size_t pixel) const {
+    const auto* const bytes = source_.grey.data.data();
+    const Int8 above = gather_bytes(bytes, source_.grey.data.size(), upper);
+    const Int8 below = gather_bytes(bytes, source_.grey.data.size(), upper + width_);
+    const Int8 grey = mix(byte_of(above, 0), byte_of(above, 1), byte_of(below, 0), byte_of(below, 1));
+    const Byte8 levels = __builtin_convertvector(grey, Byte8);
+    std::memcpy(&target_.grey.data[pixel], &levels, sizeof(levels));
+  }
+
+  void write_color(const Bilinear& mix, Int8 upper, std::size_t pixel) const {
+    static_assert(sizeof(Rgb) == 3 && std::endian::native == std::endian::little);
+    const auto* const bytes = source_.color.data.data()->data();
+    const auto pixels = [&](Int8 at) { return gather_bytes(bytes, 3 * source_.color.data.size(), 3 * at); };
+    const Int8 upper_left = pixels(upper);
+    const Int8 upper_right = pixels(upper + 1);
+    const Int8 lower_left = pixels(upper + width_);
+    const Int8 lower_right = pixels(upper + width_ + 1);
+    const auto channel = [&](int at) {
+      return mix(byte_of(upper_left, at), byte_of(upper_right, at), byte_of(lower_left, at),
+                 byte_of(lower_right, at));
+    };
+    const Int8 words = channel(0) | channel(1) << 8 | channel(2) << 16;
+    // Four bytes each, of which the next pixel takes the last one back.
+    std::array<std::uint8_t, 3 * kLanes + 1> eight;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::int32_t word = words[lane];
+      std::memcpy(&eight[3 * lane], &word, sizeof(word));
+    }
+    std::memcpy(target_.color.data.data() + pixel, eight.data(), 3 * kLanes);
+  }
+
+  const RgbdFrame& source_;
+  RgbdFrame& target_;
+  RowTimes depth_times_;
+  RowTimes color_times_;
+  Motion motion_;
+  float fx_, fy_, cx_, cy_;  // pixels
+  int width_;
+  float last_x_, last_y_;
+};
 
 }  // namespace
 
@@ -127,21 +273,25 @@ bool needs_compensation(const RgbdFrame& frame, const SensorTiming& timing) {
   return timing.color_readout_s != 0 || timing.depth_readout_s != 0 || frame.depth_offset_ns != 0;
 }
 
-RgbdFrame compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, const SensorTiming& timing,
-                            const CameraVelocity& velocity, const Workers& workers) {
-  RgbdFrame result = frame;
+void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, const SensorTiming& timing,
+                       const CameraVelocity& velocity, const Workers& workers, RgbdFrame& result) {
+  check(camera.width_px >= static_cast<int>(kLanes) && camera.height_px >= 2,
+        "an image has at least 8 columns and 2 rows");
+  result.timestamp_ns = frame.timestamp_ns;
+  result.capture_offset_ns = frame.capture_offset_ns;
   result.depth_offset_ns = 0;
-  const auto depth_motions = row_motions(camera.height_px, seconds_between(0, frame.depth_offset_ns),
-                                         timing.depth_readout_s, velocity);
-  const auto color_motions = row_motions(camera.height_px, 0.0, timing.color_readout_s, velocity);
+  result.grey.resize(camera.width_px, camera.height_px);
+  result.depth_m.resize(camera.width_px, camera.height_px);
+  if (frame.color.empty()) result.color.resize(0, 0);
+  if (!frame.color.empty()) result.color.resize(camera.width_px, camera.height_px);
+  const Tile tile(frame, camera, timing, velocity, result);
+  constexpr int kTileWidth = Tile::kMostGroups * static_cast<int>(kLanes);
   workers.for_chunks(static_cast<std::size_t>(camera.height_px), kRowsPerChunk,
                      [&](std::size_t begin, std::size_t end) {
-                       for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-                         compensate_depth_row(frame.depth_m, camera, depth_motions, v, result.depth_m);
-                         compensate_color_row(frame, camera, color_motions, v, result);
+                       for (int x = 0; x < camera.width_px; x += kTileWidth) {
+                         tile.compensate(x, static_cast<int>(begin), static_cast<int>(end));
                        }
                      });
-  return result;
 }
 
 }  // namespace fusebench

@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <limits>
 #include <optional>
 
@@ -102,69 +102,108 @@ void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_wor
   }
 }
 
-std::vector<WarpedPixel> warp_level(const PatchLevel& level, const PosedCamera& posed) {
-  constexpr double kMinDepthM = 0.05;  // closer points project wildly
-  std::vector<WarpedPixel> warped(level.pixels.size());
+void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
+                const PosedLanes& camera, std::span<WarpedLanes> warped) {
+  constexpr float kMinDepthM = 0.05F;  // closer points project wildly
+  const auto right = static_cast<float>(camera.width_px - 2);
+  const auto bottom = static_cast<float>(camera.height_px - 2);
   for (std::size_t i = 0; i < warped.size(); ++i) {
-    const PatchPixel& pixel = level.pixels[i];
-    WarpedPixel& w = warped[i];
-    w.warp_point_camera = posed.to_camera(pixel.warp_point_world);
-    w.depth_m = posed.to_camera(pixel.point_world).z();
-    if (w.warp_point_camera.z() < kMinDepthM) continue;
-    w.pixel_px = posed.camera.project(w.warp_point_camera) + pixel.warp_offset_px;
-    w.in_image = w.pixel_px.x() >= 1 && w.pixel_px.y() >= 1 && w.pixel_px.x() <= posed.camera.width_px - 2 &&
-                 w.pixel_px.y() <= posed.camera.height_px - 2;
+    WarpedLanes& w = warped[i];
+    const Points own = camera.to_camera(pixels[i].point);
+    const Points point = warp_points.empty() ? own : camera.to_camera(warp_points[i].point);
+    const Int8 in_front = point.z >= kMinDepthM;
+    const Float8 inverse_z = 1.0F / (in_front ? point.z : all_lanes(1.0F));
+    w.x = camera.fx_px * point.x * inverse_z + camera.cx_px;
+    w.y = camera.fy_px * point.y * inverse_z + camera.cy_px;
+    if (!warp_points.empty()) {
+      w.x += warp_points[i].offset_x;
+      w.y += warp_points[i].offset_y;
+    }
+    w.depth_m = own.z;
+    w.in_image =
+        pixels[i].present & in_front & (w.x >= 1.0F) & (w.y >= 1.0F) & (w.x <= right) & (w.y <= bottom);
     w.visible = w.in_image;
+    w.covered = Int8{};
   }
-  return warped;
 }
 
-void test_mutual_occlusion(std::span<std::vector<WarpedPixel>> warped, int width_px, int height_px,
-                           const DepthConfig& depth) {
-  DepthImage nearest_m(width_px, height_px, std::numeric_limits<float>::infinity());
-  const auto cell = [&](const WarpedPixel& w) -> float& {
-    return nearest_m(static_cast<int>(std::lround(w.pixel_px.x())),
-                     static_cast<int>(std::lround(w.pixel_px.y())));
-  };
-  for (const auto& patch : warped) {
-    for (const WarpedPixel& w : patch) {
-      if (w.in_image) cell(w) = std::min(cell(w), static_cast<float>(w.depth_m));
+namespace {
+
+/// Number of the nearest pixel of an image; 0 where `inside` does not hold.
+Int8 nearest_pixel(Float8 x, Float8 y, int width_px, Int8 inside) {
+  return inside ? to_int(y + 0.5F) * width_px + to_int(x + 0.5F) : Int8{};
+}
+
+}  // namespace
+
+MutualOcclusion::MutualOcclusion(int width_px, int height_px)
+    : width_px_(width_px),
+      nearest_m_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px),
+                 std::numeric_limits<float>::infinity()) {}
+
+void MutualOcclusion::test(std::span<WarpedLanes> warped, const DepthConfig& depth) {
+  const auto for_cells_in_image = [&](const auto& visit) {
+    for (const WarpedLanes& w : warped) {
+      const Int8 cell = nearest_pixel(w.x, w.y, width_px_, w.in_image);
+      for (unsigned bits = lane_bits(w.in_image); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        visit(nearest_m_[static_cast<std::size_t>(cell[lane])], w.depth_m[lane]);
+      }
     }
-  }
+  };
+  for_cells_in_image([](float& nearest_m, float depth_m) { nearest_m = std::min(nearest_m, depth_m); });
   // Pixels of one surface also collide, when the camera backs away: only a clear difference in depth is an
   // occlusion.
-  for (auto& patch : warped) {
-    for (WarpedPixel& w : patch) {
-      if (!w.visible) continue;
-      const double front_m = cell(w);
-      const double tolerance_m = std::max(3.0 * depth_sigma_m(front_m, depth), depth.edge_jump * front_m);
-      w.visible = w.depth_m <= front_m + tolerance_m;
-    }
+  const auto jump = static_cast<float>(depth.edge_jump);
+  for (WarpedLanes& w : warped) {
+    const Int8 cell = nearest_pixel(w.x, w.y, width_px_, w.in_image);
+    const Float8 front_m = w.in_image ? gather(nearest_m_.data(), cell) : w.depth_m;
+    const Float8 tolerance_m = max(3.0F * depth_sigma_m(front_m, depth), jump * front_m);
+    w.visible &= w.depth_m <= front_m + tolerance_m;
   }
+  for_cells_in_image([](float& nearest_m, float) { nearest_m = std::numeric_limits<float>::infinity(); });
 }
 
-void test_measured_occlusion(std::span<WarpedPixel> warped, const DepthImage& depth_m, int scale,
+void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& depth_m, int scale,
                              double tolerance_m, const DepthConfig& depth) {
-  for (WarpedPixel& w : warped) {
-    if (!w.visible) continue;
-    const int x = static_cast<int>(std::lround(w.pixel_px.x() * scale));
-    const int y = static_cast<int>(std::lround(w.pixel_px.y() * scale));
-    if (!depth_m.contains(x, y)) continue;
-    const double measured_m = depth_m(x, y);
-    if (measured_m <= 0) continue;  // no measurement, no verdict
-    const double allowed_m = std::max(tolerance_m, 3.0 * depth_sigma_m(measured_m, depth));
-    w.covered = w.depth_m - measured_m > allowed_m;
-    w.visible = std::abs(w.depth_m - measured_m) <= allowed_m;
+  const auto factor = static_cast<float>(scale);
+  const auto right = static_cast<float>(depth_m.width) - 0.5F;
+  const auto bottom = static_cast<float>(depth_m.height) - 0.5F;
+  for (WarpedLanes& w : warped) {
+    const Float8 x = w.x * factor;
+    const Float8 y = w.y * factor;
+    const Int8 inside = w.visible & (x < right) & (y < bottom);
+    const Float8 measured_m = gather(depth_m.data.data(), nearest_pixel(x, y, depth_m.width, inside));
+    // No measurement, no verdict.
+    const Int8 judged = inside & (measured_m > 0.0F);
+    const Float8 allowed_m =
+        max(all_lanes(static_cast<float>(tolerance_m)), 3.0F * depth_sigma_m(measured_m, depth));
+    const Float8 behind_m = w.depth_m - measured_m;
+    w.covered = judged & (behind_m > allowed_m);
+    w.visible &= ~judged | (abs(behind_m) <= allowed_m);
   }
 }
 
-bool is_extended(std::span<const WarpedPixel> warped, int size_px) {
-  Eigen::AlignedBox2d box;
-  for (const WarpedPixel& w : warped) {
-    if (w.visible) box.extend(w.pixel_px);
+bool is_extended(std::span<const WarpedLanes> warped, int size_px) {
+  const Float8 far = all_lanes(std::numeric_limits<float>::infinity());
+  Float8 left = far, top = far, right = -far, bottom = -far;
+  for (const WarpedLanes& w : warped) {
+    left = min(left, w.visible ? w.x : far);
+    right = max(right, w.visible ? w.x : -far);
+    top = min(top, w.visible ? w.y : far);
+    bottom = max(bottom, w.visible ? w.y : -far);
   }
+  const auto extent = [](Float8 low, Float8 high) {
+    float from = low[0];
+    float to = high[0];
+    for (std::size_t lane = 1; lane < kLanes; ++lane) {
+      from = std::min(from, low[lane]);
+      to = std::max(to, high[lane]);
+    }
+    return to - from;  // negative if nothing is visible
+  };
   // Pixel centres of the square span size - 1; a whole pixel more is an extension.
-  return !box.isEmpty() && box.sizes().maxCoeff() >= size_px;
+  return std::max(extent(left, right), extent(top, bottom)) >= static_cast<float>(size_px);
 }
 
 }  // namespace fusebench

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/config.hpp"
+#include "core/patch_lanes.hpp"
 #include "core/patches.hpp"
-#include "core/residuals.hpp"
 
 namespace fusebench {
 
@@ -16,33 +16,33 @@ namespace fusebench {
 void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_world_camera,
                      Deformation deformation);
 
-/// A patch pixel in the current frame (Eq. 2), in pixels of the patch level.
-struct WarpedPixel {
-  Vector2d pixel_px = Vector2d::Zero();
-  Vector3d warp_point_camera = Vector3d::Zero();  ///< what was projected (for the Jacobian)
-  double depth_m = 0;                             ///< z of the pixel's own surface point
-  bool in_image = false;  ///< in front of the camera and inside, with room to interpolate
-  bool visible = false;   ///< in_image and not occluded
-  bool covered = false;   ///< in_image, and something nearer was measured there
-};
-
-/// Projects the pixels of one level. `posed` has the camera of that level. visible = in_image until a test
-/// says otherwise.
-[[nodiscard]] std::vector<WarpedPixel> warp_level(const PatchLevel& level, const PosedCamera& posed);
+/// Projects the pixels of one level of some patches (Eq. 2). `camera` is of that level; visible = in_image
+/// until a test says otherwise. warp_points: as LevelLanes.
+void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
+                const PosedLanes& camera, std::span<WarpedLanes> warped);
 
 /// Shrink test, over all patches at once: of the pixels that land in one cell, those clearly behind the
-/// nearest become invisible (an occluder may belong to another patch). `warped[i]` are the pixels of patch i
-/// at one level.
-void test_mutual_occlusion(std::span<std::vector<WarpedPixel>> warped, int width_px, int height_px,
-                           const DepthConfig& depth);
+/// nearest become invisible (an occluder may belong to another patch).
+class MutualOcclusion {
+ public:
+  /// Of a level's image.
+  MutualOcclusion(int width_px, int height_px);
+
+  /// All pixels of the level.
+  void test(std::span<WarpedLanes> warped, const DepthConfig& depth);
+
+ private:
+  int width_px_;
+  std::vector<float> nearest_m_;  ///< by cell; infinite between tests
+};
 
 /// Against what the camera measured: a pixel whose depth differs from the measurement by more than
 /// tolerance_m is occluded or belongs to a surface that appeared. `scale` = 2^level maps pixels to the depth
 /// image.
-void test_measured_occlusion(std::span<WarpedPixel> warped, const DepthImage& depth_m, int scale,
+void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& depth_m, int scale,
                              double tolerance_m, const DepthConfig& depth);
 
 /// Bounding box of the visible pixels against the square (extend test).
-[[nodiscard]] bool is_extended(std::span<const WarpedPixel> warped, int size_px);
+[[nodiscard]] bool is_extended(std::span<const WarpedLanes> warped, int size_px);
 
 }  // namespace fusebench

@@ -2,9 +2,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
-#include "core/depth_gates.hpp"
+#include "core/image_lanes.hpp"
 #include "core/patch_scatter.hpp"
 #include "core/residuals.hpp"
 
@@ -13,20 +14,33 @@ namespace fusebench {
 namespace {
 // Patches a task: fixed, so that the work is cut alike for every number of threads.
 constexpr std::size_t kPatchesPerChunk = 8;
+constexpr std::size_t kGroupsPerChunk = 256;  // of eight pixels
+
+/// A place near the points of the patches.
+Vector3d origin_of(std::span<const Patch> patches) {
+  for (const Patch& patch : patches) {
+    for (const PatchLevel& level : patch.levels) {
+      if (!level.pixels.empty()) return level.pixels.front().point_world;
+    }
+  }
+  return Vector3d::Zero();
+}
 
 /// Information of a prior with that standard deviation; zero sigma pins the value.
 double prior_information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 1e18; }
 }  // namespace
 
 struct PatchMeasurement::PosedLevels {
-  PosedLevels(const SensorRig& rig, const PoseHypothesis& poses, int levels)
-      : by_model(rig.camera, poses.T_world_imu_by_model, rig.T_imu_camera) {
+  PosedLevels(const SensorRig& rig, const PoseHypothesis& poses, int levels, const Vector3d& origin_world)
+      : by_model(PosedCamera(rig.camera, poses.T_world_imu_by_model, rig.T_imu_camera), origin_world) {
     for (int level = 0; level < levels; ++level) {
-      at.emplace_back(camera_at_level(rig.camera, level), poses.T_world_imu_by_reference, rig.T_imu_camera);
+      at.emplace_back(
+          PosedCamera(camera_at_level(rig.camera, level), poses.T_world_imu_by_reference, rig.T_imu_camera),
+          origin_world);
     }
   }
-  std::vector<PosedCamera> at;  ///< by reference
-  PosedCamera by_model;
+  std::vector<PosedLanes> at;  ///< by reference
+  PosedLanes by_model;
 };
 
 PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, const ObservedFrame& frame,
@@ -38,25 +52,29 @@ PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, c
       patches_(patches),
       scale_(scale),
       workers_(workers),
-      warped_(static_cast<std::size_t>(config.patches.levels)),
+      origin_world_(origin_of(patches)),
       states_(patches.size()),
       outcomes_(patches.size()) {
-  for (auto& level : warped_) level.resize(patches.size());
+  for (std::size_t l = 0; l < static_cast<std::size_t>(config.patches.levels); ++l) {
+    Level& level =
+        levels_.emplace_back(Level{{}, {}, MutualOcclusion(frame.pyramid[l].width, frame.pyramid[l].height)});
+    pack(patches, l, origin_world_, config.terms.deformation, level.lanes);
+    level.fixed.resize(level.lanes.pixels.size());
+  }
 }
 
 MeasurementQuadratic PatchMeasurement::linearise(const PoseHypothesis& poses, int stage, bool gate) {
-  const int finest_level = config_.patches.levels - 1 - stage;
-  const PosedLevels posed(rig_, poses, config_.patches.levels);
-  warp_all(posed, finest_level);
+  finest_ = static_cast<std::size_t>(config_.patches.levels - 1 - stage);
+  const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
+  warp_all(posed);
   workers_.for_chunks(patches_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       outcomes_[p] = {};
-      states_[p].photometric = {};
-      states_[p].geometric = {};
-      associate_planes(p, posed, finest_level);
-      sum_photometric(p, posed, finest_level);
+      associate_planes(p, posed);
+      sum_photometric(p, posed);
       sum_geometric(p, posed);
-      if (finest_level == 0) judge_visibility(p, gate);
+      states_[p].counts = outcomes_[p].photometric_residuals + outcomes_[p].geometric_residuals > 0;
+      if (finest_ == 0) judge_visibility(p, gate);
     }
   });
   photometric_variance_ = measured_variance(&PatchState::photometric);
@@ -76,96 +94,84 @@ double PatchMeasurement::measured_variance(PoseQuadratic PatchState::*kind) cons
   return variance_factor(patch_scatter(clusters), config_.iekf.scatter_prior_freedom);
 }
 
-void PatchMeasurement::warp_all(const PosedLevels& posed, int finest_level) {
-  const bool coarse = finest_level > 0;
+void PatchMeasurement::warp_all(const PosedLevels& posed) {
+  const bool coarse = finest_ > 0;
   const double tolerance_m = (coarse ? 2.0 : 1.0) * config_.patches.occlusion_distance_m;
-  for (int level = finest_level; level < config_.patches.levels; ++level) {
-    auto& warped = warped_[static_cast<std::size_t>(level)];
-    const PosedCamera& camera = posed.at[static_cast<std::size_t>(level)];
-    workers_.for_chunks(patches_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) {
-        warped[p] = warp_level(patches_[p].levels[static_cast<std::size_t>(level)], camera);
-      }
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    LevelLanes& lanes = levels_[l].lanes;
+    const std::span<WarpedLanes> warped = lanes.warped;
+    workers_.for_chunks(warped.size(), kGroupsPerChunk, [&](std::size_t begin, std::size_t end) {
+      const std::size_t count = end - begin;
+      const std::span<const WarpPointLanes> warp_points = lanes.warp_points;
+      warp_level(std::span(lanes.pixels).subspan(begin, count),
+                 warp_points.empty() ? warp_points : warp_points.subspan(begin, count), posed.at[l],
+                 warped.subspan(begin, count));
     });
     if (!config_.terms.visibility_test) continue;
-    test_mutual_occlusion(warped, camera.camera.width_px, camera.camera.height_px, config_.depth);
-    for (auto& patch : warped) {
-      test_measured_occlusion(patch, frame_.depth_m, 1 << level, tolerance_m, config_.depth);
-    }
+    levels_[l].occlusion.test(warped, config_.depth);
+    test_measured_occlusion(warped, frame_.depth_m, 1 << l, tolerance_m, config_.depth);
   }
 }
 
-void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& posed, int finest_level) {
-  PatchState& state = states_[patch];
-  state.pairs.clear();
+void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& posed) {
   if (config_.terms.geometric_weight <= 0) return;
-  const PosedCamera& camera = posed.by_model;
-  const double min_normal_cosine = std::cos(radians(config_.geometric.max_normal_angle_deg));
-  const double min_incidence_cosine = std::cos(radians(config_.depth.max_incidence_deg));
-  for (int level = finest_level; level < config_.patches.levels; ++level) {
-    for (const PatchPixel& pixel : patches_[patch].levels[static_cast<std::size_t>(level)].pixels) {
-      // Projective association: the measurement at the pixel where the model point lands.
-      const Vector3d predicted_camera = camera.to_camera(pixel.point_world);
-      if (predicted_camera.z() <= 0) continue;
-      const Vector2d landed = camera.camera.project(predicted_camera);
-      if (!(std::abs(landed.x()) < 1e6 && std::abs(landed.y()) < 1e6)) continue;
-      const int x = static_cast<int>(std::lround(landed.x()));
-      const int y = static_cast<int>(std::lround(landed.y()));
-      if (!frame_.depth_m.contains(x, y) || frame_.depth_m(x, y) <= 0) continue;
-      const Vector3d measured_camera = camera.camera.back_project(x, y, frame_.depth_m(x, y));
-      if ((measured_camera - predicted_camera).norm() > config_.geometric.max_distance_m) continue;
-      const Vector3d normal_camera = camera.R_camera_world * pixel.normal_world;
-      const Vector3d measured_normal_camera = measured_normal(frame_.depth_m, camera.camera, x, y);
-      if (measured_normal_camera.dot(normal_camera) < min_normal_cosine) continue;
-      const double incidence_cosine = -measured_camera.normalized().dot(normal_camera);
-      if (incidence_cosine < min_incidence_cosine) continue;
-      // Depth noise acts along the ray; the plane sees its share along the normal.
-      const double along_ray_m =
-          depth_sigma_m(measured_camera.z(), config_.depth) * measured_camera.norm() / measured_camera.z();
-      state.pairs.push_back(
-          {camera.to_imu(measured_camera), pixel.point_world, pixel.normal_world,
-           scale_.geometric * std::hypot(along_ray_m * incidence_cosine, config_.geometric.model_noise_m)});
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
+      level.fixed[i].pairs = associate(posed.by_model, level.lanes.pixels[i], frame_.depth_m,
+                                       config_.geometric, config_.depth, scale_.geometric);
     }
   }
 }
 
-void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed, int finest_level) {
+float PatchMeasurement::photometric_share() const {
+  return static_cast<float>(config_.terms.photometric_weight / config_.photometric.pixels_per_measurement);
+}
+
+float PatchMeasurement::geometric_share() const {
+  return static_cast<float>(config_.terms.geometric_weight / config_.geometric.pixels_per_measurement);
+}
+
+void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed) {
   PatchState& state = states_[patch];
-  PatchOutcome& outcome = outcomes_[patch];
-  PoseQuadratic& sum = state.photometric;
-  Brightness& light = state.brightness;
-  state.active.clear();
-  light.information.setZero();
-  light.gradient.setZero();
-  light.by_pose.setZero();
-  const double noise = scale_.photometric * config_.photometric.noise_grey;
-  const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
-  for (int level = finest_level; level < config_.patches.levels; ++level) {
-    const auto l = static_cast<std::size_t>(level);
-    const auto& pixels = patches_[patch].levels[l].pixels;
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const WarpedPixel& w = warped_[l][patch][i];
-      if (!w.visible || !pixels[i].depth_confirmed) continue;
-      const IntensitySample observed = sample_bicubic(frame_.pyramid[l], w.pixel_px.x(), w.pixel_px.y());
-      const Projection projection = project_with_jacobian(posed.at[l], w.warp_point_camera);
-      const PhotometricResidual r = photometric_residual(observed, projection.jacobian, pixels[i].intensity,
-                                                         light.value.x(), light.value.y());
-      const double whitened = r.value_grey / noise;
-      const RobustValue robust = huber(whitened, config_.photometric.huber_sigmas);
-      const double weight = share * robust.weight / (noise * noise);
-      const Vector2d by_light(-pixels[i].intensity, -1.0);
-      sum.information += weight * r.jacobian.transpose() * r.jacobian;
-      sum.gradient += weight * r.value_grey * r.jacobian.transpose();
-      sum.cost += share * robust.cost;
-      light.information += weight * by_light * by_light.transpose();
-      light.gradient += weight * r.value_grey * by_light;
-      light.by_pose += weight * by_light * r.jacobian;
-      outcome.chi2_photometric += whitened * whitened;
-      outcome.robust_photometric += robust.weight * whitened * whitened;
-      ++outcome.photometric_residuals;
-      state.active.push_back({level, &pixels[i]});
+  const auto per_noise = static_cast<float>(1.0 / (scale_.photometric * config_.photometric.noise_grey));
+  const auto robust_sigmas = static_cast<float>(config_.photometric.huber_sigmas);
+  const auto gain = static_cast<float>(state.brightness.value.x());
+  const auto offset = static_cast<float>(state.brightness.value.y());
+  QuadraticSums sums;
+  BrightnessSums light;
+  FitSums fit;
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    const LevelLanes& lanes = level.lanes;
+    for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
+      const PixelLanes& pixels = lanes.pixels[i];
+      const WarpedLanes& w = lanes.warped[i];
+      const Int8 used = w.visible & pixels.depth_confirmed;
+      level.fixed[i].photometric = used;
+      if (!any(used)) continue;
+      const IntensityLanes observed =
+          sample_bicubic(frame_.pyramid[l], used ? w.x : all_lanes(1.0F), used ? w.y : all_lanes(1.0F));
+      Points point =
+          posed.at[l].to_camera(lanes.warp_points.empty() ? pixels.point : lanes.warp_points[i].point);
+      point.z = used ? point.z : all_lanes(1.0F);
+      const JacobianLanes jacobian = photometric_jacobian(posed.at[l], point, observed.dx, observed.dy);
+      const Float8 residual = observed.value - (gain * pixels.intensity + offset);
+      const Float8 whitened = residual * per_noise;
+      const RobustLanes robust = huber(whitened, robust_sigmas);
+      const Float8 weight = used ? photometric_share() * per_noise * per_noise * robust.weight : Float8{};
+      sums.add(jacobian, residual, weight, used ? photometric_share() * robust.cost : Float8{});
+      light.add(jacobian, residual, weight, pixels.intensity);
+      fit.add(whitened, robust.weight, used);
     }
   }
+  state.photometric = sums.total();
+  state.brightness.information = light.information();
+  state.brightness.gradient = light.gradient();
+  state.brightness.by_pose = light.by_pose();
+  outcomes_[patch].chi2_photometric = sum_of_lanes(fit.chi2);
+  outcomes_[patch].robust_photometric = sum_of_lanes(fit.robust);
+  outcomes_[patch].photometric_residuals = fit.count;
   reduce_brightness(state);
 }
 
@@ -189,41 +195,51 @@ double PatchMeasurement::brightness_cost(const Vector2d& value) const {
 }
 
 void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed) {
-  PatchState& state = states_[patch];
-  PatchOutcome& outcome = outcomes_[patch];
-  const double share = config_.terms.geometric_weight / config_.geometric.pixels_per_measurement;
-  for (const PlanePair& pair : state.pairs) {
-    const PlaneResidual r =
-        point_to_plane_residual(posed.by_model, pair.point_imu, pair.plane_point_world, pair.normal_world);
-    const double whitened = r.value_m / pair.sigma_m;
-    const RobustValue robust = huber(whitened, config_.geometric.huber_sigmas);
-    const double weight = share * robust.weight / (pair.sigma_m * pair.sigma_m);
-    state.geometric.information += weight * r.jacobian.transpose() * r.jacobian;
-    state.geometric.gradient += weight * r.value_m * r.jacobian.transpose();
-    state.geometric.cost += share * robust.cost;
-    outcome.chi2_geometric += whitened * whitened;
-    outcome.robust_geometric += robust.weight * whitened * whitened;
-    ++outcome.geometric_residuals;
+  const auto robust_sigmas = static_cast<float>(config_.geometric.huber_sigmas);
+  QuadraticSums sums;
+  FitSums fit;
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    const Level& level = levels_[l];
+    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
+      const PlanePairs& pairs = level.fixed[i].pairs;
+      if (!any(pairs.valid)) continue;
+      const PixelLanes& planes = level.lanes.pixels[i];
+      const Float8 per_sigma = 1.0F / (pairs.valid ? pairs.sigma_m : all_lanes(1.0F));
+      const Float8 residual_m = pairs.valid ? plane_residual(posed.by_model, pairs, planes) : Float8{};
+      const Float8 whitened = residual_m * per_sigma;
+      const RobustLanes robust = huber(whitened, robust_sigmas);
+      const Float8 weight =
+          pairs.valid ? geometric_share() * per_sigma * per_sigma * robust.weight : Float8{};
+      sums.add(plane_jacobian(posed.by_model, pairs, planes), residual_m, weight,
+               pairs.valid ? geometric_share() * robust.cost : Float8{});
+      fit.add(whitened, robust.weight, pairs.valid);
+    }
   }
+  states_[patch].geometric = sums.total();
+  outcomes_[patch].chi2_geometric = sum_of_lanes(fit.chi2);
+  outcomes_[patch].robust_geometric = sum_of_lanes(fit.robust);
+  outcomes_[patch].geometric_residuals = fit.count;
 }
 
 void PatchMeasurement::judge_visibility(std::size_t patch, bool gate) {
   PatchState& state = states_[patch];
   PatchOutcome& outcome = outcomes_[patch];
-  const auto& pixels = patches_[patch].levels.front().pixels;
-  const auto& warped = warped_.front()[patch];
+  const auto pixels = levels_.front().lanes.pixels_of(patch);
+  const auto warped = levels_.front().lanes.warped_of(patch);
+  const auto count = [](Int8 condition) { return std::popcount(lane_bits(condition)); };
   int in_image = 0;
-  double difference = 0;
+  Float8 difference{}, sum_x{}, sum_y{};
   for (std::size_t i = 0; i < warped.size(); ++i) {
-    const WarpedPixel& w = warped[i];
-    in_image += w.in_image ? 1 : 0;
-    outcome.covered_pixels += w.covered ? 1 : 0;
-    if (!w.visible) continue;
-    ++outcome.usable_pixels;
-    outcome.centre_px += w.pixel_px;
-    difference += std::abs(sample_bilinear(frame_.pyramid.front(), w.pixel_px.x(), w.pixel_px.y()).value -
-                           pixels[i].intensity);
+    const WarpedLanes& w = warped[i];
+    in_image += count(w.in_image);
+    outcome.covered_pixels += count(w.covered);
+    outcome.usable_pixels += count(w.visible);
+    sum_x += w.visible ? w.x : Float8{};
+    sum_y += w.visible ? w.y : Float8{};
+    const Float8 apart = abs(observed_at(w) - pixels[i].intensity);
+    difference += w.visible ? apart : Float8{};
   }
+  outcome.centre_px = {sum_of_lanes(sum_x), sum_of_lanes(sum_y)};
   const int square = config_.patches.size_px * config_.patches.size_px;
   outcome.in_view = in_image > 0;
   outcome.gain = state.brightness.value.x();
@@ -235,14 +251,12 @@ void PatchMeasurement::judge_visibility(std::size_t patch, bool gate) {
     // An even square [c - s/2, c + s/2) has the mean of its pixel centres half a pixel before c.
     outcome.centre_px = outcome.centre_px / outcome.usable_pixels +
                         Vector2d::Constant(config_.patches.size_px % 2 == 0 ? 0.5 : 0.0);
-    outcome.mean_error_grey = difference / outcome.usable_pixels;
+    outcome.mean_error_grey = sum_of_lanes(difference) / outcome.usable_pixels;
   }
-  const bool informative = outcome.photometric_residuals + outcome.geometric_residuals > 0;
-  outcome.accepted = outcome.tracked && informative && (!gate || is_consistent(outcome));
+  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome));
   if (!outcome.accepted) {
     // Rejected honestly: neither its residuals nor its brightness prior count.
-    state.active.clear();
-    state.pairs.clear();
+    state.counts = false;
     state.photometric = {};
     state.geometric = {};
   }
@@ -262,7 +276,7 @@ bool PatchMeasurement::is_consistent(const PatchOutcome& outcome) const {
 
 double PatchMeasurement::trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
                                     double fraction) {
-  const PosedLevels posed(rig_, poses, config_.patches.levels);
+  const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
   std::vector<double> costs(states_.size(), 0.0);
   workers_.for_chunks(states_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -270,7 +284,7 @@ double PatchMeasurement::trial_cost(const PoseHypothesis& poses, const MeasuredV
       const Vector2d light_step =
           -light.information.inverse() * (light.gradient + light.by_pose * step.head<kPoseSize>());
       light.trial = light.value + fraction * light_step;
-      costs[p] = patch_cost(states_[p], posed);
+      costs[p] = patch_cost(p, posed);
     }
   });
   double sum = 0;
@@ -278,45 +292,69 @@ double PatchMeasurement::trial_cost(const PoseHypothesis& poses, const MeasuredV
   return sum;
 }
 
-double PatchMeasurement::patch_cost(const PatchState& state, const PosedLevels& posed) const {
-  if (state.active.empty() && state.pairs.empty()) return 0;
-  double cost =
-      (brightness_cost(state.brightness.trial) + photometric_cost(state, posed)) / photometric_variance_;
-  const double share = config_.terms.geometric_weight / config_.geometric.pixels_per_measurement;
-  for (const PlanePair& pair : state.pairs) {
-    const PosedCamera& camera = posed.by_model;
-    const Vector3d point_world = camera.R_world_imu * pair.point_imu + camera.t_world_imu_m;
-    const double whitened = pair.normal_world.dot(point_world - pair.plane_point_world) / pair.sigma_m;
-    cost += share * huber(whitened, config_.geometric.huber_sigmas).cost / geometric_variance_;
-  }
-  return cost;
+double PatchMeasurement::patch_cost(std::size_t patch, const PosedLevels& posed) const {
+  const PatchState& state = states_[patch];
+  if (!state.counts) return 0;
+  return (brightness_cost(state.brightness.trial) + photometric_cost(patch, posed)) / photometric_variance_ +
+         geometric_cost(patch, posed) / geometric_variance_;
 }
 
-double PatchMeasurement::photometric_cost(const PatchState& state, const PosedLevels& posed) const {
-  const double share = config_.terms.photometric_weight / config_.photometric.pixels_per_measurement;
-  double cost = 0;
-  for (const ActivePixel& active : state.active) {
-    const auto level = static_cast<std::size_t>(active.level);
-    const GreyImage& image = frame_.pyramid[level];
-    const PosedCamera& camera = posed.at[level];
-    // A pixel that leaves the image, or passes behind the camera, keeps counting at the border: leaving must
-    // not pay.
-    Vector3d point_camera = camera.to_camera(active.pixel->warp_point_world);
-    point_camera.z() = std::max(point_camera.z(), 1e-3);
-    const Vector2d pixel = camera.camera.project(point_camera) + active.pixel->warp_offset_px;
-    const double x = std::clamp(pixel.x(), 1.0, image.width - 2.0);
-    const double y = std::clamp(pixel.y(), 1.0, image.height - 2.0);
-    const double predicted =
-        state.brightness.trial.x() * active.pixel->intensity + state.brightness.trial.y();
-    const double whitened = (sample_bicubic(image, x, y).value - predicted) /
-                            (scale_.photometric * config_.photometric.noise_grey);
-    cost += share * huber(whitened, config_.photometric.huber_sigmas).cost;
+double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& posed) const {
+  const auto robust_sigmas = static_cast<float>(config_.geometric.huber_sigmas);
+  Float8 cost{};
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    const Level& level = levels_[l];
+    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
+      const PlanePairs& pairs = level.fixed[i].pairs;
+      if (!any(pairs.valid)) continue;
+      const Float8 whitened = plane_residual(posed.by_model, pairs, level.lanes.pixels[i]) /
+                              (pairs.valid ? pairs.sigma_m : all_lanes(1.0F));
+      cost += pairs.valid ? huber(whitened, robust_sigmas).cost : Float8{};
+    }
   }
-  return cost;
+  return static_cast<double>(geometric_share()) * sum_of_lanes(cost);
+}
+
+double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
+  const auto per_noise = static_cast<float>(1.0 / (scale_.photometric * config_.photometric.noise_grey));
+  const auto robust_sigmas = static_cast<float>(config_.photometric.huber_sigmas);
+  const auto gain = static_cast<float>(states_[patch].brightness.trial.x());
+  const auto offset = static_cast<float>(states_[patch].brightness.trial.y());
+  Float8 cost{};
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    const LevelLanes& lanes = levels_[l].lanes;
+    const GreyImage& image = frame_.pyramid[l];
+    const PosedLanes& camera = posed.at[l];
+    for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
+      const Int8 used = levels_[l].fixed[i].photometric;
+      if (!any(used)) continue;
+      // A pixel that leaves the image, or passes behind the camera, keeps counting at the border: leaving
+      // must not pay.
+      const bool own_points = lanes.warp_points.empty();
+      const Points point = camera.to_camera(own_points ? lanes.pixels[i].point : lanes.warp_points[i].point);
+      const Float8 inverse_z = 1.0F / max(used ? point.z : all_lanes(1.0F), all_lanes(1e-3F));
+      Float8 x = camera.fx_px * point.x * inverse_z + camera.cx_px;
+      Float8 y = camera.fy_px * point.y * inverse_z + camera.cy_px;
+      if (!own_points) {
+        x += lanes.warp_points[i].offset_x;
+        y += lanes.warp_points[i].offset_y;
+      }
+      const Float8 observed = sample_bicubic_value(image, clamp(x, 1.0F, static_cast<float>(image.width - 2)),
+                                                   clamp(y, 1.0F, static_cast<float>(image.height - 2)));
+      const Float8 whitened = (observed - (gain * lanes.pixels[i].intensity + offset)) * per_noise;
+      cost += used ? huber(whitened, robust_sigmas).cost : Float8{};
+    }
+  }
+  return static_cast<double>(photometric_share()) * sum_of_lanes(cost);
 }
 
 void PatchMeasurement::accept() {
   for (PatchState& state : states_) state.brightness.value = state.brightness.trial;
+}
+
+Float8 PatchMeasurement::observed_at(const WarpedLanes& warped) const {
+  return sample_bilinear_value(frame_.pyramid.front(), warped.visible ? warped.x : all_lanes(1.0F),
+                               warped.visible ? warped.y : all_lanes(1.0F));
 }
 
 TrackedPixels PatchMeasurement::tracked_pixels() const {
@@ -324,15 +362,19 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     if (!outcomes_[p].tracked) continue;
     const auto& pixels = patches_[p].levels.front().pixels;
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const WarpedPixel& w = warped_.front()[p][i];
-      if (!w.visible) continue;
-      const double observed = sample_bilinear(frame_.pyramid.front(), w.pixel_px.x(), w.pixel_px.y()).value;
-      tracked.intensity.push_back({pixels[i].reference_pixel,
-                                   static_cast<float>(std::abs(observed - pixels[i].intensity)),
-                                   outcomes_[p].accepted});
-      tracked.landings.push_back({static_cast<std::uint32_t>(p), w.pixel_px.cast<float>(),
-                                  static_cast<float>(pixels[i].intensity), static_cast<float>(observed)});
+    const auto warped = levels_.front().lanes.warped_of(p);
+    for (std::size_t group = 0; group < warped.size(); ++group) {
+      const WarpedLanes& w = warped[group];
+      const Float8 observed = observed_at(w);
+      for (unsigned bits = lane_bits(w.visible); bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        const PatchPixel& pixel = pixels[group * kLanes + lane];
+        const auto reference = static_cast<float>(pixel.intensity);
+        tracked.intensity.push_back(
+            {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
+        tracked.landings.push_back(
+            {static_cast<std::uint32_t>(p), {w.x[lane], w.y[lane]}, reference, observed[lane]});
+      }
     }
   }
   return tracked;

@@ -12,6 +12,7 @@
 #include "core/intensity_residual.hpp"
 #include "core/parallel.hpp"
 #include "core/patch_deformation.hpp"
+#include "core/patch_sums.hpp"
 #include "core/patches.hpp"
 #include "core/residual_scale.hpp"
 #include "core/types.hpp"
@@ -73,40 +74,42 @@ class PatchMeasurement final : public PoseMeasurement {
     Vector2d gradient = Vector2d::Zero();
     Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
   };
-  /// A measured point and the model plane it was associated with.
-  struct PlanePair {
-    Vector3d point_imu;
-    Vector3d plane_point_world;
-    Vector3d normal_world;
-    double sigma_m = 1;
-  };
-  /// A photometric residual of the last linearisation.
-  struct ActivePixel {
-    int level = 0;
-    const PatchPixel* pixel = nullptr;
-  };
   /// Everything that the last linearisation fixed for one patch.
   struct PatchState {
     Brightness brightness;
-    std::vector<ActivePixel> active;
-    std::vector<PlanePair> pairs;
     PoseQuadratic photometric;
     PoseQuadratic geometric;
+    bool counts = false;  ///< has residuals, and was not rejected
+  };
+  /// What the last linearisation fixed for eight pixels.
+  struct FixedLanes {
+    PlanePairs pairs;
+    Int8 photometric{};  ///< pixels with a residual
+  };
+  struct Level {
+    LevelLanes lanes;
+    std::vector<FixedLanes> fixed;
+    MutualOcclusion occlusion;
   };
   /// The hypothesis for colour at all pyramid levels, and for depth.
   struct PosedLevels;
 
-  void warp_all(const PosedLevels& posed, int finest_level);
+  void warp_all(const PosedLevels& posed);
   void judge_visibility(std::size_t patch, bool gate);
-  void associate_planes(std::size_t patch, const PosedLevels& posed, int finest_level);
-  void sum_photometric(std::size_t patch, const PosedLevels& posed, int finest_level);
+  void associate_planes(std::size_t patch, const PosedLevels& posed);
+  void sum_photometric(std::size_t patch, const PosedLevels& posed);
   void sum_geometric(std::size_t patch, const PosedLevels& posed);
   void reduce_brightness(PatchState& state) const;
   [[nodiscard]] double measured_variance(PoseQuadratic PatchState::*kind) const;
   [[nodiscard]] double brightness_cost(const Vector2d& value) const;
-  [[nodiscard]] double patch_cost(const PatchState& state, const PosedLevels& posed) const;
-  [[nodiscard]] double photometric_cost(const PatchState& state, const PosedLevels& posed) const;
+  [[nodiscard]] double patch_cost(std::size_t patch, const PosedLevels& posed) const;
+  [[nodiscard]] double photometric_cost(std::size_t patch, const PosedLevels& posed) const;
+  [[nodiscard]] double geometric_cost(std::size_t patch, const PosedLevels& posed) const;
   [[nodiscard]] bool is_consistent(const PatchOutcome& outcome) const;
+  /// Grey levels of the frame at level 0 where pixels landed; anything where they are not visible.
+  [[nodiscard]] Float8 observed_at(const WarpedLanes& warped) const;
+  [[nodiscard]] float photometric_share() const;
+  [[nodiscard]] float geometric_share() const;
 
   const Config& config_;
   const SensorRig& rig_;
@@ -114,7 +117,9 @@ class PatchMeasurement final : public PoseMeasurement {
   std::span<const Patch> patches_;
   const ResidualScale scale_;
   const Workers& workers_;
-  std::vector<std::vector<std::vector<WarpedPixel>>> warped_;  ///< [level][patch][pixel]
+  Vector3d origin_world_;   ///< of the lanes' coordinates
+  std::size_t finest_ = 0;  ///< level that the last linearise() began with
+  std::vector<Level> levels_;
   std::vector<PatchState> states_;
   std::vector<PatchOutcome> outcomes_;
   double photometric_variance_ = 1;  ///< these two: factors on the claimed variance, by the last linearise()

@@ -1,6 +1,8 @@
 #include "core/patches.hpp"
 
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "core/corner_selection.hpp"
 #include "core/depth_gates.hpp"
@@ -58,18 +60,69 @@ Requests requests_of(std::span<const TrackedCentre> centres, const ReferenceFram
   return result;
 }
 
-/// True if the model's surface can stand for what the camera sees at the pixel.
-bool is_usable(const SurfacePoint& surface, const ReferenceFrame& frame, const Vector2d& pixel_px,
-               const Config& config) {
-  if (!surface.valid) return false;
-  const Vector3d ray =
-      frame.T_world_camera.rotation * frame.camera.back_project(pixel_px.x(), pixel_px.y(), 1.0).normalized();
+/// The surfaces behind pixels, each looked for where it would be usable: around what was measured, or all
+/// along the ray.
+std::vector<SurfacePoint> surfaces_at(const std::vector<Vector2d>& pixels_px, const ReferenceFrame& frame,
+                                      const TsdfVolume& model, const Config& config, const Workers& workers) {
+  // A surface at the far end of what usable_surfaces() allows has more noise than one at the measurement.
+  constexpr double kMargin = 1.5;
+  // Short rays first, so that they do not wait for long ones beside them.
+  std::vector<PixelRay> rays;
+  std::vector<PixelRay> long_rays;
+  std::vector<std::size_t> pixels;  // of the rays
+  std::vector<std::size_t> pixels_of_long;
+  for (std::size_t i = 0; i < pixels_px.size(); ++i) {
+    const Vector2d& pixel_px = pixels_px[i];
+    const double measured_m = frame.depth_m(static_cast<int>(pixel_px.x()), static_cast<int>(pixel_px.y()));
+    PixelRay ray{pixel_px.x(), pixel_px.y()};
+    if (measured_m <= 0) {
+      long_rays.push_back(ray);
+      pixels_of_long.push_back(i);
+      continue;
+    }
+    const double reach_m = kMargin * std::max(config.patches.occlusion_distance_m,
+                                              3.0 * depth_sigma_m(measured_m, config.depth));
+    ray.begin_m = static_cast<float>(measured_m - reach_m);
+    ray.end_m = static_cast<float>(measured_m + reach_m);
+    rays.push_back(ray);
+    pixels.push_back(i);
+  }
+  rays.insert(rays.end(), long_rays.begin(), long_rays.end());
+  pixels.insert(pixels.end(), pixels_of_long.begin(), pixels_of_long.end());
+  std::vector<SurfacePoint> hits;
+  raycast_pixels(model, frame.camera, frame.T_world_camera, rays, config.depth, workers, hits);
+  std::vector<SurfacePoint> surfaces(pixels_px.size());
+  for (std::size_t i = 0; i < hits.size(); ++i) surfaces[pixels[i]] = hits[i];
+  return surfaces;
+}
+
+/// What the model says of a pixel, if it can stand for what the camera sees there.
+struct UsableSurface {
+  bool valid = false;
+  Vector3d point_world = Vector3d::Zero();
+  Vector3d normal_world = Vector3d::Zero();
+};
+
+std::vector<UsableSurface> usable_surfaces(std::span<const SurfacePoint> surfaces,
+                                           const std::vector<Vector2d>& pixels_px,
+                                           const ReferenceFrame& frame, const Config& config) {
+  const Matrix3d R_world_camera = frame.T_world_camera.rotation_matrix();
   const double min_cosine = std::cos(radians(config.depth.max_incidence_deg));
-  if (-ray.dot(surface.normal_world) < min_cosine) return false;
-  const double measured_m = frame.depth_m(static_cast<int>(pixel_px.x()), static_cast<int>(pixel_px.y()));
-  const double allowed_m =
-      std::max(config.patches.occlusion_distance_m, 3.0 * depth_sigma_m(surface.depth_m, config.depth));
-  return measured_m <= 0 || std::abs(measured_m - surface.depth_m) <= allowed_m;
+  std::vector<UsableSurface> usable(surfaces.size());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const SurfacePoint& surface = surfaces[i];
+    if (!surface.valid) continue;
+    const Vector2d& pixel_px = pixels_px[i];
+    const Vector3d from_camera =
+        R_world_camera * frame.camera.back_project(pixel_px.x(), pixel_px.y(), surface.depth_m);
+    if (-from_camera.dot(surface.normal_world) < min_cosine * from_camera.norm()) continue;
+    const double measured_m = frame.depth_m(static_cast<int>(pixel_px.x()), static_cast<int>(pixel_px.y()));
+    const double allowed_m =
+        std::max(config.patches.occlusion_distance_m, 3.0 * depth_sigma_m(surface.depth_m, config.depth));
+    if (measured_m > 0 && std::abs(measured_m - surface.depth_m) > allowed_m) continue;
+    usable[i] = {true, frame.T_world_camera.translation + from_camera, surface.normal_world};
+  }
+  return usable;
 }
 
 /// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
@@ -90,9 +143,11 @@ std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& mo
                                std::span<const TrackedCentre> centres, const Config& config,
                                const Workers& workers) {
   const auto [requests, pixels] = requests_of(centres, frame, config.patches.size_px);
-  const std::vector<SurfacePoint> surfaces =
-      raycast_pixels(model, frame.camera, frame.T_world_camera, pixels, config.depth, workers);
+  const std::vector<UsableSurface> surfaces =
+      usable_surfaces(surfaces_at(pixels, frame, model, config, workers), pixels, frame, config);
 
+  const auto square =
+      static_cast<std::size_t>(config.patches.size_px) * static_cast<std::size_t>(config.patches.size_px);
   std::vector<Patch> patches(centres.size());
   for (std::size_t p = 0; p < patches.size(); ++p) {
     patches[p].centre_px = {static_cast<int>(std::lround(centres[p].pixel_px.x())),
@@ -102,20 +157,21 @@ std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& mo
   }
   for (const Request& r : requests) {
     const std::size_t i = r.surface;
-    if (!is_usable(surfaces[i], frame, pixels[i], config)) continue;
-    PatchPixel pixel;
+    if (!surfaces[i].valid) continue;
+    std::vector<PatchPixel>& level = patches[r.patch].levels[r.level].pixels;
+    if (level.empty()) level.reserve(square);
+    PatchPixel& pixel = level.emplace_back();
+    const int x = static_cast<int>(pixels[i].x());
+    const int y = static_cast<int>(pixels[i].y());
     pixel.reference_pixel =
-        static_cast<std::uint32_t>(pixels[i].y()) * static_cast<std::uint32_t>(frame.camera.width_px) +
-        static_cast<std::uint32_t>(pixels[i].x());
+        static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(frame.camera.width_px) +
+        static_cast<std::uint32_t>(x);
     pixel.intensity = frame.pyramid[r.level](r.x, r.y);
-    pixel.point_world =
-        frame.T_world_camera * frame.camera.back_project(pixels[i].x(), pixels[i].y(), surfaces[i].depth_m);
+    pixel.point_world = surfaces[i].point_world;
     pixel.normal_world = surfaces[i].normal_world;
     // A pixel of a coarse level is a mean over what lies about its own size around it.
     const int reach_px = r.level == 0 ? 0 : 1 << r.level;
-    pixel.depth_confirmed = is_one_surface(frame.depth_m, static_cast<int>(pixels[i].x()),
-                                           static_cast<int>(pixels[i].y()), reach_px, config.depth.edge_jump);
-    patches[r.patch].levels[r.level].pixels.push_back(pixel);
+    pixel.depth_confirmed = is_one_surface(frame.depth_m, x, y, reach_px, config.depth.edge_jump);
   }
   for (Patch& patch : patches) trust_model_in_holes(patch);
   return patches;
@@ -179,8 +235,8 @@ double fused_share(const TsdfVolume& model, std::span<const Patch> patches, cons
       ++count;
       if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
       const Vector3d lattice = pixel.point_world / model.voxel_m();
-      const Voxel* voxel = model.find_voxel(lattice.array().round().cast<int>());
-      if (voxel == nullptr || !(voxel->weight > 0)) continue;
+      const std::optional<Voxel> voxel = model.find_voxel(lattice.array().round().cast<int>());
+      if (!voxel || !(voxel->weight > 0)) continue;
       const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
       sum += std::min(1.0, weight / static_cast<double>(voxel->weight));
     }

@@ -23,25 +23,25 @@ namespace fusebench {
 
 namespace {
 
-/// The parts of a frame that are derived once: pyramid and trusted depth.
+/// What is derived from a frame before it is used. Its memory serves one frame after the other.
 struct PreparedFrame {
   std::vector<GreyImage> pyramid;
-  RgbdFrame frame;  ///< depth gated
+  RgbdFrame frame;             ///< motion compensated, depth gated
+  DepthImage ungated_depth_m;  ///< before that
 };
 
 /// Adds the time since its construction to one stage.
 class StageClock {
  public:
   StageClock(FrameReport& report, Stage stage)
-      : slot_(report.stage_ms[static_cast<std::size_t>(stage)]), begin_(std::chrono::steady_clock::now()) {}
-  ~StageClock() {
-    slot_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count();
-  }
+      : stages_(report.stages), stage_(stage), begin_(std::chrono::steady_clock::now()) {}
+  ~StageClock() { stages_.add({stage_, {begin_, std::chrono::steady_clock::now()}}); }
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;
 
  private:
-  double& slot_;
+  StageTimes& stages_;
+  Stage stage_;
   std::chrono::steady_clock::time_point begin_;
 };
 
@@ -76,19 +76,19 @@ struct Pipeline::State {
 
   Result<FrameReport> process(const RgbdFrame& frame);
   Result<FrameReport> process_once(const RgbdFrame& frame);
-  Result<FrameReport> restart_in_motion(const RgbdFrame& second);
+  Result<FrameReport> restart_in_motion(const RgbdFrame& second, StageTimes so_far);
   [[nodiscard]] CameraVelocity camera_velocity(const FilterState& motion) const;
   [[nodiscard]] double predicted_blur_px(const FilterState& motion) const;
   [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
   [[nodiscard]] bool settled_wrongly(const FrameReport& report) const;
-  PreparedFrame prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) const;
+  void prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report);
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
-  FrameStatus locate(const GaussianState& predicted, const PreparedFrame& prepared, FrameReport& report);
-  bool track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap, FrameReport& report);
-  bool relocalise(const GaussianState& prediction, const PreparedFrame& prepared, FrameReport& report);
-  Result<void> fuse(const PreparedFrame& prepared, FrameReport& report);
-  void refresh(const PreparedFrame& prepared, FrameReport& report);
-  void keep_place(const PreparedFrame& prepared, FrameReport& report);
+  FrameStatus locate(const GaussianState& predicted, FrameReport& report);
+  bool track(const GaussianState& prior, bool after_gap, FrameReport& report);
+  bool relocalise(const GaussianState& prediction, FrameReport& report);
+  Result<void> fuse(FrameReport& report);
+  void refresh(FrameReport& report);
+  void keep_place(FrameReport& report);
   [[nodiscard]] SE3 T_world_camera() const { return estimate->mean.T_world_imu * rig.T_imu_camera; }
 
   Config config;
@@ -96,6 +96,7 @@ struct Pipeline::State {
   std::span<const ImuSample> imu;
   const Workers& workers;
   TsdfVolume model;
+  PreparedFrame prepared;                 ///< of the current frame
   Keyframes keyframes;                    ///< fused frames, by which a lost tracker finds its place
   std::optional<GaussianState> estimate;  ///< after the last frame
   std::int64_t timestamp_ns = 0;          ///< instant of the last frame
@@ -118,12 +119,14 @@ Result<FrameReport> Pipeline::State::process(const RgbdFrame& frame) {
     return process_once(frame);
   }
   Result<FrameReport> report = process_once(frame);
-  if (first_frame && report && report->status != FrameStatus::lost) report = restart_in_motion(frame);
+  if (first_frame && report && report->status != FrameStatus::lost)
+    report = restart_in_motion(frame, report->stages);
   first_frame.reset();
   return report;
 }
 
-Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second) {
+/// so_far: what the second frame has taken; the report has all of its time and that of the first one again.
+Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second, StageTimes so_far) {
   initial_motion = estimate->mean;
   estimate.reset();
   model = TsdfVolume(config.tsdf);
@@ -132,7 +135,12 @@ Result<FrameReport> Pipeline::State::restart_in_motion(const RgbdFrame& second) 
   residual_scale = {};
   const Result<FrameReport> first = process_once(*first_frame);
   if (!first) return first;
-  return process_once(second);
+  Result<FrameReport> again = process_once(second);
+  if (!again) return again;
+  so_far.add(first->stages);
+  so_far.add(again->stages);
+  again->stages = so_far;
+  return again;
 }
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation, iterated update), 2.3
@@ -146,9 +154,9 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   const bool first = !estimate.has_value();
   const Result<GaussianState> predicted = predict(frame.capture_ns(), report);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
-  PreparedFrame prepared = prepare(frame, predicted->mean, report);
+  prepare(frame, predicted->mean, report);
 
-  const FrameStatus status = locate(*predicted, prepared, report);
+  const FrameStatus status = locate(*predicted, report);
   const bool lost = status == FrameStatus::lost;
   if (lost || first) estimate = *predicted;  // a lost frame keeps the prediction
   lost_frames = lost ? lost_frames + 1 : 0;
@@ -158,14 +166,14 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   constexpr int kMostOccludedFrames = 30;
   occluded_frames = report.health == FrameHealth::occluded ? occluded_frames + 1 : 0;
   const bool trusted = !lost && (occluded_frames == 0 || occluded_frames > kMostOccludedFrames);
-  if (trusted && moved_otherwise(*predicted)) prepared = prepare(frame, estimate->mean, report);
+  if (trusted && moved_otherwise(*predicted)) prepare(frame, estimate->mean, report);
   report.status = status;
 
   if (trusted) {
-    const Result<void> fused = fuse(prepared, report);  // Sec. 2.3: M_k(X)
+    const Result<void> fused = fuse(report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
-    refresh(prepared, report);  // Sec. 2.3: patch update
-    keep_place(prepared, report);
+    refresh(report);  // Sec. 2.3: patch update
+    keep_place(report);
   }
   report.T_world_camera = T_world_camera();
   report.estimate = in_first_camera_world(*estimate);
@@ -175,13 +183,12 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   return report;
 }
 
-FrameStatus Pipeline::State::locate(const GaussianState& predicted, const PreparedFrame& prepared,
-                                    FrameReport& report) {
+FrameStatus Pipeline::State::locate(const GaussianState& predicted, FrameReport& report) {
   if (!estimate) return FrameStatus::initialised;
   // As after a gap, nobody knows how fast a recording begins.
   const bool after_gap = lost_frames > 0 || first_frame.has_value();
-  if (track(predicted, prepared, after_gap, report)) return FrameStatus::tracked;  // Eqs. 1-5 and 15-23
-  return relocalise(predicted, prepared, report) ? FrameStatus::relocalised : FrameStatus::lost;
+  if (track(predicted, after_gap, report)) return FrameStatus::tracked;  // Eqs. 1-5 and 15-23
+  return relocalise(predicted, report) ? FrameStatus::relocalised : FrameStatus::lost;
 }
 
 CameraVelocity Pipeline::State::camera_velocity(const FilterState& motion) const {
@@ -207,16 +214,16 @@ bool Pipeline::State::moved_otherwise(const GaussianState& predicted) const {
          (now.velocity_world_mps - predicted.mean.velocity_world_mps).norm() > kMoveMps;
 }
 
-PreparedFrame Pipeline::State::prepare(const RgbdFrame& frame, const FilterState& motion,
-                                       FrameReport& report) const {
+void Pipeline::State::prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) {
   const StageClock clock(report, Stage::preprocess);
-  PreparedFrame prepared;
-  const bool compensate = config.terms.motion_compensation && needs_compensation(frame, rig.timing);
-  prepared.frame =
-      compensate ? compensate_motion(frame, rig.camera, rig.timing, camera_velocity(motion), workers) : frame;
-  prepared.pyramid = build_pyramid(prepared.frame.grey, config.patches.levels);
-  prepared.frame.depth_m = gate_depth(prepared.frame.depth_m, config.depth);
-  return prepared;
+  if (config.terms.motion_compensation && needs_compensation(frame, rig.timing)) {
+    compensate_motion(frame, rig.camera, rig.timing, camera_velocity(motion), workers, prepared.frame);
+  } else {
+    prepared.frame = frame;
+  }
+  build_pyramid(prepared.frame.grey, config.patches.levels, prepared.pyramid);
+  gate_depth(prepared.frame.depth_m, config.depth, prepared.ungated_depth_m);
+  std::swap(prepared.frame.depth_m, prepared.ungated_depth_m);
 }
 
 Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport& report) const {
@@ -255,8 +262,7 @@ bool Pipeline::State::settled_wrongly(const FrameReport& report) const {
 }
 
 /// after_gap: the prediction may be so far off that patches settle on the wrong corners.
-bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& prepared, bool after_gap,
-                            FrameReport& report) {
+bool Pipeline::State::track(const GaussianState& prior, bool after_gap, FrameReport& report) {
   const StageClock clock(report, Stage::update);
   const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
   PatchMeasurement measurement(config, rig, observed, patches, residual_scale, workers);
@@ -294,7 +300,7 @@ bool Pipeline::State::track(const GaussianState& prior, const PreparedFrame& pre
 }
 
 /// The frame may be one that a lost tracker is found by.
-void Pipeline::State::keep_place(const PreparedFrame& prepared, FrameReport& report) {
+void Pipeline::State::keep_place(FrameReport& report) {
   if (!config.terms.relocalisation) return;
   const StageClock clock(report, Stage::refresh);
   keyframes.offer(prepared.frame.grey, prepared.frame.depth_m, T_world_camera(), timestamp_ns,
@@ -302,8 +308,7 @@ void Pipeline::State::keep_place(const PreparedFrame& prepared, FrameReport& rep
 }
 
 /// Looks for the frame among those seen before, and tracks it from there with their patches.
-bool Pipeline::State::relocalise(const GaussianState& prediction, const PreparedFrame& prepared,
-                                 FrameReport& report) {
+bool Pipeline::State::relocalise(const GaussianState& prediction, FrameReport& report) {
   if (!config.terms.relocalisation || report.health == FrameHealth::dark) return false;
   std::optional<StageClock> clock(std::in_place, report, Stage::update);
   const std::optional<FoundPlace> found = keyframes.find(prepared.frame.grey);
@@ -330,10 +335,11 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
   FrameReport again;
   again.timestamp_ns = report.timestamp_ns;
   again.capture_ns = report.capture_ns;
-  again.stage_ms = report.stage_ms;
-  if (!track(resumed(prediction, place, unknown), prepared, true, again)) {
+  again.stages = report.stages;
+  if (!track(resumed(prediction, place, unknown), true, again)) {
     patches = std::move(patches_before);
     reference_ns = reference_before_ns;
+    report.stages = again.stages;
     return false;
   }
   report = std::move(again);
@@ -341,12 +347,12 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, const Prepared
   return true;
 }
 
-Result<void> Pipeline::State::fuse(const PreparedFrame& prepared, FrameReport& report) {
+Result<void> Pipeline::State::fuse(FrameReport& report) {
   const StageClock clock(report, Stage::fuse);
   return model.integrate(prepared.frame, rig.camera, T_world_camera(), config.depth, workers);
 }
 
-void Pipeline::State::refresh(const PreparedFrame& prepared, FrameReport& report) {
+void Pipeline::State::refresh(FrameReport& report) {
   const StageClock clock(report, Stage::refresh);
   const ReferenceFrame reference{prepared.pyramid, prepared.frame.depth_m, rig.camera, T_world_camera()};
   patches = refresh_patches(reference, model, survivors, config, workers);

@@ -1,207 +1,354 @@
 #include "core/raycast.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
-#include "core/tsdf_sampler.hpp"
+#include "core/tsdf_lanes.hpp"
 
 namespace fusebench {
 namespace {
 
-constexpr std::size_t kPixelsPerChunk = 256;
 constexpr std::size_t kRowsPerChunk = 4;
 // Seen from the side, the field overstates the distance; a step of less than its value rarely jumps the
 // surface, and where it jumps into the unknown, the walk repeats it in fine steps.
-constexpr double kStepShare = 0.8;
-constexpr double kFineStep_voxels = 0.5;
+constexpr float kStepShare = 0.8F;
+constexpr float kFineStep_voxels = 0.5F;
+// Further from the surface than this the nearest voxel says enough; from here on the field is interpolated.
+constexpr float kNear_voxels = 1.75F;
+// Near by, a step goes this far beyond the surface: two samples around a crossing tell it better than many
+// before it.
+constexpr float kBeyond_voxels = 0.75F;
 // The crossing is found when it is known to this, or the field is this close to zero.
-constexpr double kBracket_voxels = 0.05;
-constexpr double kZero_voxels = 0.005;
+constexpr float kBracket_voxels = 0.05F;
+constexpr float kZero_voxels = 0.02F;
+constexpr int kMostRefinements = 24;
+constexpr int kBlockShift = 3;   // voxels to blocks
+constexpr int kRegionShift = 5;  // voxels to regions
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+Float8 not_a_number() { return all_lanes(std::numeric_limits<float>::quiet_NaN()); }
 
-// The ray of a pixel by z-depth: point(z) = origin + z * direction.
-struct Ray {
-  Ray(const Vector3d& origin, const Vector3d& direction)
-      : origin_world(origin), direction_world(direction), z_per_m(1.0 / direction.norm()) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      // Parallel to a face: it is left after an astronomic way, a number rather than the NaN of 0 * infinity.
-      inverse[axis] = direction[axis] == 0.0 ? 1e300 : 1.0 / direction[axis];
-    }
+/// Eight rays by z-depth: point(z) = origin + z * direction, in voxels.
+struct Rays {
+  [[nodiscard]] Points at(Float8 z_m) const {
+    return {origin.x() + z_m * direction.x, origin.y() + z_m * direction.y, origin.z() + z_m * direction.z};
   }
 
-  [[nodiscard]] Vector3d at(double z_m) const { return origin_world + z_m * direction_world; }
-
-  // How much z-depth a point on the ray has left in the cube with this index and side; the point is in units
-  // of the side.
-  [[nodiscard]] double z_to_leave(const Vector3d& point, const Eigen::Vector3i& cube, double side_m) const {
-    double sides = std::numeric_limits<double>::infinity();
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double face = cube[axis] + (direction_world[axis] >= 0.0 ? 1 : 0);
-      sides = std::min(sides, (face - point[axis]) * inverse[axis]);
-    }
-    return sides * side_m;
+  /// How much z-depth a point on the rays has left in the cube with this index along each axis; point and
+  /// cube in units of `side` voxels.
+  [[nodiscard]] Float8 z_to_leave(const Points& point, const LatticePoints& cube, Float8 side) const {
+    const auto along = [&](Float8 from, Int8 index, Float8 inverse_step) {
+      const Float8 face = to_float(index - (inverse_step >= 0.0F));  // true is -1
+      return (face * side - from) * inverse_step;
+    };
+    return min(min(along(point.x, cube.x, inverse.x), along(point.y, cube.y, inverse.y)),
+               along(point.z, cube.z, inverse.z));
   }
 
-  Vector3d origin_world;
-  Vector3d direction_world;  // per metre of z-depth, so longer than 1 off the axis
-  double z_per_m;
-  Vector3d inverse;
+  Eigen::Vector3f origin;
+  Points direction;  // per metre of z-depth
+  Points inverse;
+  Float8 z_per_voxel;  // metres of z-depth for a voxel along the ray
 };
 
-// Casts rays of one camera one after the other.
+/// Two points of each ray with the surface between them: the field is + in front, - behind.
+struct Brackets {
+  Float8 front_z_m = not_a_number();
+  Float8 front_m{};  // field
+  Float8 back_z_m{};
+  Float8 back_m{};
+
+  [[nodiscard]] Float8 zero_of_chord() const {
+    return front_z_m + front_m / (front_m - back_m) * (back_z_m - front_z_m);
+  }
+};
+
+/// Eight rays on their way.
+struct Walk {
+  Rays rays;
+  Float8 end_m;
+  Float8 z_m;
+  Float8 free_z_m = not_a_number();  ///< of the sample before, if it was observed and in front of a surface
+  Float8 free_m{};                   ///< field there
+  Float8 careful_z_m{};              ///< up to here in fine steps
+  Int8 walking{};
+  LatticePoints voxel;  ///< nearest to the rays here
+  TsdfLanes::Location location;
+  Float8 nearest_m{};  ///< field of the voxel
+  Brackets brackets;
+};
+
+/// What eight rays meet.
+struct Hits {
+  Int8 valid{};
+  Float8 depth_m{};
+  Points normal_world{};
+};
+
+/// Eight pixels, and the part of their rays that is asked for (z-depth).
+struct PixelLanes {
+  Float8 u{};
+  Float8 v{};
+  Float8 begin_m{};
+  Float8 end_m = all_lanes(std::numeric_limits<float>::infinity());
+};
+
+// Casts rays of one camera, eight at a time, and several times eight by turns: a processor works on the steps
+// of one while it waits for the memory of another. A ray's result does not depend on those beside it.
 class RayCaster {
  public:
   RayCaster(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
             const DepthConfig& depth)
-      : sampler_(volume),
-        camera_(camera),
-        axes_world_(T_world_camera.rotation_matrix()),
-        origin_world_(T_world_camera.translation),
-        depth_(depth),
-        voxel_m_(volume.voxel_m()),
-        reach_m_(volume.reach_m()) {}
+      : camera_(camera),
+        nearest_m_(static_cast<float>(depth.min_m)),
+        farthest_m_(static_cast<float>(depth.max_m)),
+        voxel_m_(static_cast<float>(volume.voxel_m())) {
+    const double corner = std::max(camera.back_project(0, 0, 1.0).norm(),
+                                   camera.back_project(camera.width_px, camera.height_px, 1.0).norm());
+    const double reach_m = depth.max_m * corner;
+    // Also false without a finite pose.
+    if (volume.block_count() == 0 ||
+        !(T_world_camera.translation.cwiseAbs().maxCoeff() + reach_m < volume.reach_m()) ||
+        !T_world_camera.rotation.coeffs().allFinite()) {
+      return;
+    }
+    field_.emplace(volume, T_world_camera.translation, reach_m);
+    origin_ = (T_world_camera.translation / volume.voxel_m() - field_->origin_voxel()).cast<float>();
+    axes_ = (T_world_camera.rotation_matrix() / volume.voxel_m()).cast<float>();
+  }
 
-  [[nodiscard]] SurfacePoint cast(double u_px, double v_px) {
-    const Ray ray(origin_world_, axes_world_ * camera_.back_project(u_px, v_px, 1.0));
-    if (!(ray.at(depth_.max_m).cwiseAbs().maxCoeff() < reach_m_)) return {};  // also without a finite pose
-    const std::optional<double> z_m = first_crossing(ray);
-    if (!z_m) return {};
-    const Vector3d gradient = sampler_.gradient_at(ray.at(*z_m));
-    // The crossing goes into the surface; a gradient along the ray is noise at a rim, and no normal.
-    if (!(gradient.dot(ray.direction_world) < 0.0)) return {};
-    return {true, *z_m, gradient.normalized()};
+  static constexpr std::size_t kMostTurns = 8;
+
+  /// At most kMostTurns times eight pixels.
+  void cast(std::span<const PixelLanes> pixels, std::span<Hits> hits) const {
+    std::fill(hits.begin(), hits.end(), Hits{});
+    if (!field_) return;
+    std::array<Walk, kMostTurns> storage;
+    const std::span<Walk> walks = std::span(storage).first(pixels.size());
+    for (std::size_t i = 0; i < walks.size(); ++i) walks[i] = begin(pixels[i]);
+    // What reads memory that may be far away is done for all before any needs it.
+    while (std::any_of(walks.begin(), walks.end(), [](const Walk& walk) { return any(walk.walking); })) {
+      for (Walk& walk : walks) locate(walk);
+      for (Walk& walk : walks) walk.nearest_m = field_->distances_m(walk.location);
+      for (Walk& walk : walks) {
+        if (any(walk.walking)) step(walk);
+      }
+    }
+    for (std::size_t i = 0; i < walks.size(); ++i) hits[i] = hits_of(walks[i]);
   }
 
  private:
-  // Two points of a ray with the surface between them: the field is + in front, - behind.
-  struct Bracket {
-    double front_z_m;
-    double front_m;  // field
-    double back_z_m;
-    double back_m;
+  [[nodiscard]] Rays rays_of(Float8 u, Float8 v) const {
+    const Float8 x = (u - static_cast<float>(camera_.cx_px)) * static_cast<float>(1.0 / camera_.fx_px);
+    const Float8 y = (v - static_cast<float>(camera_.cy_px)) * static_cast<float>(1.0 / camera_.fy_px);
+    Rays rays;
+    rays.origin = origin_;
+    rays.direction = {axes_(0, 0) * x + axes_(0, 1) * y + axes_(0, 2),
+                      axes_(1, 0) * x + axes_(1, 1) * y + axes_(1, 2),
+                      axes_(2, 0) * x + axes_(2, 1) * y + axes_(2, 2)};
+    // Parallel to a face: it is left after an astronomic way, a number rather than the NaN of 0 * infinity.
+    const auto inverse = [](Float8 step) { return step == 0.0F ? all_lanes(1e30F) : 1.0F / step; };
+    rays.inverse = {inverse(rays.direction.x), inverse(rays.direction.y), inverse(rays.direction.z)};
+    rays.z_per_voxel = 1.0F / sqrt(rays.direction.x * rays.direction.x + rays.direction.y * rays.direction.y +
+                                   rays.direction.z * rays.direction.z);
+    return rays;
+  }
+
+  /// The field along the rays, as far as it matters to the walk.
+  struct Sample {
+    Float8 distance_m;  // NaN where it was not observed
+    Float8 empty_z_m;   // z-depth without any block, > 0 only where there is none
+    Int8 near;          // distance_m was interpolated
   };
 
-  // Walks from front to back until the field changes from + to - between two neighbouring observed samples.
-  [[nodiscard]] std::optional<double> first_crossing(const Ray& ray) {
-    const double fine_z = kFineStep_voxels * voxel_m_ * ray.z_per_m;
-    double z_m = depth_.min_m;
-    double free_z_m = kNone;  // of the sample before, if it was observed and in front of a surface
-    double free_m = 0;        // field there
-    while (z_m <= depth_.max_m) {
-      const Vector3d point = ray.at(z_m);
-      const double empty_z = z_of_empty_space(ray, point);
-      const TsdfSample sample = empty_z > 0.0 ? TsdfSample{} : sampler_.sample(point);
-      if (!std::isnan(free_z_m)) {
-        if (sample.valid && sample.distance_m < 0.0)
-          return refine(ray, {free_z_m, free_m, z_m, sample.distance_m});
-        if (!sample.valid) {
-          const std::optional<double> jumped = crossing_between(ray, free_z_m, free_m, z_m);
-          if (jumped) return jumped;
-        }
-      }
-      free_z_m = sample.valid && sample.distance_m >= 0.0 ? z_m : kNone;
-      free_m = sample.distance_m;
-      z_m += std::max({fine_z, empty_z, kStepShare * std::abs(sample.distance_m) * ray.z_per_m});
+  void locate(Walk& walk) const {
+    // Half a voxel more, so that the floor is the nearest voxel.
+    const Points at = walk.rays.at(walk.z_m);
+    walk.voxel = {floor_to_int(at.x + 0.5F), floor_to_int(at.y + 0.5F), floor_to_int(at.z + 0.5F)};
+    walk.location = field_->locate(walk.voxel);
+  }
+
+  [[nodiscard]] Sample sample(const Walk& walk) const {
+    const Int8 walking = walk.walking;
+    const Points at = walk.rays.at(walk.z_m);
+    Sample result;
+    result.distance_m = walk.nearest_m;
+    result.empty_z_m = Float8{};
+    const Int8 no_block = walk.location.slot < 0;
+    if (any(no_block & walking)) {
+      const LatticePoints& voxel = walk.voxel;
+      const Int8 shift = walk.location.no_region ? all_lanes(kRegionShift) : all_lanes(kBlockShift);
+      const Float8 left = walk.rays.z_to_leave({at.x + 0.5F, at.y + 0.5F, at.z + 0.5F},
+                                               {voxel.x >> shift, voxel.y >> shift, voxel.z >> shift},
+                                               to_float(all_lanes(1) << shift));
+      result.empty_z_m = no_block ? left : Float8{};
     }
-    return std::nullopt;
-  }
-
-  // The same in fine steps behind a free sample, as far as the field was observed.
-  [[nodiscard]] std::optional<double> crossing_between(const Ray& ray, double free_z_m, double free_m,
-                                                       double end_z_m) {
-    const double fine_z = kFineStep_voxels * voxel_m_ * ray.z_per_m;
-    for (double z_m = free_z_m + fine_z; z_m < end_z_m; z_m += fine_z) {
-      const TsdfSample sample = sampler_.sample(ray.at(z_m));
-      if (!sample.valid) break;
-      if (sample.distance_m < 0.0) return refine(ray, {z_m - fine_z, free_m, z_m, sample.distance_m});
-      free_m = sample.distance_m;
+    result.near = (abs(walk.nearest_m) < kNear_voxels * voxel_m_) & walking;
+    if (any(result.near)) {
+      const Float8 interpolated_m = field_->sample(at);
+      result.distance_m = result.near ? interpolated_m : result.distance_m;
     }
-    return std::nullopt;
+    return result;
   }
 
-  // How much z-depth a ray can skip at a point: what is left of its region or its block if nothing is
-  // allocated there, or 0.
-  [[nodiscard]] double z_of_empty_space(const Ray& ray, const Vector3d& point) {
-    const double block_m = kBlockSide * voxel_m_;
-    const Vector3d in_blocks = point * (1.0 / block_m);
-    const BlockIndex block(static_cast<int>(std::floor(in_blocks.x())),
-                           static_cast<int>(std::floor(in_blocks.y())),
-                           static_cast<int>(std::floor(in_blocks.z())));
-    const Eigen::Vector3i region = region_of(block);
-    if (!sampler_.has_region(region)) {
-      return ray.z_to_leave(in_blocks * (1.0 / kRegionSide), region, kRegionSide * block_m);
+  [[nodiscard]] Walk begin(const PixelLanes& pixels) const {
+    Walk walk;
+    walk.rays = rays_of(pixels.u, pixels.v);
+    walk.z_m = clamp(pixels.begin_m, nearest_m_, farthest_m_);
+    walk.end_m = min(pixels.end_m, all_lanes(farthest_m_));
+    walk.walking = walk.z_m <= walk.end_m;
+    return walk;
+  }
+
+  /// A step from front to back. Rays stop where the field changes from + to - between two neighbouring
+  /// observed samples.
+  void step(Walk& walk) const {
+    const Rays& rays = walk.rays;
+    const Float8 fine_z = kFineStep_voxels * rays.z_per_voxel;
+    const Float8 z_m = walk.z_m;
+    const Sample now = sample(walk);
+    const Int8 observed = now.distance_m == now.distance_m;
+    const Int8 was_free = walk.free_z_m == walk.free_z_m;
+    const Int8 careful = z_m < walk.careful_z_m;
+    const Int8 crossed = walk.walking & was_free & observed & (now.distance_m < 0.0F);
+    Brackets& brackets = walk.brackets;
+    brackets.front_z_m = crossed ? walk.free_z_m : brackets.front_z_m;
+    brackets.front_m = crossed ? walk.free_m : brackets.front_m;
+    brackets.back_z_m = crossed ? z_m : brackets.back_z_m;
+    brackets.back_m = crossed ? now.distance_m : brackets.back_m;
+    // From free space into the unknown: perhaps a surface was jumped. Once more in fine steps.
+    const Int8 repeat = was_free & ~observed & ~careful & (z_m - walk.free_z_m > 1.01F * fine_z);
+    const Int8 give_up = ~observed & careful;
+    const Int8 free = observed & (now.distance_m >= 0.0F);
+    const Float8 field_z =
+        (observed ? abs(now.distance_m) : Float8{}) * (rays.z_per_voxel * (1.0F / voxel_m_));
+    const Float8 beyond = field_z + kBeyond_voxels * rays.z_per_voxel;
+    const Float8 plain = max(max(fine_z, now.empty_z_m), now.near & free ? beyond : kStepShare * field_z);
+    const Float8 onward = careful & free ? z_m + fine_z : z_m + plain;
+    const Float8 next = repeat ? walk.free_z_m + fine_z : (give_up ? max(walk.careful_z_m, onward) : onward);
+    walk.careful_z_m = repeat ? z_m : walk.careful_z_m;
+    walk.free_z_m = free ? z_m : (repeat ? walk.free_z_m : not_a_number());
+    walk.free_m = free ? now.distance_m : walk.free_m;
+    walk.walking &= ~crossed & (next <= walk.end_m);
+    walk.z_m = walk.walking ? next : z_m;
+  }
+
+  [[nodiscard]] Hits hits_of(const Walk& walk) const {
+    const Rays& rays = walk.rays;
+    Int8 found = walk.brackets.front_z_m == walk.brackets.front_z_m;
+    if (!any(found)) return {};
+    Hits hits;
+    hits.depth_m = refined(rays, walk.brackets, found);
+    const Points gradient = field_->gradient(rays.at(found ? hits.depth_m : all_lanes(nearest_m_)));
+    // The crossing goes into the surface; a gradient along the ray is noise at a rim, and no normal.
+    const Float8 length = norm(gradient);
+    hits.valid = found & (dot(gradient, rays.direction) < 0.0F) & (length > 0.0F);
+    const Float8 unit = 1.0F / (hits.valid ? length : all_lanes(1.0F));
+    hits.normal_world = {gradient.x * unit, gradient.y * unit, gradient.z * unit};
+    return hits;
+  }
+
+  /// The zeros in the brackets: alternates the zero of the chord, which is close where the field is smooth,
+  /// with the middle, which always helps. Removes those from `found` that lie in the unknown.
+  [[nodiscard]] Float8 refined(const Rays& rays, Brackets bracket, Int8& found) const {
+    const Float8 enough_z = kBracket_voxels * rays.z_per_voxel;
+    Int8 open = found & (bracket.back_z_m - bracket.front_z_m > enough_z);
+    for (int i = 0; i < kMostRefinements && any(open); ++i) {
+      const Float8 z_m = i % 2 == 0 ? bracket.zero_of_chord() : 0.5F * (bracket.front_z_m + bracket.back_z_m);
+      const Float8 distance_m = field_->sample(rays.at(open ? z_m : all_lanes(nearest_m_)));
+      const Int8 unknown = open & (distance_m != distance_m);
+      found &= ~unknown;
+      open &= ~unknown;
+      const Int8 behind = open & (distance_m < 0.0F);
+      const Int8 in_front = open & ~behind;
+      bracket.back_z_m = behind ? z_m : bracket.back_z_m;
+      bracket.back_m = behind ? distance_m : bracket.back_m;
+      bracket.front_z_m = in_front ? z_m : bracket.front_z_m;
+      bracket.front_m = in_front ? distance_m : bracket.front_m;
+      open &=
+          (abs(distance_m) >= kZero_voxels * voxel_m_) & (bracket.back_z_m - bracket.front_z_m > enough_z);
     }
-    return sampler_.block(block) == nullptr ? ray.z_to_leave(in_blocks, block, block_m) : 0.0;
+    return found ? bracket.zero_of_chord() : all_lanes(nearest_m_);
   }
 
-  // Alternates the zero of the chord, which is close where the field is smooth, with the middle, which always
-  // helps.
-  [[nodiscard]] std::optional<double> refine(const Ray& ray, Bracket bracket) {
-    const double enough_z = kBracket_voxels * voxel_m_ * ray.z_per_m;
-    for (bool chord = true; bracket.back_z_m - bracket.front_z_m > enough_z; chord = !chord) {
-      const double z_m = chord ? zero_of_chord(bracket) : 0.5 * (bracket.front_z_m + bracket.back_z_m);
-      const TsdfSample sample = sampler_.sample(ray.at(z_m));
-      if (!sample.valid) return std::nullopt;
-      if (std::abs(sample.distance_m) < kZero_voxels * voxel_m_) return z_m;
-      if (sample.distance_m < 0.0) {
-        bracket.back_z_m = z_m;
-        bracket.back_m = sample.distance_m;
-      } else {
-        bracket.front_z_m = z_m;
-        bracket.front_m = sample.distance_m;
-      }
-    }
-    return zero_of_chord(bracket);
-  }
-
-  static double zero_of_chord(const Bracket& bracket) {
-    const double share = bracket.front_m / (bracket.front_m - bracket.back_m);
-    return bracket.front_z_m + share * (bracket.back_z_m - bracket.front_z_m);
-  }
-
-  TsdfSampler sampler_;
   const PinholeCamera& camera_;
-  Matrix3d axes_world_;
-  Vector3d origin_world_;
-  const DepthConfig& depth_;
-  double voxel_m_;
-  double reach_m_;
+  std::optional<TsdfLanes> field_;  // none if there is nothing to see
+  Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f axes_ = Eigen::Matrix3f::Zero();
+  float nearest_m_, farthest_m_;
+  float voxel_m_;
 };
+
+constexpr std::size_t kPixelsPerTurn = RayCaster::kMostTurns * kLanes;
+
+SurfacePoint surface_point(const Hits& hits, std::size_t lane) {
+  if (hits.valid[lane] == 0) return {};
+  return {true,
+          hits.depth_m[lane],
+          {hits.normal_world.x[lane], hits.normal_world.y[lane], hits.normal_world.z[lane]}};
+}
 
 }  // namespace
 
 SurfacePoint raycast_pixel(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
                            double u_px, double v_px, const DepthConfig& depth) {
-  return RayCaster(volume, camera, T_world_camera, depth).cast(u_px, v_px);
+  std::vector<SurfacePoint> points;
+  raycast_pixels(volume, camera, T_world_camera, std::vector<PixelRay>{PixelRay{u_px, v_px}}, depth,
+                 Workers(1), points);
+  return points[0];
 }
 
-std::vector<SurfacePoint> raycast_pixels(const TsdfVolume& volume, const PinholeCamera& camera,
-                                         const SE3& T_world_camera, const std::vector<Vector2d>& pixels_px,
-                                         const DepthConfig& depth, const Workers& workers) {
-  std::vector<SurfacePoint> points(pixels_px.size());
-  workers.for_chunks(pixels_px.size(), kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
-    RayCaster caster(volume, camera, T_world_camera, depth);
-    for (std::size_t i = begin; i < end; ++i) points[i] = caster.cast(pixels_px[i].x(), pixels_px[i].y());
+void raycast_pixels(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
+                    std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
+                    std::vector<SurfacePoint>& points) {
+  points.resize(pixels.size());
+  const RayCaster caster(volume, camera, T_world_camera, depth);
+  workers.for_chunks(pixels.size(), kPixelsPerTurn, [&](std::size_t begin, std::size_t end) {
+    std::array<PixelLanes, RayCaster::kMostTurns> lanes;
+    std::array<Hits, RayCaster::kMostTurns> hits;
+    for (std::size_t i = begin; i < begin + kPixelsPerTurn; ++i) {
+      const PixelRay& pixel = pixels[std::min(i, end - 1)];
+      PixelLanes& eight = lanes[(i - begin) / kLanes];
+      const std::size_t lane = (i - begin) % kLanes;
+      eight.u[lane] = static_cast<float>(pixel.u_px);
+      eight.v[lane] = static_cast<float>(pixel.v_px);
+      eight.begin_m[lane] = pixel.begin_m;
+      eight.end_m[lane] = pixel.end_m;
+    }
+    caster.cast(lanes, hits);
+    for (std::size_t i = begin; i < end; ++i) {
+      points[i] = surface_point(hits[(i - begin) / kLanes], (i - begin) % kLanes);
+    }
   });
-  return points;
 }
 
 SurfaceImage raycast_image(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
                            const DepthConfig& depth, const Workers& workers) {
   SurfaceImage image = {DepthImage(camera.width_px, camera.height_px),
                         Image<Eigen::Vector3f>(camera.width_px, camera.height_px, Eigen::Vector3f::Zero())};
+  const RayCaster caster(volume, camera, T_world_camera, depth);
   const auto rows = static_cast<std::size_t>(camera.height_px);
   workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    RayCaster caster(volume, camera, T_world_camera, depth);
+    std::array<PixelLanes, RayCaster::kMostTurns> lanes;
+    std::array<Hits, RayCaster::kMostTurns> hits;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < camera.width_px; ++x) {
-        const SurfacePoint point = caster.cast(x, y);
-        if (!point.valid) continue;
-        image.depth_m(x, y) = static_cast<float>(point.depth_m);
-        image.normal_world(x, y) = point.normal_world.cast<float>();
+      for (int first = 0; first < camera.width_px; first += static_cast<int>(kPixelsPerTurn)) {
+        for (std::size_t i = 0; i < lanes.size(); ++i) {
+          lanes[i].u = static_cast<float>(first) + static_cast<float>(i * kLanes) + kLaneNumber;
+          lanes[i].v = all_lanes(static_cast<float>(y));
+        }
+        caster.cast(lanes, hits);
+        const int count = std::min(static_cast<int>(kPixelsPerTurn), camera.width_px - first);
+        for (int i = 0; i < count; ++i) {
+          const auto place = static_cast<std::size_t>(i);
+          const SurfacePoint point = surface_point(hits[place / kLanes], place % kLanes);
+          if (!point.valid) continue;
+          image.depth_m(first + i, y) = static_cast<float>(point.depth_m);
+          image.normal_world(first + i, y) = point.normal_world.cast<float>();
+        }
       }
     }
   });

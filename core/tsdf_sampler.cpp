@@ -1,5 +1,6 @@
 #include "core/tsdf_sampler.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fusebench {
@@ -14,12 +15,14 @@ std::array<double, 8> trilinear_weights(const Vector3d& f) {
           xy[0] * f.z(), xy[1] * f.z(), xy[2] * f.z(), xy[3] * f.z()};
 }
 
-// Change of the distance from one voxel to the next at the middle of three; the outer ones may be unobserved.
-double slope(const Voxel* before, const Voxel& centre, const Voxel* after) {
-  const Voxel& low = before != nullptr ? *before : centre;
-  const Voxel& high = after != nullptr ? *after : centre;
-  const double difference_m = static_cast<double>(high.distance_m) - static_cast<double>(low.distance_m);
-  return before != nullptr && after != nullptr ? 0.5 * difference_m : difference_m;
+// Change of the distance from one voxel to the next at the middle of three; the outer ones may be unobserved
+// (NaN).
+double slope(float before_m, float centre_m, float after_m) {
+  const bool has_before = !std::isnan(before_m);
+  const bool has_after = !std::isnan(after_m);
+  const double difference_m = static_cast<double>(has_after ? after_m : centre_m) -
+                              static_cast<double>(has_before ? before_m : centre_m);
+  return has_before && has_after ? 0.5 * difference_m : difference_m;
 }
 
 VoxelIndex corner_of(const VoxelIndex& base, int corner) {
@@ -37,23 +40,20 @@ bool TsdfSampler::find_cell(const Vector3d& point_world, Cell& cell) {
 
   const VoxelIndex local(cell.base.x() & 7, cell.base.y() & 7, cell.base.z() & 7);
   if (local.maxCoeff() < kBlockSide - 1) {  // the whole cell lies in one block: two of three cells
-    const VoxelBlock* found = block(block_of(cell.base));
-    if (found == nullptr) return false;
-    const Voxel* base = found->data() + offset_in_block(cell.base);
-    constexpr std::ptrdiff_t kRow = kBlockSide;
-    constexpr std::ptrdiff_t kSlice = kBlockSide * kBlockSide;
-    cell.corner = {base,          base + 1,          base + kRow,          base + kRow + 1,
-                   base + kSlice, base + kSlice + 1, base + kSlice + kRow, base + kSlice + kRow + 1};
-    bool complete = true;
-    for (const Voxel* voxel : cell.corner) complete &= voxel->weight > 0.0F;
-    return complete;
+    const int found = slot(block_of(cell.base));
+    if (found < 0) return false;
+    const float* base_m = block_m(found) + offset_in_block(cell.base);
+    constexpr std::size_t kRow = kBlockSide;
+    constexpr std::size_t kSlice = kBlockSide * kBlockSide;
+    cell.corner_m = {base_m[0],      base_m[1],          base_m[kRow],          base_m[kRow + 1],
+                     base_m[kSlice], base_m[kSlice + 1], base_m[kSlice + kRow], base_m[kSlice + kRow + 1]};
+  } else {
+    for (int corner = 0; corner < 8; ++corner) {
+      cell.corner_m[static_cast<std::size_t>(corner)] = distance_m(corner_of(cell.base, corner));
+    }
   }
-  for (int corner = 0; corner < 8; ++corner) {
-    const Voxel* voxel = observed(corner_of(cell.base, corner));
-    if (voxel == nullptr) return false;
-    cell.corner[static_cast<std::size_t>(corner)] = voxel;
-  }
-  return true;
+  return std::none_of(cell.corner_m.begin(), cell.corner_m.end(),
+                      [](float corner_m) { return std::isnan(corner_m); });
 }
 
 TsdfSample TsdfSampler::sample(const Vector3d& point_world) {
@@ -62,17 +62,17 @@ TsdfSample TsdfSampler::sample(const Vector3d& point_world) {
   const std::array<double, 8> weights = trilinear_weights(cell.fraction);
   double distance_m = 0;
   for (std::size_t corner = 0; corner < 8; ++corner) {
-    distance_m += weights[corner] * static_cast<double>(cell.corner[corner]->distance_m);
+    distance_m += weights[corner] * static_cast<double>(cell.corner_m[corner]);
   }
   return {true, distance_m};
 }
 
 Vector3d TsdfSampler::gradient(const VoxelIndex& index) {
-  const Voxel* centre = observed(index);
+  const float centre_m = distance_m(index);
   Vector3d gradient = Vector3d::Zero();
-  for (Eigen::Index axis = 0; axis < 3 && centre != nullptr; ++axis) {
+  for (Eigen::Index axis = 0; axis < 3 && !std::isnan(centre_m); ++axis) {
     const VoxelIndex unit = VoxelIndex::Unit(axis);
-    gradient[axis] = slope(observed(index - unit), *centre, observed(index + unit)) * per_voxel_;
+    gradient[axis] = slope(distance_m(index - unit), centre_m, distance_m(index + unit)) * per_voxel_;
   }
   return gradient;
 }
@@ -89,10 +89,10 @@ Vector3d TsdfSampler::gradient_at(const Vector3d& point_world) {
       if ((corner & bit) != 0) continue;
       // Four voxels in a row along the axis: the outer two may be unobserved, the inner two are corners.
       const VoxelIndex at = corner_of(cell.base, static_cast<int>(corner));
-      const Voxel* low = cell.corner[corner];
-      const Voxel* high = cell.corner[corner | bit];
-      sum[axis] += weights[corner] * slope(observed(at - unit), *low, high) +
-                   weights[corner | bit] * slope(low, *high, observed(at + 2 * unit));
+      const float low_m = cell.corner_m[corner];
+      const float high_m = cell.corner_m[corner | bit];
+      sum[axis] += weights[corner] * slope(distance_m(at - unit), low_m, high_m) +
+                   weights[corner | bit] * slope(low_m, high_m, distance_m(at + 2 * unit));
     }
   }
   return sum * per_voxel_;

@@ -16,34 +16,26 @@ class TsdfSampler {
   explicit TsdfSampler(const TsdfVolume& volume)
       : volume_(volume), per_voxel_(1.0 / volume.voxel_m()), reach_m_(volume.reach_m()) {}
 
-  /// The block at these lattice coordinates, or nullptr.
-  [[nodiscard]] const VoxelBlock* block(const BlockIndex& index) {
+  /// The slot of the block at these lattice coordinates, or -1.
+  [[nodiscard]] int slot(const BlockIndex& index) {
     // Neighbouring blocks differ in the parity of a coordinate, so those around a point never evict each
     // other.
     Remembered& entry =
         remembered_[static_cast<std::size_t>((index.x() & 1) | (index.y() & 1) << 1 | (index.z() & 1) << 2)];
-    if (entry.index != index) {
-      const int slot = volume_.find_block(index);
-      entry = {index, slot < 0 ? nullptr : &volume_.block(static_cast<std::size_t>(slot))};
-    }
-    return entry.block;
+    if (entry.index != index) entry = {index, volume_.find_block(index)};
+    return entry.slot;
   }
 
-  /// As TsdfVolume::has_region.
-  [[nodiscard]] bool has_region(const Eigen::Vector3i& region) {
-    if (region != region_) {
-      region_ = region;
-      region_exists_ = volume_.has_region(region);
-    }
-    return region_exists_;
+  /// The distance at a voxel (metres); NaN if it was not observed.
+  [[nodiscard]] float distance_m(const VoxelIndex& index) {
+    const int found = slot(block_of(index));
+    return found < 0 ? std::numeric_limits<float>::quiet_NaN() : block_m(found)[offset_in_block(index)];
   }
 
-  /// The voxel if it was observed, otherwise nullptr.
-  [[nodiscard]] const Voxel* observed(const VoxelIndex& index) {
-    const VoxelBlock* found = block(block_of(index));
-    if (found == nullptr) return nullptr;
-    const Voxel& voxel = (*found)[offset_in_block(index)];
-    return voxel.weight > 0.0F ? &voxel : nullptr;
+  /// All of a voxel; one that was never observed where no block is allocated.
+  [[nodiscard]] Voxel voxel(const VoxelIndex& index) {
+    const int found = slot(block_of(index));
+    return found < 0 ? Voxel{} : volume_.voxel(static_cast<std::size_t>(found), offset_in_block(index));
   }
 
   /// Trilinear interpolation of the distance at a world point (metres); invalid unless all eight neighbours
@@ -62,14 +54,17 @@ class TsdfSampler {
   struct Remembered {
     BlockIndex index =
         BlockIndex::Constant(std::numeric_limits<int>::max());  // no block: nothing reaches that far
-    const VoxelBlock* block = nullptr;
+    int slot = -1;
   };
   struct Cell {
-    VoxelIndex base;                     // lower corner
-    Vector3d fraction;                   // position in the cell, in [0, 1)
-    std::array<const Voxel*, 8> corner;  // bit 0 of the number: x, bit 1: y, bit 2: z
+    VoxelIndex base;                // lower corner
+    Vector3d fraction;              // position in the cell, in [0, 1)
+    std::array<float, 8> corner_m;  // bit 0 of the number: x, bit 1: y, bit 2: z
   };
 
+  [[nodiscard]] const float* block_m(int slot) const {
+    return volume_.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels;
+  }
   /// False where a corner was not observed.
   [[nodiscard]] bool find_cell(const Vector3d& point_world, Cell& cell);
 
@@ -77,8 +72,6 @@ class TsdfSampler {
   double per_voxel_;
   double reach_m_;
   std::array<Remembered, 8> remembered_;
-  Eigen::Vector3i region_ = Eigen::Vector3i::Constant(std::numeric_limits<int>::max());
-  bool region_exists_ = false;
 };
 
 }  // namespace fusebench

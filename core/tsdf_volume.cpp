@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 
-#include "core/band_blocks.hpp"
 #include "core/depth_gates.hpp"
 #include "core/tsdf_sampler.hpp"
 #include "core/voxel_update.hpp"
@@ -13,6 +13,7 @@ namespace fusebench {
 namespace {
 
 constexpr std::size_t kBlocksPerChunk = 32;
+constexpr std::size_t kColorPlanes = 4;
 
 }  // namespace
 
@@ -36,55 +37,96 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
                 "the estimate has diverged before this frame");
   }
 
-  const std::vector<BlockIndex> touched = band_blocks(frame.depth_m, camera, T_world_camera,
-                                                      kBlockSide * config_.voxel_m, config_, depth, workers);
-  const Result<std::vector<int>> slots = allocate(touched);
-  if (!slots) return tl::unexpected(slots.error());
+  touched_.find(frame.depth_m, camera, T_world_camera, kBlockSide * config_.voxel_m, config_, depth, workers);
+  const Result<void> allocated = allocate();
+  if (!allocated) return allocated;
 
   const VoxelUpdate update(frame, camera, T_world_camera, depth, config_);
+  const std::vector<BlockIndex>& touched = touched_.blocks();
   workers.for_chunks(touched.size(), kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      update.apply(touched[i], blocks_[static_cast<std::size_t>((*slots)[i])]);
+      update.apply(touched[i], block(static_cast<std::size_t>(touched_slots_[i])));
     }
   });
   return {};
 }
 
 // Slots of the touched blocks; those that are missing get new ones, all of them or none.
-Result<std::vector<int>> TsdfVolume::allocate(const std::vector<BlockIndex>& touched) {
-  std::vector<int> slots(touched.size());
+Result<void> TsdfVolume::allocate() {
+  const std::vector<BlockIndex>& touched = touched_.blocks();
+  touched_slots_.resize(touched.size());
   std::size_t added = 0;
   for (std::size_t i = 0; i < touched.size(); ++i) {
-    slots[i] = table_.find(touched[i]);
-    if (slots[i] < 0) ++added;
+    touched_slots_[i] = table_.find(touched[i]);
+    if (touched_slots_[i] < 0) ++added;
   }
-  if (blocks_.size() + added > static_cast<std::size_t>(config_.max_blocks)) {
+  if (block_count() + added > static_cast<std::size_t>(config_.max_blocks)) {
     return fail(ErrorCode::run_failed,
                 fmt::format("the model is full: tsdf.max_blocks = {}, and this "
                             "frame needs {} more than the {} in use",
-                            config_.max_blocks, added, blocks_.size()),
+                            config_.max_blocks, added, block_count()),
                 "raise tsdf.max_blocks (about 8 kB each), enlarge "
                 "tsdf.voxel_m, or lower depth.max_m");
   }
   for (std::size_t i = 0; i < touched.size(); ++i) {
-    if (slots[i] >= 0) continue;
-    slots[i] = static_cast<int>(blocks_.size());
-    table_.insert(touched[i]);
-    regions_.insert(region_of(touched[i]));
-    indices_.push_back(touched[i]);
-    blocks_.emplace_back();
+    if (touched_slots_[i] >= 0) continue;
+    touched_slots_[i] = static_cast<int>(block_count());
+    add_block(touched[i]);
   }
-  return slots;
+  return {};
+}
+
+void TsdfVolume::add_block(const BlockIndex& index) {
+  const std::size_t begin = block_count() * kBlockVoxels;
+  const std::size_t end = begin + kBlockVoxels;
+  distances_m_.grow_to(end);
+  weights_.grow_to(end);
+  colors_.grow_to(kColorPlanes * end);
+  std::fill_n(distances_m_.data() + begin, kBlockVoxels, std::numeric_limits<float>::quiet_NaN());
+  std::fill_n(weights_.data() + begin, kBlockVoxels, 0.0F);
+  std::fill_n(colors_.data() + kColorPlanes * begin, kColorPlanes * kBlockVoxels, std::uint16_t{0});
+  const Eigen::Vector3i region = region_of(index);
+  if (regions_.insert(region)) {
+    region_indices_.push_back(region);
+    region_slots_.insert(region_slots_.end(), kRegionBlocks, -1);
+  }
+  const BlockIndex in_region = index - region * kRegionSide;
+  const auto place =
+      static_cast<std::size_t>(in_region.x() + kRegionSide * (in_region.y() + kRegionSide * in_region.z()));
+  region_slots_[static_cast<std::size_t>(regions_.find(region)) * kRegionBlocks + place] =
+      static_cast<std::int32_t>(block_count());
+  table_.insert(index);
+  indices_.push_back(index);
+}
+
+BlockVoxels TsdfVolume::block(std::size_t slot) {
+  const std::size_t begin = slot * kBlockVoxels;
+  std::uint16_t* const colors = colors_.data() + kColorPlanes * begin;
+  return {distances_m_.data() + begin,
+          weights_.data() + begin,
+          {colors, colors + kBlockVoxels, colors + 2 * kBlockVoxels},
+          colors + 3 * kBlockVoxels};
+}
+
+Voxel TsdfVolume::voxel(std::size_t slot, std::size_t offset) const {
+  const std::size_t at = slot * kBlockVoxels + offset;
+  const std::uint16_t* const colors = colors_.data() + kColorPlanes * slot * kBlockVoxels + offset;
+  return {distances_m_.data()[at],
+          weights_.data()[at],
+          {colors[0], colors[kBlockVoxels], colors[2 * kBlockVoxels]},
+          colors[3 * kBlockVoxels]};
 }
 
 std::size_t TsdfVolume::memory_bytes() const {
-  return blocks_.size() * sizeof(VoxelBlock) + indices_.capacity() * sizeof(BlockIndex) +
-         table_.memory_bytes() + regions_.memory_bytes();
+  return distances_m_.memory_bytes() + weights_.memory_bytes() + colors_.memory_bytes() +
+         indices_.capacity() * sizeof(BlockIndex) + table_.memory_bytes() + regions_.memory_bytes() +
+         region_slots_.capacity() * sizeof(std::int32_t);
 }
 
-const Voxel* TsdfVolume::find_voxel(const VoxelIndex& index) const {
+std::optional<Voxel> TsdfVolume::find_voxel(const VoxelIndex& index) const {
   const int slot = table_.find(block_of(index));
-  return slot < 0 ? nullptr : &blocks_[static_cast<std::size_t>(slot)][offset_in_block(index)];
+  if (slot < 0) return std::nullopt;
+  return voxel(static_cast<std::size_t>(slot), offset_in_block(index));
 }
 
 TsdfSample TsdfVolume::sample(const Vector3d& point_world) const {

@@ -5,12 +5,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <limits>
+#include <optional>
 #include <vector>
 
+#include "core/band_blocks.hpp"
 #include "core/block_table.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
+#include "core/growing_array.hpp"
 #include "core/parallel.hpp"
 #include "core/types.hpp"
 
@@ -18,6 +21,7 @@ namespace fusebench {
 
 inline constexpr int kBlockSide = 8;   ///< voxels
 inline constexpr int kRegionSide = 4;  ///< blocks
+inline constexpr std::size_t kRegionBlocks = kRegionSide * kRegionSide * kRegionSide;
 inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 
 /// One sample of the field, at the lattice point (ix, iy, iz) * voxel_m of the world.
@@ -27,8 +31,8 @@ inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 /// band is at least two voxels, so the voxels next to the surface are never clamped, and the zero level is
 /// the same either way.
 struct Voxel {
-  float distance_m = 0.0F;               ///< signed distance; means nothing while weight is 0
-  float weight = 0.0F;                   ///< 0 = never observed
+  float distance_m = std::numeric_limits<float>::quiet_NaN();  ///< signed; NaN = never observed
+  float weight = 0.0F;                                         ///< 0 = never observed
   std::array<std::uint16_t, 3> color{};  ///< running mean of red, green, blue in 1/256 of a level (0-255)
   std::uint16_t color_count = 0;         ///< observations in the mean (saturates); 0 = no colour
 
@@ -36,8 +40,16 @@ struct Voxel {
   [[nodiscard]] Eigen::Vector3f rgb() const { return Eigen::Vector3f(color[0], color[1], color[2]) / 256.0F; }
 };
 
-using VoxelIndex = Eigen::Vector3i;                  ///< lattice coordinates of a voxel
-using VoxelBlock = std::array<Voxel, kBlockVoxels>;  ///< x fastest, then y, then z
+using VoxelIndex = Eigen::Vector3i;  ///< lattice coordinates of a voxel
+
+/// The voxels of one block where they are stored: each of these points to kBlockVoxels values, x fastest,
+/// then y, then z. What is read together lies together: rays read distances alone, and colour is seldom read.
+struct BlockVoxels {
+  float* distance_m = nullptr;
+  float* weight = nullptr;
+  std::array<std::uint16_t*, 3> color{};
+  std::uint16_t* color_count = nullptr;
+};
 
 /// Interpolated field at a point.
 struct TsdfSample {
@@ -66,17 +78,24 @@ class TsdfVolume {
                                        const Workers& workers);
 
   [[nodiscard]] double voxel_m() const { return config_.voxel_m; }
-  [[nodiscard]] std::size_t block_count() const { return blocks_.size(); }
+  [[nodiscard]] std::size_t block_count() const { return indices_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
   [[nodiscard]] const std::vector<BlockIndex>& block_indices() const { return indices_; }
-  [[nodiscard]] const VoxelBlock& block(std::size_t slot) const { return blocks_[slot]; }
+  /// The voxel at an offset (offset_in_block) of a block.
+  [[nodiscard]] Voxel voxel(std::size_t slot, std::size_t offset) const;
+  /// Distances of all blocks by slot, kBlockVoxels each; NaN = never observed.
+  [[nodiscard]] const float* distances_m() const { return distances_m_.data(); }
+  [[nodiscard]] const float* weights() const { return weights_.data(); }
 
   /// Slot of a block in storage order, or -1.
   [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }
-  /// Whether any block of a region is allocated; regions are cubes of 4x4x4 blocks: floor(block / 4).
-  [[nodiscard]] bool has_region(const Eigen::Vector3i& region) const { return regions_.find(region) >= 0; }
-  /// The voxel at a lattice point, or nullptr where no block is allocated.
-  [[nodiscard]] const Voxel* find_voxel(const VoxelIndex& index) const;
+  /// Number of a region with an allocated block, or -1; regions are cubes of 4x4x4 blocks: floor(block / 4).
+  [[nodiscard]] int find_region(const Eigen::Vector3i& region) const { return regions_.find(region); }
+  [[nodiscard]] const std::vector<Eigen::Vector3i>& region_indices() const { return region_indices_; }
+  /// Slots of the 64 blocks (x fastest) of each region by its number, -1 = none.
+  [[nodiscard]] const std::int32_t* region_slots() const { return region_slots_.data(); }
+  /// The voxel at a lattice point; nothing where no block is allocated.
+  [[nodiscard]] std::optional<Voxel> find_voxel(const VoxelIndex& index) const;
   /// Trilinear interpolation of the distance at a world point (metres). For many points see TsdfSampler.
   [[nodiscard]] TsdfSample sample(const Vector3d& point_world) const;
   /// Half width of the band (metres) of the voxels updated at this depth: tsdf.truncation_m, two voxels, or
@@ -88,13 +107,21 @@ class TsdfVolume {
   [[nodiscard]] double reach_m() const { return config_.voxel_m * (1 << 30); }
 
  private:
-  [[nodiscard]] Result<std::vector<int>> allocate(const std::vector<BlockIndex>& touched);
+  [[nodiscard]] Result<void> allocate();
+  void add_block(const BlockIndex& index);
+  [[nodiscard]] BlockVoxels block(std::size_t slot);
 
   TsdfConfig config_;
-  BlockTable table_;                 // block -> slot
-  BlockTable regions_;               // those with a block, so that rays cross empty space in large steps
-  std::vector<BlockIndex> indices_;  // by slot
-  std::deque<VoxelBlock> blocks_;    // by slot; a deque never moves gigabytes when it grows
+  BlockTable table_;    // block -> slot
+  BlockTable regions_;  // those with a block, so that rays cross empty space in large steps
+  std::vector<Eigen::Vector3i> region_indices_;
+  std::vector<std::int32_t> region_slots_;
+  std::vector<BlockIndex> indices_;  // by slot, as all that follow
+  GrowingArray<float> distances_m_;
+  GrowingArray<float> weights_;
+  GrowingArray<std::uint16_t> colors_;  // of a block: all red, all green, all blue, all counts
+  BandBlocks touched_;                  // by the last frame
+  std::vector<int> touched_slots_;
 };
 
 /// Lattice arithmetic. Right shifts of negative numbers round down in C++20, as floor() would.

@@ -13,21 +13,20 @@ class VoxelUpdate {
   VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
               const DepthConfig& depth, const TsdfConfig& tsdf);
 
-  void apply(const BlockIndex& index, VoxelBlock& block) const;
+  void apply(const BlockIndex& index, const BlockVoxels& block) const;
 
  private:
-  void observe_row(Float8 x_m, Float8 y_m, Float8 z_m, Voxel* row) const;
-  void fuse_row(Float8 distance_m, Float8 weight, Int8 observed, Voxel* row) const;
-  [[nodiscard]] Float8 sigma_m(Float8 depth_m) const;
-  void add_color(const Rgb& observed, Voxel& voxel) const;
+  void observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVoxels& block, std::size_t row) const;
+  void add_color(Int8 pixel, Int8 colored, const BlockVoxels& block, std::size_t row) const;
 
   const RgbdFrame& frame_;
-  const DepthConfig& depth_;
   SE3 T_camera_world_;
   double voxel_m_;
   Eigen::Matrix3f step_camera_;  // columns: one voxel along each axis of the
                                  // world, in the camera frame
   float fx_, fy_, cx_, cy_;      // pixels
+  float nearest_m_, farthest_m_;
+  float noise_floor_m_, noise_quadratic_per_m_, noise_offset_m_;  // depth noise
   float truncation_m_;
   float truncation_sigmas_;
   float voxel_variance_;  // m^2

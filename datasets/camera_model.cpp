@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
 
 namespace fusebench {
 
 namespace {
-
-// OpenCV's fixed-point maps count 1/32 pixels.
-constexpr int kFractionBits = cv::INTER_BITS;
-constexpr int kFractions = cv::INTER_TAB_SIZE;
 
 /// distort() and its derivative, which Newton's method needs.
 struct DistortedPoint {
@@ -60,30 +55,21 @@ Undistortion::Undistortion(const CalibratedCamera& camera)
   const int height = camera_.height_px;
   check(width > 0 && height > 0, "undistortion needs the size of the images");
   if (identity_) return;
-  source_pixel_ = {width, height};
-  source_fraction_ = {width, height};
-  nearest_.assign(source_pixel_.data.size(), -1);
+  color_ = BilinearMap(width, height);
+  nearest_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const Vector3d ray = camera_.back_project(x, y, 1.0);
       const Vector2d distorted = camera.distortion.distort(ray.head<2>());
-      // Coordinates far outside would overflow the 16-bit map; the border is replicated, so clamping changes
-      // nothing.
+      // Far outside would overflow; there, the border is as good as anything.
       const double u = std::clamp(camera_.fx_px * distorted.x() + camera_.cx_px, -2.0, width + 1.0);
       const double v = std::clamp(camera_.fy_px * distorted.y() + camera_.cy_px, -2.0, height + 1.0);
-      const long u32 = std::lround(u * kFractions);
-      const long v32 = std::lround(v * kFractions);
-      // >> and & floor and wrap also below zero.
-      source_pixel_(x, y) = {static_cast<std::int16_t>(u32 >> kFractionBits),
-                             static_cast<std::int16_t>(v32 >> kFractionBits)};
-      source_fraction_(x, y) =
-          static_cast<std::uint16_t>((v32 & (kFractions - 1)) * kFractions + (u32 & (kFractions - 1)));
+      color_.add(static_cast<std::int32_t>(std::lround(u * BilinearMap::kFractions)),
+                 static_cast<std::int32_t>(std::lround(v * BilinearMap::kFractions)));
       const auto nearest_x = static_cast<int>(std::lround(u));
       const auto nearest_y = static_cast<int>(std::lround(v));
-      if (source_pixel_.contains(nearest_x, nearest_y)) {
-        nearest_[source_pixel_.index(x, y)] =
-            static_cast<std::int32_t>(source_pixel_.index(nearest_x, nearest_y));
-      }
+      const bool inside = nearest_x >= 0 && nearest_y >= 0 && nearest_x < width && nearest_y < height;
+      nearest_.push_back(inside ? nearest_y * width + nearest_x : -1);
     }
   }
 }
@@ -91,17 +77,7 @@ Undistortion::Undistortion(const CalibratedCamera& camera)
 ColorImage Undistortion::undistort_color(const ColorImage& distorted) const {
   check(distorted.width == camera_.width_px && distorted.height == camera_.height_px,
         "the image has the size of its camera");
-  if (identity_) return distorted;
-  ColorImage result(distorted.width, distorted.height);
-  // cv::Mat has no view of constant data; remap() does not write to its source and maps.
-  const auto view = [&](int type, const void* data) {
-    return cv::Mat(distorted.height, distorted.width, type, const_cast<void*>(data));
-  };
-  const cv::Mat source = view(CV_8UC3, distorted.data.data());
-  cv::Mat target = view(CV_8UC3, result.data.data());
-  cv::remap(source, target, view(CV_16SC2, source_pixel_.data.data()),
-            view(CV_16UC1, source_fraction_.data.data()), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  return result;
+  return identity_ ? distorted : color_.apply(distorted);
 }
 
 DepthImage Undistortion::undistort_depth(const DepthImage& distorted_m) const {

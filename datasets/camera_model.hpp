@@ -6,6 +6,7 @@
 
 #include "core/image.hpp"
 #include "core/types.hpp"
+#include "datasets/bilinear_map.hpp"
 
 namespace fusebench {
 
@@ -56,9 +57,8 @@ class Undistortion {
  private:
   PinholeCamera camera_;
   bool identity_ = false;
-  Image<std::array<std::int16_t, 2>> source_pixel_;  ///< upper left neighbour of the source (x, y)
-  Image<std::uint16_t> source_fraction_;  ///< row-major index into OpenCV's 32 x 32 table of weights
-  std::vector<std::int32_t> nearest_;     ///< index of the nearest source pixel, -1 outside
+  BilinearMap color_;
+  std::vector<std::int32_t> nearest_;  ///< index of the nearest source pixel, -1 outside
 };
 
 }  // namespace fusebench

@@ -1,17 +1,21 @@
 #include "datasets/plain_png.hpp"
 
-#include <libdeflate.h>
+#include <isa-l/crc.h>
+#include <isa-l/igzip_lib.h>
 
+#include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <memory>
-#include <string>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "datasets/png_filters.hpp"
 
 namespace fusebench {
 
@@ -26,16 +30,31 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
+/// Bytes that nobody has to set before they are written, unlike those of a vector.
+struct Buffer {
+  std::size_t size = 0;
+  std::unique_ptr<std::uint8_t[]> bytes;
+
+  explicit Buffer(std::size_t count)
+      : size(count), bytes(std::make_unique_for_overwrite<std::uint8_t[]>(count)) {}
+  [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.get()), size}; }
+};
+
 /// Empty if it cannot be read; folders and devices have no content of a known size.
-std::string content_of(const std::filesystem::path& file) {
+Buffer content_of(const std::filesystem::path& file) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return {};
+  if (!std::filesystem::is_regular_file(file, error)) return Buffer(0);
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) return {};
-  std::string content(size, '\0');
+  if (error) return Buffer(0);
+  Buffer content(size);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(content.data(), static_cast<std::streamsize>(size))) return {};
-  return content;
+  stream.read(reinterpret_cast<char*>(content.bytes.get()), static_cast<std::streamsize>(size));
+  return stream ? std::move(content) : Buffer(0);
+}
+
+/// As PNG and gzip define it.
+std::uint32_t checksum(std::string_view bytes) {
+  return crc32_gzip_refl(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
 }
 
 struct Chunk {
@@ -50,8 +69,7 @@ std::optional<Chunk> take_chunk(std::string_view& rest) {
   if (rest.size() < kFrame) return std::nullopt;
   const std::size_t length = big_endian(rest);
   if (rest.size() - kFrame < length) return std::nullopt;
-  if (libdeflate_crc32(0, rest.data() + 4, 4 + length) != big_endian(rest.substr(8 + length)))
-    return std::nullopt;
+  if (checksum(rest.substr(4, 4 + length)) != big_endian(rest.substr(8 + length))) return std::nullopt;
   const Chunk chunk{rest.substr(4, 4), rest.substr(8, length)};
   rest.remove_prefix(kFrame + length);
   return chunk;
@@ -60,22 +78,31 @@ std::optional<Chunk> take_chunk(std::string_view& rest) {
 /// Everything between signature and end.
 struct Chunks {
   std::string_view header;
-  std::string pixels;  ///< compressed
+  std::span<std::uint8_t> pixels;  ///< compressed
 };
 
-std::optional<Chunks> read_chunks(std::string_view rest) {
+/// Moves a chunk's data behind what is joined already; it lies behind that in the same content.
+void join(std::string_view data, Buffer& content, std::span<std::uint8_t>& joined) {
+  const auto at = static_cast<std::size_t>(data.data() - content.text().data());
+  std::uint8_t* const begin = joined.empty() ? &content.bytes[at] : joined.data();
+  std::memmove(begin + joined.size(), data.data(), data.size());
+  joined = {begin, joined.size() + data.size()};
+}
+
+/// Joins the pixels of all chunks: then the content holds nothing else of use but the header.
+std::optional<Chunks> join_chunks(Buffer& content) {
+  std::string_view rest = content.text();
   if (!rest.starts_with(kSignature)) return std::nullopt;
   rest.remove_prefix(kSignature.size());
   const std::optional<Chunk> first = take_chunk(rest);
   if (!first || first->type != "IHDR" || first->data.size() != kHeaderBytes) return std::nullopt;
   Chunks chunks{first->data, {}};
-  chunks.pixels.reserve(rest.size());
   bool after_pixels = false;  // they must not be interrupted
   while (const std::optional<Chunk> chunk = take_chunk(rest)) {
     if (chunk->type == "IEND") return chunks;
     if (chunk->type == "IDAT") {
       if (after_pixels) return std::nullopt;
-      chunks.pixels += chunk->data;
+      join(chunk->data, content, chunks.pixels);
       continue;
     }
     after_pixels = !chunks.pixels.empty();
@@ -86,109 +113,67 @@ std::optional<Chunks> read_chunks(std::string_view rest) {
   return std::nullopt;
 }
 
-/// Rows of samples, each behind the number of its filter.
-struct FilteredRows {
-  std::size_t height = 0;
-  std::size_t row_bytes = 0;
-  std::unique_ptr<std::uint8_t[]> bytes;
-
-  [[nodiscard]] std::uint8_t* row(std::size_t y) { return bytes.get() + y * (row_bytes + 1) + 1; }
-  [[nodiscard]] std::uint8_t filter(std::size_t y) { return row(y)[-1]; }
-};
-
-std::optional<FilteredRows> inflate(const Chunks& chunks, std::size_t height, std::size_t row_bytes) {
+/// None if the compressed stream is damaged, which its checksum tells, or does not hold exactly this much.
+std::optional<Buffer> inflate(std::span<std::uint8_t> compressed, std::size_t size) {
   // A header may claim any size, but one byte makes at most 1032.
   constexpr std::size_t kMostPerByte = 1032;
-  const std::size_t size = height * (row_bytes + 1);
-  if (size / kMostPerByte > chunks.pixels.size()) return std::nullopt;
-  const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
-      libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-  FilteredRows rows{height, row_bytes, std::make_unique_for_overwrite<std::uint8_t[]>(size)};
-  // Without a place for the size, exactly this much is a success.
-  const bool complete = decompressor && libdeflate_zlib_decompress(decompressor.get(), chunks.pixels.data(),
-                                                                   chunks.pixels.size(), rows.bytes.get(),
-                                                                   size, nullptr) == LIBDEFLATE_SUCCESS;
-  return complete ? std::optional(std::move(rows)) : std::nullopt;
+  constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  // the library counts so far
+  if (size / kMostPerByte > compressed.size() || std::max(size, compressed.size()) > kMostBytes)
+    return std::nullopt;
+  Buffer inflated(size);
+  const auto state = std::make_unique_for_overwrite<inflate_state>();
+  isal_inflate_init(state.get());
+  state->crc_flag = ISAL_ZLIB;
+  state->next_in = compressed.data();
+  state->avail_in = static_cast<std::uint32_t>(compressed.size());
+  state->next_out = inflated.bytes.get();
+  state->avail_out = static_cast<std::uint32_t>(size);
+  const bool sound = isal_inflate_stateless(state.get()) == ISAL_DECOMP_OK && state->total_out == size;
+  return sound ? std::optional(std::move(inflated)) : std::nullopt;
 }
 
-/// Of left, above and above left, the one that is closest to left + above - above left.
-int paeth(int left, int above, int corner) {
-  const int by_left = std::abs(above - corner);
-  const int by_above = std::abs(left - corner);
-  const int by_corner = std::abs(left + above - 2 * corner);
-  const int upper = by_above <= by_corner ? above : corner;
-  return by_left <= by_above && by_left <= by_corner ? left : upper;
-}
-
-/// Undoes the filter of a row: every sample was stored less what `predict(left, above, corner)` says.
-template <std::size_t kPixelBytes, class Predict>
-void add_prediction(std::uint8_t* row, const std::uint8_t* above, std::size_t row_bytes,
-                    const Predict& predict) {
-  std::array<std::uint8_t, kPixelBytes> left{};
-  std::array<std::uint8_t, kPixelBytes> corner{};
-  for (std::size_t begin = 0; begin < row_bytes; begin += kPixelBytes) {
-    for (std::size_t i = 0; i < kPixelBytes; ++i) {
-      const std::uint8_t up = above[begin + i];
-      left[i] = static_cast<std::uint8_t>(row[begin + i] + predict(left[i], up, corner[i]));
-      corner[i] = up;
-      row[begin + i] = left[i];
-    }
-  }
-}
-
-/// False if there is no such filter. above: the row before, zeros for the first.
+/// rows: each behind the number of its filter. False if there is no such filter.
 template <std::size_t kPixelBytes>
-bool unfilter(int filter, std::uint8_t* row, const std::uint8_t* above, std::size_t row_bytes) {
-  switch (filter) {
-    case 0:
-      return true;
-    case 1:
-      add_prediction<kPixelBytes>(row, above, row_bytes, [](int left, int, int) { return left; });
-      return true;
-    case 2:
-      for (std::size_t i = 0; i < row_bytes; ++i) row[i] = static_cast<std::uint8_t>(row[i] + above[i]);
-      return true;
-    case 3:
-      add_prediction<kPixelBytes>(row, above, row_bytes,
-                                  [](int left, int up, int) { return (left + up) / 2; });
-      return true;
-    case 4:
-      add_prediction<kPixelBytes>(row, above, row_bytes, paeth);
-      return true;
-    default:
-      return false;
+bool undo_filters(const Buffer& rows, std::span<std::uint8_t> samples, std::size_t row_bytes) {
+  const std::vector<std::uint8_t> nothing(row_bytes, 0);
+  std::span<const std::uint8_t> above = nothing;
+  const std::uint8_t* filtered = rows.bytes.get();
+  for (std::size_t begin = 0; begin < samples.size(); begin += row_bytes) {
+    const auto row = samples.subspan(begin, row_bytes);
+    if (!undo_png_filter<kPixelBytes>(filtered[0], {filtered + 1, row_bytes}, above, row)) return false;
+    above = row;
+    filtered += 1 + row_bytes;
   }
+  return true;
 }
 
-void store(const std::uint8_t* samples, Rgb* row, std::size_t row_bytes) {
-  std::memcpy(row, samples, row_bytes);
-}
+void from_big_endian(std::vector<Rgb>&) {}
 
-void store(const std::uint8_t* samples, std::uint16_t* row, std::size_t row_bytes) {
-  for (std::size_t i = 0; i < row_bytes / 2; ++i) {
-    row[i] = static_cast<std::uint16_t>(samples[2 * i] << 8 | samples[2 * i + 1]);
+void from_big_endian(std::vector<std::uint16_t>& values) {
+  for (std::uint16_t& value : values) {
+    std::array<std::uint8_t, 2> bytes;
+    std::memcpy(bytes.data(), &value, 2);
+    value = static_cast<std::uint16_t>(bytes[0] << 8 | bytes[1]);
   }
 }
 
 /// layout: bits a sample, kind of colour, compression, filtering, interlacing, as in the header.
 template <class Pixel>
 std::optional<Image<Pixel>> read_plain_png(const std::filesystem::path& file, std::string_view layout) {
-  const std::string content = content_of(file);
-  const std::optional<Chunks> chunks = read_chunks(content);
+  Buffer content = content_of(file);
+  const std::optional<Chunks> chunks = join_chunks(content);
   if (!chunks || chunks->header.substr(8) != layout) return std::nullopt;
   const std::uint32_t width = big_endian(chunks->header);
   const std::uint32_t height = big_endian(chunks->header.substr(4));
   constexpr std::uint32_t kMostSide = 1U << 20;
   if (width == 0 || height == 0 || width > kMostSide || height > kMostSide) return std::nullopt;
-  std::optional<FilteredRows> rows = inflate(*chunks, height, width * sizeof(Pixel));
+  const std::size_t row_bytes = width * sizeof(Pixel);
+  const std::optional<Buffer> rows = inflate(chunks->pixels, height * (1 + row_bytes));
   if (!rows) return std::nullopt;
   Image<Pixel> image(static_cast<int>(width), static_cast<int>(height));
-  const std::vector<std::uint8_t> nothing(rows->row_bytes, 0);
-  for (std::size_t y = 0; y < rows->height; ++y) {
-    const std::uint8_t* above = y > 0 ? rows->row(y - 1) : nothing.data();
-    if (!unfilter<sizeof(Pixel)>(rows->filter(y), rows->row(y), above, rows->row_bytes)) return std::nullopt;
-    store(rows->row(y), &image.data[y * width], rows->row_bytes);
-  }
+  const std::span samples(reinterpret_cast<std::uint8_t*>(image.data.data()), height * row_bytes);
+  if (!undo_filters<sizeof(Pixel)>(*rows, samples, row_bytes)) return std::nullopt;
+  from_big_endian(image.data);
   return image;
 }
 

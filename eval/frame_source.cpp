@@ -1,8 +1,7 @@
 #include "eval/frame_source.hpp"
 
+#include <chrono>
 #include <utility>
-
-#include "eval/process_meter.hpp"
 
 namespace fusebench {
 
@@ -14,10 +13,10 @@ FrameSource::FrameSource(const Recording& recording, bool read_ahead)
 void FrameSource::start_next() {
   if (following_ >= recording_.frames.size()) return;
   pending_ = std::async(policy_, [this, frame = following_++]() -> Result<LoadedFrame> {
-    const Stopwatch stopwatch;
+    const auto begin = std::chrono::steady_clock::now();
     auto loaded = recording_.load_frame(frame);
     if (!loaded) return tl::unexpected(loaded.error());
-    return LoadedFrame{std::move(*loaded), stopwatch.milliseconds()};
+    return LoadedFrame{std::move(*loaded), {begin, std::chrono::steady_clock::now()}};
   });
 }
 

@@ -5,6 +5,7 @@
 #include <future>
 
 #include "core/error.hpp"
+#include "core/stage_times.hpp"
 #include "core/types.hpp"
 #include "datasets/recording.hpp"
 
@@ -12,7 +13,7 @@ namespace fusebench {
 
 struct LoadedFrame {
   RgbdFrame frame;
-  double decode_ms = 0;  ///< time of reading it, on whichever thread
+  TimeSpan decode;  ///< when it was read, on whichever thread
 };
 
 class FrameSource {

@@ -60,7 +60,7 @@ std::string frame_table_row(std::size_t frame, const FrameReport& report, double
       number_cell(angular_speed), number_cell(report.blur_px), number_cell(report.patch_motion_px),
       number_cell(sigma(kPosition)), number_cell(sigma(kRotation)),
       number_cell(report.estimate.mean.imu_time_offset_s), report.model_blocks, decode_ms);
-  for (const double milliseconds : report.stage_ms) row += fmt::format(",{:.3f}", milliseconds);
+  for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
   return row + "\n";
 }
 

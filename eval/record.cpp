@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "eval/json_text.hpp"
+#include "eval/profile/histogram_json.hpp"
 #include "eval/record_metrics.hpp"
 
 namespace fusebench {
@@ -70,11 +71,13 @@ std::vector<RecordedOption> config_of(const Json& json) {
 Json json_of(const RecordedTiming& timing) {
   Json stages = Json::object();
   for (const auto& [name, milliseconds] : timing.stages_ms) stages[name] = milliseconds;
-  return {{"wall_s", timing.wall_s},
-          {"cpu_s", timing.cpu_s},
-          {"peak_rss_bytes", timing.peak_rss_bytes},
-          {"fps", timing.fps},
-          {"stages_ms", stages}};
+  Json json = {{"wall_s", timing.wall_s},
+               {"cpu_s", timing.cpu_s},
+               {"peak_rss_bytes", timing.peak_rss_bytes},
+               {"fps", timing.fps},
+               {"stages_ms", stages}};
+  for (const auto& [name, histogram] : timing.histograms) json["histogram_ms"][name] = json_of(histogram);
+  return json;
 }
 
 void read(const Json& json, RecordedTiming& timing) {
@@ -84,6 +87,11 @@ void read(const Json& json, RecordedTiming& timing) {
   timing.fps = json.at("fps");
   for (const auto& [name, milliseconds] : json.at("stages_ms").items()) {
     timing.stages_ms.emplace_back(name, milliseconds.get<double>());
+  }
+  if (!json.contains("histogram_ms")) return;
+  for (const auto& [name, histogram] : json.at("histogram_ms").items()) {
+    timing.histograms.emplace_back(name, DurationHistogram{});
+    read(histogram, timing.histograms.back().second);
   }
 }
 

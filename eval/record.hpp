@@ -16,6 +16,7 @@
 #include "eval/consistency_metrics.hpp"
 #include "eval/intensity_metrics.hpp"
 #include "eval/mesh/mesh_metrics.hpp"
+#include "eval/profile/duration_histogram.hpp"
 #include "eval/residual_metrics.hpp"
 #include "eval/trajectory_metrics.hpp"
 
@@ -116,6 +117,8 @@ struct RecordedTiming {
   std::uint64_t peak_rss_bytes = 0;
   double fps = 0;                                         ///< processed frames / wall_s
   std::vector<std::pair<std::string, double>> stages_ms;  ///< mean over frames
+  /// stage_histograms() of a profiled run; empty of others.
+  std::vector<std::pair<std::string, DurationHistogram>> histograms = {};
 };
 
 struct RecordedProvenance {

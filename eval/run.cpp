@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,8 @@
 #include "eval/nees_table.hpp"
 #include "eval/patch_table.hpp"
 #include "eval/process_meter.hpp"
+#include "eval/profile/run_profile.hpp"
+#include "eval/profile/trace_file.hpp"
 #include "eval/record_origin.hpp"
 #include "eval/run_evaluation.hpp"
 #include "eval/state_table.hpp"
@@ -29,6 +32,8 @@
 namespace fusebench {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// What the frames left behind; grows frame by frame.
 struct Progress {
@@ -43,6 +48,7 @@ struct Progress {
   std::string log;
   double decode_ms = 0;
   std::array<double, kStageNames.size()> stage_ms{};
+  RunProfile profile;  ///< stays without frames unless it is asked for
 
   void end(RunStatus how, std::string why) {
     status = how;
@@ -84,8 +90,8 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
   progress.frame_table += frame_table_row(frame, report, decode_ms);
   progress.state_table += state_table_row(report);
   progress.decode_ms += decode_ms;
-  for (std::size_t stage = 0; stage < report.stage_ms.size(); ++stage) {
-    progress.stage_ms[stage] += report.stage_ms[stage];
+  for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
+    progress.stage_ms[stage] += report.stages.sums_ms()[stage];
   }
   // The first frame has nothing to be compared with: it is no frame without tracked pixels.
   if (report.status != FrameStatus::initialised) progress.output.intensity.add_frame(report.pixels.intensity);
@@ -138,11 +144,15 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
     if (!writer) return tl::unexpected(writer.error());
     intensity.emplace(std::move(*writer));
   }
-  FrameSource source(recording, run.spec.threads > 1);
+  progress.profile.decodes_ahead = run.spec.threads > 1;
+  if (run.spec.profile) progress.profile.frames.reserve(recording.frames.size());
+  FrameSource source(recording, progress.profile.decodes_ahead);
   for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == RunStatus::ok; ++frame) {
     if (control.stop != nullptr && control.stop->load())
       return fail(ErrorCode::run_failed, "stopped by the user");
+    const auto begin = Clock::now();
     const auto loaded = source.next();
+    const auto ready = Clock::now();
     if (!loaded) {
       const auto ended = end_at_frame(progress, frame, loaded.error(), control);
       if (!ended) return tl::unexpected(ended.error());
@@ -154,11 +164,16 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
       if (!ended) return tl::unexpected(ended.error());
       break;
     }
-    take_report(progress, frame, *report, run, loaded->decode_ms);
+    const auto processed = Clock::now();
+    take_report(progress, frame, *report, run, loaded->decode.milliseconds());
     if (intensity) {
       progress.fastest.offer(frame, *report, loaded->frame.grey);
       if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written)
         return tl::unexpected(written.error());
+    }
+    if (run.spec.profile) {
+      progress.profile.frames.push_back(
+          {frame, report->status, loaded->decode, {begin, ready}, report->stages, {processed, Clock::now()}});
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }
@@ -168,7 +183,7 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
   return progress;
 }
 
-RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, double mesh_ms) {
+RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost) {
   RecordedTiming timing;
   timing.wall_s = cost.wall_s;
   timing.cpu_s = cost.cpu_s;
@@ -180,7 +195,8 @@ RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost, doub
   for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
     timing.stages_ms.emplace_back(kStageNames[stage], mean(progress.stage_ms[stage]));
   }
-  timing.stages_ms.emplace_back("mesh_once", mesh_ms);
+  timing.stages_ms.emplace_back("mesh_once", progress.profile.mesh.milliseconds());
+  timing.histograms = stage_histograms(progress.profile);
   return timing;
 }
 
@@ -311,10 +327,10 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   Pipeline pipeline(config, run.recording.rig, run.recording.imu, workers);
   auto progress = process_frames(run, pipeline, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
-  const Stopwatch mesh_time;
   Mesh& mesh = progress->output.mesh;
+  progress->profile.mesh.begin = Clock::now();
   mesh = extract_mesh(pipeline.model(), config.tsdf.min_mesh_weight, workers);
-  const double mesh_ms = mesh_time.milliseconds();
+  progress->profile.mesh.end = Clock::now();
   const ProcessCost cost = meter.cost();
 
   record.status = progress->status;
@@ -322,7 +338,7 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   record.frames = progress->frames;
   record.model = {mesh.vertices.size(), mesh.triangles.size(), pipeline.model().block_count()};
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
-  record.timing = timing_of(*progress, cost, mesh_ms);
+  record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
   if (all) {
     if (auto written = write_surfaces(*progress, record.metrics, *folder); !written)
@@ -330,16 +346,18 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   }
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);
-  const std::array<std::pair<std::string_view, std::string>, 7> texts = {
+  const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
+  const std::array<std::pair<std::string_view, std::string>, 8> texts = {
       {{"trajectory.tum", tum_text(progress->output.trajectory)},
        {"truth.tum", tum_text(true_trajectory(run.recording, frame_stamps(run.recording)))},
        {"frames.csv", progress->frame_table},
        {"states.csv", all ? progress->state_table : ""},
        {"nees.csv", nees_table(record.metrics.nees)},
+       {kTraceFile, run.spec.profile ? trace_text(progress->profile, title) : ""},
        {"log.txt", progress->log},
        {"record.json", to_json(record)}}};
   for (const auto& [name, text] : texts) {
-    if (text.empty()) continue;  // no truth, or not kept
+    if (text.empty()) continue;  // no truth, not kept or not asked for
     if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
   }
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());

@@ -37,7 +37,8 @@ struct FrameWindow {
 /// Which files a run's folder keeps. In large sweeps the others would fill the disk.
 enum class KeptFiles {
   all,
-  small,  ///< record, trajectories, frames.csv, nees.csv and log: no model, patches, states or pixels
+  small,  ///< record, trajectories, frames.csv, nees.csv, log, and trace.json of a profiled run: no model,
+          ///< patches, states or pixels
 };
 [[nodiscard]] std::string_view to_string(KeptFiles kept);  ///< "all", "small"
 
@@ -51,6 +52,7 @@ struct RunSpec {
   int threads = 1;
   int repetition = 1;  ///< the results are the same, the time is another sample
   KeptFiles kept = KeptFiles::all;
+  bool profile = false;  ///< also trace.json and the record's histograms of times; no part of the identity
   std::filesystem::path out;
 };
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Every check and test: formatting, include directions, a warning-free build, generated pages, a minute of fuzzing,
-# tests (pages are read in headless Chromium, which is installed); clang-tidy on request. Runs all of them even if one fails, and ends with the tests and a summary.
+# Every check and test: formatting, include directions, a warning-free build, generated pages, a minute of fuzzing, the
+# baseline, instruction counts, tests (pages are read in headless Chromium, which is installed); clang-tidy on request. Runs
+# all of them even if one fails, and ends with the tests and a summary.
 # shellcheck disable=SC2317  # the checks are called through step
 set -euo pipefail
 
@@ -39,12 +40,15 @@ started=$SECONDS
 failures=0
 summary=()
 
-# step NAME COMMAND...: runs the command, remembers how it went.
+# step NAME COMMAND...: runs the command, remembers how it went. 77: something optional is not installed.
 step() {
-  local name=$1 result=passed before=$SECONDS
+  local name=$1 result=passed before=$SECONDS status=0
   shift
   printf '\n== %s\n' "$name"
-  if ! "$@"; then
+  "$@" || status=$?
+  if ((status == 77)); then
+    result=skipped
+  elif ((status != 0)); then
     result=FAILED
     failures=$((failures + 1))
   fi
@@ -101,5 +105,6 @@ step fuzz ./scripts/fuzz.sh 60
 step browser ./scripts/setup.sh chromium-driver python3-selenium
 step cluster ./scripts/setup.sh slurm-wlm munge iproute2
 step baseline ./scripts/check_baseline.sh --binary build/ci/fusebench
+step instructions ./scripts/check_instructions.sh
 step tests ctest --preset ci
 finish

@@ -306,6 +306,7 @@ Verb add(CLI::App& app, const char* name, const char* description) {
       ->capture_default_str();
   add_slurm_options(*verb, *options);
   add_threads_option(*verb, options->invocation.options.threads);
+  add_profile_flag(*verb, options->invocation.options.profile);
   verb->add_option(
           "--summary", options->summary,
           "Writes what the runs say together as JSON: by half, group and variant, against the motion "
@@ -317,11 +318,10 @@ Verb add(CLI::App& app, const char* name, const char* description) {
   add_json_flag(*verb, options->json);
   verb->footer(
       "A finished run is never repeated: its folder is named by the hash of configuration, recording and\n"
-      "estimator. A run that fails, crashes, hangs or is lost is a row with its reason, and the suite goes "
-      "on;\n"
-      "the exit code is then 4. A suite with bars prints its summary and ends with 1 if a bar failed; runs "
-      "that\n"
-      "are lost are then the bars' matter. docs/experiments.md says what a suite can ask for.");
+      "estimator. With --profile, one that has no profile is. A run that fails, crashes, hangs or is lost\n"
+      "is a row with its reason, and the suite goes on; the exit code is then 4. A suite with bars prints\n"
+      "its summary and ends with 1 if a bar failed; runs that are lost are then the bars' matter.\n"
+      "docs/experiments.md says what a suite can ask for.");
   return {verb, [options, verb] {
             options->threads_given = verb->count("--threads") > 0;
             return bench(*options);

@@ -16,6 +16,7 @@ namespace {
 struct RunOptions {
   RunRequest request;
   std::filesystem::path out = "results/runs";
+  bool profile = false;
   bool json = false;
 };
 
@@ -23,6 +24,7 @@ Result<int> run(const RunOptions& options) {
   auto spec = spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   spec->out = options.out;
+  spec->profile = options.profile;
   const auto prepared = prepare_run(std::move(*spec));
   if (!prepared) return tl::unexpected(prepared.error());
   for (const std::string& warning : prepared->recording.warnings)
@@ -56,6 +58,7 @@ Verb add_run_verb(CLI::App& app) {
   verb->add_option("--out", options->out, "Results go to DIR/<recording>/<variant>/<hash8>/")
       ->type_name("DIR")
       ->capture_default_str();
+  add_profile_flag(*verb, options->profile);
   add_json_flag(*verb, options->json);
   verb->footer(
       "Prints the run's folder, or with --json its record. Exit code 4 if the run failed or was lost.");

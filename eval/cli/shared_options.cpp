@@ -38,6 +38,12 @@ void add_variant_option(CLI::App& verb, std::string& variant) {
       ->capture_default_str();
 }
 
+void add_profile_flag(CLI::App& verb, bool& profile) {
+  verb.add_flag("--profile", profile,
+                "Also writes how long each stage of each frame took: trace.json for chrome://tracing and "
+                "ui.perfetto.dev, and histograms in record.json. Results do not depend on it");
+}
+
 void add_json_flag(CLI::App& verb, bool& json) {
   verb.add_flag("--json", json, "One JSON document on standard output, nothing else there");
 }

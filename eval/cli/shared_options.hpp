@@ -22,6 +22,7 @@ void add_threads_option(CLI::App& verb, int& threads);                ///< --thr
 void add_set_option(CLI::App& verb, std::vector<std::string>& sets);  ///< --set key=value
 void add_config_option(CLI::App& verb, std::filesystem::path& file);  ///< --config FILE
 void add_variant_option(CLI::App& verb, std::string& variant);        ///< --variant, default full
+void add_profile_flag(CLI::App& verb, bool& profile);                 ///< --profile
 void add_json_flag(CLI::App& verb, bool& json);                       ///< --json
 
 /// The variant's configuration, then the file's (may be empty), then --set; relations checked.

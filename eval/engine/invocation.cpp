@@ -57,6 +57,7 @@ Result<fs::path> keep(const Invocation& invocation) {
                      {"data", absolute_text(options.data)},
                      {"simulated", absolute_text(options.simulated)},
                      {"threads", options.threads},
+                     {"profile", options.profile},
                      {"sets", options.sets},
                      {"only", options.only},
                      {"repetitions", invocation.overrides.repetitions},
@@ -87,6 +88,7 @@ Result<Invocation> read_invocation(const fs::path& file) {
     invocation.options.out = file.parent_path().parent_path().parent_path();
     invocation.options.simulated = json.at("simulated").get<std::string>();
     invocation.options.threads = json.at("threads");
+    invocation.options.profile = json.value("profile", false);  // older ones have none
     invocation.options.sets = json.at("sets").get<std::vector<std::string>>();
     invocation.options.only = json.at("only").get<std::vector<std::string>>();
     invocation.overrides = {json.at("repetitions"), json.at("keep")};

@@ -7,6 +7,7 @@
 
 #include "core/config_access.hpp"
 #include "core/staged_folder.hpp"
+#include "eval/profile/trace_file.hpp"
 
 namespace fusebench {
 
@@ -65,6 +66,7 @@ bool was_not_started(const BatchJob& job) {
 bool is_finished(const PreparedRun& run, const RecordHead& head) {
   if (head.status == RunStatus::failed || head.run_id != run.run_id) return false;
   std::error_code ignored;
+  if (run.spec.profile && !fs::exists(run.folder / kTraceFile, ignored)) return false;
   return run.spec.kept == KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
 }
 

@@ -34,7 +34,8 @@ struct BatchOutcome {
 /// Takes that record away, if there is one: the job has started.
 void forget_not_started(const BatchJob& job);
 
-/// Whether the run is there, ok or lost, with the files that are to be kept of it.
+/// Whether the run is there, ok or lost, with the files that are to be kept of it, and with its profile if
+/// one is asked for.
 [[nodiscard]] bool is_finished(const PreparedRun& run, const RecordHead& head);
 [[nodiscard]] bool is_unreadable(const std::filesystem::path& folder);  ///< has a record that is damaged
 

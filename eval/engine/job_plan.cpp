@@ -147,6 +147,7 @@ Result<BatchJob> job_of(const Common& common, const Planned& recording, const st
   spec.config = std::move(*config);
   spec.threads = common.options.threads;
   spec.kept = common.suite.kept;
+  spec.profile = common.options.profile;
   spec.out = common.options.out;
   const bool optional = common.suite.all && !recording.simulation;
   return BatchJob{recording.folder, variant_name,   std::move(spec),      optional,

@@ -18,6 +18,7 @@ struct BatchOptions {
   std::filesystem::path out;
   std::filesystem::path simulated = "results/simulated";  ///< where the suite's simulated recordings are
   int threads = 1;
+  bool profile = false;  ///< RunSpec::profile of each run
   /// key=value, after the suite's own edits; with several values (key=1,2,4) a sweep over them.
   std::vector<std::string> sets;
   /// "recording=TEXT" (name contains it) or "variant=NAME" (exactly); all must hold.

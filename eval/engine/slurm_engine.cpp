@@ -47,8 +47,8 @@ struct Awaited {
   fs::path folder;
   std::string run_id;
   std::size_t frames = 0;
-  std::optional<fs::file_time_type>
-      failed_before;  ///< a failed record of an earlier time, which is tried again
+  /// Of a record of an earlier time that is made again: it failed, or lacks files that are asked for.
+  std::optional<fs::file_time_type> written_before;
   int attempts = 0;
 };
 
@@ -153,14 +153,14 @@ class SlurmEngine {
       Awaited awaited{run.folder, run.run_id, recording->frames.size(), {}, 0};
       const auto head = record_head(awaited.folder);
       const bool ours = head && head->run_id == awaited.run_id;
-      if (ours && head->status != RunStatus::failed) {
+      if (ours && is_finished(run, *head)) {
         BatchOutcome outcome = outcome_of_finished(jobs_[i], awaited.folder, *head);
         outcome.resumed = true;
         end(i, std::move(outcome));
         continue;
       }
       std::error_code ignored;
-      if (ours) awaited.failed_before = fs::last_write_time(awaited.folder / "record.json", ignored);
+      if (ours) awaited.written_before = fs::last_write_time(awaited.folder / "record.json", ignored);
       awaited_.emplace(i, std::move(awaited));
       missing.push_back(i);
     }
@@ -244,7 +244,7 @@ class SlurmEngine {
     return {};
   }
 
-  /// A failed record of before does not count.
+  /// A record of before does not count.
   [[nodiscard]] std::optional<RecordHead> result_of(const Awaited& awaited) const {
     // Listing a folder makes a network file system look again for what was not there the last time.
     std::error_code unlisted;
@@ -252,8 +252,8 @@ class SlurmEngine {
     auto head = record_head(awaited.folder);
     if (!head || head->run_id != awaited.run_id) return std::nullopt;
     std::error_code ignored;
-    if (awaited.failed_before && head->status == RunStatus::failed &&
-        fs::last_write_time(awaited.folder / "record.json", ignored) == *awaited.failed_before)
+    if (awaited.written_before &&
+        fs::last_write_time(awaited.folder / "record.json", ignored) == *awaited.written_before)
       return std::nullopt;
     return head;
   }

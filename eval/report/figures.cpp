@@ -167,6 +167,7 @@ std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFo
   if (!chart.right_label.empty())
     script += fmt::format("set y2label {}\nset y2tics\n", gnuplot_text(chart.right_label));
   if (chart.from_zero) script += "set yrange [0:*]\n";
+  if (chart.log_x) script += "set logscale x\n";
   if (chart.equal_scale) script += "set size ratio -1\nset xtics rotate by 45 right\n";
   if (!chart.categories.empty()) return script + stacked(chart);
   add_data(chart, script);

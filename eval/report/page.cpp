@@ -79,8 +79,13 @@ Json json_of(const Chart& chart) {
                       {"right", s.right},
                       {"points", points}});
   }
-  return {{"x", chart.x_label},      {"left", chart.left_label},   {"right", chart.right_label},
-          {"zero", chart.from_zero}, {"equal", chart.equal_scale}, {"categories", chart.categories},
+  return {{"x", chart.x_label},
+          {"left", chart.left_label},
+          {"right", chart.right_label},
+          {"zero", chart.from_zero},
+          {"equal", chart.equal_scale},
+          {"log", chart.log_x},
+          {"categories", chart.categories},
           {"series", series}};
 }
 

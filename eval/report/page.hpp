@@ -58,6 +58,7 @@ struct Chart {
   std::string right_label;                   ///< empty: no axis on the right
   bool from_zero = true;                     ///< axes of values begin at zero
   bool equal_scale = false;                  ///< a metre is as long on either axis
+  bool log_x = false;                        ///< x is positive, and its axis logarithmic
   std::vector<std::string> categories = {};  ///< of x, which are then 0, 1, ...: bars stand on one another
   std::vector<ChartSeries> series;
 };

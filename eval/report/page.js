@@ -103,22 +103,37 @@ function equalise(chart) {
   chart.update("none");
 }
 
-/// Ends of an equalised axis are no round numbers: three digits are enough.
+/// Three digits are enough: ends of an equalised axis are no round numbers.
 function shortTicks(scale) {
   scale.ticks.callback = (value) => Number(value.toPrecision(3));
   return scale;
 }
 
+/// Ticks at 1, 2 and 5 of each decade, or at each decade where there are many.
+function logTicks(scale) {
+  const digits = scale.max > 1000 * scale.min ? [1] : [1, 2, 5];
+  const inside = (value) => value >= scale.min && value <= scale.max;
+  scale.ticks = [];
+  for (let power = Math.floor(Math.log10(scale.min)); 10 ** power <= scale.max; ++power) {
+    digits.map((digit) => digit * 10 ** power).filter(inside).forEach((value) => scale.ticks.push({ value: value }));
+  }
+}
+
 function scalesOf(chart) {
   const bars = chart.categories.length > 0;
   const scales = {
-    x: bars ? axis(chart.x, { type: "category", stacked: true }) : axis(chart.x, { axis: "x" }),
+    x: bars ? axis(chart.x, { type: "category", stacked: true })
+      : axis(chart.x, { axis: "x", type: chart.log ? "logarithmic" : "linear" }),
     left: axis(chart.left, { axis: "y", position: "left", beginAtZero: chart.zero, stacked: bars }),
   };
   if (chart.right !== "") {
     scales.right = axis(chart.right, { axis: "y", position: "right", beginAtZero: chart.zero, grid: { drawOnChartArea: false } });
   }
   if (chart.equal) Object.values(scales).forEach(shortTicks);
+  if (chart.log) {
+    scales.x.afterBuildTicks = logTicks;
+    shortTicks(scales.x).ticks.autoSkip = false;
+  }
   const boxes = chart.series.filter((series) => series.style === "boxes");
   if (boxes.length > 0) {
     const places = [...new Set(boxes.flatMap((series) => series.points.map((b) => b[0])))].sort((a, b) => a - b);

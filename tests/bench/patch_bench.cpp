@@ -1,18 +1,15 @@
 // Patches: corner selection, and one linearisation of the measurement. Arguments: width, threads.
 #include <benchmark/benchmark.h>
 
-#include <Eigen/Cholesky>
-
 #include "core/corner_selection.hpp"
-#include "core/depth_gates.hpp"
-#include "core/patch_measurement.hpp"
-#include "tests/bench/bench_scene.hpp"
+#include "tests/bench/patch_problem.hpp"
 
 namespace fusebench {
 namespace {
 
 using testing::bench_scene;
 using testing::BenchScene;
+using testing::PatchProblem;
 
 /// The segment test in its plain form: nine neighbours in a row on the circle of 16 are all brighter, or all
 /// darker, by more than the threshold.
@@ -65,35 +62,20 @@ void corner_selection(benchmark::State& state) {
 void linearise(benchmark::State& state) {
   const BenchScene& scene = bench_scene(static_cast<int>(state.range(0)));
   const Workers workers(static_cast<int>(state.range(1)));
-  const auto pyramid = build_pyramid(scene.frame.grey, scene.config.patches.levels);
-  const DepthImage depth_m = gate_depth(scene.frame.depth_m, scene.config.depth);
-  const SensorRig rig{.camera = scene.camera, .timing = {}, .T_imu_camera = {}, .imu_noise = {}};
-  const auto patches = refresh_patches({pyramid, depth_m, scene.camera, scene.T_world_camera}, scene.model,
-                                       {}, scene.config, workers);
-  const ObservedFrame observed{pyramid, depth_m};
-  PatchMeasurement measurement(scene.config, rig, observed, patches, {}, workers);
-  const SE3 start{scene.T_world_camera.rotation * so3_exp({0.002, -0.001, 0.001}),
-                  scene.T_world_camera.translation + Vector3d(0.003, 0.002, -0.002)};
+  const PatchProblem problem(scene, workers);
+  PatchMeasurement measurement(scene.config, problem.rig, problem.observed, problem.patches, {}, workers);
   const int finest = measurement.stages() - 1;
-  const auto once = [&] { return measurement.linearise({start, start}, finest, true); };
+  const auto once = [&] { return measurement.linearise({problem.start, problem.start}, finest, true); };
 
   // The Gauss-Newton step lowers the cost that was linearised, and leads back to the true pose.
   const MeasurementQuadratic parts = once();
-  PoseQuadratic quadratic = parts.by_reference;
-  quadratic.add(parts.by_model, 1.0);
-  const Vector6d step = -quadratic.information.ldlt().solve(quadratic.gradient);
-  const SE3 stepped{start.rotation * so3_exp(step.head<3>()), start.translation + step.tail<3>()};
-  const auto distance_m = [&](const SE3& pose) {
-    return (pose.translation - scene.T_world_camera.translation).norm();
-  };
-  MeasuredVector steps;
-  steps << step, step;
-  if (!(measurement.trial_cost({stepped, stepped}, steps, 1.0) < quadratic.cost) ||
-      !(distance_m(stepped) < 0.5 * distance_m(start))) {
+  const auto [stepped, tangents] = problem.step_by(parts);
+  if (!(measurement.trial_cost({stepped, stepped}, tangents, 1.0) < parts.cost()) ||
+      !(problem.error_m(stepped) < 0.5 * problem.error_m(problem.start))) {
     return state.SkipWithError("the step does not lead to the true pose");
   }
   for (auto _ : state) benchmark::DoNotOptimize(once());
-  state.counters["patches"] = static_cast<double>(patches.size());
+  state.counters["patches"] = static_cast<double>(problem.patches.size());
 }
 
 BENCHMARK(corner_selection)->Arg(320)->Arg(640)->Unit(benchmark::kMillisecond);

@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|imports|recordings|interrupt|determinism
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|imports|recordings|interrupt|determinism|profile
 TEXT
 }
 
@@ -319,6 +319,69 @@ check_determinism() {
   (($? == 1)) || complain "a bar that fails: not exit code 1"
 }
 
+# without_times FILE: frames.csv without its last columns, the milliseconds of decoding and of each stage.
+without_times() { sed -E 's/(,[^,]*){6}$//' "$1"; }
+
+# same_but_times FOLDER FOLDER: the same files with the same bytes, but for times and the trace.
+same_but_times() {
+  local name
+  diff <(cd "$1" && find . -type f ! -name trace.json | sort) <(cd "$2" && find . -type f ! -name trace.json | sort) ||
+    return 1
+  while read -r name; do
+    case $name in
+      ./record.json) cmp <(reproducible_part "$1/$name") <(reproducible_part "$2/$name") || return 1 ;;
+      ./frames.csv) cmp <(without_times "$1/$name") <(without_times "$2/$name") || return 1 ;;
+      *) cmp "$1/$name" "$2/$name" || return 1 ;;
+    esac
+  done < <(cd "$1" && find . -type f ! -name trace.json)
+}
+
+check_profile() {
+  fresh_copy
+  local threads plain profiled
+  for threads in 1 2; do
+    checks=$((checks + 1))
+    plain=$("$binary" run freiburg1_copy --variant no-imu --threads "$threads" --out plain 2>stderr) || complain "a run"
+    profiled=$("$binary" run freiburg1_copy --variant no-imu --threads "$threads" --out profiled --profile 2>stderr) ||
+      complain "a profiled run"
+    [[ ${plain#plain} == "${profiled#profiled}" ]] || complain "a profiled run has another folder: $profiled"
+    same_but_times "$plain" "$profiled" >differences 2>&1 || complain "a profile changes more: $(head -3 differences)"
+    [[ ! -e $plain/trace.json ]] || complain "a trace that nobody asked for"
+    grep -q histogram_ms "$plain/record.json" && complain "a histogram that nobody asked for"
+    grep -q '"histogram_ms"' "$profiled/record.json" || complain "no histogram in the record"
+    python3 - "$profiled" "$threads" 2>stderr <<'TEXT' || complain "the profile with $threads threads"
+import json, sys
+folder, threads = sys.argv[1], int(sys.argv[2])
+histograms = json.load(open(folder + "/record.json"))["timing"]["histogram_ms"]
+assert list(histograms) == ["decode", "preprocess", "predict", "update", "fuse", "refresh", "frame"], list(histograms)
+for h in histograms.values():
+    assert h["count"] == sum(h["counts"]) and len(h["edges"]) == len(h["counts"]) + 1, h
+    assert h["edges"][0] <= h["min"] <= h["median"] <= h["p90"] <= h["p99"] <= h["max"] <= h["edges"][-1], h
+events = json.load(open(folder + "/trace.json"))["traceEvents"]
+names = [e["args"]["name"] for e in events if e["ph"] == "M"]
+assert names == ["fusebench freiburg1_copy no-imu", "frames"] + ["decoding ahead"] * (threads > 1), names
+frames = [e for e in events if e["name"] == "frame"]
+assert [e["args"]["frame"] for e in frames] == [0, 1, 2, 3, 4]
+for e in events:
+    if e["ph"] == "X":
+        assert e["tid"] == (2 if threads > 1 and e["name"] == "decode" else 1), e
+TEXT
+  done
+
+  # A suite repeats what has no profile, and nothing else.
+  mkdir -p data && mv freiburg1_copy data
+  printf 'name = "s"\nall = true\nvariants = ["no-imu"]\nkeep = "small"\n' >suite.toml
+  checks=$((checks + 1))
+  local step
+  for step in 'false ' 'false --profile' 'true --profile' 'true '; do
+    # shellcheck disable=SC2086  # none or one flag
+    "$binary" bench suite.toml --data data --out suite --json ${step#* } >stdout 2>stderr ||
+      complain "bench ${step#* }: exit code $?"
+    grep -q "\"resumed\": ${step%% *}" stdout || complain "bench, $step: not as often as it should be"
+  done
+  [[ $(find suite -name trace.json | wc -l) == 1 ]] || complain "bench --profile: not one trace"
+}
+
 # curve OFFSET STRETCH: a trajectory of 60 poses on a helix, in TUM's format.
 curve() {
   awk -v offset="$1" -v stretch="$2" 'BEGIN {
@@ -514,6 +577,7 @@ case "$group" in
   recordings) check_recordings ;;
   interrupt) check_interrupt ;;
   determinism) check_determinism ;;
+  profile) check_profile ;;
   *) usage >&2; exit 2 ;;
 esac
 if ((failures > 0 || checks == 0)); then

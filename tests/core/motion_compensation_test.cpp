@@ -36,7 +36,9 @@ const RgbdFrame& global_frame() {
 
 RgbdFrame compensated(const RgbdFrame& frame, const CameraVelocity& velocity, const SensorTiming& timing,
                       int threads = 2) {
-  return compensate_motion(frame, small_camera(), timing, velocity, Workers(threads));
+  RgbdFrame result;
+  compensate_motion(frame, small_camera(), timing, velocity, Workers(threads), result);
+  return result;
 }
 
 /// Within `radius_px` of a depth step the true view contains surfaces that the frame never saw.

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <limits>
 #include <set>
 #include <string>
@@ -98,6 +100,30 @@ TEST(Pipeline, WithoutImuIsUnmovedByNaNInTheImu) {
   }
   poisoned.rig.T_imu_camera.translation = {7, 8, 9};
   EXPECT_TRUE(same_poses(track(shared_run(), config_of("no-imu")), track(poisoned, config_of("no-imu"))));
+}
+
+TEST(Pipeline, StretchesOfStagesAreInOrderAndAddUp) {
+  const auto reports = track(shared_run(), config_of("full"));
+  std::chrono::steady_clock::time_point last{};
+  for (const FrameReport& report : reports) {
+    std::array<double, kStageNames.size()> sums_ms{};
+    for (const StageSpan& span : report.stages.spans()) {
+      EXPECT_LE(last, span.time.begin);
+      EXPECT_LE(span.time.begin, span.time.end);
+      last = span.time.end;
+      sums_ms[static_cast<std::size_t>(span.stage)] += span.time.milliseconds();
+    }
+    for (std::size_t stage = 0; stage < sums_ms.size(); ++stage)
+      EXPECT_DOUBLE_EQ(sums_ms[stage], report.stages.sums_ms()[stage]);
+  }
+  // The second frame has told how fast the camera was, and both were processed again.
+  const auto predictions = [&](std::size_t frame) {
+    const auto spans = reports[frame].stages.spans();
+    return std::ranges::count(spans, Stage::predict, &StageSpan::stage);
+  };
+  EXPECT_EQ(predictions(0), 1);
+  EXPECT_EQ(predictions(1), 3);
+  EXPECT_EQ(predictions(2), 1);
 }
 
 TEST(Pipeline, ThreadCountDoesNotShow) {

@@ -213,9 +213,9 @@ TEST(Raycast, KeepsToTheDepthRange) {
 TEST(Raycast, IsTheSameForEveryWayToCall) {
   const TsdfVolume volume = fuse(ball_scene(), kCamera, poses_around_ball());
   const SE3 T_world_camera = look_at({0.5, -0.4, 0.55}, {0.02, 0, 0.01});
-  std::vector<Vector2d> pixels_px;
+  std::vector<PixelRay> pixels_px;
   for (int y = 0; y < kCamera.height_px; y += 3) {
-    for (int x = 0; x < kCamera.width_px; x += 2) pixels_px.emplace_back(x, y);
+    for (int x = 0; x < kCamera.width_px; x += 2) pixels_px.push_back(PixelRay{double(x), double(y)});
   }
   std::reverse(pixels_px.begin(), pixels_px.end());
   const SurfaceImage reference = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, Workers(1));
@@ -224,11 +224,12 @@ TEST(Raycast, IsTheSameForEveryWayToCall) {
     const SurfaceImage image = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
     EXPECT_EQ(image.depth_m.data, reference.depth_m.data);
     EXPECT_EQ(image.normal_world.data, reference.normal_world.data);
-    const auto points = raycast_pixels(volume, kCamera, T_world_camera, pixels_px, DepthConfig{}, workers);
+    std::vector<SurfacePoint> points;
+    raycast_pixels(volume, kCamera, T_world_camera, pixels_px, DepthConfig{}, workers, points);
     ASSERT_EQ(points.size(), pixels_px.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const float depth_m =
-          image.depth_m(static_cast<int>(pixels_px[i].x()), static_cast<int>(pixels_px[i].y()));
+          image.depth_m(static_cast<int>(pixels_px[i].u_px), static_cast<int>(pixels_px[i].v_px));
       ASSERT_EQ(points[i].valid ? static_cast<float>(points[i].depth_m) : 0.0F, depth_m);
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "tests/support/fused_scene.hpp"
 
@@ -22,7 +23,11 @@ RgbdFrame wall_frame(double depth_m) { return wall(depth_m).render(kCamera, kOri
 bool same_voxels(const TsdfVolume& a, const TsdfVolume& b) {
   if (a.block_indices() != b.block_indices()) return false;
   for (std::size_t slot = 0; slot < a.block_count(); ++slot) {
-    if (std::memcmp(&a.block(slot), &b.block(slot), sizeof(VoxelBlock)) != 0) return false;
+    for (std::size_t i = 0; i < kBlockVoxels; ++i) {
+      const Voxel of_a = a.voxel(slot, i);
+      const Voxel of_b = b.voxel(slot, i);
+      if (std::memcmp(&of_a, &of_b, sizeof(Voxel)) != 0) return false;
+    }
   }
   return true;
 }
@@ -33,7 +38,7 @@ void for_each_voxel(const TsdfVolume& volume, const Visit& visit) {
     for (int i = 0; i < kBlockVoxels; ++i) {
       const VoxelIndex local(i & 7, (i >> 3) & 7, i >> 6);
       visit(volume.block_indices()[slot] * kBlockSide + local,
-            volume.block(slot)[static_cast<std::size_t>(i)]);
+            volume.voxel(slot, static_cast<std::size_t>(i)));
     }
   }
 }
@@ -42,7 +47,7 @@ TEST(TsdfVolume, IsEmptyAtFirst) {
   const TsdfVolume volume{TsdfConfig{}};
   EXPECT_EQ(volume.block_count(), 0U);
   EXPECT_EQ(volume.find_block({0, 0, 0}), -1);
-  EXPECT_EQ(volume.find_voxel({1, 2, 3}), nullptr);
+  EXPECT_FALSE(volume.find_voxel({1, 2, 3}));
   EXPECT_FALSE(volume.sample({0, 0, 1}).valid);
   EXPECT_FALSE(volume.sample(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())).valid);
   EXPECT_FALSE(volume.sample(Vector3d::Constant(1e300)).valid);
@@ -168,7 +173,8 @@ TEST(TsdfVolume, IgnoresDepthThatIsNoMeasurement) {
   ASSERT_TRUE(volume.integrate(frame, kCamera, kOrigin, DepthConfig{}, workers));
   EXPECT_GT(volume.block_count(), 0U);
   for_each_voxel(volume, [](const VoxelIndex&, const Voxel& voxel) {
-    EXPECT_TRUE(std::isfinite(voxel.distance_m) && std::isfinite(voxel.weight));
+    EXPECT_TRUE(std::isfinite(voxel.weight));
+    EXPECT_EQ(std::isfinite(voxel.distance_m), voxel.weight > 0.0F);
   });
 }
 
@@ -211,8 +217,8 @@ TEST(TsdfVolume, SamplesByTrilinearInterpolation) {
     bool complete = true;
     for (int corner = 0; corner < 8; ++corner) {
       const VoxelIndex at = base + VoxelIndex(corner & 1, (corner >> 1) & 1, corner >> 2);
-      const Voxel* voxel = volume.find_voxel(at);
-      complete = complete && voxel != nullptr && voxel->weight > 0.0F;
+      const std::optional<Voxel> voxel = volume.find_voxel(at);
+      complete = complete && voxel && voxel->weight > 0.0F;
       if (!complete) break;
       const Vector3d apart = (lattice - at.cast<double>()).cwiseAbs();
       expected +=
@@ -252,8 +258,8 @@ TEST(TsdfVolume, IsUnchangedByAFrameThatDoesNotFit) {
       << full.error().message;
   EXPECT_FALSE(full.error().hint.empty());
   EXPECT_TRUE(same_voxels(volume, before));
-  for_each_voxel(
-      volume, [&](const VoxelIndex& index, const Voxel&) { ASSERT_NE(volume.find_voxel(index), nullptr); });
+  for_each_voxel(volume,
+                 [&](const VoxelIndex& index, const Voxel&) { ASSERT_TRUE(volume.find_voxel(index)); });
   EXPECT_TRUE(volume.integrate(wall_frame(1.0), kCamera, kOrigin, DepthConfig{}, workers))
       << "and stays usable";
   EXPECT_FALSE(same_voxels(volume, before));

@@ -11,7 +11,10 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "tests/datasets/tum_folder.hpp"
 
 namespace fusebench {
 namespace {
@@ -41,18 +44,19 @@ constexpr int kWidth = 7;
 constexpr int kHeight = 20;
 
 /// Random bytes behind filters 0 to 4 in turn.
-std::string random_rows(std::size_t pixel_bytes) {
+std::string random_rows(std::size_t pixel_bytes, int width = kWidth) {
   std::mt19937 random(3);
   std::string rows;
   for (int y = 0; y < kHeight; ++y) {
     rows += static_cast<char>((y + 1) % 5);
-    for (std::size_t i = 0; i < kWidth * pixel_bytes; ++i) rows += static_cast<char>(random());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * pixel_bytes; ++i)
+      rows += static_cast<char>(random());
   }
   return rows;
 }
 
-std::string header(const std::string& layout) {
-  return chunk("IHDR", big_endian(kWidth) + big_endian(kHeight) + layout);
+std::string header(const std::string& layout, int width = kWidth) {
+  return chunk("IHDR", big_endian(static_cast<std::uint32_t>(width)) + big_endian(kHeight) + layout);
 }
 
 const std::string kSignature("\x89PNG\r\n\x1a\n", 8);
@@ -76,13 +80,14 @@ class PlainPng : public ::testing::Test {
 };
 
 /// Samples by the definition of the filters (PNG specification, section 9), one at a time.
-std::vector<int> unfiltered(const std::string& rows, int pixel_bytes) {
-  const int stride = kWidth * pixel_bytes;
+std::vector<int> unfiltered(const std::string& rows, int pixel_bytes, int width = kWidth) {
+  const int stride = width * pixel_bytes;
+  const int height = static_cast<int>(rows.size()) / (stride + 1);
   std::vector<int> samples;
   const auto at = [&](int x, int y) {
     return x < 0 || y < 0 ? 0 : samples[static_cast<std::size_t>(y * stride + x)];
   };
-  for (int y = 0; y < kHeight; ++y) {
+  for (int y = 0; y < height; ++y) {
     const auto begin = static_cast<std::size_t>(y * (stride + 1));
     for (int x = 0; x < stride; ++x) {
       const int a = at(x - pixel_bytes, y);
@@ -99,32 +104,84 @@ std::vector<int> unfiltered(const std::string& rows, int pixel_bytes) {
   return samples;
 }
 
+void expect_samples(const ColorImage& image, const std::vector<int>& expected) {
+  ASSERT_EQ(3 * image.data.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_EQ(image.data[i / 3][i % 3], expected[i]) << i;
+}
+
+void expect_samples(const Image<std::uint16_t>& image, const std::vector<int>& expected) {
+  ASSERT_EQ(2 * image.data.size(), expected.size());
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    ASSERT_EQ(image.data[i], 256 * expected[2 * i] + expected[2 * i + 1]) << i;
+}
+
 std::string in_three_chunks(const std::string& data) {
   return chunk("IDAT", data.substr(0, 30)) + chunk("IDAT", "") + chunk("IDAT", data.substr(30));
 }
 
+/// Widths from less than a vector instruction takes to a few of them.
+constexpr std::array<int, 9> kWidths = {1, 2, 3, 5, kWidth, 8, 16, 17, 33};
+
 TEST_F(PlainPng, UndoesAllFiltersOfColor) {
-  const std::string rows = random_rows(3);
-  const auto image = read_plain_png_color(
-      write(kSignature + header(kColor) + in_three_chunks(compressed(rows)) + chunk("IEND", "")));
-  ASSERT_TRUE(image.has_value());
-  ASSERT_EQ(image->width, kWidth);
-  ASSERT_EQ(image->height, kHeight);
-  const std::vector<int> expected = unfiltered(rows, 3);
-  for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_EQ(image->data[i / 3][i % 3], expected[i]) << i;
-  EXPECT_FALSE(read_plain_png_grey16(file_).has_value());
+  for (const int width : kWidths) {
+    const std::string rows = random_rows(3, width);
+    const auto image = read_plain_png_color(
+        write(kSignature + header(kColor, width) + in_three_chunks(compressed(rows)) + chunk("IEND", "")));
+    ASSERT_TRUE(image.has_value());
+    ASSERT_EQ(image->width, width);
+    ASSERT_EQ(image->height, kHeight);
+    expect_samples(*image, unfiltered(rows, 3, width));
+    EXPECT_FALSE(read_plain_png_grey16(file_).has_value());
+  }
 }
 
 TEST_F(PlainPng, UndoesAllFiltersOfDepth) {
-  const std::string rows = random_rows(2);
-  const auto image = read_plain_png_grey16(
-      write(kSignature + header(kGrey16) + in_three_chunks(compressed(rows)) + chunk("IEND", "")));
-  ASSERT_TRUE(image.has_value());
-  const std::vector<int> expected = unfiltered(rows, 2);
-  for (std::size_t i = 0; i < image->data.size(); ++i) {
-    ASSERT_EQ(image->data[i], 256 * expected[2 * i] + expected[2 * i + 1]) << i;
+  for (const int width : kWidths) {
+    const std::string rows = random_rows(2, width);
+    const auto image = read_plain_png_grey16(
+        write(kSignature + header(kGrey16, width) + in_three_chunks(compressed(rows)) + chunk("IEND", "")));
+    ASSERT_TRUE(image.has_value());
+    ASSERT_EQ(image->width, width);
+    expect_samples(*image, unfiltered(rows, 2, width));
+    EXPECT_FALSE(read_plain_png_color(file_).has_value());
   }
-  EXPECT_FALSE(read_plain_png_color(file_).has_value());
+}
+
+/// The rows of a PNG as another library inflates them.
+std::string rows_of(const std::filesystem::path& file, std::size_t size) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  std::string pixels;
+  for (std::size_t at = kSignature.size(); at < content.size();) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(content[at + i]);
+    if (content.substr(at + 4, 4) == "IDAT") pixels += content.substr(at + 8, length);
+    at += length + 12;
+  }
+  std::string rows(size, '\0');
+  uLongf inflated = size;
+  EXPECT_EQ(uncompress(reinterpret_cast<unsigned char*>(rows.data()), &inflated,
+                       reinterpret_cast<const unsigned char*>(pixels.data()), pixels.size()),
+            Z_OK);
+  EXPECT_EQ(inflated, size);
+  return rows;
+}
+
+TEST_F(PlainPng, ReadsWhatACameraRecorded) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(testing::golden_tum_folder() / "rgb")) {
+    const auto image = read_plain_png_color(entry.path());
+    ASSERT_TRUE(image.has_value());
+    expect_samples(*image, unfiltered(rows_of(entry.path(), 480 * (1 + 3 * 640)), 3, 640));
+    ++files;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(testing::golden_tum_folder() / "depth")) {
+    const auto image = read_plain_png_grey16(entry.path());
+    ASSERT_TRUE(image.has_value());
+    expect_samples(*image, unfiltered(rows_of(entry.path(), 480 * (1 + 2 * 640)), 2, 640));
+    ++files;
+  }
+  EXPECT_EQ(files, 10);
 }
 
 TEST_F(PlainPng, LeavesEverythingElseAlone) {
@@ -158,6 +215,29 @@ TEST_F(PlainPng, LeavesEverythingElseAlone) {
   EXPECT_FALSE(is_plain(huge + pixels + end)) << "size";
   EXPECT_FALSE(read_plain_png_color("/nowhere/at/all.png").has_value());
   EXPECT_FALSE(read_plain_png_color(::testing::TempDir()).has_value()) << "a folder";
+}
+
+// The chunks of these files are sound: only the checksum within the compressed pixels can tell.
+TEST_F(PlainPng, NoticesDamagedPixels) {
+  std::string rows = random_rows(3);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i % (1 + 3 * kWidth) == 0 ? rows[i] : rows[i] & 3;
+  const std::string stream = compressed(rows);
+  const auto with_stream = [&](const std::string& data) {
+    return header(kColor) + chunk("IDAT", data) + chunk("IEND", "");
+  };
+  ASSERT_TRUE(is_plain(with_stream(stream)));
+  const ColorImage sound = read_plain_png_color(file_).value();
+  for (std::size_t size = 0; size < stream.size(); ++size)
+    EXPECT_FALSE(is_plain(with_stream(stream.substr(0, size)))) << size;
+  int harmless = 0;
+  for (std::size_t i = 0; i < stream.size(); ++i) {
+    std::string damaged = stream;
+    damaged[i] = static_cast<char>(damaged[i] ^ 1 << i % 8);
+    if (!is_plain(with_stream(damaged))) continue;
+    EXPECT_EQ(read_plain_png_color(file_).value().data, sound.data) << i;
+    ++harmless;
+  }
+  EXPECT_LE(harmless, 2) << "hardly a bit says nothing of the pixels";
 }
 
 }  // namespace

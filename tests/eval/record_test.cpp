@@ -186,6 +186,28 @@ TEST(Record, OlderRecordsAreStillRead) {
   EXPECT_EQ(back->recording.truth, "");  // nobody knows
 }
 
+TEST(Record, AProfileComesBack) {
+  RunRecord record = sample_record();
+  EXPECT_EQ(to_json(record).find("histogram_ms"), std::string::npos);
+  record.timing.histograms = {{"update", histogram_of({3, 4, 4.5, 20})},
+                              {"frame", histogram_of({1.0 / 3.0})}};
+  const std::string text = to_json(record);
+  for (const char* const path : {"/timing/histogram_ms/update/count", "/timing/histogram_ms/update/min",
+                                 "/timing/histogram_ms/update/median", "/timing/histogram_ms/update/p90",
+                                 "/timing/histogram_ms/update/p99", "/timing/histogram_ms/update/max",
+                                 "/timing/histogram_ms/update/edges/1",
+                                 "/timing/histogram_ms/update/counts/0", "/timing/histogram_ms/frame"}) {
+    EXPECT_TRUE(json::parse(text).contains(json::json_pointer(path))) << path;
+  }
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+  EXPECT_EQ(back->timing.histograms[0].second.counts, record.timing.histograms[0].second.counts);
+  json broken = json::parse(text);
+  broken["timing"]["histogram_ms"]["update"].erase("p90");
+  EXPECT_EQ(parse_record(broken.dump(), "record.json").error().code, ErrorCode::data_corrupt);
+}
+
 TEST(Record, NumbersThatDoNotExistAreNull) {
   const std::string text = to_json(sample_record());
   const json record = json::parse(text);

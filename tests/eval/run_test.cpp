@@ -1,6 +1,7 @@
 // Whole runs over the five golden frames.
 #include "eval/run.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -10,6 +11,7 @@
 #include <sstream>
 
 #include "core/ply_file.hpp"
+#include "core/stage_times.hpp"
 #include "core/text_table.hpp"
 #include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
@@ -18,6 +20,7 @@
 #include "eval/intensity_file.hpp"
 #include "tests/datasets/tum_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/trace_events.hpp"
 
 namespace fusebench {
 namespace {
@@ -98,6 +101,83 @@ TEST_F(RunTest, SameBytesWithAnyThreadCount) {
   }
   EXPECT_EQ(reproducible_part(testing::read_bytes(one->folder / "record.json")),
             reproducible_part(testing::read_bytes(three->folder / "record.json")));
+}
+
+/// frames.csv without its last columns, the milliseconds of decoding and of each stage.
+std::string without_times(const std::string& table) {
+  std::istringstream lines(table);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    for (std::size_t column = 0; column <= kStageNames.size(); ++column) line.erase(line.rfind(','));
+    result += line + "\n";
+  }
+  return result;
+}
+
+TEST_F(RunTest, AProfileChangesNothingElse) {
+  for (const int threads : {1, 2}) {
+    RunSpec profiled_spec = spec("no-imu", threads);
+    profiled_spec.profile = true;
+    profiled_spec.out = folder_ / fmt::format("profiled{}", threads);
+    const auto plain = prepare_run(spec("no-imu", threads));
+    const auto profiled = prepare_run(profiled_spec);
+    ASSERT_TRUE(plain && profiled && execute_run(*plain) && execute_run(*profiled));
+    EXPECT_EQ(plain->run_id, profiled->run_id);
+    EXPECT_EQ(plain->folder.filename(), profiled->folder.filename());
+    EXPECT_FALSE(std::filesystem::exists(plain->folder / "trace.json"));
+    for (const auto& entry : std::filesystem::directory_iterator(profiled->folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name == "trace.json") continue;
+      const std::string before = testing::read_bytes(plain->folder / name);
+      const std::string after = testing::read_bytes(entry.path());
+      if (name == "record.json") {
+        EXPECT_EQ(reproducible_part(before), reproducible_part(after));
+      } else if (name == "frames.csv") {
+        EXPECT_EQ(without_times(before), without_times(after));
+      } else {
+        EXPECT_EQ(before, after) << name;
+      }
+    }
+  }
+}
+
+TEST_F(RunTest, AProfileSaysWhenEachStageRan) {
+  for (const int threads : {1, 2}) {
+    RunSpec profiled = spec("no-imu", threads);
+    profiled.profile = true;
+    const auto prepared = prepare_run(profiled);
+    ASSERT_TRUE(prepared.has_value());
+    const auto record = execute_run(*prepared);
+    ASSERT_TRUE(record.has_value());
+    std::vector<std::string> names;
+    for (const auto& [name, histogram] : record->timing.histograms) {
+      names.push_back(name);
+      // The first frame is compared with nothing.
+      EXPECT_EQ(histogram.count, name == "update" ? 4U : 5U) << name;
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"decode", "preprocess", "predict", "update", "fuse", "refresh",
+                                               "frame"}));
+    const auto events = testing::complete_events(testing::read_bytes(prepared->folder / "trace.json"));
+    EXPECT_TRUE(testing::nest_properly(events));
+    for (const testing::TraceEvent& event : events) {
+      EXPECT_GE(event.begin_ns, 0);
+      EXPECT_EQ(event.thread, threads > 1 && event.name == "decode" ? 2 : 1) << event.name;
+    }
+    std::istringstream table(testing::read_bytes(prepared->folder / "frames.csv"));
+    std::string line;
+    std::getline(table, line);
+    for (int frame = 0; std::getline(table, line); ++frame) {
+      std::vector<std::string> cells;
+      std::istringstream cells_of(line);
+      for (std::string cell; std::getline(cells_of, cell, ',');) cells.push_back(cell);
+      const std::size_t first = cells.size() - kStageNames.size();
+      for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
+        EXPECT_NEAR(testing::time_in_frame_ms(events, std::string(kStageNames[stage]), frame),
+                    parse_number(cells[first + stage]).value(), 0.00051)
+            << kStageNames[stage] << " of frame " << frame;
+      }
+    }
+  }
 }
 
 TEST_F(RunTest, StatesHaveARowAFrame) {

@@ -30,7 +30,9 @@ failed() {
 "$binary" simulate --preset fast --in-motion --duration 0.7 --size 320x240 --out recording >/dev/null 2>&1 ||
   failed "the recording is not made"
 for variant in full dm no-imu; do
-  "$binary" run recording --variant "$variant" --out runs >/dev/null 2>&1 || failed "the run $variant fails"
+  profile=()
+  if [[ $variant == no-imu ]]; then profile=(--profile); fi
+  "$binary" run recording --variant "$variant" --out runs "${profile[@]}" >/dev/null 2>&1 || failed "the run $variant fails"
 done
 # A run that failed before its first frame has a record and nothing else.
 lost=runs/recording/planar/00000000
@@ -42,14 +44,15 @@ sed -e 's/"status": "ok"/"status": "failed"/' -e 's/"reason": ""/"reason": "<b>n
 (($(stat -c %s report.html) < 15000000)) || failed "the report is larger than 15 MB"
 grep -q 'NaN\|>nan<\|>inf<' <(sed '/<script/,/<\/script>/d' report.html) && failed "the report shows what is no number"
 grep -q '&lt;b&gt;no &amp; such' report.html || failed "a reason is not escaped"
-for part in 'Trajectories' 'Errors' 'Motion and intensity' 'Patches' 'Models' 'Health and time' 'Configuration'; do
+for part in 'Trajectories' 'Errors' 'Motion and intensity' 'Patches' 'Models' 'Health and time' 'Profiles' 'Configuration'; do
   grep -q "<h3[^>]*>$part" report.html || failed "the report has no part '$part'"
 done
 if command -v gnuplot >/dev/null; then
   for format in svg pdf; do
     "$binary" report runs --out again.html --figures figures --figure-format "$format" 2>stderr ||
       failed "no figures: $(cat stderr)"
-    for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error; do
+    for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error \
+      time_of_the_stages_over_the_frames_no_imu; do
       [[ -s figures/recording-$figure.$format ]] || failed "no figure $figure.$format"
     done
   done

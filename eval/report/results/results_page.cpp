@@ -16,6 +16,7 @@
 #include "eval/mesh/mesh_metrics.hpp"
 #include "eval/report/data_labels.hpp"
 #include "eval/report/results/patch_pictures.hpp"
+#include "eval/report/results/profile_charts.hpp"
 #include "eval/report/results/run_charts.hpp"
 #include "eval/report/results/run_series.hpp"
 #include "eval/report/table.hpp"
@@ -244,6 +245,7 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
         {"Models", "Simplified for this page; mesh.ply of each run has all triangles.", std::move(scene), 3});
   }
   add_charts(page, "Health and time", tracking_charts(series, detail.buckets));
+  add_charts(page, "Profiles", profile_charts(series));
   std::vector<PageDetails> details;
   for (const FoundRun& run : drawn) details.push_back(configuration_of(run, group));
   page.sections.push_back({"Configuration and provenance", "", std::move(details), 3});

@@ -206,6 +206,23 @@ TEST_F(LocalEngineTest, FilesThatWereNotKeptAreMadeWhenTheyAreAskedFor) {
   EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);  // more than what is asked for
 }
 
+TEST_F(LocalEngineTest, AProfileIsMadeWhenItIsAskedFor) {
+  BatchPlan one = plan();
+  const auto plain = run_locally(one.jobs, {});
+  ASSERT_TRUE(plain.has_value());
+  EXPECT_FALSE(fs::exists(plain->front().folder / "trace.json"));
+  one.jobs[0].spec.profile = true;
+  EXPECT_EQ(preview_of(one).finished, 0U);
+  const auto profiled = run_locally(one.jobs, {});
+  ASSERT_TRUE(profiled.has_value());
+  EXPECT_FALSE(profiled->front().resumed);
+  EXPECT_EQ(profiled->front().folder, plain->front().folder);
+  EXPECT_TRUE(fs::exists(profiled->front().folder / "trace.json"));
+  EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);
+  one.jobs[0].spec.profile = false;
+  EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);  // more than what is asked for
+}
+
 TEST_F(LocalEngineTest, WhatCannotBeReadIsNeverGarbage) {
   write("out/r/full/00000000/record.json", "{ half of a rec");
   const auto listed = list_runs(folder_ / "out");
@@ -248,6 +265,7 @@ TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
   invocation.options.out = folder_ / "out";
   invocation.options.data = folder_ / "data";
   invocation.options.sets = {"iekf.max_iterations=1,2"};
+  invocation.options.profile = true;
   const auto file = keep(invocation);
   ASSERT_TRUE(file.has_value()) << file.error().message;
   EXPECT_EQ(*keep(invocation), *file);
@@ -256,6 +274,7 @@ TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
   ASSERT_TRUE(back.has_value()) << back.error().message;
   EXPECT_EQ(back->options.sets, invocation.options.sets);
   EXPECT_EQ(back->options.data, folder_ / "data");
+  EXPECT_TRUE(back->options.profile);
   EXPECT_EQ(back->overrides.repetitions, 3);
   const auto read = suite_of(*back);
   ASSERT_TRUE(read.has_value());

@@ -6,6 +6,7 @@
 
 #include "core/ply_file.hpp"
 #include "core/trajectory_file.hpp"
+#include "eval/report/results/profile_charts.hpp"
 #include "eval/report/results/run_charts.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_meshes.hpp"
@@ -109,6 +110,31 @@ TEST_F(ResultsPageTest, ChartsShowWhatTheFilesSay) {
   const auto tracking = tracking_charts(runs, 100);
   EXPECT_EQ(series_of_chart(tracking, "Accepted patches and lost frames", "no-imu, lost").points.size(), 30U);
   EXPECT_EQ(series_of_chart(tracking, "Time of the stages", "update").points[1].y(), 12);
+}
+
+TEST_F(ResultsPageTest, OnlyProfiledRunsHaveAProfile) {
+  const FoundRun plain = add_run("dm", kFrames, SE3{});
+  FoundRun profiled = add_run("full", kFrames, SE3{});
+  EXPECT_EQ(to_html(results_page({plain, profiled}, "t").page).find("Profiles"), std::string::npos);
+  profiled.record.timing.histograms = {{"update", histogram_of({10, 10, 11, 30})},
+                                       {"fuse", histogram_of({4, 4, 4})},
+                                       {"frame", histogram_of({20, 20, 21, 40})}};
+  const std::vector<RunSeries> runs = {series_of(plain, "dm"), series_of(profiled, "full")};
+  const auto charts = profile_charts(runs);
+  ASSERT_EQ(charts.size(), 1U);
+  EXPECT_EQ(
+      charts[0].caption,
+      "Of 4 frames, half took 20.5 ms or less, one in ten 34.3 ms or more, the slowest 40 ms. The stage "
+      "that takes most is update: 10.5 ms at the median, 24.3 ms or more in one frame of ten.");
+  for (const ChartSeries& series : charts[0].series) {
+    double sum = 0;
+    for (const Vector2d& point : series.points) {
+      EXPECT_GT(point.x(), 0);  // of a logarithmic axis
+      sum += point.y();
+    }
+    EXPECT_NEAR(sum, 100, 1e-9) << series.label;
+  }
+  EXPECT_NE(to_html(results_page({plain, profiled}, "t").page).find("Profiles"), std::string::npos);
 }
 
 TEST_F(ResultsPageTest, APageHoldsAllRunsAndSaysWhatItCouldNotRead) {

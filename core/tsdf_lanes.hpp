@@ -1,0 +1,102 @@
+// The field at eight points at once.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "core/lane_points.hpp"
+#include "core/tsdf_volume.hpp"
+
+namespace fusebench {
+
+/// Eight integer places of a lattice.
+struct LatticePoints {
+  Int8 x;
+  Int8 y;
+  Int8 z;
+};
+
+/// Reads the field of a volume around a place. Coordinates are in voxels from origin_voxel(), which keeps
+/// them small, so that single precision is enough: 1e-4 voxels at a thousand voxels from the origin. The
+/// volume must have blocks, outlive it, and not change meanwhile.
+class TsdfLanes {
+ public:
+  /// Further than reach_m from the centre there may seem to be no blocks.
+  TsdfLanes(const TsdfVolume& volume, const Vector3d& centre_world, double reach_m);
+
+  /// World coordinates in voxels of the origin.
+  [[nodiscard]] const Vector3d& origin_voxel() const { return origin_voxel_; }
+
+  /// Where voxels are stored.
+  struct Location {
+    Int8 slot{};       ///< of the block, -1 = not allocated
+    Int8 offset{};     ///< in the block
+    Int8 no_region{};  ///< no block of its region (4x4x4 blocks) is allocated
+  };
+  [[nodiscard]] Location locate(const LatticePoints& voxel) const;
+  /// Distances at voxels (metres); NaN where they were not observed.
+  [[nodiscard]] Float8 distances_m(const Location& at) const { return distances_m(at.slot, at.offset); }
+
+  /// Trilinear interpolation of the distance (metres); NaN where one of the eight neighbours was not
+  /// observed.
+  [[nodiscard]] Float8 sample(const Points& at) const;
+
+  /// Gradient by trilinear interpolation of central differences, as TsdfSampler::gradient_at, in metres per
+  /// voxel; NaN where one of the eight neighbours was not observed.
+  [[nodiscard]] Points gradient(const Points& at) const;
+
+ private:
+  struct Neighbourhood;
+
+  [[nodiscard]] Int8 regions(const LatticePoints& region) const;
+  [[nodiscard]] Int8 regions_by_table(const LatticePoints& region) const;
+  [[nodiscard]] Int8 slots(const LatticePoints& block) const;
+  [[nodiscard]] Float8 distances_m(Int8 slot, Int8 offset) const;
+
+  const TsdfVolume& volume_;
+  Eigen::Vector3i origin_region_;
+  Vector3d origin_voxel_;
+  int reach_;                         // regions on either side of the origin's
+  std::vector<std::int32_t> window_;  // number of each region there, -1 = none; empty if there were too many
+};
+
+// Inline: one step of a ray after the other asks for them.
+
+/// Numbers of regions, -1 = none.
+inline Int8 TsdfLanes::regions(const LatticePoints& region) const {
+  if (!window_.empty()) {
+    const Int8 x = region.x + reach_;
+    const Int8 y = region.y + reach_;
+    const Int8 z = region.z + reach_;
+    const int last = 2 * reach_;
+    const Int8 inside = ((x | y | z) >= 0) & (x <= last) & (y <= last) & (z <= last);
+    const Int8 found = gather(window_.data(), inside ? x + (last + 1) * (y + (last + 1) * z) : Int8{});
+    return inside ? found : all_lanes(-1);
+  }
+  return regions_by_table(region);
+}
+
+inline Int8 TsdfLanes::slots(const LatticePoints& block) const {
+  const Int8 number = regions({block.x >> 2, block.y >> 2, block.z >> 2});
+  const Int8 offset = (block.x & 3) + ((block.y & 3) << 2) + ((block.z & 3) << 4);
+  const Int8 found = gather(volume_.region_slots(), (number >= 0 ? number << 6 : Int8{}) + offset);
+  return number >= 0 ? found : all_lanes(-1);
+}
+
+inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const {
+  const Float8 found_m = gather(volume_.distances_m(), (slot >= 0 ? slot << 9 : Int8{}) + offset);
+  return slot >= 0 ? found_m : all_lanes(std::numeric_limits<float>::quiet_NaN());
+}
+
+inline TsdfLanes::Location TsdfLanes::locate(const LatticePoints& voxel) const {
+  const LatticePoints block = {voxel.x >> 3, voxel.y >> 3, voxel.z >> 3};
+  const Int8 number = regions({block.x >> 2, block.y >> 2, block.z >> 2});
+  const Int8 no_region = number < 0;
+  const Int8 in_region = (block.x & 3) + ((block.y & 3) << 2) + ((block.z & 3) << 4);
+  const Int8 found = gather(volume_.region_slots(), (no_region ? Int8{} : number << 6) + in_region);
+  return {no_region ? all_lanes(-1) : found, (voxel.x & 7) + ((voxel.y & 7) << 3) + ((voxel.z & 7) << 6),
+          no_region};
+}
+
+}  // namespace fusebench

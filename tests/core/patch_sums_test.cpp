@@ -1,0 +1,201 @@
+// The sums over eight pixels at a time against plain double precision, one pixel at a time (residuals.hpp).
+#include "core/patch_sums.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/depth_gates.hpp"
+#include "core/image_lanes.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+namespace {
+
+const SE3 kTImuCamera{so3_exp({0.1, -0.2, 0.3}), {0.02, -0.01, 0.05}};
+const SE3 kTWorldImu{so3_exp({-0.2, 0.1, 0.05}), {0.4, -0.3, 0.2}};
+const Vector3d kOrigin(0.3, 0.2, 1.0);
+
+PosedCamera posed() { return PosedCamera(testing::small_camera(), kTWorldImu, kTImuCamera); }
+
+Vector3d lane_of(const Points& points, std::size_t lane) {
+  return {points.x[lane], points.y[lane], points.z[lane]};
+}
+
+/// Points before the camera, relative to the origin, with normals that face it.
+PixelLanes random_pixels(std::mt19937& random) {
+  std::uniform_real_distribution<float> u(20, 300), v(20, 220), depth_m(0.6F, 3.0F), turn(-0.3F, 0.3F);
+  PixelLanes pixels;
+  const PosedCamera camera = posed();
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Vector3d in_camera = camera.camera.back_project(u(random), v(random), depth_m(random));
+    const Vector3d point =
+        camera.R_camera_world.transpose() * (in_camera - camera.t_camera_world_m) - kOrigin;
+    const Vector3d normal = camera.R_camera_world.transpose() *
+                            (so3_exp({turn(random), turn(random), 0}) * -in_camera.normalized());
+    for (const auto& [target, value] : {std::pair{&pixels.point, point}, std::pair{&pixels.normal, normal}}) {
+      target->x[lane] = static_cast<float>(value.x());
+      target->y[lane] = static_cast<float>(value.y());
+      target->z[lane] = static_cast<float>(value.z());
+    }
+    pixels.intensity[lane] = turn(random) * 100.0F + 100.0F;
+    pixels.present[lane] = -1;
+    pixels.depth_confirmed[lane] = -1;
+  }
+  return pixels;
+}
+
+TEST(PatchSums, PhotometricJacobianIsThePlainOne) {
+  std::mt19937 random(3);
+  const PosedCamera plain = posed();
+  const PosedLanes lanes(plain, kOrigin);
+  for (int i = 0; i < 50; ++i) {
+    const PixelLanes pixels = random_pixels(random);
+    const Points in_camera = lanes.to_camera(pixels.point);
+    const Float8 dx = kLaneNumber - 3.0F;
+    const Float8 dy = 2.0F - kLaneNumber;
+    const JacobianLanes jacobian = photometric_jacobian(lanes, in_camera, dx, dy);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Vector3d point_camera = plain.to_camera(lane_of(pixels.point, lane) + kOrigin);
+      EXPECT_LT((lane_of(in_camera, lane) - point_camera).norm(), 2e-6);
+      const PhotometricResidual expected = photometric_residual(
+          {0, dx[lane], dy[lane]}, project_with_jacobian(plain, point_camera).jacobian, 0, 1, 0);
+      for (int k = 0; k < kPoseSize; ++k) {
+        EXPECT_NEAR(jacobian[static_cast<std::size_t>(k)][lane], expected.jacobian[k],
+                    1e-5 * expected.jacobian.norm());
+      }
+    }
+  }
+}
+
+TEST(PatchSums, PlaneResidualAndJacobianAreThePlainOnes) {
+  std::mt19937 random(4);
+  const PosedCamera plain = posed();
+  const PosedLanes lanes(plain, kOrigin);
+  for (int i = 0; i < 50; ++i) {
+    const PixelLanes planes = random_pixels(random);
+    PlanePairs pairs;
+    pairs.point_imu = lanes.to_imu(lanes.to_camera(planes.point));
+    pairs.point_imu.x += 0.01F * kLaneNumber;
+    const Float8 residual = plane_residual(lanes, pairs, planes);
+    const JacobianLanes jacobian = plane_jacobian(lanes, pairs, planes);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const PlaneResidual expected =
+          point_to_plane_residual(plain, lane_of(pairs.point_imu, lane),
+                                  lane_of(planes.point, lane) + kOrigin, lane_of(planes.normal, lane));
+      EXPECT_NEAR(residual[lane], expected.value_m, 3e-6);
+      for (int k = 0; k < kPoseSize; ++k) {
+        EXPECT_NEAR(jacobian[static_cast<std::size_t>(k)][lane], expected.jacobian[k], 2e-6);
+      }
+    }
+  }
+}
+
+TEST(PatchSums, SumsAreThoseOfTheNormalEquations) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> number(-2, 2);
+  QuadraticSums sums;
+  BrightnessSums light;
+  PoseQuadratic expected;
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  Vector2d gradient = Vector2d::Zero();
+  Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+  for (int i = 0; i < 20; ++i) {
+    JacobianLanes jacobian;
+    Float8 residual{}, weight{}, cost{}, intensity{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      RowVector6d row;
+      for (std::size_t k = 0; k < 6; ++k)
+        row[static_cast<Eigen::Index>(k)] = jacobian[k][lane] = number(random);
+      residual[lane] = number(random);
+      weight[lane] = lane == 3 ? 0.0F : std::abs(number(random));
+      cost[lane] = number(random);
+      intensity[lane] = number(random);
+      const double w = weight[lane];
+      const Vector2d by_light(-intensity[lane], -1.0);
+      expected.information += w * row.transpose() * row;
+      expected.gradient += w * residual[lane] * row.transpose();
+      expected.cost += cost[lane];
+      information += w * by_light * by_light.transpose();
+      gradient += w * residual[lane] * by_light;
+      by_pose += w * by_light * row;
+    }
+    sums.add(jacobian, residual, weight, cost);
+    light.add(jacobian, residual, weight, intensity);
+  }
+  const PoseQuadratic total = sums.total();
+  EXPECT_LT((total.information - expected.information).norm(), 1e-5 * expected.information.norm());
+  EXPECT_LT((total.gradient - expected.gradient).norm(), 1e-4);
+  EXPECT_NEAR(total.cost, expected.cost, 1e-4);
+  EXPECT_LT((light.information() - information).norm(), 1e-4);
+  EXPECT_LT((light.gradient() - gradient).norm(), 1e-4);
+  EXPECT_LT((light.by_pose() - by_pose).norm(), 1e-4);
+}
+
+TEST(PatchSums, KernelAndSamplesAreThePlainOnes) {
+  const testing::TexturedRoom room;
+  const GreyImage image = room.render(testing::small_camera(), SE3{}, 0).grey;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> x(1, 318), y(1, 238), value(-5, 5);
+  for (int i = 0; i < 200; ++i) {
+    Float8 u{}, v{}, whitened{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      u[lane] = lane == 7 ? 318.0F : x(random);  // the last place where there is room
+      v[lane] = lane == 7 ? 238.0F : y(random);
+      whitened[lane] = value(random);
+    }
+    const IntensityLanes cubic = sample_bicubic(image, u, v);
+    const Float8 alone = sample_bicubic_value(image, u, v);
+    const Float8 linear = sample_bilinear_value(image, u, v);
+    const RobustLanes robust = huber(whitened, 1.345F);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const IntensitySample expected = sample_bicubic(image, u[lane], v[lane]);
+      EXPECT_NEAR(cubic.value[lane], expected.value, 1e-3);
+      EXPECT_NEAR(cubic.dx[lane], expected.dx, 1e-3);
+      EXPECT_NEAR(cubic.dy[lane], expected.dy, 1e-3);
+      EXPECT_EQ(alone[lane], cubic.value[lane]);
+      EXPECT_NEAR(linear[lane], sample_bilinear(image, u[lane], v[lane]).value, 1e-3);
+      EXPECT_NEAR(robust.cost[lane], huber(whitened[lane], 1.345).cost, 1e-5);
+      EXPECT_NEAR(robust.weight[lane], huber(whitened[lane], 1.345).weight, 1e-6);
+    }
+  }
+}
+
+TEST(PatchSums, PointsAreAssociatedWithWhatWasMeasuredWhereTheyLand) {
+  // A wall that the camera sees at 1.5 m straight ahead, measured 1 cm nearer.
+  const PinholeCamera camera = testing::small_camera();
+  const PosedLanes lanes(PosedCamera(camera, SE3{}, SE3{}), Vector3d::Zero());
+  DepthImage depth_m(camera.width_px, camera.height_px, 1.49F);
+  depth_m(60, 50) = 0.0F;  // a hole
+  depth_m(80, 50) = 2.0F;  // too far from the wall
+  PixelLanes pixels;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const double u = 40.0 + 20.0 * static_cast<double>(lane);
+    const Vector3d point = camera.back_project(lane == 7 ? 318 : u, 50, 1.5);
+    pixels.point.x[lane] = static_cast<float>(point.x());
+    pixels.point.y[lane] = static_cast<float>(point.y());
+    pixels.point.z[lane] = static_cast<float>(point.z());
+    pixels.normal.x[lane] = lane == 4 ? 0.6F : 0.0F;  // turned by 37 degrees
+    pixels.normal.z[lane] = lane == 4 ? -0.8F : -1.0F;
+    pixels.present[lane] = lane == 5 ? 0 : -1;
+  }
+  const GeometricConfig geometric;
+  const DepthConfig depth;
+  const PlanePairs pairs = associate(lanes, pixels, depth_m, geometric, depth, 2.0);
+  // The hole, the far measurement, the turned normal, the missing pixel, the border without neighbours.
+  const std::array<bool, kLanes> expected = {true, false, false, true, false, false, true, false};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    EXPECT_EQ(pairs.valid[lane] != 0, expected[lane]) << lane;
+    if (!expected[lane]) continue;
+    const Vector3d measured = camera.back_project(40.0 + 20.0 * static_cast<double>(lane), 50, 1.49);
+    EXPECT_LT((lane_of(pairs.point_imu, lane) - measured).norm(), 1e-6);
+    EXPECT_NEAR(plane_residual(lanes, pairs, pixels)[lane], 0.01, 1e-6);
+    // Along the ray, and as the wall's normal sees it: the depth's own noise.
+    const double sigma_m = 2.0 * std::hypot(depth_sigma_m(1.49, depth), geometric.model_noise_m);
+    EXPECT_NEAR(pairs.sigma_m[lane], sigma_m, 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,11 @@
+# Fails unless two programs succeed and print the same.
+foreach(program FIRST SECOND)
+  execute_process(COMMAND ${${program}} OUTPUT_VARIABLE output_${program} RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${${program}} failed: ${result}")
+  endif()
+endforeach()
+if(NOT output_FIRST STREQUAL output_SECOND)
+  message(FATAL_ERROR "the programs print\n${output_FIRST}and\n${output_SECOND}")
+endif()
+message("${output_FIRST}")
