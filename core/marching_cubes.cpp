@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/block_surroundings.hpp"
 #include "core/marching_cubes_table.hpp"
 #include "core/tsdf_sampler.hpp"
 
@@ -48,6 +49,9 @@ struct BlockVertices {
   std::array<std::uint64_t, kWords> used{};
   std::array<std::uint32_t, kWords> before{};  // vertices on all earlier edges
 
+  [[nodiscard]] bool any() const {
+    return std::any_of(used.begin(), used.end(), [](std::uint64_t word) { return word != 0; });
+  }
   void number(std::uint32_t& count) {
     for (std::size_t word = 0; word < kWords; ++word) {
       before[word] = count;
@@ -173,37 +177,51 @@ bool blend(const Voxel& low, const Voxel& high, float share, Rgb& color) {
   return true;
 }
 
-// Writes the vertex on an edge that leaves a voxel along an axis. True if it has a colour.
-bool write_vertex(const VoxelIndex& index, Eigen::Index axis, double voxel_m, TsdfSampler& sampler,
-                  std::size_t vertex, Mesh& mesh) {
-  const VoxelIndex next = index + VoxelIndex(VoxelIndex::Unit(axis));
-  const Voxel low = sampler.voxel(index);
-  const Voxel high = sampler.voxel(next);
-  const double low_m = low.distance_m;
-  const double share = low_m / (low_m - static_cast<double>(high.distance_m));
-  const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m;
-  Vector3d normal = (1.0 - share) * sampler.gradient(index) + share * sampler.gradient(next);
-  if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
-  mesh.vertices[vertex] = position.cast<float>();
-  mesh.normals[vertex] = normal.normalized().cast<float>();
-  return blend(low, high, static_cast<float>(share), mesh.colors[vertex]);
-}
+// Writes vertices, block by block.
+class VertexWriter {
+ public:
+  VertexWriter(const TsdfVolume& volume, Mesh& mesh) : volume_(volume), sampler_(volume), mesh_(mesh) {}
 
-// Writes the vertices of one block. True if any has a colour.
-bool write_vertices(const TsdfVolume& volume, const BlockIndex& block, const BlockVertices& vertices,
-                    TsdfSampler& sampler, Mesh& mesh) {
-  bool colored = false;
-  for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
-    std::size_t vertex = vertices.before[word];
-    for (std::uint64_t bits = vertices.used[word]; bits != 0; bits &= bits - 1, ++vertex) {
-      const int edge = static_cast<int>(word) * 64 + std::countr_zero(bits);
-      const int offset = edge / 3;
-      const VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
-      colored |= write_vertex(block * kBlockSide + local, edge % 3, volume.voxel_m(), sampler, vertex, mesh);
+  // Those of one block. True if any has a colour.
+  bool write(const BlockIndex& block, const BlockVertices& vertices) {
+    if (!vertices.any()) return false;
+    surroundings_.load(volume_, block);
+    bool colored = false;
+    for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
+      std::size_t vertex = vertices.before[word];
+      for (std::uint64_t bits = vertices.used[word]; bits != 0; bits &= bits - 1, ++vertex) {
+        const int edge = static_cast<int>(word) * 64 + std::countr_zero(bits);
+        const int offset = edge / 3;
+        const VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
+        colored |= write_vertex(block, local, edge % 3, vertex);
+      }
     }
+    return colored;
   }
-  return colored;
-}
+
+ private:
+  // The vertex on the edge that leaves a voxel along an axis. True if it has a colour.
+  bool write_vertex(const BlockIndex& block, const VoxelIndex& local, Eigen::Index axis, std::size_t vertex) {
+    const VoxelIndex index = block * kBlockSide + local;
+    const VoxelIndex unit = VoxelIndex::Unit(axis);
+    const Voxel low = sampler_.voxel(index);
+    const Voxel high = sampler_.voxel(index + unit);
+    const double low_m = low.distance_m;
+    const double share = low_m / (low_m - static_cast<double>(high.distance_m));
+    const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * volume_.voxel_m();
+    Vector3d normal =
+        (1.0 - share) * surroundings_.gradient(local) + share * surroundings_.gradient(local + unit);
+    if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
+    mesh_.vertices[vertex] = position.cast<float>();
+    mesh_.normals[vertex] = normal.normalized().cast<float>();
+    return blend(low, high, static_cast<float>(share), mesh_.colors[vertex]);
+  }
+
+  const TsdfVolume& volume_;
+  TsdfSampler sampler_;
+  BlockSurroundings surroundings_;
+  Mesh& mesh_;
+};
 
 }  // namespace
 
@@ -239,11 +257,10 @@ Mesh extract_mesh(const TsdfVolume& volume, double min_weight, const Workers& wo
   mesh.triangles.resize(first_triangle.back());
   const auto colored =
       workers.map_chunks<char>(blocks, kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
-        TsdfSampler sampler(volume);
+        VertexWriter writer(volume, mesh);
         bool any = false;
         for (std::size_t rank = begin; rank < end; ++rank) {
-          any |= write_vertices(volume, volume.block_indices()[sorted.slots[rank]], vertices[rank], sampler,
-                                mesh);
+          any |= writer.write(volume.block_indices()[sorted.slots[rank]], vertices[rank]);
         }
         const std::size_t chunk = begin / kBlocksPerChunk;
         std::transform(surfaces[chunk].begin(), surfaces[chunk].end(),

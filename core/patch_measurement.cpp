@@ -53,6 +53,7 @@ PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, c
       scale_(scale),
       workers_(workers),
       origin_world_(origin_of(patches)),
+      gates_(config.geometric, config.depth, scale.geometric),
       states_(patches.size()),
       outcomes_(patches.size()) {
   for (std::size_t l = 0; l < static_cast<std::size_t>(config.patches.levels); ++l) {
@@ -118,8 +119,7 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
-      level.fixed[i].pairs = associate(posed.by_model, level.lanes.pixels[i], frame_.depth_m,
-                                       config_.geometric, config_.depth, scale_.geometric);
+      level.fixed[i].pairs = associate(posed.by_model, level.lanes.pixels[i], frame_.depth_m, gates_);
     }
   }
 }

@@ -117,7 +117,8 @@ class PatchMeasurement final : public PoseMeasurement {
   std::span<const Patch> patches_;
   const ResidualScale scale_;
   const Workers& workers_;
-  Vector3d origin_world_;   ///< of the lanes' coordinates
+  Vector3d origin_world_;  ///< of the lanes' coordinates
+  AssociationGates gates_;
   std::size_t finest_ = 0;  ///< level that the last linearise() began with
   std::vector<Level> levels_;
   std::vector<PatchState> states_;

@@ -44,7 +44,7 @@ Scatter patch_scatter(std::span<const PoseQuadratic> clusters) {
     const Vector6d left = cluster.gradient + cluster.information * optimum;
     const Matrix6d influence = covariance * cluster.information;
     scatter += left.dot(covariance * left);
-    const double squared = (influence * influence).trace();
+    const double squared = influence.cwiseProduct(influence.transpose()).sum();  // trace of its square
     expected += influence.trace() - squared;
     squared_influence += squared;
   }

@@ -75,8 +75,17 @@ Eigen::Matrix<double, 2, kPoseSize> BrightnessSums::by_pose() const {
   return sum;
 }
 
+AssociationGates::AssociationGates(const GeometricConfig& geometric, const DepthConfig& depth_in,
+                                   double scale)
+    : max_distance_m(static_cast<float>(geometric.max_distance_m)),
+      min_normal_cosine(static_cast<float>(std::cos(radians(geometric.max_normal_angle_deg)))),
+      min_incidence_cosine(static_cast<float>(std::cos(radians(depth_in.max_incidence_deg)))),
+      model_noise_m(static_cast<float>(geometric.model_noise_m)),
+      noise_scale(static_cast<float>(scale)),
+      depth(depth_in) {}
+
 PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels, const DepthImage& depth_m,
-                     const GeometricConfig& geometric, const DepthConfig& depth, double scale) {
+                     const AssociationGates& gates) {
   const Points predicted = camera.to_camera(pixels.point);
   const Int8 in_front = pixels.present & (predicted.z > 0.0F);
   const Float8 inverse_z = 1.0F / (in_front ? predicted.z : all_lanes(1.0F));
@@ -89,25 +98,22 @@ PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels, const D
   const Int8 y = inside ? to_int(landed_y) : Int8{};
   const Float8 measured_m = gather(depth_m.data.data(), y * depth_m.width + x);
   const Points measured = camera.back_project(to_float(x), to_float(y), measured_m);
-  const Int8 near = inside & (measured_m > 0.0F) &
-                    (norm(measured - predicted) <= static_cast<float>(geometric.max_distance_m));
+  const Int8 near = inside & (measured_m > 0.0F) & (norm(measured - predicted) <= gates.max_distance_m);
   PlanePairs pairs;
   if (!any(near)) return pairs;
 
   const Points normal = rotated(camera.R_camera_world, pixels.normal);
   const MeasuredNormals surface = measured_normals(camera, depth_m, x, y, near);
-  const auto min_normal_cosine = static_cast<float>(std::cos(radians(geometric.max_normal_angle_deg)));
-  const auto min_incidence_cosine = static_cast<float>(std::cos(radians(depth.max_incidence_deg)));
   const Float8 range_m = norm(measured);
   const Float8 incidence_cosine = -dot(measured, normal) / (near ? range_m : all_lanes(1.0F));
-  pairs.valid = surface.valid & within_angle(surface.normal, normal, min_normal_cosine) &
-                (incidence_cosine >= min_incidence_cosine);
+  pairs.valid = surface.valid & within_angle(surface.normal, normal, gates.min_normal_cosine) &
+                (incidence_cosine >= gates.min_incidence_cosine);
   pairs.point_imu = camera.to_imu(measured);
   // Depth noise acts along the ray; the plane sees its share along the normal.
-  const Float8 along_normal_m =
-      depth_sigma_m(measured_m, depth) * range_m / (near ? measured_m : all_lanes(1.0F)) * incidence_cosine;
-  const auto model_m = static_cast<float>(geometric.model_noise_m);
-  pairs.sigma_m = static_cast<float>(scale) * sqrt(along_normal_m * along_normal_m + model_m * model_m);
+  const Float8 along_normal_m = depth_sigma_m(measured_m, gates.depth) * range_m /
+                                (near ? measured_m : all_lanes(1.0F)) * incidence_cosine;
+  pairs.sigma_m =
+      gates.noise_scale * sqrt(along_normal_m * along_normal_m + gates.model_noise_m * gates.model_noise_m);
   return pairs;
 }
 

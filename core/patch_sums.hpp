@@ -74,11 +74,23 @@ struct PlanePairs {
 [[nodiscard]] JacobianLanes plane_jacobian(const PosedLanes& camera, const PlanePairs& pairs,
                                            const PixelLanes& planes);
 
+/// When a measurement belongs to a model point, and how noisy it is.
+struct AssociationGates {
+  /// `scale` is that of the noise's standard deviation.
+  AssociationGates(const GeometricConfig& geometric, const DepthConfig& depth, double scale);
+
+  float max_distance_m;
+  float min_normal_cosine;
+  float min_incidence_cosine;
+  float model_noise_m;
+  float noise_scale;
+  DepthConfig depth;
+};
+
 /// Projective association: the measurement at the pixel where each model point lands, if distance, normals
-/// and incidence agree. `scale` is that of the noise's standard deviation.
+/// and incidence agree.
 [[nodiscard]] PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels,
-                                   const DepthImage& depth_m, const GeometricConfig& geometric,
-                                   const DepthConfig& depth, double scale);
+                                   const DepthImage& depth_m, const AssociationGates& gates);
 
 // Inline: what all pixels of all patches go through.
 

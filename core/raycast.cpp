@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "core/block_bounds.hpp"
 #include "core/tsdf_lanes.hpp"
 
 namespace fusebench {
@@ -116,6 +117,7 @@ class RayCaster {
       return;
     }
     field_.emplace(volume, T_world_camera.translation, reach_m);
+    bounds_.emplace(volume, camera, T_world_camera, depth);
     origin_ = (T_world_camera.translation / volume.voxel_m() - field_->origin_voxel()).cast<float>();
     axes_ = (T_world_camera.rotation_matrix() / volume.voxel_m()).cast<float>();
   }
@@ -197,9 +199,11 @@ class RayCaster {
   [[nodiscard]] Walk begin(const PixelLanes& pixels) const {
     Walk walk;
     walk.rays = rays_of(pixels.u, pixels.v);
-    walk.z_m = clamp(pixels.begin_m, nearest_m_, farthest_m_);
+    const Float8 begin_m =
+        max(max(pixels.begin_m, bounds_->nearest_m(pixels.u, pixels.v)), all_lanes(nearest_m_));
     walk.end_m = min(pixels.end_m, all_lanes(farthest_m_));
-    walk.walking = walk.z_m <= walk.end_m;
+    walk.walking = begin_m <= walk.end_m;
+    walk.z_m = walk.walking ? begin_m : all_lanes(nearest_m_);
     return walk;
   }
 
@@ -275,7 +279,8 @@ class RayCaster {
   }
 
   const PinholeCamera& camera_;
-  std::optional<TsdfLanes> field_;  // none if there is nothing to see
+  std::optional<TsdfLanes> field_;  // none if there is nothing to see, as of
+  std::optional<BlockBounds> bounds_;
   Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes_ = Eigen::Matrix3f::Zero();
   float nearest_m_, farthest_m_;

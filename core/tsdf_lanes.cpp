@@ -30,37 +30,62 @@ Float8 slope(Float8 before_m, Float8 centre_m, Float8 after_m) {
 
 }  // namespace
 
-/// The blocks of a few voxels in a row on each axis, from `first` on: at most two an axis.
-struct TsdfLanes::Neighbourhood {
-  Neighbourhood(const TsdfLanes& field, const LatticePoints& first, int count) {
-    const LatticePoints low = {first.x >> 3, first.y >> 3, first.z >> 3};
-    const LatticePoints high = {(first.x + (count - 1)) >> 3, (first.y + (count - 1)) >> 3,
-                                (first.z + (count - 1)) >> 3};
-    low_ = low;
-    crossed_ = {any(low.x != high.x), any(low.y != high.y), any(low.z != high.z)};
+/// A cube of kSide voxels from `first` on, at most eight a side, and so in at most two blocks along each
+/// axis.
+template <int kSide>
+class TsdfLanes::Cube {
+ public:
+  Cube(const TsdfLanes& field, const LatticePoints& first)
+      : field_(field), axes_{Axis(first.x, 0), Axis(first.y, 3), Axis(first.z, 6)} {
     for (std::size_t n = 0; n < 8; ++n) {
       // A second block that no lane reaches is not looked for.
-      const std::size_t unreached =
-          (n & 1 && !crossed_[0] ? 1 : 0) | (n & 2 && !crossed_[1] ? 2 : 0) | (n & 4 && !crossed_[2] ? 4 : 0);
-      slots_[n] = unreached != 0
-                      ? slots_[n & ~unreached]
-                      : field.slots({n & 1 ? high.x : low.x, n & 2 ? high.y : low.y, n & 4 ? high.z : low.z});
+      std::size_t reached = n;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!axes_[axis].crossed) reached &= ~(std::size_t{1} << axis);
+      }
+      if (reached != n) {
+        slots_[n] = slots_[reached];
+        continue;
+      }
+      slots_[n] = field.slots({axes_[0].block[n & 1], axes_[1].block[(n >> 1) & 1], axes_[2].block[n >> 2]});
     }
   }
 
-  /// The slots of the voxels, -1 = none.
-  [[nodiscard]] Int8 slot(const LatticePoints& voxel) const {
+  /// The distance at a voxel of the cube.
+  [[nodiscard]] Float8 distance_m(int x, int y, int z) const {
+    const Place& at_x = axes_[0].places[static_cast<std::size_t>(x)];
+    const Place& at_y = axes_[1].places[static_cast<std::size_t>(y)];
+    const Place& at_z = axes_[2].places[static_cast<std::size_t>(z)];
     const auto across = [&](std::size_t n) {
-      return crossed_[0] ? ((voxel.x >> 3) != low_.x ? slots_[n | 1] : slots_[n]) : slots_[n];
+      return axes_[0].crossed && x > 0 ? (at_x.second ? slots_[n | 1] : slots_[n]) : slots_[n];
     };
     const auto down = [&](std::size_t n) {
-      return crossed_[1] ? ((voxel.y >> 3) != low_.y ? across(n | 2) : across(n)) : across(n);
+      return axes_[1].crossed && y > 0 ? (at_y.second ? across(n | 2) : across(n)) : across(n);
     };
-    return crossed_[2] ? ((voxel.z >> 3) != low_.z ? down(4) : down(0)) : down(0);
+    const Int8 slot = axes_[2].crossed && z > 0 ? (at_z.second ? down(4) : down(0)) : down(0);
+    return field_.distances_m(slot, at_x.offset + at_y.offset + at_z.offset);
   }
 
-  LatticePoints low_;
-  std::array<bool, 3> crossed_;
+ private:
+  struct Place {
+    Int8 offset;  ///< share of this axis in the offset in the block
+    Int8 second;  ///< in the second block
+  };
+  struct Axis {
+    Axis(Int8 first, int shift) : block{first >> 3, (first + (kSide - 1)) >> 3} {
+      crossed = any(block[0] != block[1]);
+      for (int i = 0; i < kSide; ++i) {
+        const Int8 at = first + i;
+        places[static_cast<std::size_t>(i)] = {(at & 7) << shift, (at >> 3) != block[0]};
+      }
+    }
+    std::array<Int8, 2> block;
+    bool crossed;  ///< in any lane
+    std::array<Place, static_cast<std::size_t>(kSide)> places;
+  };
+
+  const TsdfLanes& field_;
+  std::array<Axis, 3> axes_;
   std::array<Int8, 8> slots_;
 };
 
@@ -95,14 +120,11 @@ Float8 TsdfLanes::sample(const Points& at) const {
   const LatticePoints base = {floor_to_int(at.x), floor_to_int(at.y), floor_to_int(at.z)};
   const auto weights =
       trilinear_weights({at.x - to_float(base.x), at.y - to_float(base.y), at.z - to_float(base.z)});
-  const Neighbourhood blocks(*this, base, 2);
+  const Cube<2> cube(*this, base);
   Float8 sum_m{};
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const LatticePoints voxel = {base.x + static_cast<int>(corner & 1),
-                                 base.y + static_cast<int>((corner >> 1) & 1),
-                                 base.z + static_cast<int>(corner >> 2)};
-    const Int8 offset = (voxel.x & 7) + ((voxel.y & 7) << 3) + ((voxel.z & 7) << 6);
-    sum_m += weights[corner] * distances_m(blocks.slot(voxel), offset);
+  for (int corner = 0; corner < 8; ++corner) {
+    sum_m += weights[static_cast<std::size_t>(corner)] *
+             cube.distance_m(corner & 1, (corner >> 1) & 1, corner >> 2);
   }
   return sum_m;
 }
@@ -111,15 +133,10 @@ Points TsdfLanes::gradient(const Points& at) const {
   const LatticePoints base = {floor_to_int(at.x), floor_to_int(at.y), floor_to_int(at.z)};
   const auto weights =
       trilinear_weights({at.x - to_float(base.x), at.y - to_float(base.y), at.z - to_float(base.z)});
-  const Neighbourhood blocks(*this, {base.x - 1, base.y - 1, base.z - 1}, 4);
-  const auto distance_m = [&](int x, int y, int z) {
-    const LatticePoints voxel = {base.x + x, base.y + y, base.z + z};
-    const Int8 offset = (voxel.x & 7) + ((voxel.y & 7) << 3) + ((voxel.z & 7) << 6);
-    return distances_m(blocks.slot(voxel), offset);
-  };
+  const Cube<4> cube(*this, {base.x - 1, base.y - 1, base.z - 1});
   std::array<Float8, 8> corner_m;
   for (int c = 0; c < 8; ++c) {
-    corner_m[static_cast<std::size_t>(c)] = distance_m(c & 1, (c >> 1) & 1, c >> 2);
+    corner_m[static_cast<std::size_t>(c)] = cube.distance_m(1 + (c & 1), 1 + ((c >> 1) & 1), 1 + (c >> 2));
   }
   // Four voxels in a row along the axis: the outer two may be unobserved, the inner two are corners, of which
   // an unobserved one makes the sum NaN.
@@ -130,13 +147,14 @@ Points TsdfLanes::gradient(const Points& at) const {
       if ((c & bit) != 0) continue;
       const auto low = static_cast<std::size_t>(c);
       const auto high = static_cast<std::size_t>(c | bit);
-      std::array<int, 3> before = {c & 1, (c >> 1) & 1, c >> 2};
+      std::array<int, 3> before = {1 + (c & 1), 1 + ((c >> 1) & 1), 1 + (c >> 2)};
       std::array<int, 3> after = before;
-      before[static_cast<std::size_t>(axis)] = -1;
-      after[static_cast<std::size_t>(axis)] = 2;
+      before[static_cast<std::size_t>(axis)] = 0;
+      after[static_cast<std::size_t>(axis)] = 3;
       sum +=
-          weights[low] * slope(distance_m(before[0], before[1], before[2]), corner_m[low], corner_m[high]) +
-          weights[high] * slope(corner_m[low], corner_m[high], distance_m(after[0], after[1], after[2]));
+          weights[low] *
+              slope(cube.distance_m(before[0], before[1], before[2]), corner_m[low], corner_m[high]) +
+          weights[high] * slope(corner_m[low], corner_m[high], cube.distance_m(after[0], after[1], after[2]));
     }
     return sum;
   };

@@ -42,12 +42,13 @@ class TsdfLanes {
   /// observed.
   [[nodiscard]] Float8 sample(const Points& at) const;
 
-  /// Gradient by trilinear interpolation of central differences, as TsdfSampler::gradient_at, in metres per
-  /// voxel; NaN where one of the eight neighbours was not observed.
+  /// Gradient of the field in metres per voxel: trilinear interpolation of that at the eight neighbours, by
+  /// central differences, one-sided next to unobserved voxels. NaN where one of the eight was not observed.
   [[nodiscard]] Points gradient(const Points& at) const;
 
  private:
-  struct Neighbourhood;
+  template <int kSide>
+  class Cube;
 
   [[nodiscard]] Int8 regions(const LatticePoints& region) const;
   [[nodiscard]] Int8 regions_by_table(const LatticePoints& region) const;

@@ -15,16 +15,6 @@ std::array<double, 8> trilinear_weights(const Vector3d& f) {
           xy[0] * f.z(), xy[1] * f.z(), xy[2] * f.z(), xy[3] * f.z()};
 }
 
-// Change of the distance from one voxel to the next at the middle of three; the outer ones may be unobserved
-// (NaN).
-double slope(float before_m, float centre_m, float after_m) {
-  const bool has_before = !std::isnan(before_m);
-  const bool has_after = !std::isnan(after_m);
-  const double difference_m = static_cast<double>(has_after ? after_m : centre_m) -
-                              static_cast<double>(has_before ? before_m : centre_m);
-  return has_before && has_after ? 0.5 * difference_m : difference_m;
-}
-
 VoxelIndex corner_of(const VoxelIndex& base, int corner) {
   return base + VoxelIndex(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
 }
@@ -65,37 +55,6 @@ TsdfSample TsdfSampler::sample(const Vector3d& point_world) {
     distance_m += weights[corner] * static_cast<double>(cell.corner_m[corner]);
   }
   return {true, distance_m};
-}
-
-Vector3d TsdfSampler::gradient(const VoxelIndex& index) {
-  const float centre_m = distance_m(index);
-  Vector3d gradient = Vector3d::Zero();
-  for (Eigen::Index axis = 0; axis < 3 && !std::isnan(centre_m); ++axis) {
-    const VoxelIndex unit = VoxelIndex::Unit(axis);
-    gradient[axis] = slope(distance_m(index - unit), centre_m, distance_m(index + unit)) * per_voxel_;
-  }
-  return gradient;
-}
-
-Vector3d TsdfSampler::gradient_at(const Vector3d& point_world) {
-  Cell cell;
-  Vector3d sum = Vector3d::Zero();
-  if (!find_cell(point_world, cell)) return sum;
-  const std::array<double, 8> weights = trilinear_weights(cell.fraction);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const VoxelIndex unit = VoxelIndex::Unit(axis);
-    const std::size_t bit = std::size_t{1} << axis;
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      if ((corner & bit) != 0) continue;
-      // Four voxels in a row along the axis: the outer two may be unobserved, the inner two are corners.
-      const VoxelIndex at = corner_of(cell.base, static_cast<int>(corner));
-      const float low_m = cell.corner_m[corner];
-      const float high_m = cell.corner_m[corner | bit];
-      sum[axis] += weights[corner] * slope(distance_m(at - unit), low_m, high_m) +
-                   weights[corner | bit] * slope(low_m, high_m, distance_m(at + 2 * unit));
-    }
-  }
-  return sum * per_voxel_;
 }
 
 }  // namespace fusebench

@@ -42,14 +42,6 @@ class TsdfSampler {
   /// were observed.
   [[nodiscard]] TsdfSample sample(const Vector3d& point_world);
 
-  /// Gradient of the field at a voxel (metres of distance per metre) by central differences, one-sided next
-  /// to unobserved voxels, 0 along an axis where both neighbours are unobserved.
-  [[nodiscard]] Vector3d gradient(const VoxelIndex& index);
-
-  /// Gradient at a world point: trilinear interpolation of that at the eight neighbours, which is the central
-  /// difference of the trilinear field over one voxel to both sides. Zero where a neighbour was not observed.
-  [[nodiscard]] Vector3d gradient_at(const Vector3d& point_world);
-
  private:
   struct Remembered {
     BlockIndex index =

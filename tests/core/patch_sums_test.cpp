@@ -182,7 +182,7 @@ TEST(PatchSums, PointsAreAssociatedWithWhatWasMeasuredWhereTheyLand) {
   }
   const GeometricConfig geometric;
   const DepthConfig depth;
-  const PlanePairs pairs = associate(lanes, pixels, depth_m, geometric, depth, 2.0);
+  const PlanePairs pairs = associate(lanes, pixels, depth_m, AssociationGates(geometric, depth, 2.0));
   // The hole, the far measurement, the turned normal, the missing pixel, the border without neighbours.
   const std::array<bool, kLanes> expected = {true, false, false, true, false, false, true, false};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {

@@ -114,8 +114,7 @@ void track(const RgbdFrame& frame, const TsdfVolume& model, const Workers& worke
   for (std::size_t i = 0; i < lanes.pixels.size(); ++i) {
     const WarpedLanes& w = lanes.warped[i];
     bytes.add(w.visible);
-    const PlanePairs pairs =
-        associate(posed, lanes.pixels[i], frame.depth_m, GeometricConfig{}, DepthConfig{}, 1.0);
+    const PlanePairs pairs = associate(posed, lanes.pixels[i], frame.depth_m, AssociationGates({}, {}, 1.0));
     const Float8 weight = pairs.valid ? all_lanes(1.0F) : Float8{};
     const Float8 residual = pairs.valid ? plane_residual(posed, pairs, lanes.pixels[i]) : Float8{};
     const RobustLanes robust = huber(residual * 500.0F, 0.7F);
