@@ -17,7 +17,8 @@ using JacobianLanes = std::array<Float8, kPoseSize>;
 /// What residuals of one kind add up to. Lanes are added in their order at the end.
 class QuadraticSums {
  public:
-  /// `weight` is 0 where there is no residual; `robust`: weight and cost of the kernel, both without share.
+  /// weight: of the squared residual in the normal equations; it and the cost are 0 where there is no
+  /// residual.
   void add(const JacobianLanes& jacobian, Float8 residual, Float8 weight, Float8 cost);
   [[nodiscard]] PoseQuadratic total() const;
 
