@@ -1,0 +1,106 @@
+// Against every pixel's ray, felt along in small steps.
+#include "core/band_blocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "tests/support/analytic_scene.hpp"
+
+namespace fusebench {
+namespace {
+
+using Blocks = std::set<std::array<int, 3>>;
+
+// A narrow view, so that a block of 8 cm is wider than kFinePixels at 5 m, and one of 4 cm is not.
+const PinholeCamera kCamera = test_camera(160, 120, 15.0);
+const SE3 kTWorldCamera{so3_exp({0.3, -0.2, 0.1}), {-0.3, 0.4, 0.1}};
+
+DepthImage step_and_wall() {
+  const AnalyticScene scene{{AnalyticPlane{{0, 0, -1}, -2.2, {9, 9, 9}}}};
+  DepthImage depth_m = scene.render(kCamera, kTWorldCamera).depth_m;
+  for (int y = 30; y < 70; ++y) {
+    for (int x = 50; x < 100; ++x) depth_m(x, y) -= 0.4F;  // something before the wall
+  }
+  for (int y = 0; y < 20; ++y) depth_m(3, y) = 0.0F;  // not measured
+  return depth_m;
+}
+
+Blocks felt_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig& tsdf,
+                   const DepthConfig& depth) {
+  Blocks blocks;
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x) {
+      const double z = static_cast<double>(depth_m(x, y));
+      if (!(z >= depth.min_m && z <= depth.max_m)) continue;
+      const double band_m = half_band_m(z, tsdf, depth);
+      for (int step = 0; step <= 40; ++step) {
+        const double at_m = z + band_m * (step / 20.0 - 1.0);
+        const Vector3d point = kTWorldCamera * kCamera.back_project(x, y, at_m) / block_m;
+        const BlockIndex block = point.array().floor().cast<int>();
+        blocks.insert({block.x(), block.y(), block.z()});
+      }
+    }
+  }
+  return blocks;
+}
+
+Blocks found_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig& tsdf,
+                    const DepthConfig& depth) {
+  BandBlocks band;
+  const Workers workers(1);
+  for (int time = 0; time < 2; ++time) {  // it forgets the image before
+    band.find(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth, workers);
+  }
+  Blocks blocks;
+  for (const BlockIndex& block : band.blocks()) blocks.insert({block.x(), block.y(), block.z()});
+  EXPECT_EQ(blocks.size(), band.blocks().size()) << "each once";
+  return blocks;
+}
+
+std::size_t missing(const Blocks& wanted, const Blocks& found) {
+  std::size_t count = 0;
+  for (const auto& block : wanted) count += found.contains(block) ? 0 : 1;
+  return count;
+}
+
+TEST(BandBlocks, OfFinePixelsAreAllThatTheirRaysPass) {
+  const TsdfConfig tsdf{.voxel_m = 0.005};
+  const DepthConfig depth;
+  const double block_m = 8 * tsdf.voxel_m;
+  ASSERT_LT(block_m * kCamera.fx_px / depth.max_m, BandBlocks::kFinePixels);
+  const DepthImage depth_m = step_and_wall();
+  const Blocks felt = felt_blocks(depth_m, block_m, tsdf, depth);
+  const Blocks found = found_blocks(depth_m, block_m, tsdf, depth);
+  EXPECT_GT(felt.size(), 100U);
+  EXPECT_EQ(missing(felt, found), 0U);
+  // Steps may jump a corner that a ray cuts.
+  EXPECT_LE(static_cast<double>(missing(found, felt)), 0.03 * static_cast<double>(found.size()));
+}
+
+TEST(BandBlocks, OfEverySecondPixelMissCornersAtMost) {
+  const TsdfConfig tsdf;
+  const DepthConfig depth;
+  const double block_m = 8 * tsdf.voxel_m;
+  ASSERT_GE(block_m * kCamera.fx_px / depth.max_m, BandBlocks::kFinePixels);
+  const DepthImage depth_m = step_and_wall();
+  const Blocks felt = felt_blocks(depth_m, block_m, tsdf, depth);
+  const Blocks found = found_blocks(depth_m, block_m, tsdf, depth);
+  EXPECT_GT(felt.size(), 20U);
+  EXPECT_LE(static_cast<double>(missing(felt, found)), 0.05 * static_cast<double>(felt.size()));
+  EXPECT_LE(static_cast<double>(missing(found, felt)), 0.03 * static_cast<double>(found.size()));
+}
+
+TEST(BandBlocks, AreTheSameForEveryNumberOfThreads) {
+  const DepthImage depth_m = step_and_wall();
+  const TsdfConfig tsdf;
+  const Workers one(1), many(8);
+  BandBlocks first, second;
+  first.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, one);
+  second.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, many);
+  EXPECT_EQ(first.blocks(), second.blocks());
+}
+
+}  // namespace
+}  // namespace fusebench
