@@ -103,7 +103,7 @@ Keyframe Keyframes::described(const GreyImage& grey, const DepthImage& depth_m) 
     keyframe.points_camera.push_back(camera_.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
   }
   keyframe.grey = grey;
-  keyframe.depth_m = depth_m;
+  keyframe.depth = PackedDepth(depth_m);
   return keyframe;
 }
 

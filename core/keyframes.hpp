@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/packed_depth.hpp"
 #include "core/place_features.hpp"
 #include "core/types.hpp"
 
@@ -25,7 +26,7 @@ struct Keyframe {
   SE3 T_world_camera;
   GreyImage grey;
   double blur_px = 0;                   ///< as it was offered
-  DepthImage depth_m;                   ///< as it was offered, to cut patches again
+  PackedDepth depth;                    ///< as it was offered, to cut patches again
   std::vector<PlaceFeature> features;   ///< those with depth
   std::vector<Vector3d> points_camera;  ///< one a feature, in this keyframe's camera, metres
 };
@@ -36,7 +37,7 @@ struct KeyframeSpacing {
   /// degrees, which descriptors hardly notice.
   double distance_m = 0.3;
   double angle_rad = radians(20);  ///< between optical axes (ORB is indifferent to turns about them)
-  std::size_t max_count = 60;      ///< 1.5 MB each at 640x480
+  std::size_t max_count = 60;      ///< 1 MB each at 640x480
 };
 
 /// A pose found by matching.

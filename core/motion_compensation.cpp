@@ -22,7 +22,7 @@ constexpr int kIterationsFromNeighbours = 1;
 /// From one row to the next a displacement changes by less, except at an edge of depth.
 constexpr float kMostChange_px = 0.5F;
 
-using Byte8 [[gnu::vector_size(8)]] = std::uint8_t;
+using Bytes [[gnu::vector_size(32)]] = std::uint8_t;  ///< of eight words
 
 /// Eight displacements, pixels.
 struct Displacement8 {
@@ -253,8 +253,10 @@ class Tile {
     const Int8 above = gather_bytes(bytes, source_.grey.data.size(), upper);
     const Int8 below = gather_bytes(bytes, source_.grey.data.size(), upper + width_);
     const Int8 grey = mix(byte_of(above, 0), byte_of(above, 1), byte_of(below, 0), byte_of(below, 1));
-    const Byte8 levels = __builtin_convertvector(grey, Byte8);
-    std::memcpy(&target_.grey.data[pixel], &levels, sizeof(levels));
+    const Bytes levels = __builtin_shuffle(std::bit_cast<Bytes>(grey),
+                                           Bytes{0, 4, 8, 12, 16, 20, 24, 28, 0, 0, 0, 0, 0, 0, 0, 0,
+                                                 0, 0, 0, 0,  0,  0,  0,  0,  0, 0, 0, 0, 0, 0, 0, 0});
+    std::memcpy(&target_.grey.data[pixel], &levels, kLanes);
   }
 
   void write_color(const Bilinear& mix, Int8 upper, std::size_t pixel) const {
@@ -270,13 +272,10 @@ class Tile {
                  byte_of(lower_right, at));
     };
     const Int8 words = channel(0) | channel(1) << 8 | channel(2) << 16;
-    // Four bytes each, of which the next pixel takes the last one back.
-    std::array<std::uint8_t, 3 * kLanes + 1> eight;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::int32_t word = words[lane];
-      std::memcpy(&eight[3 * lane], &word, sizeof(word));
-    }
-    std::memcpy(target_.color.data.data() + pixel, eight.data(), 3 * kLanes);
+    const Bytes eight = __builtin_shuffle(
+        std::bit_cast<Bytes>(words), Bytes{0,  1,  2,  4,  5,  6,  8,  9,  10, 12, 13, 14, 16, 17, 18, 20,
+                                           21, 22, 24, 25, 26, 28, 29, 30, 0,  0,  0,  0,  0,  0,  0,  0});
+    std::memcpy(target_.color.data.data() + pixel, &eight, 3 * kLanes);
   }
 
   const RgbdFrame& source_;

@@ -55,12 +55,11 @@ std::optional<Vector3d> inverse_depth_plane(const Patch& patch, const PinholeCam
 void warp_rigidly(Patch& patch, const PinholeCamera& camera) {
   const std::optional<Vector3d> centre = centre_point_world(patch, camera);
   for (std::size_t l = 0; l < patch.levels.size(); ++l) {
-    auto& pixels = patch.levels[l].pixels;
+    auto& [pixels, warp_points] = patch.levels[l];
     if (!centre) pixels.clear();
-    for (PatchPixel& pixel : pixels) {
-      pixel.warp_point_world = *centre;
-      pixel.warp_offset_px = (reference_coordinates(pixel, camera) - patch.centre_px.cast<double>()) /
-                             static_cast<double>(1 << l);
+    for (const PatchPixel& pixel : pixels) {
+      const Vector2d offset_px = reference_coordinates(pixel, camera) - patch.centre_px.cast<double>();
+      warp_points.push_back({*centre, offset_px / static_cast<double>(1 << l)});
     }
   }
 }
@@ -70,13 +69,14 @@ void warp_by_plane(Patch& patch, const PinholeCamera& camera, const SE3& T_world
   for (PatchLevel& level : patch.levels) {
     if (!plane) level.pixels.clear();
     std::vector<PatchPixel> kept;
-    for (PatchPixel& pixel : level.pixels) {
+    for (const PatchPixel& pixel : level.pixels) {
       const Vector2d place = reference_coordinates(pixel, camera);
       const Vector2d offset = place - patch.centre_px.cast<double>();
       const double inverse_depth = plane->dot(Vector3d(offset.x(), offset.y(), 1.0));
       if (inverse_depth <= 0) continue;  // the plane passes behind the camera here
-      pixel.warp_point_world =
-          T_world_camera * camera.back_project(place.x(), place.y(), 1.0 / inverse_depth);
+      level.warp_points.push_back(
+          {T_world_camera * camera.back_project(place.x(), place.y(), 1.0 / inverse_depth),
+           Vector2d::Zero()});
       kept.push_back(pixel);
     }
     level.pixels = std::move(kept);
@@ -87,11 +87,9 @@ void warp_by_plane(Patch& patch, const PinholeCamera& camera, const SE3& T_world
 
 void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_world_camera,
                      Deformation deformation) {
+  for (PatchLevel& level : patch.levels) level.warp_points.clear();
   switch (deformation) {
     case Deformation::pixelwise:
-      for (PatchLevel& level : patch.levels) {
-        for (PatchPixel& pixel : level.pixels) pixel.warp_point_world = pixel.point_world;
-      }
       return;
     case Deformation::planar:
       warp_by_plane(patch, camera, T_world_camera);

@@ -6,10 +6,10 @@ namespace fusebench {
 
 namespace {
 
-void set(Points& points, std::size_t lane, const Vector3d& value) {
-  points.x[lane] = static_cast<float>(value.x());
-  points.y[lane] = static_cast<float>(value.y());
-  points.z[lane] = static_cast<float>(value.z());
+void set(Points& points, std::size_t lane, const Eigen::Vector3f& value) {
+  points.x[lane] = value.x();
+  points.y[lane] = value.y();
+  points.z[lane] = value.z();
 }
 
 }  // namespace
@@ -31,29 +31,29 @@ PosedLanes::PosedLanes(const PosedCamera& posed, const Vector3d& origin_world)
       t_world_imu_m((posed.t_world_imu_m - origin_world).cast<float>()) {}
 
 void pack(std::span<const Patch> patches, std::size_t level, const Vector3d& origin_world,
-          Deformation deformation, LevelLanes& lanes) {
-  const bool own_points = deformation == Deformation::pixelwise;
+          LevelLanes& lanes) {
   lanes.pixels.clear();
   lanes.warp_points.clear();
   lanes.first.assign(1, 0);
   for (const Patch& patch : patches) {
-    const std::vector<PatchPixel>& pixels = patch.levels[level].pixels;
+    const auto& [pixels, warp_points] = patch.levels[level];
     for (std::size_t begin = 0; begin < pixels.size(); begin += kLanes) {
       PixelLanes& eight = lanes.pixels.emplace_back();
-      if (!own_points) lanes.warp_points.emplace_back();
+      if (!warp_points.empty()) lanes.warp_points.emplace_back();
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const PatchPixel& pixel = pixels[std::min(begin + lane, pixels.size() - 1)];
+        const std::size_t i = std::min(begin + lane, pixels.size() - 1);
+        const PatchPixel& pixel = pixels[i];
         const bool present = begin + lane < pixels.size();
-        set(eight.point, lane, pixel.point_world - origin_world);
+        set(eight.point, lane, (pixel.point_world - origin_world).cast<float>());
         set(eight.normal, lane, pixel.normal_world);
-        eight.intensity[lane] = static_cast<float>(pixel.intensity);
+        eight.intensity[lane] = pixel.intensity;
         eight.present[lane] = present ? -1 : 0;
         eight.depth_confirmed[lane] = present && pixel.depth_confirmed ? -1 : 0;
-        if (own_points) continue;
+        if (warp_points.empty()) continue;
         WarpPointLanes& warp = lanes.warp_points.back();
-        set(warp.point, lane, pixel.warp_point_world - origin_world);
-        warp.offset_x[lane] = static_cast<float>(pixel.warp_offset_px.x());
-        warp.offset_y[lane] = static_cast<float>(pixel.warp_offset_px.y());
+        set(warp.point, lane, (warp_points[i].point_world - origin_world).cast<float>());
+        warp.offset_x[lane] = static_cast<float>(warp_points[i].offset_px.x());
+        warp.offset_y[lane] = static_cast<float>(warp_points[i].offset_px.y());
       }
     }
     lanes.first.push_back(lanes.pixels.size());

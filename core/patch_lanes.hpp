@@ -79,7 +79,6 @@ struct LevelLanes {
 };
 
 /// Takes a level of all patches over into `lanes`, whose memory is used again.
-void pack(std::span<const Patch> patches, std::size_t level, const Vector3d& origin_world,
-          Deformation deformation, LevelLanes& lanes);
+void pack(std::span<const Patch> patches, std::size_t level, const Vector3d& origin_world, LevelLanes& lanes);
 
 }  // namespace fusebench

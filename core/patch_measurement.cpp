@@ -59,7 +59,7 @@ PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, c
   for (std::size_t l = 0; l < static_cast<std::size_t>(config.patches.levels); ++l) {
     Level& level =
         levels_.emplace_back(Level{{}, {}, MutualOcclusion(frame.pyramid[l].width, frame.pyramid[l].height)});
-    pack(patches, l, origin_world_, config.terms.deformation, level.lanes);
+    pack(patches, l, origin_world_, level.lanes);
     level.fixed.resize(level.lanes.pixels.size());
   }
 }
@@ -369,7 +369,7 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
       for (unsigned bits = lane_bits(w.visible); bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         const PatchPixel& pixel = pixels[group * kLanes + lane];
-        const auto reference = static_cast<float>(pixel.intensity);
+        const float reference = pixel.intensity;
         tracked.intensity.push_back(
             {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
         tracked.landings.push_back(

@@ -1,5 +1,6 @@
 #include "core/patches.hpp"
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -7,123 +8,209 @@
 #include "core/corner_selection.hpp"
 #include "core/depth_gates.hpp"
 #include "core/patch_deformation.hpp"
-#include "core/raycast.hpp"
 
 namespace fusebench {
 
 namespace {
 
-/// A pixel of a level that needs its surface: where it is in the level, and which of the pixels of level 0.
-struct Request {
-  std::size_t patch = 0;
-  std::size_t level = 0;
-  int x = 0;  ///< level pixels
-  int y = 0;
-  std::size_t surface = 0;  ///< number of its pixel of level 0
-};
+constexpr std::size_t kPatchesPerChunk = 8;
+constexpr std::size_t kPixelsPerChunk = 512;
+constexpr std::size_t kMostLevels = 6;  // of patches.levels
 
-/// What squares need: many ask for the same pixel, those of other levels and of neighbours.
-struct Requests {
-  std::vector<Request> requests;    ///< by patch, level, row, column
-  std::vector<Vector2d> pixels_px;  ///< level 0, each once
-};
-
-/// All pixels of the squares around the centres at all levels.
-Requests requests_of(std::span<const TrackedCentre> centres, const ReferenceFrame& frame, int size_px) {
-  Requests result;
-  constexpr std::uint32_t kNew = 0;
-  const GreyImage& full = frame.pyramid[0];
-  Image<std::uint32_t> numbers(full.width, full.height, kNew);  // of the pixels, from 1
-  const auto number_of = [&](int x, int y) -> std::size_t {
-    std::uint32_t& number = numbers(x, y);
-    if (number == kNew) {
-      result.pixels_px.emplace_back(x, y);
-      number = static_cast<std::uint32_t>(result.pixels_px.size());
-    }
-    return number - 1;
+/// What walks over all squares of all patches need to know.
+struct Squares {
+  /// The first pixel of a square.
+  struct Corner {
+    int x = 0;  ///< level pixels
+    int y = 0;
   };
-  for (std::size_t p = 0; p < centres.size(); ++p) {
-    for (std::size_t l = 0; l < frame.pyramid.size(); ++l) {
-      const GreyImage& image = frame.pyramid[l];
-      const double scale = static_cast<double>(1 << l);
-      const int x0 = static_cast<int>(std::lround(centres[p].pixel_px.x() / scale)) - size_px / 2;
-      const int y0 = static_cast<int>(std::lround(centres[p].pixel_px.y() / scale)) - size_px / 2;
-      for (int y = y0; y < y0 + size_px; ++y) {
-        for (int x = x0; x < x0 + size_px; ++x) {
-          // A coarse square may reach over the border, and its last row beyond level 0's.
-          if (image.contains(x, y) && full.contains(x << l, y << l))
-            result.requests.push_back({p, l, x, y, number_of(x << l, y << l)});
+
+  Squares(std::span<const TrackedCentre> centres_in, const ReferenceFrame& frame_in, const Config& config_in)
+      : centres(centres_in),
+        frame(frame_in),
+        config(config_in),
+        size_px(config_in.patches.size_px),
+        levels(frame_in.pyramid.size()) {}
+
+  [[nodiscard]] Corner corner(std::size_t patch, std::size_t level) const {
+    const double scale = static_cast<double>(1 << level);
+    const Vector2d& centre_px = centres[patch].pixel_px;
+    return {static_cast<int>(std::lround(centre_px.x() / scale)) - size_px / 2,
+            static_cast<int>(std::lround(centre_px.y() / scale)) - size_px / 2};
+  }
+  /// Number of pixels of a square.
+  [[nodiscard]] std::size_t area() const {
+    return static_cast<std::size_t>(size_px) * static_cast<std::size_t>(size_px);
+  }
+  /// Place of the pixels of a square among those of all, by patch, level, row, column.
+  [[nodiscard]] std::size_t first(std::size_t patch, std::size_t level) const {
+    return (patch * levels + level) * area();
+  }
+
+  /// How far from what was measured a surface is looked for: one at the far end of what UsableSurface allows
+  /// has more noise than one at the measurement.
+  [[nodiscard]] float reach_m(float measured_m) const {
+    constexpr float kMargin = 1.5F;
+    const double noise_m = depth_sigma_m(static_cast<double>(measured_m), config.depth);
+    return kMargin * static_cast<float>(std::max(config.patches.occlusion_distance_m, 3.0 * noise_m));
+  }
+
+  std::span<const TrackedCentre> centres;
+  const ReferenceFrame& frame;
+  const Config& config;
+  int size_px;
+  std::size_t levels;
+};
+
+/// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
+/// once, since a coarse level's are partly those of a finer one.
+void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
+  const GreyImage& full = squares.frame.pyramid[0];
+  const int size = squares.size_px;
+  std::array<Squares::Corner, kMostLevels> corners;
+  for (std::size_t l = 0; l < squares.levels; ++l) {
+    const GreyImage& image = squares.frame.pyramid[l];
+    const Squares::Corner corner = corners[l] = squares.corner(patch, l);
+    std::size_t place = squares.first(patch, l);
+    for (int y = corner.y; y < corner.y + size; ++y) {
+      for (int x = corner.x; x < corner.x + size; ++x, ++place) {
+        std::int32_t& pixel = work.pixel_of[place];
+        pixel = -1;
+        // A coarse square may reach over the border, and its last row beyond level 0's.
+        if (!image.contains(x, y) || !full.contains(x << l, y << l)) continue;
+        for (std::size_t finer = 0; finer < l && pixel < 0; ++finer) {
+          const int column = (x << (l - finer)) - corners[finer].x;
+          const int row = (y << (l - finer)) - corners[finer].y;
+          if (column < 0 || row < 0 || column >= size || row >= size) continue;
+          pixel = work.pixel_of[squares.first(patch, finer) + static_cast<std::size_t>(row * size + column)];
         }
+        if (pixel >= 0) continue;
+        pixel = static_cast<std::int32_t>(work.pixels.size());
+        const float measured_m = squares.frame.depth_m(x << l, y << l);
+        work.pixels.push_back({static_cast<float>(x << l), static_cast<float>(y << l), measured_m,
+                               squares.reach_m(measured_m)});
       }
     }
   }
-  return result;
 }
 
-/// The surfaces behind pixels, each looked for where it would be usable: around what was measured, or all
-/// along the ray.
-std::vector<SurfacePoint> surfaces_at(const std::vector<Vector2d>& pixels_px, const ReferenceFrame& frame,
-                                      const TsdfVolume& model, const Config& config, const Workers& workers) {
-  // A surface at the far end of what usable_surfaces() allows has more noise than one at the measurement.
-  constexpr double kMargin = 1.5;
-  // Short rays first, so that they do not wait for long ones beside them.
-  std::vector<PixelRay> rays;
-  std::vector<PixelRay> long_rays;
-  std::vector<std::size_t> pixels;  // of the rays
-  std::vector<std::size_t> pixels_of_long;
-  for (std::size_t i = 0; i < pixels_px.size(); ++i) {
-    const Vector2d& pixel_px = pixels_px[i];
-    const double measured_m = frame.depth_m(static_cast<int>(pixel_px.x()), static_cast<int>(pixel_px.y()));
-    PixelRay ray{pixel_px.x(), pixel_px.y()};
-    if (measured_m <= 0) {
-      long_rays.push_back(ray);
-      pixels_of_long.push_back(i);
-      continue;
+/// Surfaces of the pixels of a patch beside what was measured there, where there are any.
+class BesideMeasurements {
+ public:
+  void find(const SurfaceSearch& search, std::span<const ExpectedSurface> pixels,
+            std::span<SurfacePoint> surfaces) {
+    measured_.clear();
+    places_.clear();
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      surfaces[i] = {};
+      if (pixels[i].depth_m <= 0) continue;
+      measured_.push_back(pixels[i]);
+      places_.push_back(i);
     }
-    const double reach_m = kMargin * std::max(config.patches.occlusion_distance_m,
-                                              3.0 * depth_sigma_m(measured_m, config.depth));
-    ray.begin_m = static_cast<float>(measured_m - reach_m);
-    ray.end_m = static_cast<float>(measured_m + reach_m);
-    rays.push_back(ray);
-    pixels.push_back(i);
+    found_.resize(measured_.size());
+    search.find_beside(measured_, brick_, found_);
+    for (std::size_t i = 0; i < places_.size(); ++i) surfaces[places_[i]] = found_[i];
   }
-  rays.insert(rays.end(), long_rays.begin(), long_rays.end());
-  pixels.insert(pixels.end(), pixels_of_long.begin(), pixels_of_long.end());
-  std::vector<SurfacePoint> hits;
-  raycast_pixels(model, frame.camera, frame.T_world_camera, rays, config.depth, workers, hits);
-  std::vector<SurfacePoint> surfaces(pixels_px.size());
-  for (std::size_t i = 0; i < hits.size(); ++i) surfaces[pixels[i]] = hits[i];
-  return surfaces;
+
+ private:
+  TsdfBrick brick_;
+  std::vector<ExpectedSurface> measured_;
+  std::vector<std::size_t> places_;
+  std::vector<SurfacePoint> found_;
+};
+
+/// The pixels without a surface yet, and what they are asked for.
+template <class Request, class RequestOf>
+void list_missing(const PatchWorkspace& work, std::vector<Request>& requests,
+                  std::vector<std::size_t>& places, const RequestOf& request_of) {
+  requests.clear();
+  places.clear();
+  for (std::size_t i = 0; i < work.pixels.size(); ++i) {
+    if (work.surfaces[i].valid) continue;
+    requests.push_back(request_of(i));
+    places.push_back(i);
+  }
+}
+
+/// The surfaces behind pixels, each looked for where it would be usable: beside what was measured, then
+/// further from it, at last along the ray.
+void find_surfaces(const ReferenceFrame& frame, const TsdfVolume& model, const Config& config,
+                   const Workers& workers, PatchWorkspace& work) {
+  work.surfaces.resize(work.pixels.size());
+  const SurfaceSearch search(model, frame.camera, frame.T_world_camera, config.depth);
+  const std::size_t patches = work.first.size() - 1;
+  workers.for_chunks(patches, kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
+    BesideMeasurements beside;
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::size_t first = work.first[p];
+      const std::size_t count = work.first[p + 1] - first;
+      beside.find(search, std::span(work.pixels).subspan(first, count),
+                  std::span(work.surfaces).subspan(first, count));
+    }
+  });
+
+  // A hole is at about the depth of what was measured before it, which is beside it but for the first ones.
+  ExpectedSurface measured;
+  list_missing(work, work.expected, work.places, [&](std::size_t i) {
+    const ExpectedSurface& pixel = work.pixels[i];
+    if (pixel.depth_m > 0) return measured = pixel;
+    return ExpectedSurface{pixel.u_px, pixel.v_px, measured.depth_m, measured.reach_m};
+  });
+  work.hits.resize(work.places.size());
+  workers.for_chunks(work.places.size(), kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
+    search.find(std::span(work.expected).subspan(begin, end - begin),
+                std::span(work.hits).subspan(begin, end - begin));
+  });
+  for (std::size_t i = 0; i < work.places.size(); ++i) work.surfaces[work.places[i]] = work.hits[i];
+
+  list_missing(work, work.rays, work.places, [&](std::size_t i) {
+    const ExpectedSurface& pixel = work.pixels[i];
+    PixelRay ray{static_cast<double>(pixel.u_px), static_cast<double>(pixel.v_px)};
+    if (pixel.depth_m > 0) {
+      ray.begin_m = pixel.depth_m - pixel.reach_m;
+      ray.end_m = pixel.depth_m + pixel.reach_m;
+    }
+    return ray;
+  });
+  if (work.rays.empty()) return;
+  raycast_pixels(model, frame.camera, frame.T_world_camera, work.rays, config.depth, workers, work.hits);
+  for (std::size_t i = 0; i < work.places.size(); ++i) work.surfaces[work.places[i]] = work.hits[i];
 }
 
 /// What the model says of a pixel, if it can stand for what the camera sees there.
-struct UsableSurface {
-  bool valid = false;
-  Vector3d point_world = Vector3d::Zero();
-  Vector3d normal_world = Vector3d::Zero();
-};
+class UsableSurface {
+ public:
+  UsableSurface(const ReferenceFrame& frame, const Config& config)
+      : frame_(frame),
+        config_(config),
+        R_world_camera_(frame.T_world_camera.rotation_matrix()),
+        min_cosine_(std::cos(radians(config.depth.max_incidence_deg))) {}
 
-std::vector<UsableSurface> usable_surfaces(std::span<const SurfacePoint> surfaces,
-                                           const std::vector<Vector2d>& pixels_px,
-                                           const ReferenceFrame& frame, const Config& config) {
-  const Matrix3d R_world_camera = frame.T_world_camera.rotation_matrix();
-  const double min_cosine = std::cos(radians(config.depth.max_incidence_deg));
-  std::vector<UsableSurface> usable(surfaces.size());
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const SurfacePoint& surface = surfaces[i];
-    if (!surface.valid) continue;
-    const Vector2d& pixel_px = pixels_px[i];
-    const Vector3d from_camera =
-        R_world_camera * frame.camera.back_project(pixel_px.x(), pixel_px.y(), surface.depth_m);
-    if (-from_camera.dot(surface.normal_world) < min_cosine * from_camera.norm()) continue;
-    const double measured_m = frame.depth_m(static_cast<int>(pixel_px.x()), static_cast<int>(pixel_px.y()));
+  [[nodiscard]] std::optional<PatchPixel> operator()(const ExpectedSurface& pixel,
+                                                     const SurfacePoint& surface) const {
+    if (!surface.valid) return std::nullopt;
+    const auto u = static_cast<double>(pixel.u_px);
+    const auto v = static_cast<double>(pixel.v_px);
+    const Vector3d from_camera = R_world_camera_ * frame_.camera.back_project(u, v, surface.depth_m);
+    if (-from_camera.dot(surface.normal_world) < min_cosine_ * from_camera.norm()) return std::nullopt;
     const double allowed_m =
-        std::max(config.patches.occlusion_distance_m, 3.0 * depth_sigma_m(surface.depth_m, config.depth));
-    if (measured_m > 0 && std::abs(measured_m - surface.depth_m) > allowed_m) continue;
-    usable[i] = {true, frame.T_world_camera.translation + from_camera, surface.normal_world};
+        std::max(config_.patches.occlusion_distance_m, 3.0 * depth_sigma_m(surface.depth_m, config_.depth));
+    const auto measured_m = static_cast<double>(pixel.depth_m);
+    if (measured_m > 0 && std::abs(measured_m - surface.depth_m) > allowed_m) return std::nullopt;
+    PatchPixel usable;
+    usable.point_world = frame_.T_world_camera.translation + from_camera;
+    usable.normal_world = surface.normal_world.cast<float>();
+    usable.reference_pixel =
+        static_cast<std::uint32_t>(frame_.depth_m.index(static_cast<int>(u), static_cast<int>(v)));
+    return usable;
   }
-  return usable;
-}
+
+ private:
+  const ReferenceFrame& frame_;
+  const Config& config_;
+  Matrix3d R_world_camera_;
+  double min_cosine_;
+};
 
 /// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
 /// without any lies in a hole, or the camera has no depth: there the model's surface has to do.
@@ -138,43 +225,55 @@ void trust_model_in_holes(Patch& patch) {
   }
 }
 
-/// Patches with the pixels that have a usable surface.
-std::vector<Patch> cut_patches(const ReferenceFrame& frame, const TsdfVolume& model,
-                               std::span<const TrackedCentre> centres, const Config& config,
-                               const Workers& workers) {
-  const auto [requests, pixels] = requests_of(centres, frame, config.patches.size_px);
-  const std::vector<UsableSurface> surfaces =
-      usable_surfaces(surfaces_at(pixels, frame, model, config, workers), pixels, frame, config);
-
-  const auto square =
-      static_cast<std::size_t>(config.patches.size_px) * static_cast<std::size_t>(config.patches.size_px);
-  std::vector<Patch> patches(centres.size());
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    patches[p].centre_px = {static_cast<int>(std::lround(centres[p].pixel_px.x())),
-                            static_cast<int>(std::lround(centres[p].pixel_px.y()))};
-    patches[p].age = centres[p].age;
-    patches[p].levels.resize(frame.pyramid.size());
-  }
-  for (const Request& r : requests) {
-    const std::size_t i = r.surface;
-    if (!surfaces[i].valid) continue;
-    std::vector<PatchPixel>& level = patches[r.patch].levels[r.level].pixels;
-    if (level.empty()) level.reserve(square);
-    PatchPixel& pixel = level.emplace_back();
-    const int x = static_cast<int>(pixels[i].x());
-    const int y = static_cast<int>(pixels[i].y());
-    pixel.reference_pixel =
-        static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(frame.camera.width_px) +
-        static_cast<std::uint32_t>(x);
-    pixel.intensity = frame.pyramid[r.level](r.x, r.y);
-    pixel.point_world = surfaces[i].point_world;
-    pixel.normal_world = surfaces[i].normal_world;
+/// The pixels of a patch that have a usable surface.
+void fill_patch(const Squares& squares, std::size_t p, const Config& config, const UsableSurface& usable,
+                const PatchWorkspace& work, Patch& patch) {
+  const ReferenceFrame& frame = squares.frame;
+  const Vector2d& centre_px = squares.centres[p].pixel_px;
+  patch.centre_px = {static_cast<int>(std::lround(centre_px.x())),
+                     static_cast<int>(std::lround(centre_px.y()))};
+  patch.age = squares.centres[p].age;
+  patch.levels.resize(squares.levels);
+  for (std::size_t l = 0; l < squares.levels; ++l) {
+    std::vector<PatchPixel>& pixels = patch.levels[l].pixels;
+    pixels.clear();
+    pixels.reserve(squares.area());
     // A pixel of a coarse level is a mean over what lies about its own size around it.
-    const int reach_px = r.level == 0 ? 0 : 1 << r.level;
-    pixel.depth_confirmed = is_one_surface(frame.depth_m, x, y, reach_px, config.depth.edge_jump);
+    const int reach_px = l == 0 ? 0 : 1 << l;
+    for (std::size_t i = 0; i < squares.area(); ++i) {
+      const std::int32_t number = work.pixel_of[squares.first(p, l) + i];
+      if (number < 0) continue;
+      const auto at = static_cast<std::size_t>(number);
+      const std::optional<PatchPixel> pixel = usable(work.pixels[at], work.surfaces[at]);
+      if (!pixel) continue;
+      const auto x = static_cast<int>(work.pixels[at].u_px);
+      const auto y = static_cast<int>(work.pixels[at].v_px);
+      pixels.push_back(*pixel);
+      pixels.back().intensity = frame.pyramid[l](x >> l, y >> l);
+      pixels.back().depth_confirmed = is_one_surface(frame.depth_m, x, y, reach_px, config.depth.edge_jump);
+    }
   }
-  for (Patch& patch : patches) trust_model_in_holes(patch);
-  return patches;
+  trust_model_in_holes(patch);
+}
+
+/// Patches with the pixels that have a usable surface.
+void cut_patches(const ReferenceFrame& frame, const TsdfVolume& model, std::span<const TrackedCentre> centres,
+                 const Config& config, const Workers& workers, PatchWorkspace& work,
+                 std::vector<Patch>& patches) {
+  const Squares squares(centres, frame, config);
+  work.pixels.clear();
+  work.pixel_of.resize(squares.first(centres.size(), 0));
+  work.first.assign(1, 0);
+  for (std::size_t p = 0; p < centres.size(); ++p) {
+    add_pixels(squares, p, work);
+    work.first.push_back(work.pixels.size());
+  }
+  find_surfaces(frame, model, config, workers, work);
+  const UsableSurface usable(frame, config);
+  patches.resize(centres.size());
+  workers.for_chunks(patches.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) fill_patch(squares, p, config, usable, work, patches[p]);
+  });
 }
 
 /// Survivors that are still inside and apart from each other, oldest first.
@@ -197,9 +296,9 @@ std::vector<TrackedCentre> keep_apart(std::span<const TrackedCentre> survivors, 
 
 }  // namespace
 
-std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
-                                   std::span<const TrackedCentre> survivors, const Config& config,
-                                   const Workers& workers) {
+void refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
+                     std::span<const TrackedCentre> survivors, const Config& config, const Workers& workers,
+                     PatchWorkspace& work, std::vector<Patch>& patches) {
   std::vector<TrackedCentre> centres = keep_apart(survivors, frame, config.patches);
   std::vector<Eigen::Vector2i> existing;
   for (const TrackedCentre& c : centres) {
@@ -211,7 +310,7 @@ std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume
     centres.push_back({corner.cast<double>(), 0});
   }
 
-  std::vector<Patch> patches = cut_patches(frame, model, centres, config, workers);
+  cut_patches(frame, model, centres, config, workers, work, patches);
   const int square = config.patches.size_px * config.patches.size_px;
   const auto too_few = [&](const Patch& patch) {
     const auto usable = static_cast<int>(patch.levels.front().pixels.size());
@@ -222,6 +321,14 @@ std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume
     set_deformation(patch, frame.camera, frame.T_world_camera, config.terms.deformation);
   }
   std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
+}
+
+std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
+                                   std::span<const TrackedCentre> survivors, const Config& config,
+                                   const Workers& workers) {
+  PatchWorkspace work;
+  std::vector<Patch> patches;
+  refresh_patches(frame, model, survivors, config, workers, work, patches);
   return patches;
 }
 

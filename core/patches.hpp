@@ -8,6 +8,8 @@
 
 #include "core/config.hpp"
 #include "core/parallel.hpp"
+#include "core/raycast.hpp"
+#include "core/surface_search.hpp"
 #include "core/tsdf_volume.hpp"
 #include "core/types.hpp"
 
@@ -15,25 +17,29 @@ namespace fusebench {
 
 /// One pixel of a patch, P_i = (p_i, I_i, d_i, n_i) of the paper, already in the world as L_i (Eq. 1).
 struct PatchPixel {
+  Vector3d point_world = Vector3d::Zero();                 ///< model surface behind the pixel, metres
+  Eigen::Vector3f normal_world = Eigen::Vector3f::Zero();  ///< unit, towards free space
+  float intensity = 0;                                     ///< grey levels, at the patch level
   std::uint32_t reference_pixel =
-      0;                 ///< v * width + u of its place in the reference frame, level 0 coordinates
-  double intensity = 0;  ///< grey levels, at the patch level
-  Vector3d point_world = Vector3d::Zero();   ///< model surface behind the pixel, metres
-  Vector3d normal_world = Vector3d::Zero();  ///< unit, towards free space
+      0;  ///< v * width + u of its place in the reference frame, level 0 coordinates
   /// The frame measured depth here as well, of one surface as far as the pixel of its level sees, so that
   /// colour and depth belong together. At a silhouette a pixel of the near surface may have the depth of the
   /// far one, which would move it the wrong way: such pixels are not aligned by (they count in the intensity
   /// error all the same).
   bool depth_confirmed = true;
-  /// What is projected to find the pixel in the next frame: the pixel lands at project(warp_point) +
-  /// warp_offset. This is all that the kinds of deformation differ in.
-  Vector3d warp_point_world = Vector3d::Zero();
-  Vector2d warp_offset_px = Vector2d::Zero();  ///< pixels of the patch level
+};
+
+/// What is projected in place of a pixel's own point to find it in the next frame: it lands at project(point)
+/// + offset. This is all that the kinds of deformation differ in.
+struct WarpPoint {
+  Vector3d point_world = Vector3d::Zero();
+  Vector2d offset_px = Vector2d::Zero();  ///< pixels of the patch level
 };
 
 /// The patch at one pyramid level: up to size x size pixels that have a model surface.
 struct PatchLevel {
   std::vector<PatchPixel> pixels;
+  std::vector<WarpPoint> warp_points;  ///< one each, or empty if pixels move by their own points
 };
 
 struct Patch {
@@ -57,9 +63,27 @@ struct TrackedCentre {
   int age = 0;
 };
 
+/// Memory that cutting patches uses again.
+struct PatchWorkspace {
+  std::vector<ExpectedSurface>
+      pixels;                      ///< of level 0 that a patch needs at any level, by patch; depth 0 = none
+  std::vector<std::size_t> first;  ///< of each patch, and the end
+  std::vector<std::int32_t> pixel_of;  ///< by patch, level, row, column; -1 = outside of the image
+  std::vector<SurfacePoint> surfaces;  ///< one a pixel
+  // Pixels that were not found at once:
+  std::vector<std::size_t> places;
+  std::vector<ExpectedSurface> expected;
+  std::vector<PixelRay> rays;
+  std::vector<SurfacePoint> hits;
+};
+
 /// Sec. 2.3: surviving patches are cut again as squares at their new places, and FAST corners with enough
 /// depth fill the image up to max_count, spread over a grid. Intensity comes from the frame, depth and
-/// normals from the model (raycast).
+/// normals from the model. The memory of `patches` is used again.
+void refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
+                     std::span<const TrackedCentre> survivors, const Config& config, const Workers& workers,
+                     PatchWorkspace& work, std::vector<Patch>& patches);
+/// The same into memory of its own.
 [[nodiscard]] std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume& model,
                                                  std::span<const TrackedCentre> survivors,
                                                  const Config& config, const Workers& workers);

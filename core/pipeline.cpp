@@ -102,7 +102,8 @@ struct Pipeline::State {
   std::int64_t timestamp_ns = 0;          ///< instant of the last frame
   std::optional<RgbdFrame> first_frame;   ///< until the second one has told how fast it was
   std::optional<FilterState> initial_motion;
-  std::vector<Patch> patches;            ///< cut from the last fused frame
+  std::vector<Patch> patches;  ///< cut from the last fused frame
+  PatchWorkspace patch_workspace;
   int occluded_frames = 0;               ///< in a row
   int lost_frames = 0;                   ///< in a row, before the current one
   ResidualScale residual_scale;          ///< what the residuals of the frames so far showed
@@ -322,7 +323,8 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, FrameReport& r
   if (contradiction(prediction, place) > kMostContradiction) return false;
 
   const std::vector<GreyImage> pyramid = build_pyramid(keyframe.grey, config.patches.levels);
-  const ReferenceFrame reference{pyramid, keyframe.depth_m, rig.camera, keyframe.T_world_camera};
+  const DepthImage depth_m = keyframe.depth.unpacked_m();
+  const ReferenceFrame reference{pyramid, depth_m, rig.camera, keyframe.T_world_camera};
   std::vector<Patch> patches_before =
       std::exchange(patches, refresh_patches(reference, model, {}, config, workers));
   const std::int64_t reference_before_ns = std::exchange(reference_ns, keyframe.timestamp_ns);
@@ -355,7 +357,7 @@ Result<void> Pipeline::State::fuse(FrameReport& report) {
 void Pipeline::State::refresh(FrameReport& report) {
   const StageClock clock(report, Stage::refresh);
   const ReferenceFrame reference{prepared.pyramid, prepared.frame.depth_m, rig.camera, T_world_camera()};
-  patches = refresh_patches(reference, model, survivors, config, workers);
+  refresh_patches(reference, model, survivors, config, workers, patch_workspace, patches);
   reference_ns = timestamp_ns;
   const double share = fused_share(model, patches, reference, config.depth);
   estimate = anchored(*estimate, {share, config.motion.drift_factor});

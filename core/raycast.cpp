@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/block_bounds.hpp"
+#include "core/ray_lanes.hpp"
 #include "core/tsdf_lanes.hpp"
 
 namespace fusebench {
@@ -18,6 +19,8 @@ constexpr std::size_t kRowsPerChunk = 4;
 // surface, and where it jumps into the unknown, the walk repeats it in fine steps.
 constexpr float kStepShare = 0.8F;
 constexpr float kFineStep_voxels = 0.5F;
+// The band before a surface is at least two voxels wide.
+constexpr float kUnknownStep_voxels = 1.5F;
 // Further from the surface than this the nearest voxel says enough; from here on the field is interpolated.
 constexpr float kNear_voxels = 1.75F;
 // Near by, a step goes this far beyond the surface: two samples around a crossing tell it better than many
@@ -30,14 +33,7 @@ constexpr int kMostRefinements = 24;
 constexpr int kBlockShift = 3;   // voxels to blocks
 constexpr int kRegionShift = 5;  // voxels to regions
 
-Float8 not_a_number() { return all_lanes(std::numeric_limits<float>::quiet_NaN()); }
-
-/// Eight rays by z-depth: point(z) = origin + z * direction, in voxels.
-struct Rays {
-  [[nodiscard]] Points at(Float8 z_m) const {
-    return {origin.x() + z_m * direction.x, origin.y() + z_m * direction.y, origin.z() + z_m * direction.z};
-  }
-
+struct Rays : RayLanes {
   /// How much z-depth a point on the rays has left in the cube with this index along each axis; point and
   /// cube in units of `side` voxels.
   [[nodiscard]] Float8 z_to_leave(const Points& point, const LatticePoints& cube, Float8 side) const {
@@ -49,22 +45,7 @@ struct Rays {
                along(point.z, cube.z, inverse.z));
   }
 
-  Eigen::Vector3f origin;
-  Points direction;  // per metre of z-depth
-  Points inverse;
-  Float8 z_per_voxel;  // metres of z-depth for a voxel along the ray
-};
-
-/// Two points of each ray with the surface between them: the field is + in front, - behind.
-struct Brackets {
-  Float8 front_z_m = not_a_number();
-  Float8 front_m{};  // field
-  Float8 back_z_m{};
-  Float8 back_m{};
-
-  [[nodiscard]] Float8 zero_of_chord() const {
-    return front_z_m + front_m / (front_m - back_m) * (back_z_m - front_z_m);
-  }
+  Points inverse;  ///< of the direction
 };
 
 /// Eight rays on their way.
@@ -82,13 +63,6 @@ struct Walk {
   Brackets brackets;
 };
 
-/// What eight rays meet.
-struct Hits {
-  Int8 valid{};
-  Float8 depth_m{};
-  Points normal_world{};
-};
-
 /// Eight pixels, and the part of their rays that is asked for (z-depth).
 struct PixelLanes {
   Float8 u{};
@@ -103,7 +77,7 @@ class RayCaster {
  public:
   RayCaster(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
             const DepthConfig& depth)
-      : camera_(camera),
+      : pixels_(camera, T_world_camera, volume.voxel_m()),
         nearest_m_(static_cast<float>(depth.min_m)),
         farthest_m_(static_cast<float>(depth.max_m)),
         voxel_m_(static_cast<float>(volume.voxel_m())) {
@@ -119,7 +93,6 @@ class RayCaster {
     field_.emplace(volume, T_world_camera.translation, reach_m);
     bounds_.emplace(volume, camera, T_world_camera, depth);
     origin_ = (T_world_camera.translation / volume.voxel_m() - field_->origin_voxel()).cast<float>();
-    axes_ = (T_world_camera.rotation_matrix() / volume.voxel_m()).cast<float>();
   }
 
   static constexpr std::size_t kMostTurns = 8;
@@ -144,18 +117,10 @@ class RayCaster {
 
  private:
   [[nodiscard]] Rays rays_of(Float8 u, Float8 v) const {
-    const Float8 x = (u - static_cast<float>(camera_.cx_px)) * static_cast<float>(1.0 / camera_.fx_px);
-    const Float8 y = (v - static_cast<float>(camera_.cy_px)) * static_cast<float>(1.0 / camera_.fy_px);
-    Rays rays;
-    rays.origin = origin_;
-    rays.direction = {axes_(0, 0) * x + axes_(0, 1) * y + axes_(0, 2),
-                      axes_(1, 0) * x + axes_(1, 1) * y + axes_(1, 2),
-                      axes_(2, 0) * x + axes_(2, 1) * y + axes_(2, 2)};
+    Rays rays{pixels_.through(u, v, origin_), {}};
     // Parallel to a face: it is left after an astronomic way, a number rather than the NaN of 0 * infinity.
     const auto inverse = [](Float8 step) { return step == 0.0F ? all_lanes(1e30F) : 1.0F / step; };
     rays.inverse = {inverse(rays.direction.x), inverse(rays.direction.y), inverse(rays.direction.z)};
-    rays.z_per_voxel = 1.0F / sqrt(rays.direction.x * rays.direction.x + rays.direction.y * rays.direction.y +
-                                   rays.direction.z * rays.direction.z);
     return rays;
   }
 
@@ -230,7 +195,9 @@ class RayCaster {
     const Float8 field_z =
         (observed ? abs(now.distance_m) : Float8{}) * (rays.z_per_voxel * (1.0F / voxel_m_));
     const Float8 beyond = field_z + kBeyond_voxels * rays.z_per_voxel;
-    const Float8 plain = max(max(fine_z, now.empty_z_m), now.near & free ? beyond : kStepShare * field_z);
+    // In the unknown there is nothing to jump until free space is met again, which is wider than this step.
+    const Float8 least_z = observed | was_free ? fine_z : kUnknownStep_voxels * rays.z_per_voxel;
+    const Float8 plain = max(max(least_z, now.empty_z_m), now.near & free ? beyond : kStepShare * field_z);
     const Float8 onward = careful & free ? z_m + fine_z : z_m + plain;
     const Float8 next = repeat ? walk.free_z_m + fine_z : (give_up ? max(walk.careful_z_m, onward) : onward);
     walk.careful_z_m = repeat ? z_m : walk.careful_z_m;
@@ -244,15 +211,9 @@ class RayCaster {
     const Rays& rays = walk.rays;
     Int8 found = walk.brackets.front_z_m == walk.brackets.front_z_m;
     if (!any(found)) return {};
-    Hits hits;
-    hits.depth_m = refined(rays, walk.brackets, found);
-    const Points gradient = field_->gradient(rays.at(found ? hits.depth_m : all_lanes(nearest_m_)));
-    // The crossing goes into the surface; a gradient along the ray is noise at a rim, and no normal.
-    const Float8 length = norm(gradient);
-    hits.valid = found & (dot(gradient, rays.direction) < 0.0F) & (length > 0.0F);
-    const Float8 unit = 1.0F / (hits.valid ? length : all_lanes(1.0F));
-    hits.normal_world = {gradient.x * unit, gradient.y * unit, gradient.z * unit};
-    return hits;
+    const Float8 depth_m = refined(rays, walk.brackets, found);
+    const Points gradient = field_->gradient(rays.at(found ? depth_m : all_lanes(nearest_m_)));
+    return hits_at(found, depth_m, gradient, rays.direction);
   }
 
   /// The zeros in the brackets: alternates the zero of the chord, which is close where the field is smooth,
@@ -278,23 +239,15 @@ class RayCaster {
     return found ? bracket.zero_of_chord() : all_lanes(nearest_m_);
   }
 
-  const PinholeCamera& camera_;
+  PixelRays pixels_;
   std::optional<TsdfLanes> field_;  // none if there is nothing to see, as of
   std::optional<BlockBounds> bounds_;
   Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f axes_ = Eigen::Matrix3f::Zero();
   float nearest_m_, farthest_m_;
   float voxel_m_;
 };
 
 constexpr std::size_t kPixelsPerTurn = RayCaster::kMostTurns * kLanes;
-
-SurfacePoint surface_point(const Hits& hits, std::size_t lane) {
-  if (hits.valid[lane] == 0) return {};
-  return {true,
-          hits.depth_m[lane],
-          {hits.normal_world.x[lane], hits.normal_world.y[lane], hits.normal_world.z[lane]}};
-}
 
 }  // namespace
 

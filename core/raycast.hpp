@@ -6,17 +6,11 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/surface_point.hpp"
 #include "core/tsdf_volume.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {
-
-/// The surface behind one pixel.
-struct SurfacePoint {
-  bool valid = false;
-  double depth_m = 0;                        ///< z-depth in the camera frame
-  Vector3d normal_world = Vector3d::Zero();  ///< unit, towards free space (gradient of the field)
-};
 
 /// The first zero crossing from front to back between depth.min_m and depth.max_m along the ray of a pixel,
 /// by steps of the field's own size, refined to the crossing of the trilinear field; invalid where the ray

@@ -1,7 +1,6 @@
 #include "core/tsdf_lanes.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace fusebench {
 
@@ -10,23 +9,6 @@ namespace {
 constexpr int kRegionVoxels = kRegionSide * kBlockSide;
 /// A window of more regions than this (16 MB) takes longer to make than it saves.
 constexpr double kMostWindowRegions = 1 << 22;
-
-/// Weights of the eight corners of a cell; bit 0 of the number: x, bit 1: y, bit 2: z.
-std::array<Float8, 8> trilinear_weights(const Points& f) {
-  const Points g = {1.0F - f.x, 1.0F - f.y, 1.0F - f.z};
-  const std::array<Float8, 4> xy = {g.x * g.y, f.x * g.y, g.x * f.y, f.x * f.y};
-  return {xy[0] * g.z, xy[1] * g.z, xy[2] * g.z, xy[3] * g.z,
-          xy[0] * f.z, xy[1] * f.z, xy[2] * f.z, xy[3] * f.z};
-}
-
-/// Change of the distance from one voxel to the next at the middle of three; the outer ones may be
-/// unobserved.
-Float8 slope(Float8 before_m, Float8 centre_m, Float8 after_m) {
-  const Int8 has_before = before_m == before_m;
-  const Int8 has_after = after_m == after_m;
-  const Float8 difference_m = (has_after ? after_m : centre_m) - (has_before ? before_m : centre_m);
-  return has_before & has_after ? 0.5F * difference_m : difference_m;
-}
 
 }  // namespace
 
@@ -117,48 +99,13 @@ Int8 TsdfLanes::regions_by_table(const LatticePoints& region) const {
 }
 
 Float8 TsdfLanes::sample(const Points& at) const {
-  const LatticePoints base = {floor_to_int(at.x), floor_to_int(at.y), floor_to_int(at.z)};
-  const auto weights =
-      trilinear_weights({at.x - to_float(base.x), at.y - to_float(base.y), at.z - to_float(base.z)});
-  const Cube<2> cube(*this, base);
-  Float8 sum_m{};
-  for (int corner = 0; corner < 8; ++corner) {
-    sum_m += weights[static_cast<std::size_t>(corner)] *
-             cube.distance_m(corner & 1, (corner >> 1) & 1, corner >> 2);
-  }
-  return sum_m;
+  const TrilinearCell cell(at);
+  return interpolated_m(cell, Cube<2>(*this, cell.base));
 }
 
 Points TsdfLanes::gradient(const Points& at) const {
-  const LatticePoints base = {floor_to_int(at.x), floor_to_int(at.y), floor_to_int(at.z)};
-  const auto weights =
-      trilinear_weights({at.x - to_float(base.x), at.y - to_float(base.y), at.z - to_float(base.z)});
-  const Cube<4> cube(*this, {base.x - 1, base.y - 1, base.z - 1});
-  std::array<Float8, 8> corner_m;
-  for (int c = 0; c < 8; ++c) {
-    corner_m[static_cast<std::size_t>(c)] = cube.distance_m(1 + (c & 1), 1 + ((c >> 1) & 1), 1 + (c >> 2));
-  }
-  // Four voxels in a row along the axis: the outer two may be unobserved, the inner two are corners, of which
-  // an unobserved one makes the sum NaN.
-  const auto along = [&](int axis) {
-    Float8 sum{};
-    for (int c = 0; c < 8; ++c) {
-      const int bit = 1 << axis;
-      if ((c & bit) != 0) continue;
-      const auto low = static_cast<std::size_t>(c);
-      const auto high = static_cast<std::size_t>(c | bit);
-      std::array<int, 3> before = {1 + (c & 1), 1 + ((c >> 1) & 1), 1 + (c >> 2)};
-      std::array<int, 3> after = before;
-      before[static_cast<std::size_t>(axis)] = 0;
-      after[static_cast<std::size_t>(axis)] = 3;
-      sum +=
-          weights[low] *
-              slope(cube.distance_m(before[0], before[1], before[2]), corner_m[low], corner_m[high]) +
-          weights[high] * slope(corner_m[low], corner_m[high], cube.distance_m(after[0], after[1], after[2]));
-    }
-    return sum;
-  };
-  return {along(0), along(1), along(2)};
+  const TrilinearCell cell(at);
+  return interpolated_gradient(cell, Cube<4>(*this, {cell.base.x - 1, cell.base.y - 1, cell.base.z - 1}));
 }
 
 }  // namespace fusebench

@@ -2,20 +2,12 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <vector>
 
-#include "core/lane_points.hpp"
+#include "core/trilinear.hpp"
 #include "core/tsdf_volume.hpp"
 
 namespace fusebench {
-
-/// Eight integer places of a lattice.
-struct LatticePoints {
-  Int8 x;
-  Int8 y;
-  Int8 z;
-};
 
 /// Reads the field of a volume around a place. Coordinates are in voxels from origin_voxel(), which keeps
 /// them small, so that single precision is enough: 1e-4 voxels at a thousand voxels from the origin. The
@@ -87,7 +79,7 @@ inline Int8 TsdfLanes::slots(const LatticePoints& block) const {
 
 inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const {
   const Float8 found_m = gather(volume_.distances_m(), (slot >= 0 ? slot << 9 : Int8{}) + offset);
-  return slot >= 0 ? found_m : all_lanes(std::numeric_limits<float>::quiet_NaN());
+  return slot >= 0 ? found_m : not_a_number();
 }
 
 inline TsdfLanes::Location TsdfLanes::locate(const LatticePoints& voxel) const {

@@ -1,47 +1,50 @@
-// What the benchmarks of the estimator's kernels work on: the textured room, seen and fused at one image
-// size.
+// What the benchmarks of the estimator's kernels work on: a frame, the frames before it, and the model that
+// these were fused into. Of the textured room in closed form, or of a recording.
 #pragma once
 
-#include <map>
+#include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "core/config.hpp"
 #include "core/error.hpp"
+#include "core/motion_compensation.hpp"
 #include "core/parallel.hpp"
 #include "core/tsdf_volume.hpp"
-#include "tests/support/textured_room.hpp"
+#include "core/types.hpp"
 
 namespace fusebench::testing {
 
-/// Three near views of the room, fused; the truth at the last of them is `frame`.
-struct BenchScene {
-  PinholeCamera camera;
-  Config config;
+enum class SceneKind : std::int64_t { room = 0, recording = 1 };
+
+/// A frame that was fused.
+struct FusedView {
+  GreyImage grey;
+  DepthImage depth_m;
   SE3 T_world_camera;
-  RgbdFrame frame;
+};
+
+struct BenchScene {
+  SceneKind kind = SceneKind::room;
+  Config config;
+  PinholeCamera camera;
+  SensorTiming timing;
+  CameraVelocity velocity;       ///< at the frame
+  SE3 T_world_camera;            ///< of the frame: exact in the room, the ground truth of the recording
+  RgbdFrame sensed;              ///< the frame as a rolling shutter reads it
+  RgbdFrame frame;               ///< as it is fused: of one instant; the recording's depth is gated
+  DepthImage ungated_depth_m;    ///< of `frame`, before that
+  std::vector<FusedView> views;  ///< in the model; patches are cut from the last one
   TsdfVolume model{config.tsdf};
 };
 
-/// The scene at a width of 320 or 640 pixels (67 degrees of view); made once.
-inline const BenchScene& bench_scene(int width_px) {
-  static std::map<int, BenchScene> scenes;
-  const auto found = scenes.find(width_px);
-  if (found != scenes.end()) return found->second;
-  BenchScene& scene = scenes[width_px];
-  scene.config.patches.fast_threshold = 2;  // the room's texture is soft, more so in larger images
-  const double focal_px = 0.75 * width_px;
-  const int height_px = width_px * 3 / 4;
-  scene.camera = {width_px, height_px, focal_px, focal_px, 0.5 * (width_px - 1), 0.5 * (height_px - 1)};
-  const Workers workers(1);  // more would leave threads behind that take turns with what is measured
-  for (int view = 0; view < 3; ++view) {
-    scene.T_world_camera = {so3_exp({0.02 * view, -0.03 * view, 0.01 * view}),
-                            {0.03 * view, 0.0, -0.02 * view}};
-    scene.frame = TexturedRoom{}.render(scene.camera, scene.T_world_camera, view);
-    const auto fused =
-        scene.model.integrate(scene.frame, scene.camera, scene.T_world_camera, scene.config.depth, workers);
-    check(fused.has_value(), "the scene fits into the model");
-  }
-  return scene;
-}
+/// Made once. The room: 67 degrees of view at a width of 320 or 640 pixels, three near views, the last of
+/// which is the frame, rendered. The recording: 640 pixels, frame 30 of it, and the 30 frames before that as
+/// the estimator tracked and fused them with a synthetic IMU. What cannot be read or tracked throws
+/// (check()).
+[[nodiscard]] const BenchScene& bench_scene(SceneKind kind, int width_px);
+
+/// The folder of the recording below FUSEBENCH_DATA, or why there is none (data_missing).
+[[nodiscard]] Result<std::filesystem::path> recorded_folder();
 
 }  // namespace fusebench::testing

@@ -1,10 +1,14 @@
-// What one linearisation of the patches works on: a frame of the room, and patches cut from that very frame.
+// What the kernels of tracking work on: a frame, and patches cut from the view that was fused before it (in
+// the room from that very frame).
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/depth_gates.hpp"
+#include "core/iekf.hpp"
 #include "core/patch_measurement.hpp"
 #include "tests/bench/bench_scene.hpp"
 
@@ -12,45 +16,133 @@ namespace fusebench::testing {
 
 /// Refers to itself: stays where it was made.
 struct PatchProblem {
-  PatchProblem(const BenchScene& scene_in, const Workers& workers)
+  /// max_count: of patches.
+  PatchProblem(const BenchScene& scene_in, const Workers& workers, int max_count = PatchConfig{}.max_count)
       : scene(scene_in),
-        pyramid(build_pyramid(scene.frame.grey, scene.config.patches.levels)),
-        depth_m(gate_depth(scene.frame.depth_m, scene.config.depth)),
-        patches(refresh_patches(reference(), scene.model, {}, scene.config, workers)) {}
+        config(config_of(scene_in, max_count)),
+        reference_pyramid(build_pyramid(scene.views.back().grey, config.patches.levels)),
+        reference_depth_m(gate_depth(scene.views.back().depth_m, config.depth)),
+        pyramid(build_pyramid(scene.frame.grey, config.patches.levels)),
+        depth_m(gate_depth(scene.frame.depth_m, config.depth)),
+        patches(refresh_patches(reference(), scene.model, {}, config, workers)) {
+    if (scene.kind == SceneKind::recording) target = best_fit(workers);
+  }
   PatchProblem(const PatchProblem&) = delete;
   PatchProblem& operator=(const PatchProblem&) = delete;
 
   [[nodiscard]] ReferenceFrame reference() const {
-    return {pyramid, depth_m, scene.camera, scene.T_world_camera};
+    return {reference_pyramid, reference_depth_m, scene.camera, scene.views.back().T_world_camera};
   }
-  /// Distance of a pose from the one that the frame was rendered at.
+  [[nodiscard]] PatchMeasurement measurement(const Workers& workers) const {
+    return {config, rig, observed, patches, {}, workers};
+  }
+  /// Distance of a pose from where the patches fit.
   [[nodiscard]] double error_m(const SE3& T_world_camera) const {
-    return (T_world_camera.translation - scene.T_world_camera.translation).norm();
+    return (T_world_camera.translation - target.translation).norm();
+  }
+  /// Off by what a prediction is off.
+  [[nodiscard]] SE3 start() const {
+    return {target.rotation * so3_exp({0.002, -0.001, 0.001}),
+            target.translation + Vector3d(0.003, 0.002, -0.002)};
   }
 
-  /// The Gauss-Newton step from the start, where it leads, and its tangents.
+  /// The Gauss-Newton step from a pose, where it leads, and its tangents.
   struct Step {
     SE3 T_world_camera;
     MeasuredVector tangents;
   };
-  [[nodiscard]] Step step_by(const MeasurementQuadratic& at_start) const {
-    PoseQuadratic quadratic = at_start.by_reference;
-    quadratic.add(at_start.by_model, 1.0);
+  [[nodiscard]] static Step step_by(const MeasurementQuadratic& at_pose, const SE3& T_world_camera) {
+    PoseQuadratic quadratic = at_pose.by_reference;
+    quadratic.add(at_pose.by_model, 1.0);
     const Vector6d step = -quadratic.information.ldlt().solve(quadratic.gradient);
-    Step result{{start.rotation * so3_exp(step.head<3>()), start.translation + step.tail<3>()}, {}};
+    Step result{pose_plus(T_world_camera, step), {}};
     result.tangents << step, step;
     return result;
   }
 
+  /// What is known before the frame's update.
+  [[nodiscard]] GaussianState prior() const {
+    GaussianState prior;
+    prior.mean.T_world_imu = start();
+    prior.mean.T_world_imu_reference = scene.views.back().T_world_camera;
+    prior.covariance.diagonal().setConstant(1e-4);
+    // What the patches were cut from, and the model, are known to fractions of a millimetre: else the update
+    // would move these instead, where colour and depth do not agree.
+    prior.covariance.diagonal().segment<kMeasuredSize>(kReferencePose).setConstant(1e-7);
+    return prior;
+  }
+  /// A frame's update, from its patches on.
+  [[nodiscard]] IekfResult update(const GaussianState& prior, const Workers& workers) const {
+    PatchMeasurement measured = measurement(workers);
+    return iekf_update(prior, measured, config.iekf);
+  }
+  [[nodiscard]] bool is_updated(const IekfResult& result) const {
+    return result.posterior.covariance.allFinite() &&
+           error_m(result.posterior.mean.T_world_imu) < 0.5 * error_m(start());
+  }
+
   const BenchScene& scene;
+  Config config;
+  std::vector<GreyImage> reference_pyramid;
+  DepthImage reference_depth_m;
   std::vector<GreyImage> pyramid;
   DepthImage depth_m;
-  std::vector<Patch> patches;
-  ObservedFrame observed{pyramid, depth_m};
   SensorRig rig{.camera = scene.camera, .timing = {}, .T_imu_camera = {}, .imu_noise = {}};
-  /// Off by what a prediction is off.
-  SE3 start{scene.T_world_camera.rotation * so3_exp({0.002, -0.001, 0.001}),
-            scene.T_world_camera.translation + Vector3d(0.003, 0.002, -0.002)};
+  ObservedFrame observed{pyramid, depth_m};
+  std::vector<Patch> patches;
+  SE3 target = scene.T_world_camera;  ///< where the patches fit
+
+ private:
+  /// Iterations do not end by themselves: a last digit must not decide how many there are.
+  static Config config_of(const BenchScene& scene, int max_count) {
+    Config config = scene.config;
+    config.patches.max_count = max_count;
+    config.iekf.converged_rotation_rad = 0;
+    config.iekf.converged_translation_m = 0;
+    config.iekf.max_iterations = 6;
+    return config;
+  }
+
+  /// The true poses of a recording are off by some millimetres: the pose to be found is the one at which a
+  /// dozen plain Gauss-Newton steps end, and that is where the truth is, as far as it is known.
+  [[nodiscard]] SE3 best_fit(const Workers& workers) const {
+    PatchMeasurement measured = measurement(workers);
+    SE3 pose = scene.T_world_camera;
+    double last_step = 1;
+    for (int i = 0; i < 12; ++i) {
+      const Step step = step_by(measured.linearise({pose, pose}, measured.stages() - 1, true), pose);
+      static_cast<void>(measured.trial_cost({step.T_world_camera, step.T_world_camera}, step.tangents, 1.0));
+      measured.accept();
+      pose = step.T_world_camera;
+      last_step = step.tangents.norm();
+    }
+    check(last_step < 1e-3 && (pose.translation - scene.T_world_camera.translation).norm() < 0.05,
+          "the patches of the recording fit near its ground truth");
+    return pose;
+  }
 };
+
+/// The cost at the pose of a linearisation is the one that it had, and its slope there, by differences of
+/// costs with everything else fixed, is the gradient.
+inline bool is_slope_of_cost(PatchMeasurement& measurement, const MeasurementQuadratic& parts,
+                             const SE3& T_world_camera) {
+  constexpr double kSmall = 1e-4;  // rad, m: some hundredths of a pixel
+  const auto cost_at = [&](const Vector6d& step) {
+    const SE3 pose = pose_plus(T_world_camera, step);
+    MeasuredVector tangents;
+    tangents << step, step;
+    return measurement.trial_cost({pose, pose}, tangents, 1.0);
+  };
+  const double cost = measurement.trial_cost({T_world_camera, T_world_camera}, MeasuredVector::Zero(), 0.0);
+  if (!(std::abs(cost - parts.cost()) < 1e-3 * cost)) return false;
+  const Vector6d gradient = parts.by_reference.gradient + parts.by_model.gradient;
+  Vector6d slope;
+  for (int axis = 0; axis < kPoseSize; ++axis) {
+    const Vector6d step = kSmall * Vector6d::Unit(axis);
+    slope[axis] = (cost_at(step) - cost_at(-step)) / (2 * kSmall);
+  }
+  const auto is_near = [](const Vector3d& a, const Vector3d& b) { return (a - b).norm() < 0.05 * b.norm(); };
+  return is_near(slope.head<3>(), gradient.head<3>()) && is_near(slope.tail<3>(), gradient.tail<3>());
+}
 
 }  // namespace fusebench::testing

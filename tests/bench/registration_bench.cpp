@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "datasets/depth_registration.hpp"
+#include "tests/bench/rates.hpp"
 #include "tests/support/two_cameras.hpp"
 
 namespace fusebench {
@@ -43,6 +44,9 @@ void measure(benchmark::State& state, const Registration& to_color) {
   if (quality.with_depth < quality.pixels / 2) return state.SkipWithError("most of the depth is lost");
   const DepthImage depth_m = measured_depth(room, cameras, testing::registration_views().front());
   for (auto _ : state) benchmark::DoNotOptimize(to_color(depth_m));
+  // Depth in and out.
+  const std::size_t pixels = depth_m.data.size();
+  testing::report_rates(state, {"pixels", pixels, testing::bytes_of<float>(2 * pixels)});
 }
 
 void register_depth(benchmark::State& state) {

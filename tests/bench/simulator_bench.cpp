@@ -8,6 +8,7 @@
 
 #include "datasets/simulator/image_sensors.hpp"
 #include "datasets/simulator/room.hpp"
+#include "tests/bench/rates.hpp"
 
 namespace fusebench {
 namespace {
@@ -55,6 +56,10 @@ void colour_image(benchmark::State& state) {
     return state.SkipWithError("depends on the number of threads");
   }
   for (auto _ : state) benchmark::DoNotOptimize(expose(workers));
+  // The image out.
+  const auto pixels =
+      static_cast<std::size_t>(camera().width_px) * static_cast<std::size_t>(camera().height_px);
+  testing::report_rates(state, {"pixels", pixels, testing::bytes_of<Rgb>(pixels)});
 }
 
 void depth_image(benchmark::State& state) {
@@ -75,6 +80,9 @@ void depth_image(benchmark::State& state) {
   }
   if (near < exact.data.size() * 3 / 5) return state.SkipWithError("noise far from the truth");
   for (auto _ : state) benchmark::DoNotOptimize(sense());
+  // The image out.
+  testing::report_rates(state,
+                        {"pixels", exact.data.size(), testing::bytes_of<std::uint16_t>(exact.data.size())});
 }
 
 BENCHMARK(colour_image)->ArgsProduct({{1, 8}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <set>
-
 #include "tests/support/analytic_scene.hpp"
+#include "tests/support/felt_blocks.hpp"
 
 namespace fusebench {
 namespace {
 
-using Blocks = std::set<std::array<int, 3>>;
+using testing::felt_blocks;
+using testing::missing;
+using Blocks = testing::BlockSet;
 
 // A narrow view, so that a block of 8 cm is wider than kFinePixels at 5 m, and one of 4 cm is not.
 const PinholeCamera kCamera = test_camera(160, 120, 15.0);
@@ -27,25 +27,6 @@ DepthImage step_and_wall() {
   return depth_m;
 }
 
-Blocks felt_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig& tsdf,
-                   const DepthConfig& depth) {
-  Blocks blocks;
-  for (int y = 0; y < depth_m.height; ++y) {
-    for (int x = 0; x < depth_m.width; ++x) {
-      const double z = static_cast<double>(depth_m(x, y));
-      if (!(z >= depth.min_m && z <= depth.max_m)) continue;
-      const double band_m = half_band_m(z, tsdf, depth);
-      for (int step = 0; step <= 40; ++step) {
-        const double at_m = z + band_m * (step / 20.0 - 1.0);
-        const Vector3d point = kTWorldCamera * kCamera.back_project(x, y, at_m) / block_m;
-        const BlockIndex block = point.array().floor().cast<int>();
-        blocks.insert({block.x(), block.y(), block.z()});
-      }
-    }
-  }
-  return blocks;
-}
-
 Blocks found_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig& tsdf,
                     const DepthConfig& depth) {
   BandBlocks band;
@@ -53,16 +34,9 @@ Blocks found_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig&
   for (int time = 0; time < 2; ++time) {  // it forgets the image before
     band.find(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth, workers);
   }
-  Blocks blocks;
-  for (const BlockIndex& block : band.blocks()) blocks.insert({block.x(), block.y(), block.z()});
+  const Blocks blocks = testing::block_set(band.blocks());
   EXPECT_EQ(blocks.size(), band.blocks().size()) << "each once";
   return blocks;
-}
-
-std::size_t missing(const Blocks& wanted, const Blocks& found) {
-  std::size_t count = 0;
-  for (const auto& block : wanted) count += found.contains(block) ? 0 : 1;
-  return count;
 }
 
 TEST(BandBlocks, OfFinePixelsAreAllThatTheirRaysPass) {
@@ -71,7 +45,7 @@ TEST(BandBlocks, OfFinePixelsAreAllThatTheirRaysPass) {
   const double block_m = 8 * tsdf.voxel_m;
   ASSERT_LT(block_m * kCamera.fx_px / depth.max_m, BandBlocks::kFinePixels);
   const DepthImage depth_m = step_and_wall();
-  const Blocks felt = felt_blocks(depth_m, block_m, tsdf, depth);
+  const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
   const Blocks found = found_blocks(depth_m, block_m, tsdf, depth);
   EXPECT_GT(felt.size(), 100U);
   EXPECT_EQ(missing(felt, found), 0U);
@@ -85,7 +59,7 @@ TEST(BandBlocks, OfEverySecondPixelMissCornersAtMost) {
   const double block_m = 8 * tsdf.voxel_m;
   ASSERT_GE(block_m * kCamera.fx_px / depth.max_m, BandBlocks::kFinePixels);
   const DepthImage depth_m = step_and_wall();
-  const Blocks felt = felt_blocks(depth_m, block_m, tsdf, depth);
+  const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
   const Blocks found = found_blocks(depth_m, block_m, tsdf, depth);
   EXPECT_GT(felt.size(), 20U);
   EXPECT_LE(static_cast<double>(missing(felt, found)), 0.05 * static_cast<double>(felt.size()));

@@ -25,7 +25,7 @@ Patch cut(const Eigen::Vector2i& centre, const DepthAt& depth_at) {
       PatchPixel pixel;
       pixel.reference_pixel = static_cast<std::uint32_t>(y * camera.width_px + x);
       pixel.point_world = camera.back_project(x, y, depth_at(x, y));
-      pixel.normal_world = -Vector3d::UnitZ();
+      pixel.normal_world = -Eigen::Vector3f::UnitZ();
       patch.levels[0].pixels.push_back(pixel);
     }
   }
@@ -50,16 +50,13 @@ double slanted(int x, int y) {
 const Vector3d kOrigin(0.3, -0.2, 1.1);
 
 /// Level 0 of patches, warped to a camera.
-LevelLanes warp(std::span<const Patch> patches, const PosedCamera& posed, Deformation deformation) {
+LevelLanes warp(std::span<const Patch> patches, const PosedCamera& posed) {
   LevelLanes lanes;
-  pack(patches, 0, kOrigin, deformation, lanes);
+  pack(patches, 0, kOrigin, lanes);
   warp_level(lanes.pixels, lanes.warp_points, PosedLanes(posed, kOrigin), lanes.warped);
   return lanes;
 }
-LevelLanes warp(const Patch& patch, const PosedCamera& posed,
-                Deformation deformation = Deformation::pixelwise) {
-  return warp(std::span(&patch, 1), posed, deformation);
-}
+LevelLanes warp(const Patch& patch, const PosedCamera& posed) { return warp(std::span(&patch, 1), posed); }
 
 /// One pixel of them.
 struct Pixel {
@@ -121,7 +118,7 @@ TEST(PatchDeformation, AnOccluderInAnotherPatchCounts) {
   const std::vector<Patch> both = {near, far};
   MutualOcclusion occlusion(320, 240);
   for (int time = 0; time < 2; ++time) {  // it forgets the test before
-    LevelLanes lanes = warp(both, posed, Deformation::pixelwise);
+    LevelLanes lanes = warp(both, posed);
     occlusion.test(lanes.warped, DepthConfig{});
     for (const Pixel& pixel : pixels_of(lanes, 0)) EXPECT_TRUE(pixel.visible);
     for (const Pixel& pixel : pixels_of(lanes, 1)) EXPECT_FALSE(pixel.visible);
@@ -173,8 +170,8 @@ TEST(PatchDeformation, AllKindsAgreeWhereTheyMustAndDifferWhereTheyMust) {
     Patch second = cut({160, 120}, depth_at);
     set_deformation(first, testing::small_camera(), SE3{}, a);
     set_deformation(second, testing::small_camera(), SE3{}, b);
-    const auto wa = pixels_of(warp(first, sideways, a));
-    const auto wb = pixels_of(warp(second, sideways, b));
+    const auto wa = pixels_of(warp(first, sideways));
+    const auto wb = pixels_of(warp(second, sideways));
     double worst = 0;
     for (std::size_t i = 0; i < wa.size(); ++i)
       worst = std::max(worst, (wa[i].pixel_px - wb[i].pixel_px).norm());
@@ -190,7 +187,7 @@ TEST(PatchDeformation, AllKindsAgreeWhereTheyMustAndDifferWhereTheyMust) {
 TEST(PatchDeformation, RigidSquareMovesByItsCentreAlone) {
   Patch patch = cut({160, 120}, two_planes);
   set_deformation(patch, testing::small_camera(), SE3{}, Deformation::rigid_square);
-  const auto warped = pixels_of(warp(patch, camera_at({0.05, 0, 0}), Deformation::rigid_square));
+  const auto warped = pixels_of(warp(patch, camera_at({0.05, 0, 0})));
   for (std::size_t i = 0; i < warped.size(); ++i) {
     const auto key = patch.levels[0].pixels[i].reference_pixel;
     EXPECT_NEAR(warped[i].pixel_px.x(), key % 320 - 240.0 * 0.05 / 2.0,

@@ -3,18 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <random>
 #include <vector>
 
-#include "core/depth_gates.hpp"
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/plain_voxel_update.hpp"
 
 namespace fusebench {
 namespace {
+
+using testing::PlainBlock;
+using testing::PlainVoxelUpdate;
 
 const PinholeCamera kCamera = test_camera(160, 120, 60.0);
 
@@ -34,75 +36,6 @@ struct StoredBlock {
   std::array<float, kBlockVoxels> weight{};
   std::array<std::array<std::uint16_t, kBlockVoxels>, 3> color{};
   std::array<std::uint16_t, kBlockVoxels> color_count{};
-};
-
-// One voxel after the other, by the same formulas: what the eight lanes of a row must agree with to the bit.
-using PlainBlock = std::array<Voxel, kBlockVoxels>;
-
-class PlainUpdate {
- public:
-  PlainUpdate(const RgbdFrame& frame, const SE3& T_world_camera, const DepthConfig& depth,
-              const TsdfConfig& tsdf)
-      : frame_(frame), T_camera_world_(T_world_camera.inverse()), depth_(depth), tsdf_(tsdf) {}
-
-  void apply(const BlockIndex& index, PlainBlock& block) const {
-    const Vector3d corner = index.cast<double>() * (kBlockSide * tsdf_.voxel_m);
-    const Eigen::Vector3f corner_camera = (T_camera_world_ * corner).cast<float>();
-    const Eigen::Matrix3f step = (T_camera_world_.rotation_matrix() * tsdf_.voxel_m).cast<float>();
-    for (int i = 0; i < kBlockVoxels; ++i) {
-      const Eigen::Vector3f row = corner_camera + static_cast<float>((i >> 3) & 7) * step.col(1) +
-                                  static_cast<float>(i >> 6) * step.col(2);
-      const Eigen::Vector3f along = static_cast<float>(i & 7) * step.col(0);
-      observe(row.x() + along.x(), row.y() + along.y(), row.z() + along.z(),
-              block[static_cast<std::size_t>(i)]);
-    }
-  }
-
- private:
-  void observe(float x, float y, float z, Voxel& voxel) const {
-    if (!(z > 0.0F)) return;
-    const float inverse_z = 1.0F / z;
-    const float u =
-        static_cast<float>(kCamera.fx_px) * x * inverse_z + static_cast<float>(kCamera.cx_px) + 0.5F;
-    const float v =
-        static_cast<float>(kCamera.fy_px) * y * inverse_z + static_cast<float>(kCamera.cy_px) + 0.5F;
-    const DepthImage& depth_m = frame_.depth_m;
-    if (!(u >= 0.0F && v >= 0.0F) || !depth_m.contains(static_cast<int>(u), static_cast<int>(v))) return;
-    const float measured_m = depth_m(static_cast<int>(u), static_cast<int>(v));
-    if (!(measured_m >= static_cast<float>(depth_.min_m) && measured_m <= static_cast<float>(depth_.max_m)))
-      return;
-    const float from_offset_m = measured_m - static_cast<float>(depth_.noise_offset_m);
-    const float sigma_m = static_cast<float>(depth_.noise_floor_m) +
-                          static_cast<float>(depth_.noise_quadratic_per_m) * from_offset_m * from_offset_m;
-    const float band_m = std::max(static_cast<float>(std::max(tsdf_.truncation_m, 2.0 * tsdf_.voxel_m)),
-                                  static_cast<float>(tsdf_.truncation_sigmas) * sigma_m);
-    const float distance_m = measured_m - z;
-    if (distance_m <= -band_m) return;
-    const float half_m = 0.5F * band_m;
-    const auto variance = static_cast<float>(tsdf_.voxel_m * tsdf_.voxel_m);
-    const float weight =
-        std::min(half_m, band_m + distance_m) * variance / (half_m * (variance + sigma_m * sigma_m));
-    const float total = voxel.weight + weight;
-    const float before_m = voxel.weight > 0.0F ? voxel.distance_m : 0.0F;
-    voxel.distance_m = (before_m * voxel.weight + std::min(distance_m, band_m) * weight) / total;
-    voxel.weight = std::min(total, static_cast<float>(tsdf_.max_weight));
-    if (frame_.color.empty() || !(std::abs(distance_m) < half_m)) return;
-    const Rgb& observed = frame_.color(static_cast<int>(u), static_cast<int>(v));
-    const auto count = static_cast<float>(voxel.color_count);
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      const auto mean = static_cast<float>(voxel.color[channel]);
-      const float target = 256.0F * static_cast<float>(observed[channel]);
-      voxel.color[channel] =
-          static_cast<std::uint16_t>(mean + (target - mean) * (1.0F / (count + 1.0F)) + 0.5F);
-    }
-    const float most = std::min(static_cast<float>(tsdf_.max_weight), 255.0F);
-    voxel.color_count = static_cast<std::uint16_t>(std::min(count + 1.0F, most));
-  }
-
-  const RgbdFrame& frame_;
-  SE3 T_camera_world_;
-  const DepthConfig& depth_;
-  const TsdfConfig& tsdf_;
 };
 
 // Depth anywhere between nothing and too far, with damaged pixels among it.
@@ -135,7 +68,7 @@ TEST(VoxelUpdate, EightVoxelsAtOnceAreTheSameBitsAsOneByOne) {
     const RgbdFrame frame = random_frame(random);
     const SE3 T_world_camera{so3_exp({0.05 * view, -0.1, 0.3 * view}), {0.01 * view, 0.02, -0.03 * view}};
     const VoxelUpdate update(frame, kCamera, T_world_camera, depth, tsdf);
-    const PlainUpdate reference(frame, T_world_camera, depth, tsdf);
+    const PlainVoxelUpdate reference(frame, kCamera, T_world_camera, depth, tsdf);
     for (std::size_t i = 0; i < indices.size(); ++i) {
       update.apply(indices[i], blocks[i].view());
       reference.apply(indices[i], plain[i]);

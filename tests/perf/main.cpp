@@ -24,7 +24,8 @@ void print_counted() {
   // OpenCV would take as many threads as there are cores, and who does what would change from run to run.
   cv::setNumThreads(1);
   fusebench::perf::KernelCounts counts;
-  const fusebench::testing::BenchScene& scene = fusebench::testing::bench_scene(kWidth_px);
+  using fusebench::testing::SceneKind;
+  const fusebench::testing::BenchScene& scene = fusebench::testing::bench_scene(SceneKind::room, kWidth_px);
   count_frame_kernels(counts, scene);
   count_model_kernels(counts, scene);
   count_tracking_kernels(counts, scene);

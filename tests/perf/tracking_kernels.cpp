@@ -1,9 +1,7 @@
-#include <cmath>
 #include <optional>
 
-#include "core/iekf.hpp"
 #include "core/pipeline.hpp"
-#include "tests/bench/patch_problem.hpp"
+#include "tests/bench/patch_answers.hpp"
 #include "tests/perf/kernel_counts.hpp"
 #include "tests/support/simulated_frames.hpp"
 
@@ -11,43 +9,35 @@ namespace fusebench::perf {
 
 namespace {
 
-/// Iterations that do not end by themselves: a last digit must not decide how many there are.
-void fix_iterations(IekfConfig& config) {
-  config.converged_rotation_rad = 0;
-  config.converged_translation_m = 0;
-  config.max_iterations = 6;
-}
-
 void count_refresh(KernelCounts& counts, const testing::PatchProblem& problem, const Workers& workers) {
+  PatchWorkspace memory;
   std::vector<Patch> patches;
   counts.count(
       "refresh_patches", "patch",
       [&] {
-        patches =
-            refresh_patches(problem.reference(), problem.scene.model, {}, problem.scene.config, workers);
+        refresh_patches(problem.reference(), problem.scene.model, {}, problem.config, workers, memory,
+                        patches);
       },
       [&] {
-        for (const Patch& patch : patches)
-          check(!patch.levels.empty() && !patch.levels[0].pixels.empty(), "patches have pixels");
-        check(patches.size() > 20, "the room has corners");
+        check(testing::are_cut_from(patches, problem.reference()), "patches are cut from the frame");
         return patches.size();
       });
 }
 
 void count_linearisation(KernelCounts& counts, const testing::PatchProblem& problem, const Workers& workers) {
-  PatchMeasurement measurement(problem.scene.config, problem.rig, problem.observed, problem.patches, {},
-                               workers);
+  PatchMeasurement measurement = problem.measurement(workers);
   const int finest = measurement.stages() - 1;
+  const SE3 start = problem.start();
   MeasurementQuadratic parts;
   testing::PatchProblem::Step step;
   counts.count(
       "linearise", "patch",
       [&] {
-        parts = measurement.linearise({problem.start, problem.start}, finest, true);
+        parts = measurement.linearise({start, start}, finest, true);
       },
       [&] {
-        step = problem.step_by(parts);
-        check(problem.error_m(step.T_world_camera) < 0.5 * problem.error_m(problem.start),
+        step = testing::PatchProblem::step_by(parts, start);
+        check(problem.error_m(step.T_world_camera) < 0.5 * problem.error_m(start),
               "the step leads to the true pose");
         return problem.patches.size();
       });
@@ -66,31 +56,18 @@ void count_linearisation(KernelCounts& counts, const testing::PatchProblem& prob
 
 /// A frame's update, from its patches on.
 void count_update(KernelCounts& counts, const testing::PatchProblem& problem, const Workers& workers) {
-  Config config = problem.scene.config;
-  fix_iterations(config.iekf);
-  GaussianState prior;
-  prior.mean.T_world_imu = problem.start;
-  prior.mean.T_world_imu_reference = problem.scene.T_world_camera;
-  prior.covariance.diagonal().setConstant(1e-4);
+  const GaussianState prior = problem.prior();
   IekfResult result;
   counts.count(
-      "iekf_update", "iteration",
+      "iekf_update", "iteration", [&] { result = problem.update(prior, workers); },
       [&] {
-        PatchMeasurement measurement(config, problem.rig, problem.observed, problem.patches, {}, workers);
-        result = iekf_update(prior, measurement, config.iekf);
-      },
-      [&] {
-        check(result.posterior.covariance.allFinite() &&
-                  problem.error_m(result.posterior.mean.T_world_imu) < 0.3 * problem.error_m(problem.start),
-              "the update leads to the true pose");
+        check(problem.is_updated(result), "the update leads to the true pose");
         return static_cast<std::size_t>(result.iterations);
       });
 }
 
 /// The fourth frame of a recording, with a rolling shutter.
-void count_whole_frame(KernelCounts& counts, const Config& scene_config, const Workers& workers) {
-  Config config = scene_config;
-  fix_iterations(config.iekf);
+void count_whole_frame(KernelCounts& counts, const Config& config, const Workers& workers) {
   const testing::SimulatedRun run =
       testing::simulate(4, {.color_readout_s = 0.026, .depth_readout_s = 0.026, .depth_delay_s = 0.01});
   Pipeline pipeline(config, run.rig, run.imu, workers);
@@ -117,7 +94,7 @@ void count_tracking_kernels(KernelCounts& counts, const testing::BenchScene& sce
   count_refresh(counts, problem, workers);
   count_linearisation(counts, problem, workers);
   count_update(counts, problem, workers);
-  count_whole_frame(counts, scene.config, workers);
+  count_whole_frame(counts, problem.config, workers);
 }
 
 }  // namespace fusebench::perf

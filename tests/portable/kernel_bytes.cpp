@@ -98,12 +98,12 @@ void track(const RgbdFrame& frame, const TsdfVolume& model, const Workers& worke
       pixel.intensity = frame.grey(x, y);
       pixel.point_world =
           kTWorldCamera * kCamera.back_project(x, y, static_cast<double>(surface.depth_m(x, y)));
-      pixel.normal_world = surface.normal_world(x, y).cast<double>();
+      pixel.normal_world = surface.normal_world(x, y);
     }
   }
   const Vector3d origin = kTWorldCamera.translation;
   LevelLanes lanes;
-  pack(std::span(&patch, 1), 0, origin, Deformation::pixelwise, lanes);
+  pack(std::span(&patch, 1), 0, origin, lanes);
   const SE3 moved = kTWorldCamera * SE3{so3_exp({0.01, -0.02, 0.005}), {0.01, 0.02, -0.03}};
   const PosedLanes posed(PosedCamera(kCamera, moved, SE3{}), origin);
   warp_level(lanes.pixels, lanes.warp_points, posed, lanes.warped);

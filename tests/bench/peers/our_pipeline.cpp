@@ -5,21 +5,9 @@
 #include "core/marching_cubes.hpp"
 #include "eval/process_meter.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
+#include "tests/support/camera_velocity.hpp"
 
 namespace fusebench::peers {
-
-namespace {
-
-/// Of the camera, from what the report says of the IMU.
-CameraVelocity camera_velocity(const FrameReport& report, const SE3& T_imu_camera) {
-  const Matrix3d R_camera_imu = T_imu_camera.rotation_matrix().transpose();
-  const Matrix3d R_camera_world = report.T_world_camera.rotation_matrix().transpose();
-  const Vector3d& rate_imu = report.angular_velocity_radps;
-  return {R_camera_imu * rate_imu, R_camera_world * report.velocity_world_mps +
-                                       R_camera_imu * rate_imu.cross(T_imu_camera.translation)};
-}
-
-}  // namespace
 
 Result<OurCost> OurPipeline::process(const RgbdFrame& frame) {
   const Stopwatch wall;
@@ -33,7 +21,7 @@ Result<OurCost> OurPipeline::process(const RgbdFrame& frame) {
   const bool lost = report->status == FrameStatus::lost;
   motion_ = lost ? std::nullopt : std::optional(T_world_camera_.inverse() * report->T_world_camera);
   T_world_camera_ = report->T_world_camera;
-  velocity_ = camera_velocity(*report, rig_.T_imu_camera);
+  velocity_ = testing::camera_velocity(*report, rig_.T_imu_camera);
 
   // Stages are reported in wall time. With one thread that is CPU time unless something else held the core:
   // then each stage bears its share of that.

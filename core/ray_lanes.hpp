@@ -1,0 +1,87 @@
+// Rays of a camera through a field, eight at a time: what they are, and what they meet.
+#pragma once
+
+#include "core/surface_point.hpp"
+#include "core/trilinear.hpp"
+
+namespace fusebench {
+
+/// Eight rays by z-depth: point(z) = origin + z * direction, in voxels.
+struct RayLanes {
+  [[nodiscard]] Points at(Float8 z_m) const {
+    return {origin.x() + z_m * direction.x, origin.y() + z_m * direction.y, origin.z() + z_m * direction.z};
+  }
+
+  Eigen::Vector3f origin;
+  Points direction;    ///< per metre of z-depth
+  Float8 z_per_voxel;  ///< metres of z-depth for a voxel along the ray
+};
+
+/// The rays of a camera's pixels in a lattice of voxels.
+class PixelRays {
+ public:
+  PixelRays(const PinholeCamera& camera, const SE3& T_world_camera, double voxel_m)
+      : axes_((T_world_camera.rotation_matrix() / voxel_m).cast<float>()),
+        per_fx_(static_cast<float>(1.0 / camera.fx_px)),
+        per_fy_(static_cast<float>(1.0 / camera.fy_px)),
+        cx_px_(static_cast<float>(camera.cx_px)),
+        cy_px_(static_cast<float>(camera.cy_px)) {}
+
+  /// `origin`: the camera's place in the lattice.
+  [[nodiscard]] RayLanes through(Float8 u_px, Float8 v_px, const Eigen::Vector3f& origin) const {
+    const Float8 x = (u_px - cx_px_) * per_fx_;
+    const Float8 y = (v_px - cy_px_) * per_fy_;
+    RayLanes rays;
+    rays.origin = origin;
+    rays.direction = {axes_(0, 0) * x + axes_(0, 1) * y + axes_(0, 2),
+                      axes_(1, 0) * x + axes_(1, 1) * y + axes_(1, 2),
+                      axes_(2, 0) * x + axes_(2, 1) * y + axes_(2, 2)};
+    rays.z_per_voxel = 1.0F / norm(rays.direction);
+    return rays;
+  }
+
+ private:
+  Eigen::Matrix3f axes_;  // columns: the ray by u, by v (on the plane z = 1) and along the optical axis
+  float per_fx_, per_fy_, cx_px_, cy_px_;
+};
+
+/// Two points of each ray with the surface between them: the field is + in front, - behind.
+struct Brackets {
+  Float8 front_z_m = not_a_number();
+  Float8 front_m{};  ///< field
+  Float8 back_z_m = not_a_number();
+  Float8 back_m{};
+
+  [[nodiscard]] Float8 zero_of_chord() const {
+    return front_z_m + front_m / (front_m - back_m) * (back_z_m - front_z_m);
+  }
+};
+
+/// What eight rays meet.
+struct Hits {
+  Int8 valid{};
+  Float8 depth_m{};
+  Points normal_world{};
+};
+
+/// Crossings at these depths, with the gradient of the field there. They go into the surface; a gradient
+/// along the ray is noise at a rim, and no normal.
+[[nodiscard]] inline Hits hits_at(Int8 found, Float8 depth_m, const Points& gradient,
+                                  const Points& direction) {
+  Hits hits;
+  hits.depth_m = depth_m;
+  const Float8 length = norm(gradient);
+  hits.valid = found & (dot(gradient, direction) < 0.0F) & (length > 0.0F);
+  const Float8 unit = 1.0F / (hits.valid ? length : all_lanes(1.0F));
+  hits.normal_world = {gradient.x * unit, gradient.y * unit, gradient.z * unit};
+  return hits;
+}
+
+[[nodiscard]] inline SurfacePoint surface_point(const Hits& hits, std::size_t lane) {
+  if (hits.valid[lane] == 0) return {};
+  return {true,
+          hits.depth_m[lane],
+          {hits.normal_world.x[lane], hits.normal_world.y[lane], hits.normal_world.z[lane]}};
+}
+
+}  // namespace fusebench

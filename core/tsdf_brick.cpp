@@ -1,0 +1,91 @@
+#include "core/tsdf_brick.hpp"
+
+#include <algorithm>
+
+#include "core/trilinear.hpp"
+
+namespace fusebench {
+
+static_assert(kBlockSide == kLanes, "a row of a block is one vector");
+
+/// Voxels of the brick around eight places.
+struct TsdfBrick::Cube {
+  /// From `first` on, `side` voxels along each axis.
+  Cube(const TsdfBrick& brick, const LatticePoints& first, int side)
+      : distances_m(brick.distances_m_.data()), row(brick.size_.x()), slice(row * brick.size_.y()) {
+    const Int8 x = first.x;
+    const Int8 y = first.y;
+    const Int8 z = first.z;
+    inside = ((x | y | z) >= 0) & (x <= brick.size_.x() - side) & (y <= brick.size_.y() - side) &
+             (z <= brick.size_.z() - side);
+    at = inside ? x + row * y + slice * z : Int8{};
+  }
+
+  [[nodiscard]] Float8 distance_m(int x, int y, int z) const {
+    return gather(distances_m + (x + row * y + slice * z), at);
+  }
+
+  const float* distances_m;
+  int row, slice;  // voxels from one row, and from one slice, to the next
+  Int8 inside;
+  Int8 at;
+};
+
+void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const VoxelIndex& last) {
+  const BlockIndex first_block = block_of(first);
+  const BlockIndex last_block = block_of(last);
+  const VoxelIndex origin(first_block.x() * kBlockSide, first.y(), first.z());
+  const Eigen::Vector3i size((last_block.x() + 1) * kBlockSide - origin.x(), last.y() - first.y() + 1,
+                             last.z() - first.z() + 1);
+  origin_voxel_ = origin;
+  size_ = size;
+  const auto voxels = static_cast<std::size_t>(size.prod());
+  // A gather at the first voxel, in place of one outside, reads a cube of four voxels.
+  const std::size_t readable = voxels + static_cast<std::size_t>(4 * size.x() * (size.y() + 1));
+  if (distances_m_.size() < readable) distances_m_.resize(readable);
+  BlockIndex block;
+  for (block.z() = first_block.z(); block.z() <= last_block.z(); ++block.z()) {
+    for (block.y() = first_block.y(); block.y() <= last_block.y(); ++block.y()) {
+      for (block.x() = first_block.x(); block.x() <= last_block.x(); ++block.x()) {
+        const int slot = volume.find_block(block);
+        copy_block(slot < 0 ? nullptr : volume.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels,
+                   block * kBlockSide);
+      }
+    }
+  }
+}
+
+/// The rows of a block that lie in the box; a block that is not there (null) is unobserved.
+void TsdfBrick::copy_block(const float* block_m, const VoxelIndex& block_voxel) {
+  const Eigen::Vector3i from = block_voxel - origin_voxel_;
+  const int begin_y = std::max(0, -from.y());
+  const int end_y = std::min(kBlockSide, size_.y() - from.y());
+  const int begin_z = std::max(0, -from.z());
+  const int end_z = std::min(kBlockSide, size_.z() - from.z());
+  const Float8 unknown = not_a_number();
+  for (int z = begin_z; z < end_z; ++z) {
+    float* row =
+        distances_m_.data() + from.x() + size_.x() * (from.y() + begin_y + size_.y() * (from.z() + z));
+    for (int y = begin_y; y < end_y; ++y, row += size_.x()) {
+      store(block_m == nullptr ? unknown : load(block_m + kBlockSide * (y + kBlockSide * z)), row);
+    }
+  }
+}
+
+Float8 TsdfBrick::sample(const Points& at) const {
+  const TrilinearCell cell(at);
+  const Cube cube(*this, cell.base, 2);
+  const Float8 distance_m = interpolated_m(cell, cube);
+  return cube.inside ? distance_m : not_a_number();
+}
+
+Points TsdfBrick::gradient(const Points& at) const {
+  const TrilinearCell cell(at);
+  const Cube cube(*this, {cell.base.x - 1, cell.base.y - 1, cell.base.z - 1}, 4);
+  const Points gradient = interpolated_gradient(cell, cube);
+  const Float8 unknown = not_a_number();
+  return {cube.inside ? gradient.x : unknown, cube.inside ? gradient.y : unknown,
+          cube.inside ? gradient.z : unknown};
+}
+
+}  // namespace fusebench

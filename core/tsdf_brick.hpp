@@ -1,0 +1,36 @@
+// The field of a small box, copied side by side: where many points lie close together, no block has to be
+// looked for at each.
+#pragma once
+
+#include <vector>
+
+#include "core/lane_points.hpp"
+#include "core/tsdf_volume.hpp"
+
+namespace fusebench {
+
+/// Distances of a box of voxels. Its memory serves one box after the other.
+class TsdfBrick {
+ public:
+  /// Copies the voxels from `first` to `last` on each axis; the box is widened along x to whole blocks.
+  void copy(const TsdfVolume& volume, const VoxelIndex& first, const VoxelIndex& last);
+
+  /// The voxel that coordinates count from.
+  [[nodiscard]] const VoxelIndex& origin_voxel() const { return origin_voxel_; }
+
+  /// As TsdfLanes::sample() and gradient(), the same to the bit for the same coordinates; NaN also where the
+  /// box does not reach.
+  [[nodiscard]] Float8 sample(const Points& at) const;
+  [[nodiscard]] Points gradient(const Points& at) const;
+
+ private:
+  struct Cube;
+
+  void copy_block(const float* block_m, const VoxelIndex& block_voxel);
+
+  VoxelIndex origin_voxel_ = VoxelIndex::Zero();
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  std::vector<float> distances_m_;  // x fastest, then y, then z
+};
+
+}  // namespace fusebench

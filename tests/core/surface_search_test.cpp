@@ -1,0 +1,157 @@
+#include "core/surface_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/raycast.hpp"
+#include "tests/support/fused_scene.hpp"
+
+namespace fusebench {
+namespace {
+
+const PinholeCamera kCamera = test_camera(320, 240, 60.0);
+const DepthConfig kDepth;
+
+AnalyticScene furnished_room() {
+  return {{AnalyticBox{{-1.513, -1.207, -1.411}, {1.509, 1.211, 1.607}, true, {90, 100, 110}},
+           AnalyticSphere{{0.4, 0.3, 0.9}, 0.3, {200, 20, 20}}}};
+}
+
+/// A model of the room, and what the camera at its origin would measure.
+struct Room {
+  TsdfVolume model = fuse(furnished_room(), kCamera, {SE3{}, look_at({0.2, 0.1, -0.3}, {0.3, 0.2, 1.0})});
+  RgbdFrame frame = furnished_room().render(kCamera, SE3{}, 75.0);
+
+  /// The measured pixels of a rectangle, with an error of depth that `error_m` draws.
+  template <class Error>
+  std::vector<ExpectedSurface> pixels(int x0, int y0, int side, Error error_m, float reach_m = 0.15F) const {
+    std::vector<ExpectedSurface> pixels;
+    for (int y = y0; y < y0 + side; ++y) {
+      for (int x = x0; x < x0 + side; ++x) {
+        const float z = frame.depth_m(x, y);
+        if (z <= 0) continue;
+        pixels.push_back({static_cast<float>(x), static_cast<float>(y), z + error_m(), reach_m});
+      }
+    }
+    return pixels;
+  }
+
+  [[nodiscard]] std::vector<SurfacePoint> walked(const std::vector<ExpectedSurface>& pixels) const {
+    std::vector<PixelRay> rays;
+    for (const ExpectedSurface& pixel : pixels) {
+      rays.push_back({static_cast<double>(pixel.u_px), static_cast<double>(pixel.v_px)});
+    }
+    std::vector<SurfacePoint> surfaces;
+    raycast_pixels(model, kCamera, SE3{}, rays, kDepth, Workers(1), surfaces);
+    return surfaces;
+  }
+};
+
+/// Share of the surfaces that walking finds and that are found, and how far apart the two are at most.
+struct Agreement {
+  double share = 0;
+  double depth_m = 0;
+  double normal_deg = 0;
+};
+Agreement compare(const std::vector<SurfacePoint>& found, const std::vector<SurfacePoint>& walked) {
+  Agreement agreement;
+  int hits = 0;
+  int both = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    hits += walked[i].valid ? 1 : 0;
+    if (!walked[i].valid || !found[i].valid) continue;
+    ++both;
+    agreement.depth_m = std::max(agreement.depth_m, std::abs(found[i].depth_m - walked[i].depth_m));
+    const double cosine = std::min(1.0, found[i].normal_world.dot(walked[i].normal_world));
+    agreement.normal_deg = std::max(agreement.normal_deg, degrees(std::acos(cosine)));
+  }
+  agreement.share = static_cast<double>(both) / hits;
+  return agreement;
+}
+
+float exact() { return 0.0F; }
+
+TEST(SurfaceSearch, FindsWhatWalkingTheRayFindsInSpiteOfNoise) {
+  const Room room;
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise_m(0.0F, 0.004F);
+  const auto pixels = room.pixels(60, 60, 40, [&] { return noise_m(random); });
+  ASSERT_GT(pixels.size(), 1500U);
+  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
+  TsdfBrick brick;
+  std::vector<SurfacePoint> beside(pixels.size());
+  search.find_beside(pixels, brick, beside);
+  std::vector<SurfacePoint> found(pixels.size());
+  search.find(pixels, found);
+  const auto walked = room.walked(pixels);
+  for (const auto& surfaces : {beside, found}) {
+    const Agreement agreement = compare(surfaces, walked);
+    EXPECT_GT(agreement.share, 0.99);
+    EXPECT_LT(agreement.depth_m, 0.05 * room.model.voxel_m());
+    EXPECT_LT(agreement.normal_deg, 1.0);
+  }
+}
+
+TEST(SurfaceSearch, BothWaysGiveOneResult) {
+  const Room room;
+  const auto pixels = room.pixels(100, 80, 10, exact);
+  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
+  TsdfBrick brick;
+  std::vector<SurfacePoint> beside(pixels.size());
+  search.find_beside(pixels, brick, beside);
+  std::vector<SurfacePoint> found(pixels.size());
+  search.find(pixels, found);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    ASSERT_TRUE(beside[i].valid && found[i].valid);
+    EXPECT_NEAR(beside[i].depth_m, found[i].depth_m, 1e-5);
+    EXPECT_GT(beside[i].normal_world.dot(found[i].normal_world), 1 - 1e-5);
+  }
+}
+
+TEST(SurfaceSearch, NearAndFarPartsOfAnEdgeAreBothFound) {
+  // The ball before the wall: more than a brick holds at once.
+  const Room room;
+  const auto pixels = room.pixels(160, 100, 120, exact);
+  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
+  TsdfBrick brick;
+  std::vector<SurfacePoint> found(pixels.size());
+  search.find_beside(pixels, brick, found);
+  // Where a part of the edge is still too much for a brick, the caller walks.
+  EXPECT_GT(compare(found, room.walked(pixels)).share, 0.9);
+}
+
+TEST(SurfaceSearch, ASurfaceOutOfReachIsNone) {
+  const Room room;
+  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
+  for (const float error_m : {-0.03F, 0.03F}) {
+    for (const float reach_m : {0.02F, 0.05F}) {
+      const auto pixels = room.pixels(
+          60, 60, 10, [&] { return error_m; }, reach_m);
+      std::vector<SurfacePoint> found(pixels.size());
+      search.find(pixels, found);
+      for (const SurfacePoint& surface : found) EXPECT_EQ(surface.valid, reach_m > std::abs(error_m));
+    }
+  }
+}
+
+TEST(SurfaceSearch, EmptyModelAndNoPoseGiveNothing) {
+  const Room room;
+  const auto pixels = room.pixels(60, 60, 4, exact);
+  const SE3 nowhere{Quaterniond::Identity(), Vector3d::Constant(std::nan(""))};
+  const TsdfVolume empty{TsdfConfig{}};
+  TsdfBrick brick;
+  for (const auto& search :
+       {SurfaceSearch(empty, kCamera, SE3{}, kDepth), SurfaceSearch(room.model, kCamera, nowhere, kDepth)}) {
+    std::vector<SurfacePoint> found(pixels.size(), SurfacePoint{true, 1.0, Vector3d::UnitX()});
+    search.find(pixels, found);
+    for (const SurfacePoint& surface : found) EXPECT_FALSE(surface.valid);
+    found.assign(pixels.size(), SurfacePoint{true, 1.0, Vector3d::UnitX()});
+    search.find_beside(pixels, brick, found);
+    for (const SurfacePoint& surface : found) EXPECT_FALSE(surface.valid);
+  }
+}
+
+}  // namespace
+}  // namespace fusebench
