@@ -7,6 +7,7 @@
 
 #include "core/corner_selection.hpp"
 #include "core/depth_gates.hpp"
+#include "core/error.hpp"
 #include "core/patch_deformation.hpp"
 
 namespace fusebench {
@@ -119,25 +120,8 @@ class BesideMeasurements {
   std::vector<SurfacePoint> found_;
 };
 
-/// The pixels without a surface yet, and what they are asked for.
-template <class Request, class RequestOf>
-void list_missing(const PatchWorkspace& work, std::vector<Request>& requests,
-                  std::vector<std::size_t>& places, const RequestOf& request_of) {
-  requests.clear();
-  places.clear();
-  for (std::size_t i = 0; i < work.pixels.size(); ++i) {
-    if (work.surfaces[i].valid) continue;
-    requests.push_back(request_of(i));
-    places.push_back(i);
-  }
-}
-
-/// The surfaces behind pixels, each looked for where it would be usable: beside what was measured, then
-/// further from it, at last along the ray.
-void find_surfaces(const ReferenceFrame& frame, const TsdfVolume& model, const Config& config,
-                   const Workers& workers, PatchWorkspace& work) {
-  work.surfaces.resize(work.pixels.size());
-  const SurfaceSearch search(model, frame.camera, frame.T_world_camera, config.depth);
+/// Beside what was measured. Patches are independent of each other.
+void find_beside_measurements(const SurfaceSearch& search, const Workers& workers, PatchWorkspace& work) {
   const std::size_t patches = work.first.size() - 1;
   workers.for_chunks(patches, kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     BesideMeasurements beside;
@@ -148,30 +132,48 @@ void find_surfaces(const ReferenceFrame& frame, const TsdfVolume& model, const C
                   std::span(work.surfaces).subspan(first, count));
     }
   });
+}
 
-  // A hole is at about the depth of what was measured before it, which is beside it but for the first ones.
-  ExpectedSurface measured;
-  list_missing(work, work.expected, work.places, [&](std::size_t i) {
-    const ExpectedSurface& pixel = work.pixels[i];
-    if (pixel.depth_m > 0) return measured = pixel;
-    return ExpectedSurface{pixel.u_px, pixel.v_px, measured.depth_m, measured.reach_m};
-  });
+/// Further from it.
+void find_around_measurements(const SurfaceSearch& search, const Workers& workers, PatchWorkspace& work) {
+  work.expected.clear();
+  work.places.clear();
+  for (std::size_t i = 0; i < work.pixels.size(); ++i) {
+    if (work.surfaces[i].valid || work.pixels[i].depth_m <= 0) continue;
+    work.expected.push_back(work.pixels[i]);
+    work.places.push_back(i);
+  }
   work.hits.resize(work.places.size());
   workers.for_chunks(work.places.size(), kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
     search.find(std::span(work.expected).subspan(begin, end - begin),
                 std::span(work.hits).subspan(begin, end - begin));
   });
   for (std::size_t i = 0; i < work.places.size(); ++i) work.surfaces[work.places[i]] = work.hits[i];
+}
 
-  list_missing(work, work.rays, work.places, [&](std::size_t i) {
+/// The surfaces behind pixels, each looked for where it would be usable: around what was measured, or all
+/// along the ray where nothing was.
+void find_surfaces(const ReferenceFrame& frame, const TsdfVolume& model, const Config& config,
+                   const Workers& workers, PatchWorkspace& work) {
+  work.surfaces.resize(work.pixels.size());
+  const SurfaceSearch search(model, frame.camera, frame.T_world_camera, config.depth);
+  find_beside_measurements(search, workers, work);
+  find_around_measurements(search, workers, work);
+
+  work.rays.clear();
+  work.places.clear();
+  for (std::size_t i = 0; i < work.pixels.size(); ++i) {
+    if (work.surfaces[i].valid) continue;
     const ExpectedSurface& pixel = work.pixels[i];
-    PixelRay ray{static_cast<double>(pixel.u_px), static_cast<double>(pixel.v_px)};
+    PixelRay& ray = work.rays.emplace_back();
+    ray.u_px = static_cast<double>(pixel.u_px);
+    ray.v_px = static_cast<double>(pixel.v_px);
     if (pixel.depth_m > 0) {
       ray.begin_m = pixel.depth_m - pixel.reach_m;
       ray.end_m = pixel.depth_m + pixel.reach_m;
     }
-    return ray;
-  });
+    work.places.push_back(i);
+  }
   if (work.rays.empty()) return;
   raycast_pixels(model, frame.camera, frame.T_world_camera, work.rays, config.depth, workers, work.hits);
   for (std::size_t i = 0; i < work.places.size(); ++i) work.surfaces[work.places[i]] = work.hits[i];
@@ -260,6 +262,7 @@ void fill_patch(const Squares& squares, std::size_t p, const Config& config, con
 void cut_patches(const ReferenceFrame& frame, const TsdfVolume& model, std::span<const TrackedCentre> centres,
                  const Config& config, const Workers& workers, PatchWorkspace& work,
                  std::vector<Patch>& patches) {
+  check(frame.pyramid.size() <= kMostLevels, "a pyramid has at most six levels");
   const Squares squares(centres, frame, config);
   work.pixels.clear();
   work.pixel_of.resize(squares.first(centres.size(), 0));

@@ -1,7 +1,7 @@
 #include "core/surface_search.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "core/depth_gates.hpp"
 
