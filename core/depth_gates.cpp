@@ -72,9 +72,11 @@ bool is_one_surface(const DepthImage& depth_m, int x, int y, int reach_px, doubl
   const float middle_m = depth_m(x, y);
   if (middle_m <= 0) return false;
   if (reach_px == 0) return true;
+  const bool inside =
+      depth_m.contains(x - reach_px, y - reach_px) && depth_m.contains(x + reach_px, y + reach_px);
   for (int dy = -reach_px; dy <= reach_px; dy += reach_px) {
     for (int dx = -reach_px; dx <= reach_px; dx += reach_px) {
-      if (!depth_m.contains(x + dx, y + dy)) continue;
+      if (!inside && !depth_m.contains(x + dx, y + dy)) continue;
       const float m = depth_m(x + dx, y + dy);
       if (m <= 0 || std::abs(m - middle_m) > edge_jump * middle_m) return false;
     }

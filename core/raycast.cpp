@@ -78,19 +78,11 @@ class RayCaster {
   RayCaster(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
             const DepthConfig& depth)
       : pixels_(camera, T_world_camera, volume.voxel_m()),
+        field_(field_in_view(volume, camera, T_world_camera, depth)),
         nearest_m_(static_cast<float>(depth.min_m)),
         farthest_m_(static_cast<float>(depth.max_m)),
         voxel_m_(static_cast<float>(volume.voxel_m())) {
-    const double corner = std::max(camera.back_project(0, 0, 1.0).norm(),
-                                   camera.back_project(camera.width_px, camera.height_px, 1.0).norm());
-    const double reach_m = depth.max_m * corner;
-    // Also false without a finite pose.
-    if (volume.block_count() == 0 ||
-        !(T_world_camera.translation.cwiseAbs().maxCoeff() + reach_m < volume.reach_m()) ||
-        !T_world_camera.rotation.coeffs().allFinite()) {
-      return;
-    }
-    field_.emplace(volume, T_world_camera.translation, reach_m);
+    if (!field_) return;
     bounds_.emplace(volume, camera, T_world_camera, depth);
     origin_ = (T_world_camera.translation / volume.voxel_m() - field_->origin_voxel()).cast<float>();
   }
@@ -103,14 +95,21 @@ class RayCaster {
     if (!field_) return;
     std::array<Walk, kMostTurns> storage;
     const std::span<Walk> walks = std::span(storage).first(pixels.size());
-    for (std::size_t i = 0; i < walks.size(); ++i) walks[i] = begin(pixels[i]);
+    std::array<Walk*, kMostTurns> on_their_way;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+      walks[i] = begin(pixels[i]);
+      if (any(walks[i].walking)) on_their_way[count++] = &walks[i];
+    }
     // What reads memory that may be far away is done for all before any needs it.
-    while (std::any_of(walks.begin(), walks.end(), [](const Walk& walk) { return any(walk.walking); })) {
-      for (Walk& walk : walks) locate(walk);
-      for (Walk& walk : walks) walk.nearest_m = field_->distances_m(walk.location);
-      for (Walk& walk : walks) {
-        if (any(walk.walking)) step(walk);
-      }
+    while (count > 0) {
+      const std::span<Walk*> active = std::span(on_their_way).first(count);
+      for (Walk* walk : active) locate(*walk);
+      for (Walk* walk : active) walk->nearest_m = field_->distances_m(walk->location);
+      for (Walk* walk : active) step(*walk);
+      const auto arrived =
+          std::remove_if(active.begin(), active.end(), [](const Walk* walk) { return !any(walk->walking); });
+      count = static_cast<std::size_t>(arrived - active.begin());
     }
     for (std::size_t i = 0; i < walks.size(); ++i) hits[i] = hits_of(walks[i]);
   }

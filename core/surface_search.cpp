@@ -54,18 +54,8 @@ SurfaceSearch::SurfaceSearch(const TsdfVolume& volume, const PinholeCamera& came
       rays_(camera, T_world_camera, volume.voxel_m()),
       camera_voxel_(T_world_camera.translation / volume.voxel_m()),
       depth_(depth),
-      voxel_m_(static_cast<float>(volume.voxel_m())) {
-  const double corner = std::max(camera.back_project(0, 0, 1.0).norm(),
-                                 camera.back_project(camera.width_px, camera.height_px, 1.0).norm());
-  const double reach_m = depth.max_m * corner;
-  // Also false without a finite pose.
-  if (volume.block_count() == 0 ||
-      !(T_world_camera.translation.cwiseAbs().maxCoeff() + reach_m < volume.reach_m()) ||
-      !T_world_camera.rotation.coeffs().allFinite()) {
-    return;
-  }
-  field_.emplace(volume, T_world_camera.translation, reach_m);
-}
+      voxel_m_(static_cast<float>(volume.voxel_m())),
+      field_(field_in_view(volume, camera, T_world_camera, depth)) {}
 
 void SurfaceSearch::find(std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const {
   std::fill(surfaces.begin(), surfaces.end(), SurfacePoint{});

@@ -1,5 +1,6 @@
 #include "core/tsdf_lanes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fusebench {
@@ -106,6 +107,20 @@ Float8 TsdfLanes::sample(const Points& at) const {
 Points TsdfLanes::gradient(const Points& at) const {
   const TrilinearCell cell(at);
   return interpolated_gradient(cell, Cube<4>(*this, {cell.base.x - 1, cell.base.y - 1, cell.base.z - 1}));
+}
+
+std::optional<TsdfLanes> field_in_view(const TsdfVolume& volume, const PinholeCamera& camera,
+                                       const SE3& T_world_camera, const DepthConfig& depth) {
+  const double corner = std::max(camera.back_project(0, 0, 1.0).norm(),
+                                 camera.back_project(camera.width_px, camera.height_px, 1.0).norm());
+  const double reach_m = depth.max_m * corner;
+  // Also false without a finite pose.
+  if (volume.block_count() == 0 ||
+      !(T_world_camera.translation.cwiseAbs().maxCoeff() + reach_m < volume.reach_m()) ||
+      !T_world_camera.rotation.coeffs().allFinite()) {
+    return std::nullopt;
+  }
+  return TsdfLanes(volume, T_world_camera.translation, reach_m);
 }
 
 }  // namespace fusebench

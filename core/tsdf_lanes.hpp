@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/trilinear.hpp"
@@ -53,6 +54,10 @@ class TsdfLanes {
   int reach_;                         // regions on either side of the origin's
   std::vector<std::int32_t> window_;  // number of each region there, -1 = none; empty if there were too many
 };
+
+/// The field as far as a camera sees; nothing if there is no block, or the pose is no place in the lattice.
+[[nodiscard]] std::optional<TsdfLanes> field_in_view(const TsdfVolume& volume, const PinholeCamera& camera,
+                                                     const SE3& T_world_camera, const DepthConfig& depth);
 
 // Inline: one step of a ray after the other asks for them.
 
