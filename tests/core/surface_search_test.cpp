@@ -38,6 +38,18 @@ struct Room {
     return pixels;
   }
 
+  /// What each way to look for surfaces finds.
+  [[nodiscard]] std::vector<SurfacePoint> found_beside(const std::vector<ExpectedSurface>& pixels) const {
+    TsdfBrick brick;
+    std::vector<SurfacePoint> surfaces(pixels.size());
+    SurfaceSearch(model, kCamera, SE3{}, kDepth).find_beside(pixels, brick, surfaces);
+    return surfaces;
+  }
+  [[nodiscard]] std::vector<SurfacePoint> found(const std::vector<ExpectedSurface>& pixels) const {
+    std::vector<SurfacePoint> surfaces(pixels.size());
+    SurfaceSearch(model, kCamera, SE3{}, kDepth).find(pixels, surfaces);
+    return surfaces;
+  }
   [[nodiscard]] std::vector<SurfacePoint> walked(const std::vector<ExpectedSurface>& pixels) const {
     std::vector<PixelRay> rays;
     for (const ExpectedSurface& pixel : pixels) {
@@ -79,12 +91,8 @@ TEST(SurfaceSearch, FindsWhatWalkingTheRayFindsInSpiteOfNoise) {
   std::normal_distribution<float> noise_m(0.0F, 0.004F);
   const auto pixels = room.pixels(60, 60, 40, [&] { return noise_m(random); });
   ASSERT_GT(pixels.size(), 1500U);
-  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
-  TsdfBrick brick;
-  std::vector<SurfacePoint> beside(pixels.size());
-  search.find_beside(pixels, brick, beside);
-  std::vector<SurfacePoint> found(pixels.size());
-  search.find(pixels, found);
+  const auto beside = room.found_beside(pixels);
+  const auto found = room.found(pixels);
   const auto walked = room.walked(pixels);
   for (const auto& surfaces : {beside, found}) {
     const Agreement agreement = compare(surfaces, walked);
@@ -97,12 +105,8 @@ TEST(SurfaceSearch, FindsWhatWalkingTheRayFindsInSpiteOfNoise) {
 TEST(SurfaceSearch, BothWaysGiveOneResult) {
   const Room room;
   const auto pixels = room.pixels(100, 80, 10, exact);
-  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
-  TsdfBrick brick;
-  std::vector<SurfacePoint> beside(pixels.size());
-  search.find_beside(pixels, brick, beside);
-  std::vector<SurfacePoint> found(pixels.size());
-  search.find(pixels, found);
+  const auto beside = room.found_beside(pixels);
+  const auto found = room.found(pixels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     ASSERT_TRUE(beside[i].valid && found[i].valid);
     EXPECT_NEAR(beside[i].depth_m, found[i].depth_m, 1e-5);
@@ -114,24 +118,17 @@ TEST(SurfaceSearch, NearAndFarPartsOfAnEdgeAreBothFound) {
   // The ball before the wall: more than a brick holds at once.
   const Room room;
   const auto pixels = room.pixels(160, 100, 120, exact);
-  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
-  TsdfBrick brick;
-  std::vector<SurfacePoint> found(pixels.size());
-  search.find_beside(pixels, brick, found);
-  // Where a part of the edge is still too much for a brick, the caller walks.
-  EXPECT_GT(compare(found, room.walked(pixels)).share, 0.9);
+  EXPECT_GT(compare(room.found_beside(pixels), room.walked(pixels)).share, 0.9);
 }
 
 TEST(SurfaceSearch, ASurfaceOutOfReachIsNone) {
   const Room room;
-  const SurfaceSearch search(room.model, kCamera, SE3{}, kDepth);
   for (const float error_m : {-0.03F, 0.03F}) {
     for (const float reach_m : {0.02F, 0.05F}) {
       const auto pixels = room.pixels(
           60, 60, 10, [&] { return error_m; }, reach_m);
-      std::vector<SurfacePoint> found(pixels.size());
-      search.find(pixels, found);
-      for (const SurfacePoint& surface : found) EXPECT_EQ(surface.valid, reach_m > std::abs(error_m));
+      for (const SurfacePoint& surface : room.found(pixels))
+        EXPECT_EQ(surface.valid, reach_m > std::abs(error_m));
     }
   }
 }
