@@ -5,6 +5,12 @@ include(CMakePackageConfigHelpers)
 install(TARGETS fusebench fusebench_core fusebench_smoother fusebench_datasets fusebench_simulator fusebench_inspection fusebench_metrics
   fusebench_runs fusebench_suites fusebench_inspection_report EXPORT fusebench_targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# The module with the image library: the program finds it from where itself is. Programs that link the installed libraries
+# find it by the prefix that these are installed in.
+set(module_folder ${CMAKE_INSTALL_LIBDIR}/fusebench)
+install(TARGETS fusebench_images LIBRARY DESTINATION ${module_folder})
+set_target_properties(fusebench PROPERTIES INSTALL_RPATH "$ORIGIN/../${module_folder}")
+target_link_options(fusebench_datasets INTERFACE $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${module_folder}>)
 foreach(folder core datasets eval)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION include/fusebench FILES_MATCHING PATTERN "*.hpp"
     PATTERN cli EXCLUDE)

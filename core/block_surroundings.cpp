@@ -8,6 +8,8 @@ namespace fusebench {
 
 namespace {
 
+static_assert(kBlockSide == kLanes, "a row of a block is one vector");
+
 /// Voxels that a neighbour at an offset of -1, 0 or 1 adds along an axis, by their places in the block and in
 /// the neighbour.
 struct Overlap {
@@ -49,12 +51,18 @@ void BlockSurroundings::load_neighbour(const TsdfVolume& volume, const BlockInde
                                        const BlockIndex& offset) {
   const int slot = volume.find_block(index + offset);
   if (slot < 0) return;
-  const float* const block_m = volume.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels;
+  const Half* const block_m = volume.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels;
   const Overlap x(offset.x()), y(offset.y()), z(offset.z());
   for (int k = 0; k < z.count; ++k) {
     for (int j = 0; j < y.count; ++j) {
       const std::size_t from = offset_in_block({x.source, y.source + j, z.source + k});
-      std::copy_n(block_m + from, x.count, &distances_m_[place({x.first, y.first + j, z.first + k})]);
+      float* const to = &distances_m_[place({x.first, y.first + j, z.first + k})];
+      if (x.count == kBlockSide) {
+        store(fusebench::load(block_m + from), to);
+      } else {
+        std::transform(block_m + from, block_m + from + x.count, to,
+                       [](Half distance_m) { return static_cast<float>(distance_m); });
+      }
     }
   }
 }

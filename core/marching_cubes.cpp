@@ -27,6 +27,18 @@ constexpr std::size_t kBlockEdges =
 using EdgeKey = std::uint64_t;
 using EdgeTriangle = std::array<EdgeKey, 3>;
 
+// The lowest bit of byte i is bit i of `bits`.
+std::uint64_t byte_each(unsigned bits) {
+  static constexpr auto kTable = [] {
+    std::array<std::uint64_t, 256> table{};
+    for (unsigned entry = 0; entry < table.size(); ++entry) {
+      for (unsigned bit = 0; bit < 8; ++bit) table[entry] |= std::uint64_t{entry >> bit & 1} << (8 * bit);
+    }
+    return table;
+  }();
+  return kTable[bits];
+}
+
 // The blocks by index (z, then y, then x), so that a mesh does not depend on the order of storage.
 struct SortedBlocks {
   explicit SortedBlocks(const TsdfVolume& volume) : slots(volume.block_count()), ranks(volume.block_count()) {
@@ -106,27 +118,31 @@ class BlockCells {
   // The signs of the voxels of a block at the corners of the cells: all of its own, a layer of the others.
   void load_neighbour(std::size_t n, std::size_t slot) {
     const auto range = [&](std::size_t bit) -> std::size_t { return (n & bit) != 0 ? 1 : kBlockSide; };
-    const float* const distances_m = volume_.distances_m() + slot * kBlockVoxels;
-    const float* const weights = volume_.weights() + slot * kBlockVoxels;
+    const Half* const distances_m = volume_.distances_m() + slot * kBlockVoxels;
+    const Half* const weights = volume_.weights() + slot * kBlockVoxels;
     const std::size_t begin =
         (n & 1 ? kBlockSide : 0) + (n & 2 ? kBlockSide * kSide : 0) + (n & 4 ? kBlockSide * kSlice : 0);
     for (std::size_t z = 0; z < range(4); ++z) {
       for (std::size_t y = 0; y < range(2); ++y) {
         std::uint8_t* const signs = &sign_[begin + kSide * y + kSlice * z];
         const std::size_t row = kBlockSide * (y + kBlockSide * z);
-        for (std::size_t x = 0; x < range(1); ++x) {
-          const float distance_m = distances_m[row + x];
-          const bool seen = (distance_m == distance_m) & (weights[row + x] >= min_weight_);
-          signs[x] =
-              static_cast<std::uint8_t>((seen ? kObserved : 0) | (seen & (distance_m < 0.0F) ? kInside : 0));
-        }
+        const std::uint64_t of_row = row_signs(distances_m + row, weights + row);
+        std::memcpy(signs, &of_row, range(1));
       }
     }
   }
 
+  // The signs of eight voxels, a byte each.
+  [[nodiscard]] std::uint64_t row_signs(const Half* distances_m, const Half* weights) const {
+    static_assert(std::endian::native == std::endian::little);
+    static_assert(kBlockSide == kLanes && kObserved == 1 && kInside == 2);
+    const Float8 distance_m = fusebench::load(distances_m);
+    const Int8 seen = (distance_m == distance_m) & (fusebench::load(weights) >= min_weight_);
+    return byte_each(lane_bits(seen)) | byte_each(lane_bits(seen & (distance_m < 0.0F))) << 1;
+  }
+
   // The cells of a row that are observed and whose corners have both signs: 1 in the byte of each.
   [[nodiscard]] std::uint64_t crossed_cells(int y, int z) const {
-    static_assert(std::endian::native == std::endian::little);
     const std::size_t first = kSide * static_cast<std::size_t>(y) + kSlice * static_cast<std::size_t>(z);
     std::uint64_t all = ~std::uint64_t{0};
     std::uint64_t some = 0;
@@ -136,7 +152,6 @@ class BlockCells {
       all &= signs;
       some |= signs;
     }
-    static_assert(kObserved == 1 && kInside == 2);
     return all & ((some & ~all) >> 1) & 0x0101010101010101U;
   }
 

@@ -1,11 +1,12 @@
 // Interpolation between the voxels of a field at eight places at once. Coordinates are in voxels; a cube is
-// anything with distance_m(x, y, z): eight distances (metres) at a voxel counted from the cube's first, NaN
-// where a voxel was not observed.
+// anything with pair_m(x, y, z): eight distances (metres) at a voxel counted from the cube's first, and at
+// the one after it along x; NaN where a voxel was not observed.
 #pragma once
 
 #include <array>
 #include <limits>
 
+#include "core/half_lanes.hpp"
 #include "core/lane_points.hpp"
 
 namespace fusebench {
@@ -40,9 +41,10 @@ struct TrilinearCell {
 template <class Cube>
 [[nodiscard]] Float8 interpolated_m(const TrilinearCell& cell, const Cube& cube) {
   Float8 sum_m{};
-  for (int corner = 0; corner < 8; ++corner) {
-    sum_m += cell.weights[static_cast<std::size_t>(corner)] *
-             cube.distance_m(corner & 1, (corner >> 1) & 1, corner >> 2);
+  for (std::size_t corner = 0; corner < 8; corner += 2) {
+    const Pairs pair_m = cube.pair_m(0, static_cast<int>(corner >> 1) & 1, static_cast<int>(corner >> 2));
+    sum_m += cell.weights[corner] * pair_m.first;
+    sum_m += cell.weights[corner + 1] * pair_m.second;
   }
   return sum_m;
 }
@@ -56,32 +58,53 @@ template <class Cube>
   return has_before & has_after ? 0.5F * difference_m : difference_m;
 }
 
+/// Distances of the eight corners of a cell and of the voxels next to them along the axes.
+struct CellNeighbourhood {
+  /// cube: begins one voxel before the cell's base on each axis and has four a side.
+  template <class Cube>
+  explicit CellNeighbourhood(const Cube& cube) {
+    const auto copy_pair = [&](int x, int y, int z) {
+      const Pairs pair_m = cube.pair_m(x, y, z);
+      distances_m[place(x, y, z)] = pair_m.first;
+      distances_m[place(x + 1, y, z)] = pair_m.second;
+    };
+    for (int a = 1; a < 3; ++a) {
+      for (int b = 1; b < 3; ++b) {
+        copy_pair(0, a, b);
+        copy_pair(2, a, b);
+      }
+      for (const int outer : {0, 3}) {
+        copy_pair(1, outer, a);
+        copy_pair(1, a, outer);
+      }
+    }
+  }
+
+  static constexpr std::size_t place(int x, int y, int z) {
+    return static_cast<std::size_t>(x + 4 * y + 16 * z);
+  }
+
+  std::array<Float8, 64> distances_m;  // those that are in the corners of the cube are not set
+};
+
 /// The gradient (metres per voxel): that at the eight corners by central differences, one-sided next to
 /// unobserved voxels, interpolated; `cube` begins one voxel before the cell's base on each axis and has four
 /// a side. NaN where one of the eight corners was not observed.
 template <class Cube>
 [[nodiscard]] Points interpolated_gradient(const TrilinearCell& cell, const Cube& cube) {
-  std::array<Float8, 8> corner_m;
-  for (int c = 0; c < 8; ++c) {
-    corner_m[static_cast<std::size_t>(c)] = cube.distance_m(1 + (c & 1), 1 + ((c >> 1) & 1), 1 + (c >> 2));
-  }
+  const CellNeighbourhood around(cube);
   // Four voxels in a row along the axis: the outer two may be unobserved, the inner two are corners, of which
   // an unobserved one makes the sum NaN.
-  const auto along = [&](int axis) {
+  const auto along = [&](std::size_t axis) {
+    const std::size_t bit = std::size_t{1} << axis;
+    const std::size_t step = std::size_t{1} << (2 * axis);
     Float8 sum{};
-    for (int c = 0; c < 8; ++c) {
-      const int bit = 1 << axis;
+    for (std::size_t c = 0; c < 8; ++c) {
       if ((c & bit) != 0) continue;
-      const auto low = static_cast<std::size_t>(c);
-      const auto high = static_cast<std::size_t>(c | bit);
-      std::array<int, 3> before = {1 + (c & 1), 1 + ((c >> 1) & 1), 1 + (c >> 2)};
-      std::array<int, 3> after = before;
-      before[static_cast<std::size_t>(axis)] = 0;
-      after[static_cast<std::size_t>(axis)] = 3;
-      sum += cell.weights[low] *
-                 slope(cube.distance_m(before[0], before[1], before[2]), corner_m[low], corner_m[high]) +
-             cell.weights[high] *
-                 slope(corner_m[low], corner_m[high], cube.distance_m(after[0], after[1], after[2]));
+      const Float8* const low = &around.distances_m[CellNeighbourhood::place(
+          1 + static_cast<int>(c & 1), 1 + static_cast<int>((c >> 1) & 1), 1 + static_cast<int>(c >> 2))];
+      sum += cell.weights[c] * slope(*(low - step), *low, *(low + step)) +
+             cell.weights[c | bit] * slope(*low, *(low + step), *(low + 2 * step));
     }
     return sum;
   };

@@ -1,6 +1,8 @@
 #include "core/tsdf_brick.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "core/trilinear.hpp"
 
@@ -21,11 +23,11 @@ struct TsdfBrick::Cube {
     at = inside ? x + row * y + slice * z : Int8{};
   }
 
-  [[nodiscard]] Float8 distance_m(int x, int y, int z) const {
-    return gather(distances_m + (x + row * y + slice * z), at);
+  [[nodiscard]] Pairs pair_m(int x, int y, int z) const {
+    return gather_pairs(distances_m + (x + row * y + slice * z), at);
   }
 
-  const float* distances_m;
+  const Half* distances_m;
   int row, slice;  // voxels from one row, and from one slice, to the next
   Int8 inside;
   Int8 at;
@@ -40,7 +42,7 @@ void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const Vo
   origin_voxel_ = origin;
   size_ = size;
   const auto voxels = static_cast<std::size_t>(size.prod());
-  // A gather at the first voxel, in place of one outside, reads a cube of four voxels.
+  // A gather at the first voxel, in place of one outside, reads a cube of four voxels, in pairs.
   const std::size_t readable = voxels + static_cast<std::size_t>(4 * size.x() * (size.y() + 1));
   if (distances_m_.size() < readable) distances_m_.resize(readable);
   BlockIndex block;
@@ -56,18 +58,20 @@ void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const Vo
 }
 
 /// The rows of a block that lie in the box; a block that is not there (null) is unobserved.
-void TsdfBrick::copy_block(const float* block_m, const VoxelIndex& block_voxel) {
+void TsdfBrick::copy_block(const Half* block_m, const VoxelIndex& block_voxel) {
   const Eigen::Vector3i from = block_voxel - origin_voxel_;
   const int begin_y = std::max(0, -from.y());
   const int end_y = std::min(kBlockSide, size_.y() - from.y());
   const int begin_z = std::max(0, -from.z());
   const int end_z = std::min(kBlockSide, size_.z() - from.z());
-  const Float8 unknown = not_a_number();
+  std::array<Half, kBlockSide> unknown;
+  unknown.fill(std::numeric_limits<Half>::quiet_NaN());
   for (int z = begin_z; z < end_z; ++z) {
-    float* row =
+    Half* row =
         distances_m_.data() + from.x() + size_.x() * (from.y() + begin_y + size_.y() * (from.z() + z));
     for (int y = begin_y; y < end_y; ++y, row += size_.x()) {
-      store(block_m == nullptr ? unknown : load(block_m + kBlockSide * (y + kBlockSide * z)), row);
+      std::copy_n(block_m == nullptr ? unknown.data() : block_m + kBlockSide * (y + kBlockSide * z),
+                  kBlockSide, row);
     }
   }
 }

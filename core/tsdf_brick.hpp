@@ -26,11 +26,11 @@ class TsdfBrick {
  private:
   struct Cube;
 
-  void copy_block(const float* block_m, const VoxelIndex& block_voxel);
+  void copy_block(const Half* block_m, const VoxelIndex& block_voxel);
 
   VoxelIndex origin_voxel_ = VoxelIndex::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  std::vector<float> distances_m_;  // x fastest, then y, then z
+  std::vector<Half> distances_m_;  // x fastest, then y, then z
 };
 
 }  // namespace fusebench

@@ -34,38 +34,48 @@ class TsdfLanes::Cube {
     }
   }
 
-  /// The distance at a voxel of the cube.
-  [[nodiscard]] Float8 distance_m(int x, int y, int z) const {
+  /// The distances at a voxel of the cube and at the next one along x.
+  [[nodiscard]] Pairs pair_m(int x, int y, int z) const {
     const Place& at_x = axes_[0].places[static_cast<std::size_t>(x)];
-    const Place& at_y = axes_[1].places[static_cast<std::size_t>(y)];
-    const Place& at_z = axes_[2].places[static_cast<std::size_t>(z)];
-    const auto across = [&](std::size_t n) {
-      return axes_[0].crossed && x > 0 ? (at_x.second ? slots_[n | 1] : slots_[n]) : slots_[n];
-    };
-    const auto down = [&](std::size_t n) {
-      return axes_[1].crossed && y > 0 ? (at_y.second ? across(n | 2) : across(n)) : across(n);
-    };
-    const Int8 slot = axes_[2].crossed && z > 0 ? (at_z.second ? down(4) : down(0)) : down(0);
-    return field_.distances_m(slot, at_x.offset + at_y.offset + at_z.offset);
+    const Int8 offset = axes_[1].places[static_cast<std::size_t>(y)].offset +
+                        axes_[2].places[static_cast<std::size_t>(z)].offset;
+    const Pairs pair_m = field_.pairs_m(slot(x, y, z), at_x.offset + offset);
+    const Place& next = axes_[0].places[static_cast<std::size_t>(x) + 1];
+    if (!next.begins_block) return pair_m;
+    return {pair_m.first, field_.distances_m(slot(x + 1, y, z), next.offset + offset)};
   }
 
  private:
   struct Place {
-    Int8 offset;  ///< share of this axis in the offset in the block
-    Int8 second;  ///< in the second block
+    Int8 offset;        ///< share of this axis in the offset in the block
+    Int8 second;        ///< in the second block
+    bool begins_block;  ///< in any lane: the place before it is in another
   };
   struct Axis {
     Axis(Int8 first, int shift) : block{first >> 3, (first + (kSide - 1)) >> 3} {
       crossed = any(block[0] != block[1]);
       for (int i = 0; i < kSide; ++i) {
         const Int8 at = first + i;
-        places[static_cast<std::size_t>(i)] = {(at & 7) << shift, (at >> 3) != block[0]};
+        places[static_cast<std::size_t>(i)] = {(at & 7) << shift, (at >> 3) != block[0], any((at & 7) == 0)};
       }
     }
     std::array<Int8, 2> block;
     bool crossed;  ///< in any lane
     std::array<Place, static_cast<std::size_t>(kSide)> places;
   };
+
+  [[nodiscard]] Int8 slot(int x, int y, int z) const {
+    const auto second = [&](std::size_t axis, int at) {
+      return axes_[axis].places[static_cast<std::size_t>(at)].second;
+    };
+    const auto across = [&](std::size_t n) {
+      return axes_[0].crossed && x > 0 ? (second(0, x) ? slots_[n | 1] : slots_[n]) : slots_[n];
+    };
+    const auto down = [&](std::size_t n) {
+      return axes_[1].crossed && y > 0 ? (second(1, y) ? across(n | 2) : across(n)) : across(n);
+    };
+    return axes_[2].crossed && z > 0 ? (second(2, z) ? down(4) : down(0)) : down(0);
+  }
 
   const TsdfLanes& field_;
   std::array<Axis, 3> axes_;

@@ -47,6 +47,8 @@ class TsdfLanes {
   [[nodiscard]] Int8 regions_by_table(const LatticePoints& region) const;
   [[nodiscard]] Int8 slots(const LatticePoints& block) const;
   [[nodiscard]] Float8 distances_m(Int8 slot, Int8 offset) const;
+  /// At an offset in a block, and at the next one.
+  [[nodiscard]] Pairs pairs_m(Int8 slot, Int8 offset) const;
 
   const TsdfVolume& volume_;
   Eigen::Vector3i origin_region_;
@@ -82,9 +84,13 @@ inline Int8 TsdfLanes::slots(const LatticePoints& block) const {
   return number >= 0 ? found : all_lanes(-1);
 }
 
-inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const {
-  const Float8 found_m = gather(volume_.distances_m(), (slot >= 0 ? slot << 9 : Int8{}) + offset);
-  return slot >= 0 ? found_m : not_a_number();
+inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const { return pairs_m(slot, offset).first; }
+
+inline Pairs TsdfLanes::pairs_m(Int8 slot, Int8 offset) const {
+  const Int8 there = slot >= 0;
+  const Pairs found_m = gather_pairs(volume_.distances_m(), (there ? slot << 9 : Int8{}) + offset);
+  const Float8 unknown = not_a_number();
+  return {there ? found_m.first : unknown, there ? found_m.second : unknown};
 }
 
 inline TsdfLanes::Location TsdfLanes::locate(const LatticePoints& voxel) const {

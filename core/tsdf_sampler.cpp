@@ -32,11 +32,14 @@ bool TsdfSampler::find_cell(const Vector3d& point_world, Cell& cell) {
   if (local.maxCoeff() < kBlockSide - 1) {  // the whole cell lies in one block: two of three cells
     const int found = slot(block_of(cell.base));
     if (found < 0) return false;
-    const float* base_m = block_m(found) + offset_in_block(cell.base);
+    const Half* base_m = block_m(found) + offset_in_block(cell.base);
     constexpr std::size_t kRow = kBlockSide;
     constexpr std::size_t kSlice = kBlockSide * kBlockSide;
-    cell.corner_m = {base_m[0],      base_m[1],          base_m[kRow],          base_m[kRow + 1],
-                     base_m[kSlice], base_m[kSlice + 1], base_m[kSlice + kRow], base_m[kSlice + kRow + 1]};
+    constexpr std::array<std::size_t, 8> kCorner = {0,      1,          kRow,          kRow + 1,
+                                                    kSlice, kSlice + 1, kSlice + kRow, kSlice + kRow + 1};
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      cell.corner_m[corner] = static_cast<float>(base_m[kCorner[corner]]);
+    }
   } else {
     for (int corner = 0; corner < 8; ++corner) {
       cell.corner_m[static_cast<std::size_t>(corner)] = distance_m(corner_of(cell.base, corner));

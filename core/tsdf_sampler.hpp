@@ -29,7 +29,8 @@ class TsdfSampler {
   /// The distance at a voxel (metres); NaN if it was not observed.
   [[nodiscard]] float distance_m(const VoxelIndex& index) {
     const int found = slot(block_of(index));
-    return found < 0 ? std::numeric_limits<float>::quiet_NaN() : block_m(found)[offset_in_block(index)];
+    return found < 0 ? std::numeric_limits<float>::quiet_NaN()
+                     : static_cast<float>(block_m(found)[offset_in_block(index)]);
   }
 
   /// All of a voxel; one that was never observed where no block is allocated.
@@ -54,7 +55,7 @@ class TsdfSampler {
     std::array<float, 8> corner_m;  // bit 0 of the number: x, bit 1: y, bit 2: z
   };
 
-  [[nodiscard]] const float* block_m(int slot) const {
+  [[nodiscard]] const Half* block_m(int slot) const {
     return volume_.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels;
   }
   /// False where a corner was not observed.

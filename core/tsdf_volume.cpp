@@ -13,7 +13,6 @@ namespace fusebench {
 namespace {
 
 constexpr std::size_t kBlocksPerChunk = 32;
-constexpr std::size_t kColorPlanes = 4;
 
 }  // namespace
 
@@ -41,7 +40,7 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
   const Result<void> allocated = allocate();
   if (!allocated) return allocated;
 
-  const VoxelUpdate update(frame, camera, T_world_camera, depth, config_);
+  const VoxelUpdate update(frame, camera, T_world_camera, depth, config_, frame_count_++);
   const std::vector<BlockIndex>& touched = touched_.blocks();
   workers.for_chunks(touched.size(), kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -65,7 +64,7 @@ Result<void> TsdfVolume::allocate() {
                 fmt::format("the model is full: tsdf.max_blocks = {}, and this "
                             "frame needs {} more than the {} in use",
                             config_.max_blocks, added, block_count()),
-                "raise tsdf.max_blocks (about 8 kB each), enlarge "
+                "raise tsdf.max_blocks (about 4 kB each), enlarge "
                 "tsdf.voxel_m, or lower depth.max_m");
   }
   for (std::size_t i = 0; i < touched.size(); ++i) {
@@ -79,12 +78,12 @@ Result<void> TsdfVolume::allocate() {
 void TsdfVolume::add_block(const BlockIndex& index) {
   const std::size_t begin = block_count() * kBlockVoxels;
   const std::size_t end = begin + kBlockVoxels;
-  distances_m_.grow_to(end);
+  distances_m_.grow_to(end + 1);  // see distances_m()
   weights_.grow_to(end);
-  colors_.grow_to(kColorPlanes * end);
-  std::fill_n(distances_m_.data() + begin, kBlockVoxels, std::numeric_limits<float>::quiet_NaN());
-  std::fill_n(weights_.data() + begin, kBlockVoxels, 0.0F);
-  std::fill_n(colors_.data() + kColorPlanes * begin, kColorPlanes * kBlockVoxels, std::uint16_t{0});
+  colors_.grow_to(end);
+  std::fill_n(distances_m_.data() + begin, kBlockVoxels + 1, std::numeric_limits<Half>::quiet_NaN());
+  std::fill_n(weights_.data() + begin, kBlockVoxels, Half(0.0F));
+  std::fill_n(colors_.data() + begin, kBlockVoxels, std::uint32_t{0});
   const Eigen::Vector3i region = region_of(index);
   if (regions_.insert(region)) {
     region_indices_.push_back(region);
@@ -101,20 +100,17 @@ void TsdfVolume::add_block(const BlockIndex& index) {
 
 BlockVoxels TsdfVolume::block(std::size_t slot) {
   const std::size_t begin = slot * kBlockVoxels;
-  std::uint16_t* const colors = colors_.data() + kColorPlanes * begin;
-  return {distances_m_.data() + begin,
-          weights_.data() + begin,
-          {colors, colors + kBlockVoxels, colors + 2 * kBlockVoxels},
-          colors + 3 * kBlockVoxels};
+  return {distances_m_.data() + begin, weights_.data() + begin, colors_.data() + begin};
 }
 
 Voxel TsdfVolume::voxel(std::size_t slot, std::size_t offset) const {
   const std::size_t at = slot * kBlockVoxels + offset;
-  const std::uint16_t* const colors = colors_.data() + kColorPlanes * slot * kBlockVoxels + offset;
-  return {distances_m_.data()[at],
-          weights_.data()[at],
-          {colors[0], colors[kBlockVoxels], colors[2 * kBlockVoxels]},
-          colors[3 * kBlockVoxels]};
+  const std::uint32_t color = colors_.data()[at];
+  const auto byte = [color](int number) { return static_cast<std::uint8_t>(color >> (8 * number)); };
+  return {static_cast<float>(distances_m_.data()[at]),
+          static_cast<float>(weights_.data()[at]),
+          {byte(0), byte(1), byte(2)},
+          byte(3)};
 }
 
 std::size_t TsdfVolume::memory_bytes() const {

@@ -14,6 +14,7 @@
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/growing_array.hpp"
+#include "core/half_lanes.hpp"
 #include "core/parallel.hpp"
 #include "core/types.hpp"
 
@@ -33,22 +34,24 @@ inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 struct Voxel {
   float distance_m = std::numeric_limits<float>::quiet_NaN();  ///< signed; NaN = never observed
   float weight = 0.0F;                                         ///< 0 = never observed
-  std::array<std::uint16_t, 3> color{};  ///< running mean of red, green, blue in 1/256 of a level (0-255)
-  std::uint16_t color_count = 0;         ///< observations in the mean (saturates); 0 = no colour
+  Rgb color{};                                                 ///< running mean
+  std::uint8_t color_count = 0;  ///< observations in the mean (saturates); 0 = no colour
 
   /// Red, green, blue, 0-255.
-  [[nodiscard]] Eigen::Vector3f rgb() const { return Eigen::Vector3f(color[0], color[1], color[2]) / 256.0F; }
+  [[nodiscard]] Eigen::Vector3f rgb() const { return Eigen::Vector3f(color[0], color[1], color[2]); }
 };
 
 using VoxelIndex = Eigen::Vector3i;  ///< lattice coordinates of a voxel
 
 /// The voxels of one block where they are stored: each of these points to kBlockVoxels values, x fastest,
 /// then y, then z. What is read together lies together: rays read distances alone, and colour is seldom read.
+///
+/// Eleven bits are enough: a distance of a centimetre is rounded by 4 micrometres at most, far below the
+/// depth noise, and the noise keeps the running mean from being stuck.
 struct BlockVoxels {
-  float* distance_m = nullptr;
-  float* weight = nullptr;
-  std::array<std::uint16_t*, 3> color{};
-  std::uint16_t* color_count = nullptr;
+  Half* distance_m = nullptr;
+  Half* weight = nullptr;
+  std::uint32_t* color = nullptr;  ///< a byte each, from the lowest on: red, green, blue, count
 };
 
 /// Interpolated field at a point.
@@ -78,14 +81,16 @@ class TsdfVolume {
                                        const Workers& workers);
 
   [[nodiscard]] double voxel_m() const { return config_.voxel_m; }
+  [[nodiscard]] std::uint32_t frame_count() const { return frame_count_; }  ///< fused so far
   [[nodiscard]] std::size_t block_count() const { return indices_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
   [[nodiscard]] const std::vector<BlockIndex>& block_indices() const { return indices_; }
   /// The voxel at an offset (offset_in_block) of a block.
   [[nodiscard]] Voxel voxel(std::size_t slot, std::size_t offset) const;
-  /// Distances of all blocks by slot, kBlockVoxels each; NaN = never observed.
-  [[nodiscard]] const float* distances_m() const { return distances_m_.data(); }
-  [[nodiscard]] const float* weights() const { return weights_.data(); }
+  /// Distances of all blocks by slot, kBlockVoxels each; NaN = never observed. One more can be read, see
+  /// gather().
+  [[nodiscard]] const Half* distances_m() const { return distances_m_.data(); }
+  [[nodiscard]] const Half* weights() const { return weights_.data(); }
 
   /// Slot of a block in storage order, or -1.
   [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }
@@ -117,11 +122,12 @@ class TsdfVolume {
   std::vector<Eigen::Vector3i> region_indices_;
   std::vector<std::int32_t> region_slots_;
   std::vector<BlockIndex> indices_;  // by slot, as all that follow
-  GrowingArray<float> distances_m_;
-  GrowingArray<float> weights_;
-  GrowingArray<std::uint16_t> colors_;  // of a block: all red, all green, all blue, all counts
-  BandBlocks touched_;                  // by the last frame
+  GrowingArray<Half> distances_m_;
+  GrowingArray<Half> weights_;
+  GrowingArray<std::uint32_t> colors_;
+  BandBlocks touched_;  // by the last frame
   std::vector<int> touched_slots_;
+  std::uint32_t frame_count_ = 0;
 };
 
 /// Lattice arithmetic. Right shifts of negative numbers round down in C++20, as floor() would.

@@ -8,25 +8,23 @@ namespace {
 
 static_assert(kBlockSide == kLanes, "a row of a block is one vector");
 
-// With more, a step of the colour's mean would fall below the resolution of its storage (half of 1/256
-// level).
-constexpr float kMaxColorCount = 255.0F;
+// What weighs less is nothing: of less, 16 bits keep no eleven digits.
+constexpr float kLeastWeight = 0x1p-14F;
+constexpr float kMaxColorCount = 255.0F;  // of a byte
+constexpr int kCountByte = 3;
 
-Float8 load(const std::uint16_t* values) {
-  Short8 row;
-  std::memcpy(&row, values, sizeof(row));
-  return to_float(__builtin_convertvector(row, Int8));
-}
+Float8 byte_of(Int8 words, int number) { return to_float((words >> (8 * number)) & 0xFF); }
 
-void store(Float8 values, std::uint16_t* target) {
-  const Short8 row = __builtin_convertvector(to_int(values), Short8);
-  std::memcpy(target, &row, sizeof(row));
+/// A number from 0 to 1 (excluded) for each frame, evenly spread over any few frames in a row: multiples of
+/// the golden ratio (Weyl 1916).
+float spread(std::uint32_t frame_number) {
+  return static_cast<float>((frame_number * 0x9E3779B9U) >> 8) / static_cast<float>(1U << 24);
 }
 
 }  // namespace
 
 VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
-                         const DepthConfig& depth, const TsdfConfig& tsdf)
+                         const DepthConfig& depth, const TsdfConfig& tsdf, std::uint32_t frame_number)
     : frame_(frame),
       T_camera_world_(T_world_camera.inverse()),
       voxel_m_(tsdf.voxel_m),
@@ -44,7 +42,8 @@ VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, co
       truncation_sigmas_(static_cast<float>(tsdf.truncation_sigmas)),
       voxel_variance_(static_cast<float>(tsdf.voxel_m * tsdf.voxel_m)),
       max_weight_(static_cast<float>(tsdf.max_weight)),
-      max_color_count_(std::min(max_weight_, kMaxColorCount)) {}
+      max_color_count_(std::min(max_weight_, kMaxColorCount)),
+      color_rounding_(spread(frame_number)) {}
 
 void VoxelUpdate::apply(const BlockIndex& index, const BlockVoxels& block) const {
   const Vector3d corner_world = index.cast<double>() * (kBlockSide * voxel_m_);
@@ -84,14 +83,15 @@ void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVox
   const Float8 band_m = max(all_lanes(truncation_m_), truncation_sigmas_ * sigma);
   const Float8 distance_m = measured_m - z_m;
   // Further behind the surface than the band, a voxel is hidden.
-  const Int8 observed =
+  const Int8 seen =
       inside & (measured_m >= nearest_m_) & (measured_m <= farthest_m_) & (distance_m > -band_m);
-  if (!any(observed)) return;
+  if (!any(seen)) return;
 
   // What lies deep behind the surface is a guess, and wrong where a ray clips an edge and comes out again.
   const Float8 half_m = 0.5F * band_m;
   const Float8 weight =
       min(half_m, band_m + distance_m) * voxel_variance_ / (half_m * (voxel_variance_ + sigma * sigma));
+  const Int8 observed = seen & (weight >= kLeastWeight);
   // The running mean; what was never observed has no distance yet.
   const Float8 before_m = load(block.distance_m + row);
   const Float8 before = load(block.weight + row);
@@ -105,19 +105,23 @@ void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVox
   if (!frame_.color.empty() && any(colored)) add_color(pixel, colored, block, row);
 }
 
-// The running means of the three channels.
+// The running means of the three channels. A mean moves by less than a level, so that always rounding to the
+// nearest would stop it; rounding up as often as the fraction says lets it go on.
 void VoxelUpdate::add_color(Int8 pixel, Int8 colored, const BlockVoxels& block, std::size_t row) const {
   static_assert(sizeof(Rgb) == 3);
   const Int8 levels = gather_bytes(frame_.color.data.data()->data(), 3 * frame_.color.data.size(), 3 * pixel);
-  const Float8 before = load(block.color_count + row);
-  const Float8 share = 1.0F / (before + 1.0F);
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    std::uint16_t* const stored = block.color[channel] + row;
-    const Float8 mean = load(stored);
-    const Float8 target = 256.0F * to_float((levels >> static_cast<int>(8 * channel)) & 0xFF);
-    store(colored ? mean + (target - mean) * share + 0.5F : mean, stored);
+  Int8 stored;
+  std::memcpy(&stored, block.color + row, sizeof(stored));
+  const Float8 count = byte_of(stored, kCountByte) + 1.0F;
+  const Float8 share = 1.0F / count;
+  Int8 words = to_int(min(count, all_lanes(max_color_count_))) << (8 * kCountByte);
+  for (int channel = 0; channel < 3; ++channel) {
+    const Float8 mean = byte_of(stored, channel);
+    const Float8 moved = mean + (byte_of(levels, channel) - mean) * share;
+    words |= to_int(moved + color_rounding_) << (8 * channel);
   }
-  store(colored ? min(before + 1.0F, all_lanes(max_color_count_)) : before, block.color_count + row);
+  stored = colored ? words : stored;
+  std::memcpy(block.color + row, &stored, sizeof(stored));
 }
 
 }  // namespace fusebench

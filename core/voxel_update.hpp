@@ -10,8 +10,9 @@ namespace fusebench {
 /// 1e-7 of the depth is far below the depth noise. The frame must outlive it.
 class VoxelUpdate {
  public:
+  /// frame_number: of the frames that the model has seen; decides how colours are rounded.
   VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
-              const DepthConfig& depth, const TsdfConfig& tsdf);
+              const DepthConfig& depth, const TsdfConfig& tsdf, std::uint32_t frame_number);
 
   void apply(const BlockIndex& index, const BlockVoxels& block) const;
 
@@ -32,6 +33,7 @@ class VoxelUpdate {
   float voxel_variance_;  // m^2
   float max_weight_;
   float max_color_count_;
+  float color_rounding_;  // added before the fraction is cut off
 };
 
 }  // namespace fusebench

@@ -1,4 +1,5 @@
-// Image files: 8-bit colour (PNG, JPEG) and 16-bit grey (PNG). The only place that knows the image library.
+// Image files: 8-bit colour (PNG, JPEG) and 16-bit grey (PNG). The only user of the image library, which is
+// loaded by the first image that it is needed for: one that is not a plain PNG (plain_png.hpp) or damaged.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +18,12 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Size by the header alone. Errors as below.
+/// Size as the header says. Errors as below.
 [[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
 
 /// Reads an image with three channels of 8 bits. expected: the size that it must have.
 /// Errors: data_missing (no such file); data_corrupt (unreadable, truncated, other channels, bit depth or
-/// size).
+/// size); io (there is no image library, and this image needs it).
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
                                             std::optional<ImageSize> expected = std::nullopt);
 

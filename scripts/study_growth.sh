@@ -425,7 +425,7 @@ room_rows() {
     area=${areas[$count]:-$(mesh_area "$run/mesh.ply")}
     areas[$count]=$area
     printf '%s,%s,%s,%s,%s,%s,%s\n' "$count" "$area" "$(recorded triangles "$run")" "$(recorded blocks "$run")" \
-      "$(calculate "8192e-6 * $(recorded blocks "$run")")" \
+      "$(calculate "4096e-6 * $(recorded blocks "$run")")" \
       "$(calculate "1e-6 * $(recorded peak_rss_bytes "$run")")" "$(recorded mesh_once "$run")"
   done | sort -t, -k1,1n
 }

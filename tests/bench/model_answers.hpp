@@ -191,11 +191,15 @@ inline PlainBlock stored_block(const TsdfVolume& model, const BlockIndex& index)
 }
 
 inline bool is_same_voxel(const Voxel& a, const Voxel& b) {
+  // A last digit may round to the next number of eleven bits.
+  constexpr float kDigit = 1.0F / 1024.0F;
   constexpr float kDistance_m = 1e-5F;
-  constexpr float kWeight = 1e-4F;
+  const auto is_same = [](float p, float q, float beside) {
+    return std::abs(p - q) <= kDigit * std::abs(p) + beside;
+  };
   if (a.weight == 0.0F || b.weight == 0.0F) return a.weight == b.weight;
-  bool same = std::abs(a.distance_m - b.distance_m) < kDistance_m &&
-              std::abs(a.weight - b.weight) < kWeight && a.color_count == b.color_count;
+  bool same = is_same(a.distance_m, b.distance_m, kDistance_m) && is_same(a.weight, b.weight, 0.0F) &&
+              a.color_count == b.color_count;
   for (std::size_t channel = 0; channel < 3; ++channel)
     same = same && std::abs(a.color[channel] - b.color[channel]) <= 1;
   return same;
@@ -207,7 +211,7 @@ inline FusedVoxels fused_voxels(const TsdfVolume& before, const TsdfVolume& afte
   band.find(scene.frame.depth_m, scene.camera, scene.T_world_camera, kBlockSide * scene.config.tsdf.voxel_m,
             scene.config.tsdf, scene.config.depth, Workers(1));
   const PlainVoxelUpdate update(scene.frame, scene.camera, scene.T_world_camera, scene.config.depth,
-                                scene.config.tsdf);
+                                scene.config.tsdf, before.frame_count());
   FusedVoxels fused;
   fused.blocks = band.blocks().size();
   std::size_t different = 0;

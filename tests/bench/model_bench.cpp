@@ -42,7 +42,7 @@ void band_blocks(benchmark::State& state) {
 
 // Bytes that a voxel has: distance and weight; colour and its count.
 constexpr std::size_t kField = sizeof(*BlockVoxels{}.distance_m) + sizeof(*BlockVoxels{}.weight);
-constexpr std::size_t kColor = 3 * sizeof(*BlockVoxels{}.color[0]) + sizeof(*BlockVoxels{}.color_count);
+constexpr std::size_t kColor = sizeof(*BlockVoxels{}.color);
 
 /// Field of voxels that a frame changes, and the colour of those near the surface, in and out; the frame in.
 double bytes_of_fusion(const FusedVoxels& fused, const BenchScene& scene) {

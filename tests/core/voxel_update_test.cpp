@@ -22,20 +22,18 @@ const PinholeCamera kCamera = test_camera(160, 120, 60.0);
 
 // A block as the model stores it.
 struct StoredBlock {
-  StoredBlock() { distance_m.fill(std::numeric_limits<float>::quiet_NaN()); }
-  [[nodiscard]] BlockVoxels view() {
-    return {distance_m.data(),
-            weight.data(),
-            {color[0].data(), color[1].data(), color[2].data()},
-            color_count.data()};
-  }
+  StoredBlock() { distance_m.fill(std::numeric_limits<Half>::quiet_NaN()); }
+  [[nodiscard]] BlockVoxels view() { return {distance_m.data(), weight.data(), color.data()}; }
   [[nodiscard]] Voxel voxel(std::size_t i) const {
-    return {distance_m[i], weight[i], {color[0][i], color[1][i], color[2][i]}, color_count[i]};
+    const auto byte = [&](int number) { return static_cast<std::uint8_t>(color[i] >> (8 * number)); };
+    return {static_cast<float>(distance_m[i]),
+            static_cast<float>(weight[i]),
+            {byte(0), byte(1), byte(2)},
+            byte(3)};
   }
-  std::array<float, kBlockVoxels> distance_m;
-  std::array<float, kBlockVoxels> weight{};
-  std::array<std::array<std::uint16_t, kBlockVoxels>, 3> color{};
-  std::array<std::uint16_t, kBlockVoxels> color_count{};
+  std::array<Half, kBlockVoxels> distance_m;
+  std::array<Half, kBlockVoxels> weight{};
+  std::array<std::uint32_t, kBlockVoxels> color{};
 };
 
 // Depth anywhere between nothing and too far, with damaged pixels among it.
@@ -66,9 +64,10 @@ TEST(VoxelUpdate, EightVoxelsAtOnceAreTheSameBitsAsOneByOne) {
   std::vector<PlainBlock> plain(indices.size());
   for (int view = 0; view < 6; ++view) {
     const RgbdFrame frame = random_frame(random);
+    const auto frame_number = static_cast<std::uint32_t>(view);
     const SE3 T_world_camera{so3_exp({0.05 * view, -0.1, 0.3 * view}), {0.01 * view, 0.02, -0.03 * view}};
-    const VoxelUpdate update(frame, kCamera, T_world_camera, depth, tsdf);
-    const PlainVoxelUpdate reference(frame, kCamera, T_world_camera, depth, tsdf);
+    const VoxelUpdate update(frame, kCamera, T_world_camera, depth, tsdf, frame_number);
+    const PlainVoxelUpdate reference(frame, kCamera, T_world_camera, depth, tsdf, frame_number);
     for (std::size_t i = 0; i < indices.size(); ++i) {
       update.apply(indices[i], blocks[i].view());
       reference.apply(indices[i], plain[i]);

@@ -41,6 +41,23 @@ TEST(ImageFiles, RoundTrip) {
   for (std::size_t i = 0; i < depth.data.size(); ++i) depth.data[i] = static_cast<std::uint16_t>(i * 3449);
   ASSERT_TRUE(write_png(folder.path() / "d.png", depth));
   EXPECT_EQ(read_depth16(folder.path() / "d.png", ImageSize{5, 4}).value().data, depth.data);
+  EXPECT_EQ(read_image_size(folder.path() / "d.png").value(), (ImageSize{5, 4}));
+
+  GreyImage grey(3, 2);
+  for (std::size_t i = 0; i < grey.data.size(); ++i) grey.data[i] = static_cast<std::uint8_t>(i * 51);
+  ASSERT_TRUE(write_png(folder.path() / "g.png", grey));
+  EXPECT_EQ(read_grey(folder.path() / "g.png").value().data, grey.data);
+}
+
+TEST(ImageFiles, JpegInMemoryIsReadAgain) {
+  const TemporaryFolder folder;
+  const auto jpeg = encode_jpeg(ColorImage(24, 16, Rgb{200, 100, 50}), 95);
+  ASSERT_TRUE(jpeg) << jpeg.error().message;
+  const auto file = folder.write("c.jpg", {reinterpret_cast<const char*>(jpeg->data()), jpeg->size()});
+  EXPECT_EQ(read_image_size(file).value(), (ImageSize{24, 16}));
+  const ColorImage read = read_color(file, ImageSize{24, 16}).value();
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(read(12, 8)[channel], (Rgb{200, 100, 50})[channel], 3);
 }
 
 TEST(ImageFiles, WritingIsReproducible) {

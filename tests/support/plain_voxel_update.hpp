@@ -16,12 +16,13 @@ using PlainBlock = std::array<Voxel, kBlockVoxels>;
 class PlainVoxelUpdate {
  public:
   PlainVoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
-                   const DepthConfig& depth, const TsdfConfig& tsdf)
+                   const DepthConfig& depth, const TsdfConfig& tsdf, std::uint32_t frame_number)
       : frame_(frame),
         camera_(camera),
         T_camera_world_(T_world_camera.inverse()),
         depth_(depth),
-        tsdf_(tsdf) {}
+        tsdf_(tsdf),
+        color_rounding_(static_cast<float>((frame_number * 2654435769U) >> 8) / 16777216.0F) {}
 
   void apply(const BlockIndex& index, PlainBlock& block) const {
     const Vector3d corner = index.cast<double>() * (kBlockSide * tsdf_.voxel_m);
@@ -60,10 +61,11 @@ class PlainVoxelUpdate {
     const auto variance = static_cast<float>(tsdf_.voxel_m * tsdf_.voxel_m);
     const float weight =
         std::min(half_m, band_m + distance_m) * variance / (half_m * (variance + sigma_m * sigma_m));
+    if (weight < 0x1p-14F) return;
     const float total = voxel.weight + weight;
     const float before_m = voxel.weight > 0.0F ? voxel.distance_m : 0.0F;
-    voxel.distance_m = (before_m * voxel.weight + std::min(distance_m, band_m) * weight) / total;
-    voxel.weight = std::min(total, static_cast<float>(tsdf_.max_weight));
+    voxel.distance_m = as_stored((before_m * voxel.weight + std::min(distance_m, band_m) * weight) / total);
+    voxel.weight = as_stored(std::min(total, static_cast<float>(tsdf_.max_weight)));
     if (frame_.color.empty() || !(std::abs(distance_m) < half_m)) return;
     add_color(frame_.color(static_cast<int>(u), static_cast<int>(v)), voxel);
   }
@@ -72,19 +74,22 @@ class PlainVoxelUpdate {
     const auto count = static_cast<float>(voxel.color_count);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const auto mean = static_cast<float>(voxel.color[channel]);
-      const float target = 256.0F * static_cast<float>(observed[channel]);
-      voxel.color[channel] =
-          static_cast<std::uint16_t>(mean + (target - mean) * (1.0F / (count + 1.0F)) + 0.5F);
+      const auto target = static_cast<float>(observed[channel]);
+      const float moved = mean + (target - mean) * (1.0F / (count + 1.0F));
+      voxel.color[channel] = static_cast<std::uint8_t>(moved + color_rounding_);
     }
     const float most = std::min(static_cast<float>(tsdf_.max_weight), 255.0F);
-    voxel.color_count = static_cast<std::uint16_t>(std::min(count + 1.0F, most));
+    voxel.color_count = static_cast<std::uint8_t>(std::min(count + 1.0F, most));
   }
+
+  static float as_stored(float value) { return static_cast<float>(Half(value)); }
 
   const RgbdFrame& frame_;
   const PinholeCamera& camera_;
   SE3 T_camera_world_;
   const DepthConfig& depth_;
   const TsdfConfig& tsdf_;
+  float color_rounding_;
 };
 
 }  // namespace fusebench::testing
