@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/depth_gates.hpp"
 #include "core/lanes.hpp"
 
 namespace fusebench {
@@ -24,8 +25,8 @@ struct AxisSegments {
 /// From origin + near * ray to origin + far * ray.
 AxisSegments segments_along(float origin, Float8 ray, Float8 near, Float8 far) {
   const Float8 never = all_lanes(std::numeric_limits<float>::infinity());
-  const Float8 from = origin + near * ray;
-  const Float8 to = origin + far * ray;
+  const Float8 from = multiply_add(near, ray, all_lanes(origin));
+  const Float8 to = multiply_add(far, ray, all_lanes(origin));
   const Int8 begin = floor_to_int(from);
   const Int8 crossings = floor_to_int(to) - begin;
   const Float8 floor_from = to_float(begin);
@@ -96,9 +97,8 @@ class PixelSegments {
         nearest_m_(static_cast<float>(depth.min_m)),
         farthest_m_(static_cast<float>(depth.max_m)),
         truncation_m_(static_cast<float>(std::max(tsdf.truncation_m, 2.0 * tsdf.voxel_m))),
-        floor_m_(static_cast<float>(tsdf.truncation_sigmas * depth.noise_floor_m)),
-        quadratic_per_m_(static_cast<float>(tsdf.truncation_sigmas * depth.noise_quadratic_per_m)),
-        noise_offset_m_(static_cast<float>(depth.noise_offset_m)) {}
+        truncation_sigmas_(static_cast<float>(tsdf.truncation_sigmas)),
+        depth_sigma_(depth) {}
 
   /// Adds the blocks of every stride-th pixel of a row.
   void add_row(const float* row_m, int width, int y, int stride, OrderedBlocks& blocks) {
@@ -120,16 +120,15 @@ class PixelSegments {
  private:
   void add_pixels(Float8 depth_m, Float8 ray_x, Float8 ray_y, OrderedBlocks& blocks) {
     const Int8 measured = (depth_m >= nearest_m_) & (depth_m <= farthest_m_);
-    const Float8 from_offset_m = depth_m - noise_offset_m_;
-    const Float8 band_m =
-        max(all_lanes(truncation_m_), floor_m_ + quadratic_per_m_ * from_offset_m * from_offset_m);
+    const Float8 band_m = max(all_lanes(truncation_m_), truncation_sigmas_ * depth_sigma_.at_m(depth_m));
     const Float8 near_m = measured ? max(Float8{}, depth_m - band_m) : Float8{};
     const Float8 far_m = measured ? depth_m + band_m : Float8{};
     std::array<AxisSegments, 3> axes;
     Paths paths;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto k = static_cast<Eigen::Index>(axis);
-      const Float8 ray = rays_(k, 0) * ray_x + rays_(k, 1) * ray_y + rays_(k, 2);
+      const Float8 ray =
+          multiply_add(rays_(k, 0), ray_x, multiply_add(rays_(k, 1), ray_y, all_lanes(rays_(k, 2))));
       axes[axis] = segments_along(origin_[k], ray, near_m, far_m);
       paths.begin[axis] = axes[axis].begin;
       paths.crossings[axis] = axes[axis].crossings;
@@ -167,8 +166,9 @@ class PixelSegments {
   float per_fx_, per_fy_, cx_, cy_;  // pixels
   float nearest_m_, farthest_m_;
   float truncation_m_;
-  float floor_m_, quadratic_per_m_, noise_offset_m_;  // half band by depth noise
-  Paths last_{};                                      // of the pixels before
+  float truncation_sigmas_;
+  DepthSigma depth_sigma_;
+  Paths last_{};  // of the pixels before
 };
 
 }  // namespace

@@ -13,10 +13,24 @@ namespace fusebench {
   return config.noise_floor_m + config.noise_quadratic_per_m * z * z;
 }
 
-/// The same for eight measurements.
+/// The same for eight measurements at once.
+class DepthSigma {
+ public:
+  explicit DepthSigma(const DepthConfig& config)
+      : floor_m_(static_cast<float>(config.noise_floor_m)),
+        quadratic_per_m_(static_cast<float>(config.noise_quadratic_per_m)),
+        offset_m_(static_cast<float>(config.noise_offset_m)) {}
+
+  [[nodiscard]] Float8 at_m(Float8 depth_m) const {
+    const Float8 z = depth_m - offset_m_;
+    return multiply_add(quadratic_per_m_ * z, z, all_lanes(floor_m_));
+  }
+
+ private:
+  float floor_m_, quadratic_per_m_, offset_m_;
+};
 [[nodiscard]] inline Float8 depth_sigma_m(Float8 depth_m, const DepthConfig& config) {
-  const Float8 z = depth_m - static_cast<float>(config.noise_offset_m);
-  return static_cast<float>(config.noise_floor_m) + static_cast<float>(config.noise_quadratic_per_m) * z * z;
+  return DepthSigma(config).at_m(depth_m);
 }
 
 /// Depth without what cannot be trusted: values outside [min, max] and pixels at a depth edge become 0.

@@ -20,20 +20,30 @@ namespace lane_details {
 /// Byte number `at` of each word.
 [[nodiscard]] inline Float8 byte_of(Int8 words, int at) { return to_float((words >> (8 * at)) & 0xFF); }
 
+/// a + b t.
+[[nodiscard]] inline Float8 linear(Float8 t, float a, float b) { return multiply_add(b, t, all_lanes(a)); }
+/// a + b t + c t^2.
+[[nodiscard]] inline Float8 quadratic(Float8 t, float a, float b, float c) {
+  return multiply_add(t, linear(t, b, c), all_lanes(a));
+}
+
 /// Weights of the four pixels around a place between the second and the third.
 [[nodiscard]] inline std::array<Float8, 4> cubic_weights(Float8 t) {
-  return {t * (-0.5F + t * (1.0F - 0.5F * t)), 1.0F + t * t * (-2.5F + 1.5F * t),
-          t * (0.5F + t * (2.0F - 1.5F * t)), t * t * (-0.5F + 0.5F * t)};
+  const Float8 squared = t * t;
+  return {t * quadratic(t, -0.5F, 1.0F, -0.5F),
+          multiply_add(squared, linear(t, -2.5F, 1.5F), all_lanes(1.0F)), t * quadratic(t, 0.5F, 2.0F, -1.5F),
+          squared * linear(t, -0.5F, 0.5F)};
 }
 /// Their derivatives.
 [[nodiscard]] inline std::array<Float8, 4> cubic_slopes(Float8 t) {
-  return {-0.5F + t * (2.0F - 1.5F * t), t * (-5.0F + 4.5F * t), 0.5F + t * (4.0F - 4.5F * t),
-          t * (-1.0F + 1.5F * t)};
+  return {quadratic(t, -0.5F, 2.0F, -1.5F), t * linear(t, -5.0F, 4.5F), quadratic(t, 0.5F, 4.0F, -4.5F),
+          t * linear(t, -1.0F, 1.5F)};
 }
 
 [[nodiscard]] inline Float8 weighted(const std::array<Float8, 4>& weights,
                                      const std::array<Float8, 4>& values) {
-  return weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2] + weights[3] * values[3];
+  const Float8 first = multiply_add(weights[1], values[1], weights[0] * values[0]);
+  return multiply_add(weights[3], values[3], multiply_add(weights[2], values[2], first));
 }
 
 /// The four pixels of a row of the image from each place on.
@@ -60,9 +70,9 @@ namespace lane_details {
   for (std::size_t row = 0; row < 4; ++row, at += image.width) {
     const auto pixels = four_pixels(image, at);
     const Float8 value = weighted(across, pixels);
-    sample.value += down[row] * value;
-    sample.dx += down[row] * weighted(across_slopes, pixels);
-    sample.dy += down_slopes[row] * value;
+    sample.value = multiply_add(down[row], value, sample.value);
+    sample.dx = multiply_add(down[row], weighted(across_slopes, pixels), sample.dx);
+    sample.dy = multiply_add(down_slopes[row], value, sample.dy);
   }
   return sample;
 }
@@ -77,7 +87,7 @@ namespace lane_details {
   Float8 value{};
   Int8 at = (top - 1) * image.width + left - 1;
   for (std::size_t row = 0; row < 4; ++row, at += image.width) {
-    value += down[row] * weighted(across, four_pixels(image, at));
+    value = multiply_add(down[row], weighted(across, four_pixels(image, at)), value);
   }
   return value;
 }
@@ -92,9 +102,11 @@ namespace lane_details {
   const Int8 at = top * image.width + left;
   const Int8 above = gather_bytes(image.data.data(), image.data.size(), at);
   const Int8 below = gather_bytes(image.data.data(), image.data.size(), at + image.width);
-  const Float8 upper = byte_of(above, 0) + ax * (byte_of(above, 1) - byte_of(above, 0));
-  const Float8 lower = byte_of(below, 0) + ax * (byte_of(below, 1) - byte_of(below, 0));
-  return upper + ay * (lower - upper);
+  const auto mixed = [](Float8 share, Float8 from, Float8 to) {
+    return multiply_add(share, to - from, from);
+  };
+  return mixed(ay, mixed(ax, byte_of(above, 0), byte_of(above, 1)),
+               mixed(ax, byte_of(below, 0), byte_of(below, 1)));
 }
 
 }  // namespace fusebench

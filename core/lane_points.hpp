@@ -21,20 +21,25 @@ struct Points {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 [[nodiscard]] inline Float8 dot(const Points& a, const Points& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
 }
 [[nodiscard]] inline Points cross(const Points& a, const Points& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {multiply_add(a.y, b.z, -(a.z * b.y)), multiply_add(a.z, b.x, -(a.x * b.z)),
+          multiply_add(a.x, b.y, -(a.y * b.x))};
 }
 [[nodiscard]] inline Float8 norm(const Points& a) { return sqrt(dot(a, a)); }
 
 [[nodiscard]] inline Points rotated(const Eigen::Matrix3f& R, const Points& p) {
-  return {R(0, 0) * p.x + R(0, 1) * p.y + R(0, 2) * p.z, R(1, 0) * p.x + R(1, 1) * p.y + R(1, 2) * p.z,
-          R(2, 0) * p.x + R(2, 1) * p.y + R(2, 2) * p.z};
+  const auto row = [&](int i) {
+    return multiply_add(R(i, 2), p.z, multiply_add(R(i, 1), p.y, R(i, 0) * p.x));
+  };
+  return {row(0), row(1), row(2)};
 }
 [[nodiscard]] inline Points moved(const Eigen::Matrix3f& R, const Eigen::Vector3f& t, const Points& p) {
-  const Points turned = rotated(R, p);
-  return {turned.x + t.x(), turned.y + t.y(), turned.z + t.z()};
+  const auto row = [&](int i) {
+    return multiply_add(R(i, 2), p.z, multiply_add(R(i, 1), p.y, multiply_add(R(i, 0), p.x, all_lanes(t[i]))));
+  };
+  return {row(0), row(1), row(2)};
 }
 
 }  // namespace fusebench

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <span>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/lane_points.hpp"
@@ -50,7 +51,7 @@ struct RowTimes {
       : first_s(static_cast<float>(delay_s - 0.5 * readout_s)),
         step_s(static_cast<float>(readout_s / (rows - 1))) {}
 
-  [[nodiscard]] Float8 at(Float8 row) const { return first_s + step_s * row; }
+  [[nodiscard]] float at(float row) const { return first_s + step_s * row; }
 
   float first_s;
   float step_s;
@@ -59,32 +60,39 @@ struct RowTimes {
 /// A constant velocity of the camera.
 struct Motion {
   explicit Motion(const CameraVelocity& velocity)
-      : turn(velocity.angular_radps.cast<float>()),
-        linear(velocity.linear_mps.cast<float>()),
-        squared_turn(turn.squaredNorm()) {}
+      : turn(velocity.angular_radps.cast<float>()), linear(velocity.linear_mps.cast<float>()) {}
 
   [[nodiscard]] Points turned(const Points& a) const {
-    return {turn.y() * a.z - turn.z() * a.y, turn.z() * a.x - turn.x() * a.z,
-            turn.x() * a.y - turn.y() * a.x};
+    return {multiply_add(turn.y(), a.z, -(turn.z() * a.y)), multiply_add(turn.z(), a.x, -(turn.x() * a.z)),
+            multiply_add(turn.x(), a.y, -(turn.y() * a.x))};
   }
 
-  /// Rotated by what the camera turns in this time: Rodrigues' formula with its sine and cosine as series,
-  /// to 1e-7 up to half a radian.
+  /// Rotated by what the camera turns in this time, to the second order. Times are those from one row to the
+  /// one that its pixels come from: at 10 rad/s and 100 rows of 54 us the rest is a hundredth of a pixel.
   [[nodiscard]] Points rotated(const Points& a, Float8 time_s) const {
-    const Float8 squared_angle = squared_turn * time_s * time_s;
-    const Float8 sine = time_s * (1.0F - squared_angle * (1.0F / 6 - squared_angle * (1.0F / 120)));
-    const Float8 cosine =
-        time_s * time_s * (0.5F - squared_angle * (1.0F / 24 - squared_angle * (1.0F / 720)));
+    const Float8 half_squared = 0.5F * time_s * time_s;
     const Points once = turned(a);
     const Points twice = turned(once);
-    return {a.x + sine * once.x + cosine * twice.x, a.y + sine * once.y + cosine * twice.y,
-            a.z + sine * once.z + cosine * twice.z};
+    return {multiply_add(half_squared, twice.x, multiply_add(time_s, once.x, a.x)),
+            multiply_add(half_squared, twice.y, multiply_add(time_s, once.y, a.y)),
+            multiply_add(half_squared, twice.z, multiply_add(time_s, once.z, a.z))};
   }
 
   Eigen::Vector3f turn;    // rad/s
   Eigen::Vector3f linear;  // m/s
-  float squared_turn;
 };
+
+/// What the camera turns by until a row is read, or back from there.
+std::vector<Eigen::Matrix3f> row_rotations(const CameraVelocity& velocity, const RowTimes& times, int rows,
+                                           double sign) {
+  std::vector<Eigen::Matrix3f> rotations;
+  rotations.reserve(static_cast<std::size_t>(rows));
+  for (int row = 0; row < rows; ++row) {
+    const auto time_s = static_cast<double>(times.at(static_cast<float>(row)));
+    rotations.push_back(so3_exp(sign * time_s * velocity.angular_radps).toRotationMatrix().cast<float>());
+  }
+  return rotations;
+}
 
 /// 1 / depth; 0 where there is no depth, which counts as infinitely far: rotation alone.
 Float8 inverse_depth(Float8 depth_m) {
@@ -100,11 +108,11 @@ struct Bilinear {
   [[nodiscard]] Int8 operator()(Int8 upper_left, Int8 upper_right, Int8 lower_left, Int8 lower_right) const {
     const Float8 upper = mixed(upper_left, upper_right);
     const Float8 lower = mixed(lower_left, lower_right);
-    return to_int(upper + down * (lower - upper) + 0.5F);
+    return to_int(multiply_add(down, lower - upper, upper + 0.5F));
   }
   [[nodiscard]] Float8 mixed(Int8 a, Int8 b) const {
     const Float8 from = to_float(a);
-    return from + right * (to_float(b) - from);
+    return multiply_add(right, to_float(b) - from, from);
   }
 };
 
@@ -125,10 +133,14 @@ class Tile {
         depth_times_(camera.height_px, seconds_between(0, source.depth_offset_ns), timing.depth_readout_s),
         color_times_(camera.height_px, 0.0, timing.color_readout_s),
         motion_(velocity),
+        from_row_(row_rotations(velocity, depth_times_, camera.height_px, 1.0)),
+        to_row_(row_rotations(velocity, color_times_, camera.height_px, -1.0)),
         fx_(static_cast<float>(camera.fx_px)),
         fy_(static_cast<float>(camera.fy_px)),
         cx_(static_cast<float>(camera.cx_px)),
         cy_(static_cast<float>(camera.cy_px)),
+        per_fx_(static_cast<float>(1.0 / camera.fx_px)),
+        per_fy_(static_cast<float>(1.0 / camera.fy_px)),
         width_(camera.width_px),
         last_x_(static_cast<float>(camera.width_px - 1)),
         last_y_(static_cast<float>(camera.height_px - 1)) {}
@@ -143,13 +155,12 @@ class Tile {
     const std::span<Group> groups = std::span(tile).first(count);
     for (int row = first_row; row < end_row; ++row) {
       const int iterations = row < first_row + 2 ? kIterationsFromNothing : kIterationsFromNeighbours;
-      const Float8 v = all_lanes(static_cast<float>(row));
       for (int i = 0; i < iterations; ++i) {
-        for (Group& group : groups) carry_depth(group, v);
+        for (Group& group : groups) carry_depth(group, row);
       }
-      for (Group& group : groups) keep_inside(group, v);
+      for (Group& group : groups) keep_inside(group, row);
       for (int i = 0; i < iterations; ++i) {
-        for (Group& group : groups) search_color(group, v);
+        for (Group& group : groups) search_color(group, row);
       }
       for (Group& group : groups) {
         write(group, row);
@@ -161,7 +172,7 @@ class Tile {
 
  private:
   [[nodiscard]] Points ray(Float8 u, Float8 v) const {
-    return {(u - cx_) * (1.0F / fx_), (v - cy_) * (1.0F / fy_), all_lanes(1.0F)};
+    return {(u - cx_) * per_fx_, (v - cy_) * per_fy_, all_lanes(1.0F)};
   }
 
   [[nodiscard]] Int8 is_inside(Float8 x, Float8 y) const {
@@ -174,8 +185,8 @@ class Tile {
   [[nodiscard]] Displacement8 between(const Points& ray, const Points& carried) const {
     const Int8 in_front = carried.z > 0.0F;
     const Float8 inverse_z = 1.0F / (in_front ? carried.z : all_lanes(1.0F));
-    return {in_front ? fx_ * (carried.x * inverse_z - ray.x) : Float8{},
-            in_front ? fy_ * (carried.y * inverse_z - ray.y) : Float8{}};
+    return {in_front ? fx_ * multiply_add(carried.x, inverse_z, -ray.x) : Float8{},
+            in_front ? fy_ * multiply_add(carried.y, inverse_z, -ray.y) : Float8{}};
   }
 
   /// Eight pixels of a row.
@@ -192,25 +203,26 @@ class Tile {
   };
 
   /// One iteration: the depth at pixels, from the depth pixels that their own motion carries there.
-  void carry_depth(Group& group, Float8 v) const {
+  void carry_depth(Group& group, int row) const {
+    const auto v = static_cast<float>(row);
     const Float8 from_x = group.u() + group.of_depth.x;
     const Float8 from_y = v + group.of_depth.y;
     const Int8 x = to_int(clamp(from_x, 0.0F, last_x_) + 0.5F);
     const Int8 y = to_int(clamp(from_y, 0.0F, last_y_) + 0.5F);
     const Float8 measured_m = gather(source_.depth_m.data.data(), y * width_ + x);
-    const Float8 time_s = depth_times_.at(to_float(y));
-    const Float8 shift = time_s * inverse_depth(measured_m);
+    const Float8 later_s = depth_times_.step_s * (to_float(y) - v);
+    const Float8 shift = (depth_times_.at(v) + later_s) * inverse_depth(measured_m);
     const Points from = ray(from_x, from_y);
-    const Points carried =
-        motion_.rotated(from, time_s) +
-        Points{shift * motion_.linear.x(), shift * motion_.linear.y(), shift * motion_.linear.z()};
+    const Points turned = motion_.rotated(rotated(from_row_[static_cast<std::size_t>(row)], from), later_s);
+    const Points carried = shifted(turned, shift, motion_.linear);
     const Displacement8 forth = between(from, carried);
     group.of_depth = {-forth.x, -forth.y};
     group.depth_m = measured_m > 0.0F ? measured_m * carried.z : Float8{};
   }
 
   /// No depth from outside.
-  void keep_inside(Group& group, Float8 v) const {
+  void keep_inside(Group& group, int row) const {
+    const auto v = static_cast<float>(row);
     const Int8 inside = is_inside(group.u() + group.of_depth.x, v + group.of_depth.y);
     group.of_depth.x = inside ? group.of_depth.x : Float8{};
     group.of_depth.y = inside ? group.of_depth.y : Float8{};
@@ -220,13 +232,20 @@ class Tile {
 
   /// One iteration from pixels to where the points behind them were when their rows were read, which depends
   /// on the row where they land.
-  void search_color(Group& group, Float8 v) const {
-    const Points now = ray(group.u(), v);
-    const Float8 time_s = color_times_.at(clamp(v + group.of_color.y, 0.0F, last_y_));
-    const Float8 shift = time_s * group.inverse_depth;
-    const Points back =
-        now - Points{shift * motion_.linear.x(), shift * motion_.linear.y(), shift * motion_.linear.z()};
-    group.of_color = between(now, motion_.rotated(back, -time_s));
+  void search_color(Group& group, int row) const {
+    const auto v = static_cast<float>(row);
+    const Points now = ray(group.u(), all_lanes(v));
+    const Float8 later_s = color_times_.step_s * (clamp(v + group.of_color.y, 0.0F, last_y_) - v);
+    const Float8 shift = -(color_times_.at(v) + later_s) * group.inverse_depth;
+    const Points back = shifted(now, shift, motion_.linear);
+    group.of_color =
+        between(now, motion_.rotated(rotated(to_row_[static_cast<std::size_t>(row)], back), -later_s));
+  }
+
+  /// Moved by so much of a vector.
+  static Points shifted(const Points& point, Float8 share, const Eigen::Vector3f& by) {
+    return {multiply_add(share, all_lanes(by.x()), point.x), multiply_add(share, all_lanes(by.y()), point.y),
+            multiply_add(share, all_lanes(by.z()), point.z)};
   }
 
   void write(const Group& group, int row) const {
@@ -283,7 +302,10 @@ class Tile {
   RowTimes depth_times_;
   RowTimes color_times_;
   Motion motion_;
-  float fx_, fy_, cx_, cy_;  // pixels
+  std::vector<Eigen::Matrix3f> from_row_;  // the camera's turn until a depth row is read
+  std::vector<Eigen::Matrix3f> to_row_;    // and back from when a colour row is read
+  float fx_, fy_, cx_, cy_;                // pixels
+  float per_fx_, per_fy_;
   int width_;
   float last_x_, last_y_;
 };

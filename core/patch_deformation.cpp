@@ -111,8 +111,8 @@ void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLan
     const Points point = warp_points.empty() ? own : camera.to_camera(warp_points[i].point);
     const Int8 in_front = point.z >= kMinDepthM;
     const Float8 inverse_z = 1.0F / (in_front ? point.z : all_lanes(1.0F));
-    w.x = camera.fx_px * point.x * inverse_z + camera.cx_px;
-    w.y = camera.fy_px * point.y * inverse_z + camera.cy_px;
+    w.x = multiply_add(camera.fx_px * point.x, inverse_z, all_lanes(camera.cx_px));
+    w.y = multiply_add(camera.fy_px * point.y, inverse_z, all_lanes(camera.cy_px));
     if (!warp_points.empty()) {
       w.x += warp_points[i].offset_x;
       w.y += warp_points[i].offset_y;

@@ -89,8 +89,8 @@ PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels, const D
   const Points predicted = camera.to_camera(pixels.point);
   const Int8 in_front = pixels.present & (predicted.z > 0.0F);
   const Float8 inverse_z = 1.0F / (in_front ? predicted.z : all_lanes(1.0F));
-  const Float8 landed_x = camera.fx_px * predicted.x * inverse_z + camera.cx_px + 0.5F;
-  const Float8 landed_y = camera.fy_px * predicted.y * inverse_z + camera.cy_px + 0.5F;
+  const Float8 landed_x = multiply_add(camera.fx_px * predicted.x, inverse_z, all_lanes(camera.cx_px + 0.5F));
+  const Float8 landed_y = multiply_add(camera.fy_px * predicted.y, inverse_z, all_lanes(camera.cy_px + 0.5F));
   const Int8 inside = in_front & (landed_x >= 0.0F) & (landed_y >= 0.0F) &
                       (landed_x < static_cast<float>(depth_m.width)) &
                       (landed_y < static_cast<float>(depth_m.height));
@@ -113,7 +113,8 @@ PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels, const D
   const Float8 along_normal_m = depth_sigma_m(measured_m, gates.depth) * range_m /
                                 (near ? measured_m : all_lanes(1.0F)) * incidence_cosine;
   pairs.sigma_m =
-      gates.noise_scale * sqrt(along_normal_m * along_normal_m + gates.model_noise_m * gates.model_noise_m);
+      gates.noise_scale * sqrt(multiply_add(along_normal_m, along_normal_m,
+                                            all_lanes(gates.model_noise_m * gates.model_noise_m)));
   return pairs;
 }
 

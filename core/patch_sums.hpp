@@ -100,9 +100,9 @@ inline void QuadraticSums::add(const JacobianLanes& jacobian, Float8 residual, F
   for (std::size_t row = 0; row < jacobian.size(); ++row) {
     const Float8 weighted = weight * jacobian[row];
     for (std::size_t column = row; column < jacobian.size(); ++column, ++entry) {
-      information_[entry] += weighted * jacobian[column];
+      information_[entry] = multiply_add(weighted, jacobian[column], information_[entry]);
     }
-    gradient_[row] += weighted * residual;
+    gradient_[row] = multiply_add(weighted, residual, gradient_[row]);
   }
   cost_ += cost;
 }
@@ -110,7 +110,7 @@ inline void QuadraticSums::add(const JacobianLanes& jacobian, Float8 residual, F
 inline void FitSums::add(Float8 whitened, Float8 robust_weight, Int8 counted) {
   const Float8 squared = counted ? whitened * whitened : Float8{};
   chi2 += squared;
-  robust += robust_weight * squared;
+  robust = multiply_add(robust_weight, squared, robust);
   count += std::popcount(lane_bits(counted));
 }
 
@@ -125,14 +125,14 @@ inline void BrightnessSums::add(const JacobianLanes& jacobian, Float8 residual, 
                                 Float8 intensity) {
   // By gain and offset: -intensity and -1.
   const Float8 by_gain = -weight * intensity;
-  information_[0] -= by_gain * intensity;
+  information_[0] = multiply_add(-by_gain, intensity, information_[0]);
   information_[1] -= by_gain;
   information_[2] += weight;
-  gradient_[0] += by_gain * residual;
-  gradient_[1] -= weight * residual;
+  gradient_[0] = multiply_add(by_gain, residual, gradient_[0]);
+  gradient_[1] = multiply_add(-weight, residual, gradient_[1]);
   for (std::size_t i = 0; i < jacobian.size(); ++i) {
-    by_pose_[0][i] += by_gain * jacobian[i];
-    by_pose_[1][i] -= weight * jacobian[i];
+    by_pose_[0][i] = multiply_add(by_gain, jacobian[i], by_pose_[0][i]);
+    by_pose_[1][i] = multiply_add(-weight, jacobian[i], by_pose_[1][i]);
   }
 }
 
@@ -143,7 +143,8 @@ inline JacobianLanes photometric_jacobian(const PosedLanes& camera, const Points
   const Float8 inverse_z = 1.0F / point_camera.z;
   const Float8 by_x = dx * camera.fx_px * inverse_z;
   const Float8 by_y = dy * camera.fy_px * inverse_z;
-  const Points by_camera = {by_x, by_y, -(by_x * point_camera.x + by_y * point_camera.y) * inverse_z};
+  const Points by_camera = {by_x, by_y,
+                            -multiply_add(by_x, point_camera.x, by_y * point_camera.y) * inverse_z};
   const Points by_imu = rotated(camera.R_imu_camera, by_camera);
   const Points turn = cross(by_imu, camera.to_imu(point_camera));
   const Points move = rotated(camera.R_world_imu, by_imu);

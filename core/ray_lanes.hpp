@@ -9,7 +9,9 @@ namespace fusebench {
 /// Eight rays by z-depth: point(z) = origin + z * direction, in voxels.
 struct RayLanes {
   [[nodiscard]] Points at(Float8 z_m) const {
-    return {origin.x() + z_m * direction.x, origin.y() + z_m * direction.y, origin.z() + z_m * direction.z};
+    return {multiply_add(z_m, direction.x, all_lanes(origin.x())),
+            multiply_add(z_m, direction.y, all_lanes(origin.y())),
+            multiply_add(z_m, direction.z, all_lanes(origin.z()))};
   }
 
   Eigen::Vector3f origin;
@@ -33,9 +35,10 @@ class PixelRays {
     const Float8 y = (v_px - cy_px_) * per_fy_;
     RayLanes rays;
     rays.origin = origin;
-    rays.direction = {axes_(0, 0) * x + axes_(0, 1) * y + axes_(0, 2),
-                      axes_(1, 0) * x + axes_(1, 1) * y + axes_(1, 2),
-                      axes_(2, 0) * x + axes_(2, 1) * y + axes_(2, 2)};
+    const auto row = [&](int i) {
+      return multiply_add(axes_(i, 0), x, multiply_add(axes_(i, 1), y, all_lanes(axes_(i, 2))));
+    };
+    rays.direction = {row(0), row(1), row(2)};
     rays.z_per_voxel = 1.0F / norm(rays.direction);
     return rays;
   }
@@ -53,7 +56,7 @@ struct Brackets {
   Float8 back_m{};
 
   [[nodiscard]] Float8 zero_of_chord() const {
-    return front_z_m + front_m / (front_m - back_m) * (back_z_m - front_z_m);
+    return multiply_add(front_m / (front_m - back_m), back_z_m - front_z_m, front_z_m);
   }
 };
 

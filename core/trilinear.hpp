@@ -43,8 +43,8 @@ template <class Cube>
   Float8 sum_m{};
   for (std::size_t corner = 0; corner < 8; corner += 2) {
     const Pairs pair_m = cube.pair_m(0, static_cast<int>(corner >> 1) & 1, static_cast<int>(corner >> 2));
-    sum_m += cell.weights[corner] * pair_m.first;
-    sum_m += cell.weights[corner + 1] * pair_m.second;
+    sum_m = multiply_add(cell.weights[corner], pair_m.first, sum_m);
+    sum_m = multiply_add(cell.weights[corner + 1], pair_m.second, sum_m);
   }
   return sum_m;
 }
@@ -103,8 +103,8 @@ template <class Cube>
       if ((c & bit) != 0) continue;
       const Float8* const low = &around.distances_m[CellNeighbourhood::place(
           1 + static_cast<int>(c & 1), 1 + static_cast<int>((c >> 1) & 1), 1 + static_cast<int>(c >> 2))];
-      sum += cell.weights[c] * slope(*(low - step), *low, *(low + step)) +
-             cell.weights[c | bit] * slope(*low, *(low + step), *(low + 2 * step));
+      sum = multiply_add(cell.weights[c], slope(*(low - step), *low, *(low + step)), sum);
+      sum = multiply_add(cell.weights[c | bit], slope(*low, *(low + step), *(low + 2 * step)), sum);
     }
     return sum;
   };

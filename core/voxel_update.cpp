@@ -35,9 +35,7 @@ VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, co
       cy_(static_cast<float>(camera.cy_px)),
       nearest_m_(static_cast<float>(depth.min_m)),
       farthest_m_(static_cast<float>(depth.max_m)),
-      noise_floor_m_(static_cast<float>(depth.noise_floor_m)),
-      noise_quadratic_per_m_(static_cast<float>(depth.noise_quadratic_per_m)),
-      noise_offset_m_(static_cast<float>(depth.noise_offset_m)),
+      depth_sigma_(depth),
       truncation_m_(static_cast<float>(std::max(tsdf.truncation_m, 2.0 * tsdf.voxel_m))),
       truncation_sigmas_(static_cast<float>(tsdf.truncation_sigmas)),
       voxel_variance_(static_cast<float>(tsdf.voxel_m * tsdf.voxel_m)),
@@ -69,8 +67,8 @@ void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVox
   const DepthImage& depth_m = frame_.depth_m;
   const Float8 inverse_z = 1.0F / z_m;
   // Half a pixel more, so that cutting the fraction off rounds to the nearest pixel.
-  const Float8 u = fx_ * x_m * inverse_z + cx_ + 0.5F;
-  const Float8 v = fy_ * y_m * inverse_z + cy_ + 0.5F;
+  const Float8 u = multiply_add(fx_ * x_m, inverse_z, all_lanes(cx_ + 0.5F));
+  const Float8 v = multiply_add(fy_ * y_m, inverse_z, all_lanes(cy_ + 0.5F));
   const Int8 inside = (z_m > 0.0F) & (u >= 0.0F) & (v >= 0.0F) & (u < static_cast<float>(depth_m.width)) &
                       (v < static_cast<float>(depth_m.height));
   if (!any(inside)) return;
@@ -78,8 +76,7 @@ void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVox
   const Float8 zero{};
   const Int8 pixel = to_int(inside ? v : zero) * depth_m.width + to_int(inside ? u : zero);
   const Float8 measured_m = gather(depth_m.data.data(), pixel);
-  const Float8 from_offset_m = measured_m - noise_offset_m_;
-  const Float8 sigma = noise_floor_m_ + noise_quadratic_per_m_ * from_offset_m * from_offset_m;
+  const Float8 sigma = depth_sigma_.at_m(measured_m);
   const Float8 band_m = max(all_lanes(truncation_m_), truncation_sigmas_ * sigma);
   const Float8 distance_m = measured_m - z_m;
   // Further behind the surface than the band, a voxel is hidden.
@@ -89,15 +86,15 @@ void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVox
 
   // What lies deep behind the surface is a guess, and wrong where a ray clips an edge and comes out again.
   const Float8 half_m = 0.5F * band_m;
-  const Float8 weight =
-      min(half_m, band_m + distance_m) * voxel_variance_ / (half_m * (voxel_variance_ + sigma * sigma));
+  const Float8 weight = min(half_m, band_m + distance_m) * voxel_variance_ /
+                        (half_m * multiply_add(sigma, sigma, all_lanes(voxel_variance_)));
   const Int8 observed = seen & (weight >= kLeastWeight);
   // The running mean; what was never observed has no distance yet.
   const Float8 before_m = load(block.distance_m + row);
   const Float8 before = load(block.weight + row);
   const Float8 total = before + weight;
   const Float8 mean_m =
-      ((before > 0.0F ? before_m : zero) * before + min(distance_m, band_m) * weight) / total;
+      multiply_add(before > 0.0F ? before_m : zero, before, min(distance_m, band_m) * weight) / total;
   store(observed ? mean_m : before_m, block.distance_m + row);
   store(observed ? min(total, all_lanes(max_weight_)) : before, block.weight + row);
 
@@ -117,7 +114,7 @@ void VoxelUpdate::add_color(Int8 pixel, Int8 colored, const BlockVoxels& block, 
   Int8 words = to_int(min(count, all_lanes(max_color_count_))) << (8 * kCountByte);
   for (int channel = 0; channel < 3; ++channel) {
     const Float8 mean = byte_of(stored, channel);
-    const Float8 moved = mean + (byte_of(levels, channel) - mean) * share;
+    const Float8 moved = multiply_add(byte_of(levels, channel) - mean, share, mean);
     words |= to_int(moved + color_rounding_) << (8 * channel);
   }
   stored = colored ? words : stored;

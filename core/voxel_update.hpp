@@ -1,6 +1,7 @@
 // One frame as the voxels of the model see it.
 #pragma once
 
+#include "core/depth_gates.hpp"
 #include "core/lanes.hpp"
 #include "core/tsdf_volume.hpp"
 
@@ -27,7 +28,7 @@ class VoxelUpdate {
                                  // world, in the camera frame
   float fx_, fy_, cx_, cy_;      // pixels
   float nearest_m_, farthest_m_;
-  float noise_floor_m_, noise_quadratic_per_m_, noise_offset_m_;  // depth noise
+  DepthSigma depth_sigma_;
   float truncation_m_;
   float truncation_sigmas_;
   float voxel_variance_;  // m^2

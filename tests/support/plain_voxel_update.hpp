@@ -42,17 +42,17 @@ class PlainVoxelUpdate {
     if (!(z > 0.0F)) return;
     const float inverse_z = 1.0F / z;
     const float u =
-        static_cast<float>(camera_.fx_px) * x * inverse_z + static_cast<float>(camera_.cx_px) + 0.5F;
+        std::fma(static_cast<float>(camera_.fx_px) * x, inverse_z, static_cast<float>(camera_.cx_px) + 0.5F);
     const float v =
-        static_cast<float>(camera_.fy_px) * y * inverse_z + static_cast<float>(camera_.cy_px) + 0.5F;
+        std::fma(static_cast<float>(camera_.fy_px) * y, inverse_z, static_cast<float>(camera_.cy_px) + 0.5F);
     const DepthImage& depth_m = frame_.depth_m;
     if (!(u >= 0.0F && v >= 0.0F) || !depth_m.contains(static_cast<int>(u), static_cast<int>(v))) return;
     const float measured_m = depth_m(static_cast<int>(u), static_cast<int>(v));
     if (!(measured_m >= static_cast<float>(depth_.min_m) && measured_m <= static_cast<float>(depth_.max_m)))
       return;
     const float from_offset_m = measured_m - static_cast<float>(depth_.noise_offset_m);
-    const float sigma_m = static_cast<float>(depth_.noise_floor_m) +
-                          static_cast<float>(depth_.noise_quadratic_per_m) * from_offset_m * from_offset_m;
+    const float sigma_m = std::fma(static_cast<float>(depth_.noise_quadratic_per_m) * from_offset_m,
+                                   from_offset_m, static_cast<float>(depth_.noise_floor_m));
     const float band_m = std::max(static_cast<float>(std::max(tsdf_.truncation_m, 2.0 * tsdf_.voxel_m)),
                                   static_cast<float>(tsdf_.truncation_sigmas) * sigma_m);
     const float distance_m = measured_m - z;
@@ -60,11 +60,12 @@ class PlainVoxelUpdate {
     const float half_m = 0.5F * band_m;
     const auto variance = static_cast<float>(tsdf_.voxel_m * tsdf_.voxel_m);
     const float weight =
-        std::min(half_m, band_m + distance_m) * variance / (half_m * (variance + sigma_m * sigma_m));
+        std::min(half_m, band_m + distance_m) * variance / (half_m * std::fma(sigma_m, sigma_m, variance));
     if (weight < 0x1p-14F) return;
     const float total = voxel.weight + weight;
     const float before_m = voxel.weight > 0.0F ? voxel.distance_m : 0.0F;
-    voxel.distance_m = as_stored((before_m * voxel.weight + std::min(distance_m, band_m) * weight) / total);
+    voxel.distance_m =
+        as_stored(std::fma(before_m, voxel.weight, std::min(distance_m, band_m) * weight) / total);
     voxel.weight = as_stored(std::min(total, static_cast<float>(tsdf_.max_weight)));
     if (frame_.color.empty() || !(std::abs(distance_m) < half_m)) return;
     add_color(frame_.color(static_cast<int>(u), static_cast<int>(v)), voxel);
@@ -75,7 +76,7 @@ class PlainVoxelUpdate {
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const auto mean = static_cast<float>(voxel.color[channel]);
       const auto target = static_cast<float>(observed[channel]);
-      const float moved = mean + (target - mean) * (1.0F / (count + 1.0F));
+      const float moved = std::fma(target - mean, 1.0F / (count + 1.0F), mean);
       voxel.color[channel] = static_cast<std::uint8_t>(moved + color_rounding_);
     }
     const float most = std::min(static_cast<float>(tsdf_.max_weight), 255.0F);
