@@ -55,6 +55,7 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
 [[nodiscard]] inline Float8 min(Float8 a, Float8 b) { return b < a ? b : a; }
 [[nodiscard]] inline Float8 max(Float8 a, Float8 b) { return a < b ? b : a; }
 [[nodiscard]] inline Int8 min(Int8 a, Int8 b) { return b < a ? b : a; }
+[[nodiscard]] inline Int8 max(Int8 a, Int8 b) { return a < b ? b : a; }
 /// As std::clamp.
 [[nodiscard]] inline Float8 clamp(Float8 values, float low, float high) {
   return min(max(values, all_lanes(low)), all_lanes(high));

@@ -19,18 +19,12 @@ template <int kSide>
 class TsdfLanes::Cube {
  public:
   Cube(const TsdfLanes& field, const LatticePoints& first)
-      : field_(field), axes_{Axis(first.x, 0), Axis(first.y, 3), Axis(first.z, 6)} {
+      : field_(field), axes_{Axis(field, first.x, 0), Axis(field, first.y, 1), Axis(field, first.z, 2)} {
     for (std::size_t n = 0; n < 8; ++n) {
       // A second block that no lane reaches is not looked for.
-      std::size_t reached = n;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!axes_[axis].crossed) reached &= ~(std::size_t{1} << axis);
-      }
-      if (reached != n) {
-        slots_[n] = slots_[reached];
-        continue;
-      }
-      slots_[n] = field.slots({axes_[0].block[n & 1], axes_[1].block[(n >> 1) & 1], axes_[2].block[n >> 2]});
+      const auto reached = [&](std::size_t axis) { return (n >> axis & 1) == 0 || axes_[axis].crossed; };
+      if (!reached(0) || !reached(1) || !reached(2)) continue;
+      slots_[n] = field.slots(axes_[0].block[n & 1], axes_[1].block[n >> 1 & 1], axes_[2].block[n >> 2]);
     }
   }
 
@@ -52,15 +46,20 @@ class TsdfLanes::Cube {
     bool begins_block;  ///< in any lane: the place before it is in another
   };
   struct Axis {
-    Axis(Int8 first, int shift) : block{first >> 3, (first + (kSide - 1)) >> 3} {
-      crossed = any(block[0] != block[1]);
+    Axis(const TsdfLanes& field, Int8 first, int axis) {
+      const Int8 first_block = first >> 3;
+      const Int8 last_block = (first + (kSide - 1)) >> 3;
+      crossed = any(first_block != last_block);
+      block[0] = field.block_axis(first_block, axis);
+      if (crossed) block[1] = field.block_axis(last_block, axis);
       for (int i = 0; i < kSide; ++i) {
         const Int8 at = first + i;
-        places[static_cast<std::size_t>(i)] = {(at & 7) << shift, (at >> 3) != block[0], any((at & 7) == 0)};
+        places[static_cast<std::size_t>(i)] = {(at & 7) << (3 * axis), (at >> 3) != first_block,
+                                               crossed && any((at & 7) == 0)};
       }
     }
-    std::array<Int8, 2> block;
-    bool crossed;  ///< in any lane
+    std::array<BlockAxis, 2> block;  ///< the second one only if it is
+    bool crossed;                    ///< into, in any lane
     std::array<Place, static_cast<std::size_t>(kSide)> places;
   };
 
@@ -79,22 +78,25 @@ class TsdfLanes::Cube {
 
   const TsdfLanes& field_;
   std::array<Axis, 3> axes_;
-  std::array<Int8, 8> slots_;
+  std::array<Int8, 8> slots_;  // bit 0 of the number: in the second block along x, bit 1: y, bit 2: z
 };
 
 TsdfLanes::TsdfLanes(const TsdfVolume& volume, const Vector3d& centre_world, double reach_m)
     : volume_(volume),
       origin_region_((centre_world / (kRegionVoxels * volume.voxel_m())).array().floor().cast<int>()),
       origin_voxel_(origin_region_.cast<double>() * kRegionVoxels),
-      reach_(static_cast<int>(std::ceil(reach_m / (kRegionVoxels * volume.voxel_m()))) + 1) {
+      reach_(static_cast<int>(std::ceil(reach_m / (kRegionVoxels * volume.voxel_m()))) + 2) {
   const double side = 2.0 * reach_ + 1.0;
+  window_step_ = {};
   if (side * side * side > kMostWindowRegions) return;
   const auto regions_a_side = static_cast<std::size_t>(side);
+  const auto step = static_cast<std::int32_t>(regions_a_side);
+  window_step_ = {1, step, step * step};
   window_.assign(regions_a_side * regions_a_side * regions_a_side, -1);
   const std::vector<Eigen::Vector3i>& regions = volume.region_indices();
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const Eigen::Vector3i from_corner = regions[i] - origin_region_ + Eigen::Vector3i::Constant(reach_);
-    if (from_corner.minCoeff() < 0 || from_corner.maxCoeff() > 2 * reach_) continue;
+    if (from_corner.minCoeff() < 1 || from_corner.maxCoeff() > 2 * reach_ - 1) continue;
     const auto at = from_corner.cast<std::size_t>();
     window_[at.x() + regions_a_side * (at.y() + regions_a_side * at.z())] = static_cast<std::int32_t>(i);
   }

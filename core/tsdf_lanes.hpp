@@ -43,9 +43,16 @@ class TsdfLanes {
   template <int kSide>
   class Cube;
 
-  [[nodiscard]] Int8 regions(const LatticePoints& region) const;
+  /// What the coordinates of blocks along one axis add to the place where their slots are kept.
+  struct BlockAxis {
+    Int8 region;     ///< coordinate of it
+    Int8 window;     ///< share in its place in the window
+    Int8 in_region;  ///< share in the block's place in the region
+  };
+  [[nodiscard]] BlockAxis block_axis(Int8 block, int axis) const;
+  [[nodiscard]] Int8 regions(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const;
   [[nodiscard]] Int8 regions_by_table(const LatticePoints& region) const;
-  [[nodiscard]] Int8 slots(const LatticePoints& block) const;
+  [[nodiscard]] Int8 slots(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const;
   [[nodiscard]] Float8 distances_m(Int8 slot, Int8 offset) const;
   /// At an offset in a block, and at the next one.
   [[nodiscard]] Pairs pairs_m(Int8 slot, Int8 offset) const;
@@ -53,8 +60,11 @@ class TsdfLanes {
   const TsdfVolume& volume_;
   Eigen::Vector3i origin_region_;
   Vector3d origin_voxel_;
-  int reach_;                         // regions on either side of the origin's
-  std::vector<std::int32_t> window_;  // number of each region there, -1 = none; empty if there were too many
+  int reach_;  // regions on either side of the origin's
+  // Number of each region there, -1 = none; empty if there were too many. The outermost ones count as none,
+  // so that what lies beyond can be looked for there.
+  std::vector<std::int32_t> window_;
+  std::array<std::int32_t, 3> window_step_;  // from one region to the next along each axis
 };
 
 /// The field as far as a camera sees; nothing if there is no block, or the pose is no place in the lattice.
@@ -63,44 +73,37 @@ class TsdfLanes {
 
 // Inline: one step of a ray after the other asks for them.
 
+inline TsdfLanes::BlockAxis TsdfLanes::block_axis(Int8 block, int axis) const {
+  const Int8 region = block >> 2;
+  const Int8 within = min(max(region, all_lanes(-reach_)), all_lanes(reach_)) + reach_;
+  return {region, within * window_step_[static_cast<std::size_t>(axis)], (block & 3) << (2 * axis)};
+}
+
 /// Numbers of regions, -1 = none.
-inline Int8 TsdfLanes::regions(const LatticePoints& region) const {
-  if (!window_.empty()) {
-    const Int8 x = region.x + reach_;
-    const Int8 y = region.y + reach_;
-    const Int8 z = region.z + reach_;
-    const int last = 2 * reach_;
-    const Int8 inside = ((x | y | z) >= 0) & (x <= last) & (y <= last) & (z <= last);
-    const Int8 found = gather(window_.data(), inside ? x + (last + 1) * (y + (last + 1) * z) : Int8{});
-    return inside ? found : all_lanes(-1);
-  }
-  return regions_by_table(region);
+inline Int8 TsdfLanes::regions(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const {
+  return window_.empty() ? regions_by_table({x.region, y.region, z.region})
+                         : gather(window_.data(), x.window + y.window + z.window);
 }
 
-inline Int8 TsdfLanes::slots(const LatticePoints& block) const {
-  const Int8 number = regions({block.x >> 2, block.y >> 2, block.z >> 2});
-  const Int8 offset = (block.x & 3) + ((block.y & 3) << 2) + ((block.z & 3) << 4);
-  const Int8 found = gather(volume_.region_slots(), (number >= 0 ? number << 6 : Int8{}) + offset);
-  return number >= 0 ? found : all_lanes(-1);
+inline Int8 TsdfLanes::slots(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const {
+  return gather(volume_.region_slots(), (regions(x, y, z) << 6) + x.in_region + y.in_region + z.in_region);
 }
 
-inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const { return pairs_m(slot, offset).first; }
+inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const {
+  return gather(volume_.distances_m(), (slot << 9) + offset);
+}
 
 inline Pairs TsdfLanes::pairs_m(Int8 slot, Int8 offset) const {
-  const Int8 there = slot >= 0;
-  const Pairs found_m = gather_pairs(volume_.distances_m(), (there ? slot << 9 : Int8{}) + offset);
-  const Float8 unknown = not_a_number();
-  return {there ? found_m.first : unknown, there ? found_m.second : unknown};
+  return gather_pairs(volume_.distances_m(), (slot << 9) + offset);
 }
 
 inline TsdfLanes::Location TsdfLanes::locate(const LatticePoints& voxel) const {
-  const LatticePoints block = {voxel.x >> 3, voxel.y >> 3, voxel.z >> 3};
-  const Int8 number = regions({block.x >> 2, block.y >> 2, block.z >> 2});
-  const Int8 no_region = number < 0;
-  const Int8 in_region = (block.x & 3) + ((block.y & 3) << 2) + ((block.z & 3) << 4);
-  const Int8 found = gather(volume_.region_slots(), (no_region ? Int8{} : number << 6) + in_region);
-  return {no_region ? all_lanes(-1) : found, (voxel.x & 7) + ((voxel.y & 7) << 3) + ((voxel.z & 7) << 6),
-          no_region};
+  const BlockAxis x = block_axis(voxel.x >> 3, 0);
+  const BlockAxis y = block_axis(voxel.y >> 3, 1);
+  const BlockAxis z = block_axis(voxel.z >> 3, 2);
+  const Int8 number = regions(x, y, z);
+  const Int8 slot = gather(volume_.region_slots(), (number << 6) + x.in_region + y.in_region + z.in_region);
+  return {slot, (voxel.x & 7) + ((voxel.y & 7) << 3) + ((voxel.z & 7) << 6), number < 0};
 }
 
 }  // namespace fusebench

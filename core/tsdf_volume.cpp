@@ -16,6 +16,11 @@ constexpr std::size_t kBlocksPerChunk = 32;
 
 }  // namespace
 
+TsdfVolume::TsdfVolume(const TsdfConfig& config) : config_(config), region_slots_(kRegionBlocks, -1) {
+  distances_m_.grow_to(kBlockVoxels + 1);
+  std::fill_n(distances_m_.data(), kBlockVoxels + 1, std::numeric_limits<Half>::quiet_NaN());
+}
+
 Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& camera,
                                    const SE3& T_world_camera, const DepthConfig& depth,
                                    const Workers& workers) {
@@ -78,10 +83,11 @@ Result<void> TsdfVolume::allocate() {
 void TsdfVolume::add_block(const BlockIndex& index) {
   const std::size_t begin = block_count() * kBlockVoxels;
   const std::size_t end = begin + kBlockVoxels;
-  distances_m_.grow_to(end + 1);  // see distances_m()
+  distances_m_.grow_to(kBlockVoxels + end + 1);
   weights_.grow_to(end);
   colors_.grow_to(end);
-  std::fill_n(distances_m_.data() + begin, kBlockVoxels + 1, std::numeric_limits<Half>::quiet_NaN());
+  std::fill_n(distances_m_.data() + kBlockVoxels + begin, kBlockVoxels + 1,
+              std::numeric_limits<Half>::quiet_NaN());
   std::fill_n(weights_.data() + begin, kBlockVoxels, Half(0.0F));
   std::fill_n(colors_.data() + begin, kBlockVoxels, std::uint32_t{0});
   const Eigen::Vector3i region = region_of(index);
@@ -92,7 +98,7 @@ void TsdfVolume::add_block(const BlockIndex& index) {
   const BlockIndex in_region = index - region * kRegionSide;
   const auto place =
       static_cast<std::size_t>(in_region.x() + kRegionSide * (in_region.y() + kRegionSide * in_region.z()));
-  region_slots_[static_cast<std::size_t>(regions_.find(region)) * kRegionBlocks + place] =
+  region_slots_[(static_cast<std::size_t>(regions_.find(region)) + 1) * kRegionBlocks + place] =
       static_cast<std::int32_t>(block_count());
   table_.insert(index);
   indices_.push_back(index);
@@ -100,14 +106,14 @@ void TsdfVolume::add_block(const BlockIndex& index) {
 
 BlockVoxels TsdfVolume::block(std::size_t slot) {
   const std::size_t begin = slot * kBlockVoxels;
-  return {distances_m_.data() + begin, weights_.data() + begin, colors_.data() + begin};
+  return {distances_m_.data() + kBlockVoxels + begin, weights_.data() + begin, colors_.data() + begin};
 }
 
 Voxel TsdfVolume::voxel(std::size_t slot, std::size_t offset) const {
   const std::size_t at = slot * kBlockVoxels + offset;
   const std::uint32_t color = colors_.data()[at];
   const auto byte = [color](int number) { return static_cast<std::uint8_t>(color >> (8 * number)); };
-  return {static_cast<float>(distances_m_.data()[at]),
+  return {static_cast<float>(distances_m()[at]),
           static_cast<float>(weights_.data()[at]),
           {byte(0), byte(1), byte(2)},
           byte(3)};

@@ -62,7 +62,7 @@ struct TsdfSample {
 
 class TsdfVolume {
  public:
-  explicit TsdfVolume(const TsdfConfig& config) : config_(config) {}
+  explicit TsdfVolume(const TsdfConfig& config);
 
   /// Fuses one frame. Blocks are allocated along each measured ray within the truncation band; then every
   /// voxel of these blocks takes the projective distance (depth at the nearest pixel minus its own z-depth,
@@ -87,9 +87,9 @@ class TsdfVolume {
   [[nodiscard]] const std::vector<BlockIndex>& block_indices() const { return indices_; }
   /// The voxel at an offset (offset_in_block) of a block.
   [[nodiscard]] Voxel voxel(std::size_t slot, std::size_t offset) const;
-  /// Distances of all blocks by slot, kBlockVoxels each; NaN = never observed. One more can be read, see
-  /// gather().
-  [[nodiscard]] const Half* distances_m() const { return distances_m_.data(); }
+  /// Distances of all blocks by slot, kBlockVoxels each; NaN = never observed. Slot -1, of no block, can be
+  /// read as well: there is nothing observed in it. So can one number beyond the last, see gather().
+  [[nodiscard]] const Half* distances_m() const { return distances_m_.data() + kBlockVoxels; }
   [[nodiscard]] const Half* weights() const { return weights_.data(); }
 
   /// Slot of a block in storage order, or -1.
@@ -97,8 +97,9 @@ class TsdfVolume {
   /// Number of a region with an allocated block, or -1; regions are cubes of 4x4x4 blocks: floor(block / 4).
   [[nodiscard]] int find_region(const Eigen::Vector3i& region) const { return regions_.find(region); }
   [[nodiscard]] const std::vector<Eigen::Vector3i>& region_indices() const { return region_indices_; }
-  /// Slots of the 64 blocks (x fastest) of each region by its number, -1 = none.
-  [[nodiscard]] const std::int32_t* region_slots() const { return region_slots_.data(); }
+  /// Slots of the 64 blocks (x fastest) of each region by its number, -1 = none. Number -1, of no region, can
+  /// be read as well: it has no blocks.
+  [[nodiscard]] const std::int32_t* region_slots() const { return region_slots_.data() + kRegionBlocks; }
   /// The voxel at a lattice point; nothing where no block is allocated.
   [[nodiscard]] std::optional<Voxel> find_voxel(const VoxelIndex& index) const;
   /// Trilinear interpolation of the distance at a world point (metres). For many points see TsdfSampler.
@@ -120,9 +121,9 @@ class TsdfVolume {
   BlockTable table_;    // block -> slot
   BlockTable regions_;  // those with a block, so that rays cross empty space in large steps
   std::vector<Eigen::Vector3i> region_indices_;
-  std::vector<std::int32_t> region_slots_;
-  std::vector<BlockIndex> indices_;  // by slot, as all that follow
-  GrowingArray<Half> distances_m_;
+  std::vector<std::int32_t> region_slots_;  // by number + 1
+  std::vector<BlockIndex> indices_;         // by slot
+  GrowingArray<Half> distances_m_;          // by slot + 1
   GrowingArray<Half> weights_;
   GrowingArray<std::uint32_t> colors_;
   BandBlocks touched_;  // by the last frame
