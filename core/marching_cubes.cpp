@@ -22,10 +22,35 @@ constexpr std::size_t kBlocksPerChunk = 16;
 constexpr std::size_t kBlockEdges =
     3 * kBlockVoxels;  // each voxel owns the three edges that leave it upwards
 
-// An edge of the lattice: rank of the block of its lower end * kBlockEdges + offset of the lower end * 3 +
-// axis.
-using EdgeKey = std::uint64_t;
-using EdgeTriangle = std::array<EdgeKey, 3>;
+// An edge of the lattice as a block sees it: which of the eight blocks at its upper corner has the edge's
+// lower end * kNeighbourEdges + offset of that end in it * 3 + axis.
+using LocalEdge = std::uint16_t;
+using EdgeTriangle = std::array<LocalEdge, 3>;
+constexpr std::size_t kNeighbourEdges = 2048;
+static_assert(kBlockEdges <= kNeighbourEdges && 8 * kNeighbourEdges <= 65536);
+
+// The triangles of some blocks.
+struct Surface {
+  // One that has triangles.
+  struct Block {
+    std::array<std::uint32_t, 8> neighbour_ranks{};
+    std::size_t triangles_end = 0;
+  };
+  // Calls visit(rank of the block that has the edge, edge in it) for each corner of each triangle.
+  template <class Visit>
+  void for_each_corner(const Visit& visit) const {
+    std::size_t i = 0;
+    for (const Block& block : blocks) {
+      for (; i < block.triangles_end; ++i) {
+        for (const LocalEdge edge : triangles[i])
+          visit(block.neighbour_ranks[edge / kNeighbourEdges], edge % kNeighbourEdges);
+      }
+    }
+  }
+
+  std::vector<Block> blocks;
+  std::vector<EdgeTriangle> triangles;  // one block after the other
+};
 
 // The lowest bit of byte i is bit i of `bits`.
 std::uint64_t byte_each(unsigned bits) {
@@ -49,10 +74,11 @@ struct SortedBlocks {
       const BlockIndex& q = indices[b];
       return std::tuple(p.z(), p.y(), p.x()) < std::tuple(q.z(), q.y(), q.x());
     });
-    for (std::size_t rank = 0; rank < slots.size(); ++rank) ranks[slots[rank]] = rank;
+    for (std::size_t rank = 0; rank < slots.size(); ++rank)
+      ranks[slots[rank]] = static_cast<std::uint32_t>(rank);
   }
-  std::vector<std::size_t> slots;  // by rank
-  std::vector<std::size_t> ranks;  // by slot
+  std::vector<std::size_t> slots;    // by rank
+  std::vector<std::uint32_t> ranks;  // by slot
 };
 
 // The used edges of one block, and the number of the vertex on each.
@@ -82,15 +108,19 @@ class BlockCells {
   BlockCells(const TsdfVolume& volume, const SortedBlocks& sorted, double min_weight)
       : volume_(volume), sorted_(sorted), min_weight_(static_cast<float>(min_weight)) {}
 
-  void append(std::size_t rank, std::vector<EdgeTriangle>& triangles) {
+  void append(std::size_t rank, Surface& surface) {
     load(volume_.block_indices()[sorted_.slots[rank]]);
+    if (!has_both_signs()) return;
+    const std::size_t before = surface.triangles.size();
     for (int z = 0; z < kBlockSide; ++z) {
       for (int y = 0; y < kBlockSide; ++y) {
         for (std::uint64_t cells = crossed_cells(y, z); cells != 0; cells &= cells - 1) {
-          append_cell({std::countr_zero(cells) / 8, y, z}, triangles);
+          append_cell({std::countr_zero(cells) / 8, y, z}, surface.triangles);
         }
       }
     }
+    if (surface.triangles.size() > before)
+      surface.blocks.push_back({neighbour_ranks_, surface.triangles.size()});
   }
 
  private:
@@ -110,7 +140,7 @@ class BlockCells {
     for (std::size_t n = 0; n < 8; ++n) {
       const int slot = volume_.find_block(index + BlockIndex(n & 1 ? 1 : 0, n & 2 ? 1 : 0, n & 4 ? 1 : 0));
       // Edges of a missing block are never used: its voxels are unobserved.
-      neighbour_rank_[n] = slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
+      neighbour_ranks_[n] = slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
       if (slot >= 0) load_neighbour(n, static_cast<std::size_t>(slot));
     }
   }
@@ -130,6 +160,17 @@ class BlockCells {
         std::memcpy(signs, &of_row, range(1));
       }
     }
+  }
+
+  // Most blocks have voxels on one side only.
+  [[nodiscard]] bool has_both_signs() const {
+    std::uint8_t inside = 0;
+    std::uint8_t outside = 0;
+    for (const std::uint8_t sign : sign_) {
+      inside |= static_cast<std::uint8_t>(sign == (kObserved | kInside));
+      outside |= static_cast<std::uint8_t>(sign == kObserved);
+    }
+    return inside != 0 && outside != 0;
   }
 
   // The signs of eight voxels, a byte each.
@@ -167,16 +208,17 @@ class BlockCells {
     }
   }
 
-  [[nodiscard]] EdgeKey key(const VoxelIndex& base, std::uint8_t cell_edge) const {
+  [[nodiscard]] static LocalEdge key(const VoxelIndex& base, std::uint8_t cell_edge) {
     const CellEdge& edge = cell_edges()[cell_edge];
     const VoxelIndex local = base + VoxelIndex(edge.from & 1, (edge.from >> 1) & 1, edge.from >> 2);
-    return neighbour_rank_[neighbour_of(local)] * kBlockEdges + offset_in_block(local) * 3 + edge.axis;
+    return static_cast<LocalEdge>(neighbour_of(local) * kNeighbourEdges + offset_in_block(local) * 3 +
+                                  edge.axis);
   }
 
   const TsdfVolume& volume_;
   const SortedBlocks& sorted_;
   float min_weight_;
-  std::array<std::size_t, 8> neighbour_rank_{};
+  std::array<std::uint32_t, 8> neighbour_ranks_{};
   std::array<std::uint8_t, kSide * kSide * kSide> sign_{};
 };
 
@@ -243,24 +285,21 @@ class VertexWriter {
 Mesh extract_mesh(const TsdfVolume& volume, double min_weight, const Workers& workers) {
   const SortedBlocks sorted(volume);
   const std::size_t blocks = sorted.slots.size();
-  const auto surfaces = workers.map_chunks<std::vector<EdgeTriangle>>(
-      blocks, kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
+  const auto surfaces =
+      workers.map_chunks<Surface>(blocks, kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
         BlockCells cells(volume, sorted, min_weight);
-        std::vector<EdgeTriangle> triangles;
-        for (std::size_t rank = begin; rank < end; ++rank) cells.append(rank, triangles);
-        return triangles;
+        Surface surface;
+        for (std::size_t rank = begin; rank < end; ++rank) cells.append(rank, surface);
+        return surface;
       });
 
   std::vector<BlockVertices> vertices(blocks);
   std::vector<std::size_t> first_triangle(surfaces.size() + 1, 0);
   for (std::size_t chunk = 0; chunk < surfaces.size(); ++chunk) {
-    first_triangle[chunk + 1] = first_triangle[chunk] + surfaces[chunk].size();
-    for (const EdgeTriangle& triangle : surfaces[chunk]) {
-      for (const EdgeKey key : triangle) {
-        const std::size_t edge = key % kBlockEdges;
-        vertices[key / kBlockEdges].used[edge / 64] |= std::uint64_t{1} << edge % 64;
-      }
-    }
+    first_triangle[chunk + 1] = first_triangle[chunk] + surfaces[chunk].triangles.size();
+    surfaces[chunk].for_each_corner([&](std::size_t rank, std::size_t edge) {
+      vertices[rank].used[edge / 64] |= std::uint64_t{1} << edge % 64;
+    });
   }
   std::uint32_t vertex_count = 0;
   for (BlockVertices& block : vertices) block.number(vertex_count);
@@ -278,15 +317,11 @@ Mesh extract_mesh(const TsdfVolume& volume, double min_weight, const Workers& wo
           any |= writer.write(volume.block_indices()[sorted.slots[rank]], vertices[rank]);
         }
         const std::size_t chunk = begin / kBlocksPerChunk;
-        std::transform(surfaces[chunk].begin(), surfaces[chunk].end(),
-                       mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first_triangle[chunk]),
-                       [&](const EdgeTriangle& triangle) {
-                         std::array<std::uint32_t, 3> corners{};
-                         for (std::size_t i = 0; i < 3; ++i) {
-                           corners[i] = vertices[triangle[i] / kBlockEdges].vertex(triangle[i] % kBlockEdges);
-                         }
-                         return corners;
-                       });
+        std::size_t corner = 3 * first_triangle[chunk];
+        surfaces[chunk].for_each_corner([&](std::size_t rank, std::size_t edge) {
+          mesh.triangles[corner / 3][corner % 3] = vertices[rank].vertex(edge);
+          ++corner;
+        });
         return static_cast<char>(any);
       });
   if (std::none_of(colored.begin(), colored.end(), [](char any) { return any != 0; })) mesh.colors.clear();

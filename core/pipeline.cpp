@@ -372,4 +372,9 @@ Result<FrameReport> Pipeline::process(const RgbdFrame& frame) { return state_->p
 
 const TsdfVolume& Pipeline::model() const { return state_->model; }
 
+TsdfVolume Pipeline::take_model() && {
+  const std::unique_ptr<State> last = std::move(state_);
+  return std::move(last->model);
+}
+
 }  // namespace fusebench

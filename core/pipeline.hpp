@@ -27,6 +27,8 @@ class Pipeline {
   [[nodiscard]] Result<FrameReport> process(const RgbdFrame& frame);
 
   [[nodiscard]] const TsdfVolume& model() const;
+  /// The model, and the end of everything else that the pipeline keeps.
+  [[nodiscard]] TsdfVolume take_model() &&;
 
  private:
   struct State;

@@ -372,25 +372,29 @@ Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
   check(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size(), "no normals or one a vertex");
   check(mesh.colors.empty() || mesh.colors.size() == mesh.vertices.size(), "no colours or one a vertex");
   check(mesh.quality.empty() || mesh.quality.size() == mesh.vertices.size(), "no quality or one a vertex");
+  errno = 0;
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  if (!stream) return cannot_write(file, errno);
   std::string bytes = header_of(mesh);
-  const std::size_t vertex_bytes = 12 + (mesh.normals.empty() ? 0U : 12U) + (mesh.colors.empty() ? 0U : 3U) +
-                                   (mesh.quality.empty() ? 0U : 4U);
-  bytes.reserve(bytes.size() + mesh.vertices.size() * vertex_bytes + mesh.triangles.size() * 13);
+  const auto write_some = [&](std::size_t at_least) {
+    if (bytes.size() < at_least) return;
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.clear();
+  };
+  constexpr std::size_t kSome = 1U << 20;  // of hundreds of them
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    write_some(kSome);
     append(bytes, mesh.vertices[i]);
     if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
     if (!mesh.colors.empty()) append(bytes, mesh.colors[i]);
     if (!mesh.quality.empty()) append(bytes, mesh.quality[i]);
   }
   for (const auto& triangle : mesh.triangles) {
+    write_some(kSome);
     append(bytes, std::uint8_t{3});
     append(bytes, triangle);
   }
-
-  errno = 0;
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  if (!stream) return cannot_write(file, errno);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  write_some(0);
   stream.close();  // a full disk may show only here
   if (!stream) return cannot_write(file, errno);
   return {};

@@ -183,6 +183,16 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
   return progress;
 }
 
+/// Makes the mesh of the model, which nothing needs any longer.
+RecordedModel make_mesh(const TsdfVolume& model, const Config& config, const Workers& workers,
+                        Progress& progress) {
+  Mesh& mesh = progress.output.mesh;
+  progress.profile.mesh.begin = Clock::now();
+  mesh = extract_mesh(model, config.tsdf.min_mesh_weight, workers);
+  progress.profile.mesh.end = Clock::now();
+  return {mesh.vertices.size(), mesh.triangles.size(), model.block_count()};
+}
+
 RecordedTiming timing_of(const Progress& progress, const ProcessCost& cost) {
   RecordedTiming timing;
   timing.wall_s = cost.wall_s;
@@ -327,16 +337,12 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   Pipeline pipeline(config, run.recording.rig, run.recording.imu, workers);
   auto progress = process_frames(run, pipeline, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
-  Mesh& mesh = progress->output.mesh;
-  progress->profile.mesh.begin = Clock::now();
-  mesh = extract_mesh(pipeline.model(), config.tsdf.min_mesh_weight, workers);
-  progress->profile.mesh.end = Clock::now();
+  record.model = make_mesh(std::move(pipeline).take_model(), config, workers, *progress);
   const ProcessCost cost = meter.cost();
 
   record.status = progress->status;
   record.reason = progress->reason;
   record.frames = progress->frames;
-  record.model = {mesh.vertices.size(), mesh.triangles.size(), pipeline.model().block_count()};
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
