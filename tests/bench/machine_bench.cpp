@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -162,8 +163,7 @@ void machine_gather(benchmark::State& state) {
   report_rates(state, {"numbers", RandomGathers::kNumbers, sizeof(float) * RandomGathers::kNumbers});
 }
 
-/// A multiplication and an addition a step in each chain: built without contraction, as the kernels are, so
-/// these are two instructions.
+/// A multiplication and an addition, rounded once, a step in each chain.
 template <std::size_t kCount>
 [[gnu::noinline]] std::array<Float8, kCount> multiplied_and_added(std::size_t steps, float factor,
                                                                   float summand) {
@@ -171,7 +171,7 @@ template <std::size_t kCount>
   for (std::size_t chain = 0; chain < kCount; ++chain)
     values[chain] = kLaneNumber + static_cast<float>(chain);
   for (std::size_t step = 0; step < steps; ++step) {
-    for (Float8& value : values) value = value * factor + summand;
+    for (Float8& value : values) value = multiply_add(value, all_lanes(factor), all_lanes(summand));
   }
   return values;
 }
@@ -184,11 +184,8 @@ void machine_mul_add(benchmark::State& state) {
   const auto run = [&] { return multiplied_and_added<kCount>(kSteps, kFactor, kSummand); };
   const std::array<Float8, kCount> values = run();
   for (std::size_t i = 0; i < kCount * kLanes; ++i) {
-    volatile float expected = static_cast<float>(i % kLanes + i / kLanes);  // rounded at each step
-    for (std::size_t step = 0; step < kSteps; ++step) {
-      expected = expected * kFactor;
-      expected = expected + kSummand;
-    }
+    auto expected = static_cast<float>(i % kLanes + i / kLanes);
+    for (std::size_t step = 0; step < kSteps; ++step) expected = std::fma(expected, kFactor, kSummand);
     if (values[i / kLanes][i % kLanes] != expected) return state.SkipWithError("not what one number becomes");
   }
   for (auto _ : state) benchmark::DoNotOptimize(run());
