@@ -37,7 +37,8 @@ struct Points {
 }
 [[nodiscard]] inline Points moved(const Eigen::Matrix3f& R, const Eigen::Vector3f& t, const Points& p) {
   const auto row = [&](int i) {
-    return multiply_add(R(i, 2), p.z, multiply_add(R(i, 1), p.y, multiply_add(R(i, 0), p.x, all_lanes(t[i]))));
+    return multiply_add(R(i, 2), p.z,
+                        multiply_add(R(i, 1), p.y, multiply_add(R(i, 0), p.x, all_lanes(t[i]))));
   };
   return {row(0), row(1), row(2)};
 }
