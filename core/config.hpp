@@ -305,9 +305,10 @@ struct TsdfConfig {
              "the band grows with depth to this many standard deviations of the depth noise");
     v.number("max_weight", self.max_weight, 1.0, 2048.0,
              "weights saturate here, so that the model can change");
-    v.number("max_blocks", self.max_blocks, 1, 100000000,
+    v.number("max_blocks", self.max_blocks, 1, 4194303,
              "memory limit: blocks of 8x8x8 voxels; when it is reached the run reports it");
-    v.number("min_mesh_weight", self.min_mesh_weight, 0.0, 1e6, "voxels seen less than this are not meshed");
+    v.number("min_mesh_weight", self.min_mesh_weight, 0.0, 2048.0,
+             "voxels seen less than this are not meshed");
   }
 };
 

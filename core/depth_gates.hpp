@@ -13,7 +13,7 @@ namespace fusebench {
   return config.noise_floor_m + config.noise_quadratic_per_m * z * z;
 }
 
-/// The same for eight measurements at once.
+/// The standard deviation of depth, for eight measurements at once.
 class DepthSigma {
  public:
   explicit DepthSigma(const DepthConfig& config)
@@ -29,6 +29,8 @@ class DepthSigma {
  private:
   float floor_m_, quadratic_per_m_, offset_m_;
 };
+
+/// depth_sigma_m() of eight measurements.
 [[nodiscard]] inline Float8 depth_sigma_m(Float8 depth_m, const DepthConfig& config) {
   return DepthSigma(config).at_m(depth_m);
 }

@@ -20,7 +20,6 @@ inline constexpr std::size_t kLanes = 8;
 using Float8 [[gnu::vector_size(32)]] = float;
 using Int8 [[gnu::vector_size(32)]] =
     std::int32_t;  ///< also the result of a comparison: -1 = true, 0 = false
-using Short8 [[gnu::vector_size(16)]] = std::uint16_t;
 
 /// 0, 1, ..., 7.
 inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -67,7 +66,7 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
 /// a * b + c, rounded once, which is faster as well; said where it is meant, since compilers are told not to
 /// choose (-ffp-contract=off).
 [[nodiscard]] inline Float8 multiply_add(Float8 a, Float8 b, Float8 c) {
-#ifdef __FMA__
+#if defined(__AVX2__) && defined(__FMA__)
   return std::bit_cast<Float8>(
       _mm256_fmadd_ps(std::bit_cast<__m256>(a), std::bit_cast<__m256>(b), std::bit_cast<__m256>(c)));
 #else

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <vector>
@@ -204,11 +203,12 @@ class BlockCells {
       pattern |= static_cast<unsigned>(sign_[first + kCorner[corner]] / kInside) << corner;
     }
     for (const CellTriangle& triangle : cell_triangles()[pattern]) {
-      triangles.push_back({key(base, triangle[0]), key(base, triangle[1]), key(base, triangle[2])});
+      triangles.push_back(
+          {local_edge(base, triangle[0]), local_edge(base, triangle[1]), local_edge(base, triangle[2])});
     }
   }
 
-  [[nodiscard]] static LocalEdge key(const VoxelIndex& base, std::uint8_t cell_edge) {
+  [[nodiscard]] static LocalEdge local_edge(const VoxelIndex& base, std::uint8_t cell_edge) {
     const CellEdge& edge = cell_edges()[cell_edge];
     const VoxelIndex local = base + VoxelIndex(edge.from & 1, (edge.from >> 1) & 1, edge.from >> 2);
     return static_cast<LocalEdge>(neighbour_of(local) * kNeighbourEdges + offset_in_block(local) * 3 +

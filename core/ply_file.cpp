@@ -376,27 +376,30 @@ Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   if (!stream) return cannot_write(file, errno);
   std::string bytes = header_of(mesh);
-  const auto write_some = [&](std::size_t at_least) {
-    if (bytes.size() < at_least) return;
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  int reason = 0;
+  // A piece at a time: the file of a room has hundreds of megabytes. False once the disk is full.
+  const auto write_from = [&](std::size_t least_bytes) {
+    if (bytes.size() < least_bytes) return true;
+    if (!stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())) && reason == 0)
+      reason = errno;
     bytes.clear();
+    return stream.good();
   };
-  constexpr std::size_t kSome = 1U << 20;  // of hundreds of them
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    write_some(kSome);
+  constexpr std::size_t kPieceBytes = 1U << 20;
+  for (std::size_t i = 0; i < mesh.vertices.size() && write_from(kPieceBytes); ++i) {
     append(bytes, mesh.vertices[i]);
     if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
     if (!mesh.colors.empty()) append(bytes, mesh.colors[i]);
     if (!mesh.quality.empty()) append(bytes, mesh.quality[i]);
   }
-  for (const auto& triangle : mesh.triangles) {
-    write_some(kSome);
+  for (std::size_t i = 0; i < mesh.triangles.size() && write_from(kPieceBytes); ++i) {
     append(bytes, std::uint8_t{3});
-    append(bytes, triangle);
+    append(bytes, mesh.triangles[i]);
   }
-  write_some(0);
+  write_from(0);
+  errno = 0;
   stream.close();  // a full disk may show only here
-  if (!stream) return cannot_write(file, errno);
+  if (!stream) return cannot_write(file, reason != 0 ? reason : errno);
   return {};
 }
 

@@ -53,6 +53,7 @@ class TsdfLanes {
   [[nodiscard]] Int8 regions(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const;
   [[nodiscard]] Int8 regions_by_table(const LatticePoints& region) const;
   [[nodiscard]] Int8 slots(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const;
+  [[nodiscard]] Int8 slots_in(Int8 region, const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const;
   [[nodiscard]] Float8 distances_m(Int8 slot, Int8 offset) const;
   /// At an offset in a block, and at the next one.
   [[nodiscard]] Pairs pairs_m(Int8 slot, Int8 offset) const;
@@ -86,8 +87,16 @@ inline Int8 TsdfLanes::regions(const BlockAxis& x, const BlockAxis& y, const Blo
 }
 
 inline Int8 TsdfLanes::slots(const BlockAxis& x, const BlockAxis& y, const BlockAxis& z) const {
-  return gather(volume_.region_slots(), (regions(x, y, z) << 6) + x.in_region + y.in_region + z.in_region);
+  return slots_in(regions(x, y, z), x, y, z);
 }
+
+/// region: its number.
+inline Int8 TsdfLanes::slots_in(Int8 region, const BlockAxis& x, const BlockAxis& y,
+                                const BlockAxis& z) const {
+  return gather(volume_.region_slots(), (region << 6) + x.in_region + y.in_region + z.in_region);
+}
+
+// Offsets of voxels fit in 32 bits: tsdf.max_blocks is less than 2^22.
 
 inline Float8 TsdfLanes::distances_m(Int8 slot, Int8 offset) const {
   return gather(volume_.distances_m(), (slot << 9) + offset);
@@ -102,7 +111,7 @@ inline TsdfLanes::Location TsdfLanes::locate(const LatticePoints& voxel) const {
   const BlockAxis y = block_axis(voxel.y >> 3, 1);
   const BlockAxis z = block_axis(voxel.z >> 3, 2);
   const Int8 number = regions(x, y, z);
-  const Int8 slot = gather(volume_.region_slots(), (number << 6) + x.in_region + y.in_region + z.in_region);
+  const Int8 slot = slots_in(number, x, y, z);
   return {slot, (voxel.x & 7) + ((voxel.y & 7) << 3) + ((voxel.z & 7) << 6), number < 0};
 }
 

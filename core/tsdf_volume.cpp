@@ -13,12 +13,13 @@ namespace fusebench {
 namespace {
 
 constexpr std::size_t kBlocksPerChunk = 32;
+constexpr std::size_t kReadBeyond = 1;  // gather() of halves reads pairs
 
 }  // namespace
 
 TsdfVolume::TsdfVolume(const TsdfConfig& config) : config_(config), region_slots_(kRegionBlocks, -1) {
-  distances_m_.grow_to(kBlockVoxels + 1);
-  std::fill_n(distances_m_.data(), kBlockVoxels + 1, std::numeric_limits<Half>::quiet_NaN());
+  distances_m_.grow_to(kBlockVoxels + kReadBeyond);
+  std::fill_n(distances_m_.data(), kBlockVoxels + kReadBeyond, std::numeric_limits<Half>::quiet_NaN());
 }
 
 Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& camera,
@@ -83,10 +84,10 @@ Result<void> TsdfVolume::allocate() {
 void TsdfVolume::add_block(const BlockIndex& index) {
   const std::size_t begin = block_count() * kBlockVoxels;
   const std::size_t end = begin + kBlockVoxels;
-  distances_m_.grow_to(kBlockVoxels + end + 1);
+  distances_m_.grow_to(kBlockVoxels + end + kReadBeyond);
   weights_.grow_to(end);
   colors_.grow_to(end);
-  std::fill_n(distances_m_.data() + kBlockVoxels + begin, kBlockVoxels + 1,
+  std::fill_n(distances_m_.data() + kBlockVoxels + begin, kBlockVoxels + kReadBeyond,
               std::numeric_limits<Half>::quiet_NaN());
   std::fill_n(weights_.data() + begin, kBlockVoxels, Half(0.0F));
   std::fill_n(colors_.data() + begin, kBlockVoxels, std::uint32_t{0});

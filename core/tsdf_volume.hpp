@@ -47,7 +47,8 @@ using VoxelIndex = Eigen::Vector3i;  ///< lattice coordinates of a voxel
 /// then y, then z. What is read together lies together: rays read distances alone, and colour is seldom read.
 ///
 /// Eleven bits are enough: a distance of a centimetre is rounded by 4 micrometres at most, far below the
-/// depth noise, and the noise keeps the running mean from being stuck.
+/// depth noise, and the noise keeps the running mean from being stuck. A sum of weights does not grow by one
+/// that is less than a 4096th of it, so that far measurements saturate before tsdf.max_weight.
 struct BlockVoxels {
   Half* distance_m = nullptr;
   Half* weight = nullptr;
@@ -60,6 +61,7 @@ struct TsdfSample {
   double distance_m = 0;  ///< signed distance, metres
 };
 
+/// Once moved from, it can only be assigned or destroyed.
 class TsdfVolume {
  public:
   explicit TsdfVolume(const TsdfConfig& config);

@@ -15,10 +15,14 @@ constexpr int kCountByte = 3;
 
 Float8 byte_of(Int8 words, int number) { return to_float((words >> (8 * number)) & 0xFF); }
 
-/// A number from 0 to 1 (excluded) for each frame, evenly spread over any few frames in a row: multiples of
+// More, added to 255, would round to 256.
+constexpr float kMostRounding = 1.0F - 0x1p-16F;
+
+/// A number from 0 to kMostRounding for each frame, evenly spread over any few frames in a row: multiples of
 /// the golden ratio (Weyl 1916).
 float spread(std::uint32_t frame_number) {
-  return static_cast<float>((frame_number * 0x9E3779B9U) >> 8) / static_cast<float>(1U << 24);
+  return std::min(static_cast<float>((frame_number * 0x9E3779B9U) >> 8) / static_cast<float>(1U << 24),
+                  kMostRounding);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Image files: 8-bit colour (PNG, JPEG) and 16-bit grey (PNG). The only user of the image library, which is
-// loaded by the first image that it is needed for: one that is not a plain PNG (plain_png.hpp) or damaged.
+// Image files: 8-bit colour (PNG, JPEG), 8-bit grey and 16-bit grey (PNG). The only user of the image
+// library, which is loaded by the first image that it is needed for: one that is not a plain PNG of a
+// recording (plain_png.hpp: colour, 16-bit grey), or damaged.
 #pragma once
 
 #include <cstdint>

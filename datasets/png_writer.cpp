@@ -66,8 +66,11 @@ tl::expected<void, std::string> write_png_file(const std::filesystem::path& file
   if (!output) return reason_of_system();
   std::string reason = "not enough memory";
   const Writer writer(reason);
-  if (writer.info == nullptr || !write_rows(writer.png, writer.info, output.get(), image))
+  if (writer.info == nullptr || !write_rows(writer.png, writer.info, output.get(), image)) {
+    // The system knows more than "Write Error".
+    if (std::ferror(output.get()) != 0) return reason_of_system();
     return tl::unexpected(reason);
+  }
   if (std::fclose(output.release()) != 0) return reason_of_system();
   return {};
 }

@@ -183,9 +183,8 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
   return progress;
 }
 
-/// Makes the mesh of the model, which nothing needs any longer.
-RecordedModel make_mesh(const TsdfVolume& model, const Config& config, const Workers& workers,
-                        Progress& progress) {
+/// Makes the mesh of the model, which ends with it: metrics need the memory.
+RecordedModel make_mesh(TsdfVolume model, const Config& config, const Workers& workers, Progress& progress) {
   Mesh& mesh = progress.output.mesh;
   progress.profile.mesh.begin = Clock::now();
   mesh = extract_mesh(model, config.tsdf.min_mesh_weight, workers);

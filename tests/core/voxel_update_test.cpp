@@ -89,5 +89,22 @@ TEST(VoxelUpdate, EightVoxelsAtOnceAreTheSameBitsAsOneByOne) {
   EXPECT_LT(colored, observed);
 }
 
+TEST(VoxelUpdate, WhiteStaysWhiteHoweverItIsRounded) {
+  RgbdFrame frame;
+  frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 1.0F);
+  frame.color = ColorImage(kCamera.width_px, kCamera.height_px, Rgb{255, 255, 255});
+  const DepthConfig depth;
+  const TsdfConfig tsdf;
+  StoredBlock block;
+  const BlockIndex before_camera(0, 0, 12);
+  // Fibonacci numbers times the golden ratio are nearly whole; above or below by turns.
+  for (const std::uint32_t frame_number : {0U, 46368U, 75025U, 150050U}) {
+    VoxelUpdate(frame, kCamera, SE3{}, depth, tsdf, frame_number).apply(before_camera, block.view());
+    const Voxel voxel = block.voxel(offset_in_block({1, 1, 4}));
+    EXPECT_EQ(voxel.color, (Rgb{255, 255, 255})) << frame_number;
+    EXPECT_GT(voxel.color_count, 0) << frame_number;
+  }
+}
+
 }  // namespace
 }  // namespace fusebench

@@ -22,7 +22,8 @@ class PlainVoxelUpdate {
         T_camera_world_(T_world_camera.inverse()),
         depth_(depth),
         tsdf_(tsdf),
-        color_rounding_(static_cast<float>((frame_number * 2654435769U) >> 8) / 16777216.0F) {}
+        color_rounding_(std::min(static_cast<float>((frame_number * 2654435769U) >> 8) / 16777216.0F,
+                                 65535.0F / 65536.0F)) {}
 
   void apply(const BlockIndex& index, PlainBlock& block) const {
     const Vector3d corner = index.cast<double>() * (kBlockSide * tsdf_.voxel_m);

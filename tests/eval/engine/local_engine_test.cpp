@@ -44,6 +44,8 @@ class LocalEngineTest : public testing::InTemporaryFolder {
   }
 };
 
+// Two frames take 45 MB, starting and writing a record 15.
+constexpr std::uint64_t kTooLittleMemory = 30'000'000;
 constexpr const char* kThree = "[[sweep]]\niekf.max_iterations = [1, 2, 3]\n";
 
 TEST_F(LocalEngineTest, OutcomesAreInTheOrderOfTheJobsAndTheSameForAnyNumberAtOnce) {
@@ -78,7 +80,7 @@ TEST_F(LocalEngineTest, RepetitionsHaveFoldersOfTheirOwn) {
 TEST_F(LocalEngineTest, ARunWithoutMemoryIsARowAndTheOthersGoOn) {
   BatchPlan two = plan("[[sweep]]\niekf.max_iterations = [1, 2]\n");
   EngineOptions options;
-  options.limits.memory_bytes = 60'000'000;
+  options.limits.memory_bytes = kTooLittleMemory;
   const auto starved = run_locally(two.jobs, options);
   ASSERT_TRUE(starved.has_value()) << starved.error().message;
   for (const BatchOutcome& outcome : *starved) {
@@ -102,7 +104,7 @@ TEST_F(LocalEngineTest, OnlyFailedRunsLeavesTheRestAlone) {
   ASSERT_TRUE(run_locally(first, {}).has_value());
   const std::vector<BatchJob> second(three.jobs.begin() + 1, three.jobs.begin() + 2);
   EngineOptions starving;
-  starving.limits.memory_bytes = 60'000'000;
+  starving.limits.memory_bytes = kTooLittleMemory;
   ASSERT_TRUE(run_locally(second, starving).has_value());
   const auto again = run_locally(three.jobs, {.only_failed = true});
   ASSERT_TRUE(again.has_value());
