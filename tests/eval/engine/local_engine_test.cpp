@@ -45,7 +45,7 @@ class LocalEngineTest : public testing::InTemporaryFolder {
 };
 
 // Two frames take 45 MB, starting and writing a record 15.
-constexpr std::uint64_t kTooLittleMemory = 30'000'000;
+constexpr std::uint64_t kTooLittleMemory = 35'000'000;
 constexpr const char* kThree = "[[sweep]]\niekf.max_iterations = [1, 2, 3]\n";
 
 TEST_F(LocalEngineTest, OutcomesAreInTheOrderOfTheJobsAndTheSameForAnyNumberAtOnce) {
