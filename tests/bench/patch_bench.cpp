@@ -115,11 +115,13 @@ void linearise(benchmark::State& state) {
   const SE3 start = problem.start();
   const auto once = [&] { return measurement.linearise({start, start}, measurement.stages() - 1, true); };
 
-  // The Gauss-Newton step lowers the cost that was linearised, and leads to where the patches fit.
+  // The Gauss-Newton step lowers the cost that was linearised, and leads to where the patches fit: nearly all
+  // of the way on rendered frames, about half of it on real ones, where the cost is less round.
+  constexpr double kMostErrorLeft = 0.6;
   const MeasurementQuadratic parts = once();
   const auto [stepped, tangents] = PatchProblem::step_by(parts, start);
   if (!(measurement.trial_cost({stepped, stepped}, tangents, 1.0) < parts.cost()) ||
-      !(problem.error_m(stepped) < 0.5 * problem.error_m(start))) {
+      !(problem.error_m(stepped) < kMostErrorLeft * problem.error_m(start))) {
     return state.SkipWithError("the step does not lead to the true pose");
   }
   if (!testing::is_slope_of_cost(measurement, once(), start))
