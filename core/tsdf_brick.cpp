@@ -1,8 +1,7 @@
 #include "core/tsdf_brick.hpp"
 
 #include <algorithm>
-#include <array>
-#include <limits>
+#include <cstddef>
 
 #include "core/trilinear.hpp"
 
@@ -49,29 +48,26 @@ void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const Vo
   for (block.z() = first_block.z(); block.z() <= last_block.z(); ++block.z()) {
     for (block.y() = first_block.y(); block.y() <= last_block.y(); ++block.y()) {
       for (block.x() = first_block.x(); block.x() <= last_block.x(); ++block.x()) {
-        const int slot = volume.find_block(block);
-        copy_block(slot < 0 ? nullptr : volume.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels,
-                   block * kBlockSide);
+        // Of a block that is not there, slot -1 is read: nothing observed.
+        const std::ptrdiff_t slot = volume.find_block(block);
+        copy_block(volume.distances_m() + slot * kBlockVoxels, block * kBlockSide);
       }
     }
   }
 }
 
-/// The rows of a block that lie in the box; a block that is not there (null) is unobserved.
+/// The rows of a block that lie in the box.
 void TsdfBrick::copy_block(const Half* block_m, const VoxelIndex& block_voxel) {
   const Eigen::Vector3i from = block_voxel - origin_voxel_;
   const int begin_y = std::max(0, -from.y());
   const int end_y = std::min(kBlockSide, size_.y() - from.y());
   const int begin_z = std::max(0, -from.z());
   const int end_z = std::min(kBlockSide, size_.z() - from.z());
-  std::array<Half, kBlockSide> unknown;
-  unknown.fill(std::numeric_limits<Half>::quiet_NaN());
   for (int z = begin_z; z < end_z; ++z) {
     Half* row =
         distances_m_.data() + from.x() + size_.x() * (from.y() + begin_y + size_.y() * (from.z() + z));
     for (int y = begin_y; y < end_y; ++y, row += size_.x()) {
-      std::copy_n(block_m == nullptr ? unknown.data() : block_m + kBlockSide * (y + kBlockSide * z),
-                  kBlockSide, row);
+      std::copy_n(block_m + kBlockSide * (y + kBlockSide * z), kBlockSide, row);
     }
   }
 }

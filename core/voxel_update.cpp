@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/image_lanes.hpp"
+
 namespace fusebench {
 namespace {
+
+using lane_details::byte_of;
 
 static_assert(kBlockSide == kLanes, "a row of a block is one vector");
 
@@ -12,8 +16,6 @@ static_assert(kBlockSide == kLanes, "a row of a block is one vector");
 constexpr float kLeastWeight = 0x1p-14F;
 constexpr float kMaxColorCount = 255.0F;  // of a byte
 constexpr int kCountByte = 3;
-
-Float8 byte_of(Int8 words, int number) { return to_float((words >> (8 * number)) & 0xFF); }
 
 // More, added to 255, would round to 256.
 constexpr float kMostRounding = 1.0F - 0x1p-16F;
