@@ -1,7 +1,6 @@
 #include "core/frame_health.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <numeric>
 
@@ -15,7 +14,7 @@ constexpr double kLeastDepthShare = 0.1;  // of the image; patches need half of 
 // this size outvotes the rest of the scene once patches are cut from it (a hand before 40 % of the image
 // does).
 constexpr double kCoveredShare = 0.25;
-constexpr double kGradientGrey = 4.0;  // between neighbours of the coarsest level; above its noise
+constexpr int kGradientGrey = 4;  // between neighbours of the coarsest level; above its noise
 constexpr double kLeastTextureShare = 0.01;
 
 double mean_grey(const GreyImage& image) {
@@ -34,9 +33,9 @@ double texture_share(const GreyImage& image) {
   std::size_t textured = 0;
   for (int y = 0; y + 1 < image.height; ++y) {
     for (int x = 0; x + 1 < image.width; ++x) {
-      const double dx = image(x + 1, y) - image(x, y);
-      const double dy = image(x, y + 1) - image(x, y);
-      textured += std::hypot(dx, dy) > kGradientGrey ? 1U : 0U;
+      const int dx = image(x + 1, y) - image(x, y);
+      const int dy = image(x, y + 1) - image(x, y);
+      textured += dx * dx + dy * dy > kGradientGrey * kGradientGrey ? 1U : 0U;
     }
   }
   return static_cast<double>(textured) / static_cast<double>(image.data.size());

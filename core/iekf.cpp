@@ -105,6 +105,8 @@ class Update {
       ++result.iterations;
       result.converged = is_small_step(before.T_world_imu_by_reference, now.poses.T_world_imu_by_reference) &&
                          is_small_step(before.T_world_imu_by_model, now.poses.T_world_imu_by_model);
+      // The next stage linearises by itself where this one ends.
+      if (!last && (result.converged || iteration + 1 == budget)) break;
       quadratic = measurement_.linearise(now.poses, stage, last);
       gated = last;
     }

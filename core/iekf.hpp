@@ -59,7 +59,8 @@ class PoseMeasurement {
 
   /// Number of resolutions, coarse to fine; the last one is the measurement itself.
   [[nodiscard]] virtual int stages() const { return 1; }
-  /// Fixes associations, visibility and robust weights at the pose. `gate`: reject what is inconsistent.
+  /// Fixes associations, visibility and robust weights at the pose (those of an earlier linearisation may
+  /// do). `gate`: reject what is inconsistent.
   [[nodiscard]] virtual MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) = 0;
   /// Cost at other poses with everything that the last linearise() fixed; `step` is the full tangent step
   /// from there (by reference, then by model), of which `fraction` was taken.

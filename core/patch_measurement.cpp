@@ -14,7 +14,6 @@ namespace fusebench {
 namespace {
 // Patches a task: fixed, so that the work is cut alike for every number of threads.
 constexpr std::size_t kPatchesPerChunk = 8;
-constexpr std::size_t kGroupsPerChunk = 256;  // of eight pixels
 
 /// A place near the points of the patches.
 Vector3d origin_of(std::span<const Patch> patches) {
@@ -56,12 +55,12 @@ PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, c
       gates_(config.geometric, config.depth, scale.geometric),
       states_(patches.size()),
       outcomes_(patches.size()) {
-  for (std::size_t l = 0; l < static_cast<std::size_t>(config.patches.levels); ++l) {
-    Level& level =
-        levels_.emplace_back(Level{{}, {}, MutualOcclusion(frame.pyramid[l].width, frame.pyramid[l].height)});
-    pack(patches, l, origin_world_, level.lanes);
-    level.fixed.resize(level.lanes.pixels.size());
-  }
+  for (std::size_t l = 0; l < static_cast<std::size_t>(config.patches.levels); ++l)
+    levels_.push_back({{}, {}, MutualOcclusion(frame.pyramid[l].width, frame.pyramid[l].height)});
+  workers.for_chunks(levels_.size(), 1, [&](std::size_t l, std::size_t /*end*/) {
+    pack(patches, l, origin_world_, levels_[l].lanes);
+    levels_[l].fixed.resize(levels_[l].lanes.pixels.size());
+  });
 }
 
 MeasurementQuadratic PatchMeasurement::linearise(const PoseHypothesis& poses, int stage, bool gate) {
@@ -95,23 +94,18 @@ double PatchMeasurement::measured_variance(PoseQuadratic PatchState::*kind) cons
   return variance_factor(patch_scatter(clusters), config_.iekf.scatter_prior_freedom);
 }
 
+/// Levels do not know of each other, and have about as many pixels each.
 void PatchMeasurement::warp_all(const PosedLevels& posed) {
   const bool coarse = finest_ > 0;
   const double tolerance_m = (coarse ? 2.0 : 1.0) * config_.patches.occlusion_distance_m;
-  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+  workers_.for_chunks(levels_.size() - finest_, 1, [&](std::size_t begin, std::size_t /*end*/) {
+    const std::size_t l = finest_ + begin;
     LevelLanes& lanes = levels_[l].lanes;
-    const std::span<WarpedLanes> warped = lanes.warped;
-    workers_.for_chunks(warped.size(), kGroupsPerChunk, [&](std::size_t begin, std::size_t end) {
-      const std::size_t count = end - begin;
-      const std::span<const WarpPointLanes> warp_points = lanes.warp_points;
-      warp_level(std::span(lanes.pixels).subspan(begin, count),
-                 warp_points.empty() ? warp_points : warp_points.subspan(begin, count), posed.at[l],
-                 warped.subspan(begin, count));
-    });
-    if (!config_.terms.visibility_test) continue;
-    levels_[l].occlusion.test(warped, config_.depth);
-    test_measured_occlusion(warped, frame_.depth_m, 1 << l, tolerance_m, config_.depth);
-  }
+    warp_level(lanes.pixels, lanes.warp_points, posed.at[l], lanes.warped);
+    if (!config_.terms.visibility_test) return;
+    levels_[l].occlusion.test(lanes.warped, config_.depth);
+    test_measured_occlusion(lanes.warped, frame_.depth_m, 1 << l, tolerance_m, config_.depth);
+  });
 }
 
 void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& posed) {
@@ -119,7 +113,8 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
-      level.fixed[i].pairs = associate(posed.by_model, level.lanes.pixels[i], frame_.depth_m, gates_);
+      PlanePairs& pairs = level.fixed[i].pairs;
+      pairs = associate(posed.by_model, level.lanes.pixels[i], frame_.depth_m, gates_, pairs);
     }
   }
 }

@@ -8,6 +8,9 @@ namespace fusebench {
 
 namespace {
 
+/// Of the largest distance between a point and its measurement: less makes no difference to an association.
+constexpr float kSameShare = 0.1F;
+
 /// Unit normals of the measured surface are compared with the model's without a division: cos >= min_cosine.
 Int8 within_angle(const Points& direction, const Points& unit, float min_cosine) {
   const Float8 length = norm(direction);
@@ -85,7 +88,7 @@ AssociationGates::AssociationGates(const GeometricConfig& geometric, const Depth
       depth(depth_in) {}
 
 PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels, const DepthImage& depth_m,
-                     const AssociationGates& gates) {
+                     const AssociationGates& gates, const PlanePairs& before) {
   const Points predicted = camera.to_camera(pixels.point);
   const Int8 in_front = pixels.present & (predicted.z > 0.0F);
   const Float8 inverse_z = 1.0F / (in_front ? predicted.z : all_lanes(1.0F));
@@ -96,10 +99,17 @@ PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels, const D
                       (landed_y < static_cast<float>(depth_m.height));
   const Int8 x = inside ? to_int(landed_x) : Int8{};
   const Int8 y = inside ? to_int(landed_y) : Int8{};
-  const Float8 measured_m = gather(depth_m.data.data(), y * depth_m.width + x);
+  const Int8 at = y * depth_m.width + x;
+  const Int8 landed = inside ? at + 1 : Int8{};
+  const Int8 deeper = abs(predicted.z - before.predicted_z_m) > kSameShare * gates.max_distance_m;
+  if (!any((landed != before.landed) | (inside & deeper))) return before;
+
+  const Float8 measured_m = gather(depth_m.data.data(), at);
   const Points measured = camera.back_project(to_float(x), to_float(y), measured_m);
   const Int8 near = inside & (measured_m > 0.0F) & (norm(measured - predicted) <= gates.max_distance_m);
   PlanePairs pairs;
+  pairs.landed = landed;
+  pairs.predicted_z_m = predicted.z;
   if (!any(near)) return pairs;
 
   const Points normal = rotated(camera.R_camera_world, pixels.normal);

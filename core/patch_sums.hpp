@@ -66,6 +66,8 @@ struct PlanePairs {
   Points point_imu;
   Float8 sigma_m{};
   Int8 valid{};
+  Int8 landed{};           ///< on which pixel of the depth image, counted from 1; 0 = outside
+  Float8 predicted_z_m{};  ///< depth of the points there
 };
 
 /// Eq. 4: n . (T_world_imu * point_imu - plane_point), metres.
@@ -89,9 +91,12 @@ struct AssociationGates {
 };
 
 /// Projective association: the measurement at the pixel where each model point lands, if distance, normals
-/// and incidence agree.
+/// and incidence agree. `before`: the pairs of the same points and image at another pose, or none. They stay
+/// while all eight points land on the pixels that they landed on, as deep as they were to a tenth of the
+/// largest distance: what is measured there is the same, and what decides has hardly changed.
 [[nodiscard]] PlanePairs associate(const PosedLanes& camera, const PixelLanes& pixels,
-                                   const DepthImage& depth_m, const AssociationGates& gates);
+                                   const DepthImage& depth_m, const AssociationGates& gates,
+                                   const PlanePairs& before = {});
 
 // Inline: what all pixels of all patches go through.
 

@@ -9,6 +9,7 @@
 #include "core/depth_gates.hpp"
 #include "core/error.hpp"
 #include "core/patch_deformation.hpp"
+#include "core/tsdf_sampler.hpp"
 
 namespace fusebench {
 
@@ -338,6 +339,7 @@ std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume
 double fused_share(const TsdfVolume& model, std::span<const Patch> patches, const ReferenceFrame& frame,
                    const DepthConfig& depth) {
   const SE3 T_camera_world = frame.T_world_camera.inverse();
+  TsdfSampler sampler(model);
   double sum = 0;
   std::size_t count = 0;
   for (const Patch& patch : patches) {
@@ -345,10 +347,10 @@ double fused_share(const TsdfVolume& model, std::span<const Patch> patches, cons
       ++count;
       if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
       const Vector3d lattice = pixel.point_world / model.voxel_m();
-      const std::optional<Voxel> voxel = model.find_voxel(lattice.array().round().cast<int>());
-      if (!voxel || !(voxel->weight > 0)) continue;
+      const float weight_there = sampler.voxel(lattice.array().round().cast<int>()).weight;
+      if (!(weight_there > 0)) continue;
       const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
-      sum += std::min(1.0, weight / static_cast<double>(voxel->weight));
+      sum += std::min(1.0, weight / static_cast<double>(weight_there));
     }
   }
   return count > 0 ? sum / static_cast<double>(count) : 0.0;

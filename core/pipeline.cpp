@@ -26,8 +26,10 @@ namespace {
 /// What is derived from a frame before it is used. Its memory serves one frame after the other.
 struct PreparedFrame {
   std::vector<GreyImage> pyramid;
-  RgbdFrame frame;             ///< motion compensated, depth gated
-  DepthImage ungated_depth_m;  ///< before that
+  RgbdFrame frame;  ///< motion compensated, depth gated; compensated ones have an earlier colour until
+                    ///< prepare_color()
+  DepthImage ungated_depth_m;  ///< before the gates
+  CameraVelocity velocity;     ///< that it was compensated for, if at all
 };
 
 /// Adds the time since its construction to one stage.
@@ -82,6 +84,8 @@ struct Pipeline::State {
   [[nodiscard]] bool moved_otherwise(const GaussianState& predicted) const;
   [[nodiscard]] bool settled_wrongly(const FrameReport& report) const;
   void prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report);
+  void prepare_color(const RgbdFrame& frame, FrameReport& report);
+  [[nodiscard]] bool compensates(const RgbdFrame& frame) const;
   Result<GaussianState> predict(std::int64_t timestamp_ns, FrameReport& report) const;
   FrameStatus locate(const GaussianState& predicted, FrameReport& report);
   bool track(const GaussianState& prior, bool after_gap, FrameReport& report);
@@ -171,6 +175,7 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   report.status = status;
 
   if (trusted) {
+    prepare_color(frame, report);
     const Result<void> fused = fuse(report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(report);  // Sec. 2.3: patch update
@@ -217,14 +222,27 @@ bool Pipeline::State::moved_otherwise(const GaussianState& predicted) const {
 
 void Pipeline::State::prepare(const RgbdFrame& frame, const FilterState& motion, FrameReport& report) {
   const StageClock clock(report, Stage::preprocess);
-  if (config.terms.motion_compensation && needs_compensation(frame, rig.timing)) {
-    compensate_motion(frame, rig.camera, rig.timing, camera_velocity(motion), workers, prepared.frame);
+  if (compensates(frame)) {
+    prepared.velocity = camera_velocity(motion);
+    compensate_motion(frame, rig.camera, rig.timing, prepared.velocity, workers, prepared.frame);
   } else {
     prepared.frame = frame;
   }
   build_pyramid(prepared.frame.grey, config.patches.levels, prepared.pyramid);
   gate_depth(prepared.frame.depth_m, config.depth, prepared.ungated_depth_m);
   std::swap(prepared.frame.depth_m, prepared.ungated_depth_m);
+}
+
+bool Pipeline::State::compensates(const RgbdFrame& frame) const {
+  return config.terms.motion_compensation && needs_compensation(frame, rig.timing);
+}
+
+/// Colour serves the model alone, so it waits until the frame is to be fused.
+void Pipeline::State::prepare_color(const RgbdFrame& frame, FrameReport& report) {
+  if (!compensates(frame)) return;
+  const StageClock clock(report, Stage::preprocess);
+  compensate_color(frame, rig.camera, rig.timing, prepared.velocity, prepared.ungated_depth_m, workers,
+                   prepared.frame.color);
 }
 
 Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, FrameReport& report) const {

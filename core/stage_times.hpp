@@ -34,7 +34,7 @@ struct StageSpan {
 /// so that no frame allocates anything for it.
 class StageTimes {
  public:
-  /// A frame that is found again has nine, and the second frame of a recording, with which the first one may
+  /// A frame that is found again has ten, and the second frame of a recording, with which the first one may
   /// be done again, three times as many. What has no room is in the sums alone.
   static constexpr std::size_t kMostSpans = 32;
 

@@ -1,6 +1,8 @@
 #include "core/voxel_update.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 
 #include "core/image_lanes.hpp"
@@ -27,6 +29,12 @@ float spread(std::uint32_t frame_number) {
                   kMostRounding);
 }
 
+/// Calls use(i) for each bit i that is set.
+template <class Use>
+void for_each_bit(unsigned bits, const Use& use) {
+  for (; bits != 0; bits &= bits - 1) use(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 }  // namespace
 
 VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
@@ -49,6 +57,8 @@ VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, co
       max_color_count_(std::min(max_weight_, kMaxColorCount)),
       color_rounding_(spread(frame_number)) {}
 
+// A slice at a time, and each step for all of its rows before the next one: which rows matter is known by
+// then, so that a processor need not guess it, and takes no work back.
 void VoxelUpdate::apply(const BlockIndex& index, const BlockVoxels& block) const {
   const Vector3d corner_world = index.cast<double>() * (kBlockSide * voxel_m_);
   const Eigen::Vector3f corner_camera = (T_camera_world_ * corner_world).cast<float>();
@@ -56,20 +66,35 @@ void VoxelUpdate::apply(const BlockIndex& index, const BlockVoxels& block) const
   const Float8 step_x = kLaneNumber * step.x();
   const Float8 step_y = kLaneNumber * step.y();
   const Float8 step_z = kLaneNumber * step.z();
-  std::size_t row = 0;
-  for (int z = 0; z < kBlockSide; ++z) {
-    for (int y = 0; y < kBlockSide; ++y, row += kBlockSide) {
+  constexpr std::size_t kRows = kBlockSide;
+  std::array<SeenRow, kRows> rows;
+  std::array<Int8, kRows> colored;
+  for (std::size_t z = 0; z < kRows; ++z) {
+    const std::size_t slice = z * kRows * kLanes;
+    unsigned seen_rows = 0;
+    for (std::size_t y = 0; y < kRows; ++y) {
       const Eigen::Vector3f begin_camera = corner_camera + static_cast<float>(y) * step_camera_.col(1) +
                                            static_cast<float>(z) * step_camera_.col(2);
-      observe_row(begin_camera.x() + step_x, begin_camera.y() + step_y, begin_camera.z() + step_z, block,
-                  row);
+      rows[y] = look(begin_camera.x() + step_x, begin_camera.y() + step_y, begin_camera.z() + step_z);
+      seen_rows |= (any(rows[y].seen) ? 1U : 0U) << y;
     }
+    unsigned colored_rows = 0;
+    for_each_bit(seen_rows, [&](std::size_t y) {
+      colored[y] = add_distance(rows[y], block, slice + y * kLanes);
+      colored_rows |= (any(colored[y]) ? 1U : 0U) << y;
+    });
+    if (frame_.color.empty()) continue;
+    for_each_bit(colored_rows,
+                 [&](std::size_t y) { add_color(rows[y].pixel, colored[y], block, slice + y * kLanes); });
   }
 }
 
+Float8 VoxelUpdate::band_m(Float8 sigma_m) const {
+  return max(all_lanes(truncation_m_), truncation_sigmas_ * sigma_m);
+}
+
 // x, y, z: the voxels of a row in the camera frame.
-void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVoxels& block,
-                              std::size_t row) const {
+VoxelUpdate::SeenRow VoxelUpdate::look(Float8 x_m, Float8 y_m, Float8 z_m) const {
   const DepthImage& depth_m = frame_.depth_m;
   const Float8 inverse_z = 1.0F / z_m;
   // Half a pixel more, so that cutting the fraction off rounds to the nearest pixel.
@@ -77,35 +102,35 @@ void VoxelUpdate::observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVox
   const Float8 v = multiply_add(fy_ * y_m, inverse_z, all_lanes(cy_ + 0.5F));
   const Int8 inside = (z_m > 0.0F) & (u >= 0.0F) & (v >= 0.0F) & (u < static_cast<float>(depth_m.width)) &
                       (v < static_cast<float>(depth_m.height));
-  if (!any(inside)) return;
   // Lanes outside take pixel 0, which is there to read but not used.
   const Float8 zero{};
   const Int8 pixel = to_int(inside ? v : zero) * depth_m.width + to_int(inside ? u : zero);
   const Float8 measured_m = gather(depth_m.data.data(), pixel);
-  const Float8 sigma = depth_sigma_.at_m(measured_m);
-  const Float8 band_m = max(all_lanes(truncation_m_), truncation_sigmas_ * sigma);
   const Float8 distance_m = measured_m - z_m;
   // Further behind the surface than the band, a voxel is hidden.
-  const Int8 seen =
-      inside & (measured_m >= nearest_m_) & (measured_m <= farthest_m_) & (distance_m > -band_m);
-  if (!any(seen)) return;
+  const Int8 seen = inside & (measured_m >= nearest_m_) & (measured_m <= farthest_m_) &
+                    (distance_m > -band_m(depth_sigma_.at_m(measured_m)));
+  return {pixel, measured_m, distance_m, seen};
+}
 
+// Returns which voxels are close enough to the surface to have its colour.
+Int8 VoxelUpdate::add_distance(const SeenRow& seen, const BlockVoxels& block, std::size_t row) const {
+  const Float8 sigma_m = depth_sigma_.at_m(seen.measured_m);
+  const Float8 band = band_m(sigma_m);
   // What lies deep behind the surface is a guess, and wrong where a ray clips an edge and comes out again.
-  const Float8 half_m = 0.5F * band_m;
-  const Float8 weight = min(half_m, band_m + distance_m) * voxel_variance_ /
-                        (half_m * multiply_add(sigma, sigma, all_lanes(voxel_variance_)));
-  const Int8 observed = seen & (weight >= kLeastWeight);
+  const Float8 half_m = 0.5F * band;
+  const Float8 weight = min(half_m, band + seen.distance_m) * voxel_variance_ /
+                        (half_m * multiply_add(sigma_m, sigma_m, all_lanes(voxel_variance_)));
+  const Int8 observed = seen.seen & (weight >= kLeastWeight);
   // The running mean; what was never observed has no distance yet.
   const Float8 before_m = load(block.distance_m + row);
   const Float8 before = load(block.weight + row);
   const Float8 total = before + weight;
   const Float8 mean_m =
-      multiply_add(before > 0.0F ? before_m : zero, before, min(distance_m, band_m) * weight) / total;
+      multiply_add(before > 0.0F ? before_m : Float8{}, before, min(seen.distance_m, band) * weight) / total;
   store(observed ? mean_m : before_m, block.distance_m + row);
   store(observed ? min(total, all_lanes(max_weight_)) : before, block.weight + row);
-
-  const Int8 colored = observed & (abs(distance_m) < half_m);
-  if (!frame_.color.empty() && any(colored)) add_color(pixel, colored, block, row);
+  return observed & (abs(seen.distance_m) < half_m);
 }
 
 // The running means of the three channels. A mean moves by less than a level, so that always rounding to the

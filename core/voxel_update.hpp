@@ -18,7 +18,16 @@ class VoxelUpdate {
   void apply(const BlockIndex& index, const BlockVoxels& block) const;
 
  private:
-  void observe_row(Float8 x_m, Float8 y_m, Float8 z_m, const BlockVoxels& block, std::size_t row) const;
+  /// What the frame says of a row of eight voxels.
+  struct SeenRow {
+    Int8 pixel;         ///< that they are seen in; 0 outside of the image
+    Float8 measured_m;  ///< there
+    Float8 distance_m;  ///< from the voxel to what was measured, along the optical axis
+    Int8 seen;          ///< something was, and the voxel is not hidden behind it
+  };
+  [[nodiscard]] SeenRow look(Float8 x_m, Float8 y_m, Float8 z_m) const;
+  [[nodiscard]] Float8 band_m(Float8 sigma_m) const;
+  [[nodiscard]] Int8 add_distance(const SeenRow& seen, const BlockVoxels& block, std::size_t row) const;
   void add_color(Int8 pixel, Int8 colored, const BlockVoxels& block, std::size_t row) const;
 
   const RgbdFrame& frame_;

@@ -96,6 +96,7 @@ class PlainCompensation {
   struct Pixel {
     double depth_m = 0;
     double grey = 0;
+    Vector3d color = Vector3d::Zero();
   };
   [[nodiscard]] Pixel at(int x, int y) const {
     const Vector2d target(x, y);
@@ -112,6 +113,7 @@ class PlainCompensation {
     }
     if (!is_inside(from)) result.depth_m = 0;
     result.grey = sample_bilinear(sensed_.grey, clamped(from).x(), clamped(from).y()).value;
+    if (!sensed_.color.empty()) result.color = color_at(clamped(from));
     return result;
   }
 
@@ -137,6 +139,20 @@ class PlainCompensation {
       from += target - camera_.project(carried);
     }
     return is_inside(from) ? depth_m : 0.0;
+  }
+
+  [[nodiscard]] Vector3d color_at(const Vector2d& place) const {
+    const int left = std::min(static_cast<int>(place.x()), camera_.width_px - 2);
+    const int top = std::min(static_cast<int>(place.y()), camera_.height_px - 2);
+    const Vector2d share = place - Vector2d(left, top);
+    const auto row = [&](int y) {
+      const auto pixel = [&](int x) {
+        const Rgb& rgb = sensed_.color(x, y);
+        return Vector3d(rgb[0], rgb[1], rgb[2]);
+      };
+      return Vector3d(pixel(left) + share.x() * (pixel(left + 1) - pixel(left)));
+    };
+    return row(top) + share.y() * (row(top + 1) - row(top));
   }
 
   [[nodiscard]] double row_time_s(double row, double delay_s, double readout_s) const {
@@ -173,6 +189,24 @@ inline bool is_compensated(const RgbdFrame& compensated, const BenchScene& scene
     }
   }
   return same > 0.95 * looked_at;
+}
+
+/// The same of colour, where there is depth.
+inline bool is_color_compensated(const ColorImage& color, const DepthImage& depth_m,
+                                 const BenchScene& scene) {
+  constexpr int kStep_px = 5;
+  const PlainCompensation plain(scene);
+  int looked_at = 0;
+  int same = 0;
+  for (int y = 0; y < scene.camera.height_px; y += kStep_px) {
+    for (int x = 0; x < scene.camera.width_px; x += kStep_px) {
+      if (!(depth_m(x, y) > 0.0F)) continue;
+      const Rgb& rgb = color(x, y);
+      ++looked_at;
+      same += (Vector3d(rgb[0], rgb[1], rgb[2]) - plain.at(x, y).color).cwiseAbs().maxCoeff() < 1.5 ? 1 : 0;
+    }
+  }
+  return looked_at > 0 && same > 0.95 * looked_at;
 }
 
 }  // namespace fusebench::testing

@@ -28,9 +28,26 @@ void motion_compensation(benchmark::State& state) {
     return state.SkipWithError("the rolling shutter is not undone");
   for (auto _ : state) compensate();
   const std::size_t pixels = frame.grey.data.size();
-  // Colour, grey and depth in, the same out.
-  const double frame_bytes = bytes_of<Rgb>(pixels) + bytes_of<std::uint8_t>(pixels) + bytes_of<float>(pixels);
+  // Grey and depth in, the same out.
+  const double frame_bytes = bytes_of<std::uint8_t>(pixels) + bytes_of<float>(pixels);
   testing::report_rates(state, {"pixels", pixels, 2 * frame_bytes});
+}
+
+void color_compensation(benchmark::State& state) {
+  const BenchScene& scene = scene_of(state);
+  const Workers workers = testing::workers_of(state);
+  ColorImage color;
+  const auto compensate = [&] {
+    compensate_color(scene.sensed, scene.camera, scene.timing, scene.velocity, scene.ungated_depth_m, workers,
+                     color);
+  };
+  compensate();
+  if (!testing::is_color_compensated(color, scene.ungated_depth_m, scene))
+    return state.SkipWithError("not what the plain search finds");
+  for (auto _ : state) compensate();
+  const std::size_t pixels = color.data.size();
+  // Colour and depth in, colour out.
+  testing::report_rates(state, {"pixels", pixels, 2 * bytes_of<Rgb>(pixels) + bytes_of<float>(pixels)});
 }
 
 void pyramid(benchmark::State& state) {
@@ -63,6 +80,7 @@ void depth_gate(benchmark::State& state) {
 }
 
 BENCHMARK(motion_compensation)->Apply(testing::over_scenes_and_threads)->Unit(benchmark::kMillisecond);
+BENCHMARK(color_compensation)->Apply(testing::over_scenes_and_threads)->Unit(benchmark::kMillisecond);
 BENCHMARK(pyramid)
     ->Apply(over_scenes<3, 5>)
     ->ArgNames({"scene", "width", "levels"})

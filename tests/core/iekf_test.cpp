@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -53,6 +54,40 @@ class PositionMeasurement final : public PoseMeasurement {
   Vector3d z_;
   double information_;
 };
+
+/// The same by stages, which counts what it is asked for.
+class StagedMeasurement final : public PoseMeasurement {
+ public:
+  explicit StagedMeasurement(PositionMeasurement& one) : one_(one) {}
+  [[nodiscard]] int stages() const override { return 3; }
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) override {
+    linearised.push_back(stage);
+    return one_.linearise(poses, stage, gate);
+  }
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step, double fraction) override {
+    return one_.trial_cost(poses, step, fraction);
+  }
+  void accept() override { ++accepted; }
+
+  std::vector<int> linearised;  ///< stages
+  int accepted = 0;
+
+ private:
+  PositionMeasurement& one_;
+};
+
+TEST(Iekf, LinearisesOnceAStepAndOnceMoreForThePosterior) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  PositionMeasurement position({0.13, -0.68, 0.47}, 0.02);
+  StagedMeasurement measurement(position);
+  const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
+  EXPECT_GT(result.iterations, 3);
+  EXPECT_EQ(measurement.accepted, result.iterations);
+  EXPECT_EQ(static_cast<int>(measurement.linearised.size()), result.iterations + 1);
+  EXPECT_TRUE(std::is_sorted(measurement.linearised.begin(), measurement.linearised.end()));
+  EXPECT_EQ(measurement.linearised.front(), 0);
+  EXPECT_EQ(measurement.linearised.back(), 2);
+}
 
 TEST(Iekf, WithoutThePriorInEveryIterationTheMeasurementHasTheLastWord) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};

@@ -4,10 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
+#include <utility>
 
+#include "core/marching_cubes.hpp"
+#include "core/pipeline.hpp"
 #include "core/variants.hpp"
 #include "tests/support/rolling_shutter.hpp"
 #include "tests/support/simulated_run.hpp"
@@ -37,7 +42,9 @@ const RgbdFrame& global_frame() {
 RgbdFrame compensated(const RgbdFrame& frame, const CameraVelocity& velocity, const SensorTiming& timing,
                       int threads = 2) {
   RgbdFrame result;
-  compensate_motion(frame, small_camera(), timing, velocity, Workers(threads), result);
+  const Workers workers(threads);
+  compensate_motion(frame, small_camera(), timing, velocity, workers, result);
+  compensate_color(frame, small_camera(), timing, velocity, result.depth_m, workers, result.color);
   return result;
 }
 
@@ -52,6 +59,29 @@ bool near_depth_edge(const DepthImage& depth_m, int x, int y, int radius_px) {
     }
   }
   return most - least > 0.15F;
+}
+
+/// Three different channels, of the grey levels.
+void color_in(RgbdFrame& frame) {
+  for (std::size_t i = 0; i < frame.color.data.size(); ++i) {
+    const std::uint8_t grey = frame.grey.data[i];
+    frame.color.data[i] = {grey, static_cast<std::uint8_t>(255 - grey), static_cast<std::uint8_t>(grey / 2)};
+  }
+}
+
+/// How far colours are from those of the grey levels, where there is depth, on average.
+double color_difference(const RgbdFrame& frame) {
+  RgbdFrame expected = frame;
+  color_in(expected);
+  double sum = 0;
+  int pixels = 0;
+  for (std::size_t i = 0; i < frame.color.data.size(); ++i) {
+    if (!(frame.depth_m.data[i] > 0.0F)) continue;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      sum += std::abs(frame.color.data[i][channel] - expected.color.data[i][channel]);
+    ++pixels;
+  }
+  return sum / (3 * pixels);
 }
 
 /// Mean absolute differences from the global-shutter frame, over pixels with depth in `mask` and away from
@@ -90,7 +120,8 @@ class RollingShutter : public ::testing::TestWithParam<Motion> {};
 
 TEST_P(RollingShutter, IsUndone) {
   const CameraVelocity& velocity = GetParam().velocity;
-  const RgbdFrame before = rolling_frame(velocity, kTiming);
+  RgbdFrame before = rolling_frame(velocity, kTiming);
+  color_in(before);
   const RgbdFrame after = compensated(before, velocity, kTiming);
   const Difference wrong = difference_from_truth(before, after.depth_m);
   const Difference left = difference_from_truth(after, after.depth_m);
@@ -104,6 +135,9 @@ TEST_P(RollingShutter, IsUndone) {
   EXPECT_LT(left.grey, 0.25);
   EXPECT_LT(left.depth_m, 0.0012);
   EXPECT_EQ(after.depth_offset_ns, 0);
+  // Every channel goes where grey goes; what is left is rounding, of each by itself.
+  RecordProperty("color_from_grey", std::to_string(color_difference(after)));
+  EXPECT_LT(color_difference(after), 0.1);
 }
 
 TEST_P(RollingShutter, WithTheOppositeVelocityGetsWorse) {
@@ -165,6 +199,42 @@ TEST(MotionCompensation, MissingDepthStaysMissingAndItsColourTurnsAsIfFarAway) {
   EXPECT_EQ(without.grey.data, with_depth.grey.data);
 }
 
+// Sizes that fit no vector, tile or cell, and velocities of an estimate that has diverged.
+TEST(MotionCompensation, AnySizeAndVelocityStaysInsideTheImage) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::array<Vector3d, 4> values = {Vector3d(0, 0, 0), Vector3d(0.5, -2, 1),
+                                          Vector3d(1e30, -1e30, 1e30), Vector3d(nan, nan, nan)};
+  for (const auto& [width, height] : {std::pair{8, 2}, {9, 3}, {65, 17}, {71, 49}}) {
+    const PinholeCamera camera{width, height, 60, 60, 0.5 * width, 0.5 * height};
+    RgbdFrame frame;
+    frame.grey = GreyImage(width, height);
+    frame.depth_m = DepthImage(width, height, 1.5F);
+    frame.color = ColorImage(width, height);
+    for (std::size_t i = 0; i < frame.grey.data.size(); ++i) {
+      frame.grey.data[i] = static_cast<std::uint8_t>(i % 256);
+      frame.color.data[i] = {frame.grey.data[i], 7, 9};
+      // None, or nearer than any camera measures.
+      if (i % 5 == 0) frame.depth_m.data[i] = i % 2 == 0 ? 0.0F : 1e-4F;
+    }
+    for (const Vector3d& turn_radps : values) {
+      for (const Vector3d& move_mps : values) {
+        const CameraVelocity velocity{turn_radps, move_mps};
+        const Workers workers(1);
+        RgbdFrame result;
+        compensate_motion(frame, camera, kTiming, velocity, workers, result);
+        compensate_color(frame, camera, kTiming, velocity, result.depth_m, workers, result.color);
+        ASSERT_EQ(result.grey.data.size(), frame.grey.data.size());
+        ASSERT_EQ(result.color.data.size(), frame.color.data.size());
+        for (const float depth_m : result.depth_m.data) ASSERT_TRUE(depth_m >= 0.0F) << width;
+        if (!turn_radps.isZero() || !move_mps.isZero()) continue;
+        EXPECT_EQ(result.grey.data, frame.grey.data);
+        EXPECT_EQ(result.depth_m.data, frame.depth_m.data);
+        EXPECT_EQ(result.color.data, frame.color.data);
+      }
+    }
+  }
+}
+
 TEST(MotionCompensation, ThreadCountDoesNotShow) {
   const CameraVelocity velocity{{-1.2, 1.5, 0.8}, {0.5, -0.4, 0.6}};
   const RgbdFrame frame = rolling_frame(velocity, kTiming);
@@ -224,6 +294,28 @@ TEST(MotionCompensation, MakesFastMotionTrackableThroughARollingShutter) {
     EXPECT_LT(sum_with_m, 0.75 * sum_without_m) << name;
     EXPECT_LT(sum_with_rad, 0.15 * sum_without_rad) << name;
   }
+}
+
+TEST(MotionCompensation, FramesAreFusedWithTheirOwnColour) {
+  // Frames of one colour each: whatever the motion, what all of them saw has their mean.
+  testing::SimulatedRun run = testing::simulate(3, kTiming, {0.5, 1.8, -0.7});
+  const std::array<Rgb, 3> colors = {Rgb{200, 30, 90}, Rgb{10, 220, 40}, Rgb{70, 80, 250}};
+  for (std::size_t k = 0; k < run.frames.size(); ++k)
+    run.frames[k].color = ColorImage(run.frames[k].grey.width, run.frames[k].grey.height, colors[k]);
+  const Workers workers(1);
+  Pipeline pipeline(variant_config(*find_variant("full")).values, run.rig, run.imu, workers);
+  for (const RgbdFrame& frame : run.frames) ASSERT_TRUE(pipeline.process(frame).has_value());
+  const Mesh mesh = extract_mesh(pipeline.model(), 0.0, workers);
+  ASSERT_FALSE(mesh.colors.empty());
+  const auto is_mean = [&](const Rgb& color) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const int mean = (colors[0][channel] + colors[1][channel] + colors[2][channel]) / 3;
+      if (std::abs(color[channel] - mean) > 2) return false;
+    }
+    return true;
+  };
+  const auto means = std::count_if(mesh.colors.begin(), mesh.colors.end(), is_mean);
+  EXPECT_GT(static_cast<double>(means), 0.5 * static_cast<double>(mesh.colors.size()));
 }
 
 }  // namespace

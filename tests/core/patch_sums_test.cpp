@@ -197,5 +197,44 @@ TEST(PatchSums, PointsAreAssociatedWithWhatWasMeasuredWhereTheyLand) {
   }
 }
 
+TEST(PatchSums, AssociationsStayWhileAllPointsLandOnTheSamePixelsAsDeep) {
+  const PinholeCamera camera = testing::small_camera();
+  const auto seen_from = [&](double x_m, double z_m) {
+    return PosedLanes(PosedCamera(camera, SE3{Quaterniond::Identity(), {x_m, 0, z_m}}, SE3{}),
+                      Vector3d::Zero());
+  };
+  PixelLanes pixels;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    // Around the optical axis, so that a move along it leaves them where they are.
+    const double u_px = std::round(camera.cx_px) - 4 + static_cast<double>(lane);
+    const Vector3d point = camera.back_project(u_px, std::round(camera.cy_px), 1.5);
+    pixels.point.x[lane] = static_cast<float>(point.x());
+    pixels.point.y[lane] = static_cast<float>(point.y());
+    pixels.point.z[lane] = static_cast<float>(point.z());
+    pixels.normal.z[lane] = -1.0F;
+    pixels.present[lane] = -1;
+  }
+  const GeometricConfig geometric;
+  const AssociationGates gates(geometric, {}, 1.0);
+  const DepthImage wall_m(camera.width_px, camera.height_px, 1.49F);
+  // Another image shows whether anything is read again.
+  const DepthImage other_wall_m(camera.width_px, camera.height_px, 1.47F);
+  const PlanePairs first = associate(seen_from(0, 0), pixels, wall_m, gates);
+  ASSERT_EQ(lane_bits(first.valid), 0xFFU);
+  const auto depth_from = [&](double x_m, double z_m) {
+    const PlanePairs pairs = associate(seen_from(x_m, z_m), pixels, other_wall_m, gates, first);
+    const bool same = lane_bits(pairs.point_imu.z != all_lanes(pairs.point_imu.z[0])) == 0U;
+    return same ? pairs.point_imu.z[0] : -1.0F;
+  };
+  const double pixel_m = 1.5 / camera.fx_px;
+  EXPECT_EQ(depth_from(0.1 * pixel_m, 0), 1.49F);
+  EXPECT_EQ(depth_from(0.9 * pixel_m, 0), 1.47F);
+  EXPECT_EQ(depth_from(0, 0.05 * geometric.max_distance_m), 1.49F);
+  EXPECT_EQ(depth_from(0, 0.2 * geometric.max_distance_m), 1.47F);
+  // One point that lands elsewhere is enough.
+  pixels.point.x[3] += static_cast<float>(pixel_m);
+  EXPECT_EQ(depth_from(0, 0), 1.47F);
+}
+
 }  // namespace
 }  // namespace fusebench

@@ -34,6 +34,22 @@ void count_motion_compensation(KernelCounts& counts, const testing::BenchScene& 
       });
 }
 
+void count_color_compensation(KernelCounts& counts, const testing::BenchScene& scene) {
+  const Workers workers(1);
+  ColorImage color;
+  counts.count(
+      "color_compensation", "pixel",
+      [&] {
+        compensate_color(scene.sensed, scene.camera, scene.timing, scene.velocity, scene.ungated_depth_m,
+                         workers, color);
+      },
+      [&] {
+        check(testing::is_color_compensated(color, scene.ungated_depth_m, scene),
+              "colour is what the plain search finds");
+        return color.data.size();
+      });
+}
+
 void count_preparation(KernelCounts& counts, const testing::BenchScene& scene) {
   std::vector<GreyImage> pyramid;
   DepthImage gated_m;
@@ -58,6 +74,7 @@ void count_preparation(KernelCounts& counts, const testing::BenchScene& scene) {
 void count_frame_kernels(KernelCounts& counts, const testing::BenchScene& scene) {
   count_decoding(counts);
   count_motion_compensation(counts, scene);
+  count_color_compensation(counts, scene);
   count_preparation(counts, scene);
 }
 

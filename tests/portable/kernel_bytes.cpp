@@ -46,7 +46,9 @@ const SE3 kTWorldCamera{so3_exp({0.05, -0.08, 0.03}), {0.1, -0.1, -0.4}};
 RgbdFrame compensated(const RgbdFrame& frame, const Workers& workers) {
   const SensorTiming timing{.color_readout_s = 0.026, .depth_readout_s = 0.021};
   RgbdFrame result;
-  compensate_motion(frame, kCamera, timing, {{-1.2, 1.5, 0.8}, {0.5, -0.4, 0.6}}, workers, result);
+  const CameraVelocity velocity{{-1.2, 1.5, 0.8}, {0.5, -0.4, 0.6}};
+  compensate_motion(frame, kCamera, timing, velocity, workers, result);
+  compensate_color(frame, kCamera, timing, velocity, result.depth_m, workers, result.color);
   Bytes bytes;
   bytes.add(result.color.data);
   bytes.add(result.grey.data);

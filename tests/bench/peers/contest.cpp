@@ -52,7 +52,9 @@ RgbdFrame fusible(const RgbdFrame& frame, const Recording& recording, const Conf
   RgbdFrame result = frame;
   if (config.terms.motion_compensation && needs_compensation(frame, recording.rig.timing)) {
     const Workers workers(1);
-    compensate_motion(frame, recording.rig.camera, recording.rig.timing, velocity, workers, result);
+    const SensorRig& rig = recording.rig;
+    compensate_motion(frame, rig.camera, rig.timing, velocity, workers, result);
+    compensate_color(frame, rig.camera, rig.timing, velocity, result.depth_m, workers, result.color);
   }
   result.depth_m = gate_depth(result.depth_m, config.depth);
   return result;

@@ -1,0 +1,78 @@
+// Rows that are read one after the other while the camera moves: what moves where between the instant of a
+// frame and that of a row.
+#pragma once
+
+#include <array>
+
+#include "core/lane_points.hpp"
+#include "core/motion_compensation.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// When the rows of an image are exposed, after the frame's instant.
+struct RowTimes {
+  RowTimes(int rows, double delay_s, double readout_s)
+      : first_s(static_cast<float>(delay_s - 0.5 * readout_s)),
+        step_s(static_cast<float>(readout_s / (rows - 1))) {}
+
+  [[nodiscard]] float at(float row) const { return first_s + step_s * row; }
+
+  float first_s;
+  float step_s;
+};
+
+/// Eight displacements, pixels.
+struct Displacement8 {
+  Float8 x{};
+  Float8 y{};
+};
+
+/// A displacement as a parabola in the inverse depth of what is displaced: coefficients x0, x1, x2, y0, y1,
+/// y2. Through inverse depths of 0, 1 and 2 / m: of a motion by 20 mm at 0.4 m the rest is 0.01 px.
+struct DisplacementParabola {
+  static constexpr std::size_t kCount = 6;
+
+  template <class Coefficient>
+  [[nodiscard]] static Displacement8 at(Float8 inverse_depth, const Coefficient& coefficient) {
+    const auto parabola = [&](std::size_t i) {
+      return multiply_add(inverse_depth, multiply_add(inverse_depth, coefficient(i + 2), coefficient(i + 1)),
+                          coefficient(i));
+    };
+    return {parabola(0), parabola(3)};
+  }
+};
+
+/// A camera of constant velocity around a frame, and an image that was read meanwhile.
+class Readout {
+ public:
+  Readout(const PinholeCamera& camera, const RowTimes& times, const CameraVelocity& velocity);
+
+  /// From pixels of the frame to where the points behind them were when their rows were read.
+  [[nodiscard]] std::array<Float8, DisplacementParabola::kCount> to_rows(Float8 u, float v) const;
+
+  /// From pixels of the frame to the pixels of the image that the motion carries there, by *their* inverse
+  /// depth (as the image measured it); and what their depth is times to be there, and plus.
+  [[nodiscard]] std::array<Float8, DisplacementParabola::kCount + 2> from_rows(Float8 u, float v) const;
+
+ private:
+  struct Carried {
+    Displacement8 displacement;
+    Float8 depth_factor{};
+  };
+  [[nodiscard]] Carried forth(Float8 u, float v, float inverse_depth, const Eigen::Matrix3f& R) const;
+  [[nodiscard]] Displacement8 back(Float8 u, float v, float inverse_depth, const Eigen::Matrix3f& R) const;
+  [[nodiscard]] Eigen::Matrix3f turn_until(float v, float sign) const;
+  [[nodiscard]] Points rotated_on(const Points& a, Float8 time_s) const;
+  [[nodiscard]] Points ray(Float8 u, Float8 v) const;
+  [[nodiscard]] Points shifted(const Points& point, Float8 share) const;
+  [[nodiscard]] Displacement8 between(const Points& ray, const Points& carried) const;
+
+  RowTimes times_;
+  Eigen::Vector3f turn_radps_;
+  Points turn_;  // the same in all lanes
+  Eigen::Vector3f linear_mps_;
+  float fx_, fy_, cx_, cy_;  // pixels
+};
+
+}  // namespace fusebench
