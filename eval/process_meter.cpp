@@ -1,6 +1,7 @@
 #include "eval/process_meter.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -51,6 +52,12 @@ ProcessMeter::ProcessMeter() : start_(std::chrono::steady_clock::now()), cpu_sta
 ProcessCost ProcessMeter::cost() const {
   return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
           cpu_seconds() - cpu_start_s_, peak_rss_bytes()};
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 std::string cpu_model() {

@@ -36,6 +36,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Gives memory that was freed back to the system where the C library keeps it (glibc).
+void return_freed_memory();
+
 /// "Intel(R) Xeon(R) Processor (family 6 model 143, AVX-512)"; "unknown" if the system does not tell.
 [[nodiscard]] std::string cpu_model();
 [[nodiscard]] std::string host_name();

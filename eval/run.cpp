@@ -185,6 +185,8 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
 
 /// Makes the mesh of the model, which ends with it: metrics need the memory.
 RecordedModel make_mesh(TsdfVolume model, const Config& config, const Workers& workers, Progress& progress) {
+  // What else the pipeline had (keyframes, images) is gone, and the mesh needs the room.
+  return_freed_memory();
   Mesh& mesh = progress.output.mesh;
   progress.profile.mesh.begin = Clock::now();
   mesh = extract_mesh(model, config.tsdf.min_mesh_weight, workers);

@@ -224,32 +224,29 @@ struct TriangleTree::Builder {
   }
 };
 
-TriangleTree::TriangleTree(const PreciseMesh& mesh, const Workers& workers) {
+TriangleTree::TriangleTree(const PreciseMesh& mesh, const Workers& workers) : vertices_(mesh.vertices) {
   check(!mesh.triangles.empty(), "a tree has triangles");
   Builder builder(mesh, nodes_, workers);
   builder.build(workers);
   triangles_.resize(builder.items.size());
   workers.for_chunks(triangles_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t at = begin; at < end; ++at) {
-      const auto& [i, j, k] = mesh.triangles[builder.items[at].triangle];
-      triangles_[at] = {mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]};
-    }
+    for (std::size_t at = begin; at < end; ++at) triangles_[at] = mesh.triangles[builder.items[at].triangle];
   });
 }
 
 Vector3d TriangleTree::closest_point(const Vector3d& point, std::uint32_t place) const {
-  return closest_point_of_triangle(point, triangles_[place]);
+  return closest_point_of_triangle(point, corners(place));
 }
 
 Vector3d TriangleTree::normal(std::uint32_t place) const {
-  const auto& [a, b, c] = triangles_[place];
+  const auto [a, b, c] = corners(place);
   return (b - a).cross(c - a).stableNormalized();
 }
 
 NearestTriangle TriangleTree::nearest(const Vector3d& point, const NearestTriangle& hint) const {
   NearestTriangle best;
   if (hint.place < triangles_.size()) {
-    best = {squared_distance_to_triangle(point, triangles_[hint.place]), hint.place};
+    best = {squared_distance_to_triangle(point, corners(hint.place)), hint.place};
   }
   const auto box_distance = [&](const Node& node) {
     double sum = 0;
@@ -272,7 +269,7 @@ NearestTriangle TriangleTree::nearest(const Vector3d& point, const NearestTriang
     if (at.squared_m2 >= best.squared_m2) continue;
     const Node& node = nodes_[at.node];
     for (std::uint32_t place = node.first; place < node.first + node.count; ++place) {
-      const double squared_m2 = squared_distance_to_triangle(point, triangles_[place]);
+      const double squared_m2 = squared_distance_to_triangle(point, corners(place));
       if (squared_m2 < best.squared_m2) best = {squared_m2, place};
     }
     if (node.count > 0) continue;
@@ -322,7 +319,7 @@ bool TriangleTree::blocked(const Vector3d& from, const Vector3d& to) const {
     const Node& node = nodes_[index];
     if (!passes(node)) continue;
     for (std::uint32_t place = node.first; place < node.first + node.count; ++place) {
-      if (crosses(triangles_[place])) return true;
+      if (crosses(corners(place))) return true;
     }
     if (node.count > 0) continue;
     stack[static_cast<std::size_t>(waiting++)] = node.first;

@@ -50,8 +50,14 @@ class TriangleTree {
   };
   struct Builder;
 
+  [[nodiscard]] std::array<Vector3d, 3> corners(std::uint32_t place) const {
+    const auto& [i, j, k] = triangles_[place];
+    return {vertices_[i], vertices_[j], vertices_[k]};
+  }
+
   std::vector<Node> nodes_;
-  std::vector<std::array<Vector3d, 3>> triangles_;  ///< in the order of the leaves
+  std::vector<Vector3d> vertices_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< in the order of the leaves
 };
 
 }  // namespace fusebench
