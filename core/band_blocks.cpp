@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/bits.hpp"
 #include "core/depth_gates.hpp"
 #include "core/lanes.hpp"
 
@@ -135,9 +136,7 @@ class PixelSegments {
     }
     paths.order = measured ? order_of(axes) : all_lanes(-1);
     const unsigned walk = paths.changes(last_) & lane_bits(measured);
-    for (unsigned bits = walk; bits != 0; bits &= bits - 1) {
-      add_blocks(axes, static_cast<std::size_t>(std::countr_zero(bits)), blocks);
-    }
+    for_each_bit(walk, [&](std::size_t lane) { add_blocks(axes, lane, blocks); });
     last_ = paths;
   }
 

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/bits.hpp"
 #include "core/block_surroundings.hpp"
 #include "core/marching_cubes_table.hpp"
 #include "core/tsdf_sampler.hpp"
@@ -113,9 +114,9 @@ class BlockCells {
     const std::size_t before = surface.triangles.size();
     for (int z = 0; z < kBlockSide; ++z) {
       for (int y = 0; y < kBlockSide; ++y) {
-        for (std::uint64_t cells = crossed_cells(y, z); cells != 0; cells &= cells - 1) {
-          append_cell({std::countr_zero(cells) / 8, y, z}, surface.triangles);
-        }
+        for_each_bit(crossed_cells(y, z), [&](std::size_t bit) {
+          append_cell({static_cast<int>(bit) / 8, y, z}, surface.triangles);
+        });
       }
     }
     if (surface.triangles.size() > before)
@@ -246,12 +247,12 @@ class VertexWriter {
     bool colored = false;
     for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
       std::size_t vertex = vertices.before[word];
-      for (std::uint64_t bits = vertices.used[word]; bits != 0; bits &= bits - 1, ++vertex) {
-        const int edge = static_cast<int>(word) * 64 + std::countr_zero(bits);
+      for_each_bit(vertices.used[word], [&](std::size_t bit) {
+        const int edge = static_cast<int>(word * 64 + bit);
         const int offset = edge / 3;
         const VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
-        colored |= write_vertex(block, local, edge % 3, vertex);
-      }
+        colored |= write_vertex(block, local, edge % 3, vertex++);
+      });
     }
     return colored;
   }

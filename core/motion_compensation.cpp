@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "core/image_lanes.hpp"
 #include "core/node_grid.hpp"
 #include "core/readout.hpp"
 
@@ -19,6 +20,8 @@ constexpr std::size_t kRowsPerChunk = 32;  // whole cells of the grids
 constexpr float kRounding_px = 1e-4F;
 /// Where nothing above a pixel tells how deep it is.
 constexpr int kGuessesFromNothing = 3;
+
+using lane_details::byte_of;
 
 using Bytes [[gnu::vector_size(32)]] = std::uint8_t;  ///< of eight words
 
@@ -35,19 +38,14 @@ struct Bilinear {
   Float8 right;  // shares
   Float8 down;
 
-  [[nodiscard]] Int8 operator()(Int8 upper_left, Int8 upper_right, Int8 lower_left, Int8 lower_right) const {
+  [[nodiscard]] Int8 operator()(Float8 upper_left, Float8 upper_right, Float8 lower_left,
+                                Float8 lower_right) const {
     const Float8 upper = mixed(upper_left, upper_right);
     const Float8 lower = mixed(lower_left, lower_right);
     return to_int(multiply_add(down, lower - upper, upper + 0.5F));
   }
-  [[nodiscard]] Float8 mixed(Int8 a, Int8 b) const {
-    const Float8 from = to_float(a);
-    return multiply_add(right, to_float(b) - from, from);
-  }
+  [[nodiscard]] Float8 mixed(Float8 a, Float8 b) const { return multiply_add(right, b - a, a); }
 };
-
-/// Byte number `at` of each word.
-Int8 byte_of(Int8 words, int at) { return (words >> (8 * at)) & 0xFF; }
 
 /// Eight places in an image.
 struct Places {
@@ -82,7 +80,7 @@ class SourceBounds {
   float last_x_, last_y_;
 };
 
-using DepthGrid = NodeGrid<DisplacementParabola::kCount + 2>;
+using DepthGrid = NodeGrid<Readout::kFromRows>;
 using ColorGrid = NodeGrid<DisplacementParabola::kCount>;
 static_assert(DepthGrid::kRows == ColorGrid::kRows && kRowsPerChunk % DepthGrid::kRows == 0,
               "cells are entered together");
@@ -127,7 +125,8 @@ class DepthCarrier {
     // Across a hole the depth before it stays the best guess, unless it leads out of the image.
     const Float8 before = from.inside ? columns.inverse_depth : Float8{};
     columns.inverse_depth = measured ? inverse_depth(measured_m) : before;
-    const Float8 carried_m = multiply_add(measured_m, columns.cell.at(6, rows), columns.cell.at(7, rows));
+    const Float8 carried_m = multiply_add(measured_m, columns.cell.at(Readout::kDepthFactor, rows),
+                                          columns.cell.at(Readout::kDepthShift_m, rows));
     return from.inside & measured & (carried_m > 0.0F) ? carried_m : Float8{};
   }
 

@@ -2,10 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <optional>
 
+#include "core/bits.hpp"
 #include "core/depth_gates.hpp"
 
 namespace fusebench {
@@ -143,10 +143,9 @@ void MutualOcclusion::test(std::span<WarpedLanes> warped, const DepthConfig& dep
   const auto for_cells_in_image = [&](const auto& visit) {
     for (const WarpedLanes& w : warped) {
       const Int8 cell = nearest_pixel(w.x, w.y, width_px_, w.in_image);
-      for (unsigned bits = lane_bits(w.in_image); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      for_each_bit(lane_bits(w.in_image), [&](std::size_t lane) {
         visit(nearest_m_[static_cast<std::size_t>(cell[lane])], w.depth_m[lane]);
-      }
+      });
     }
   };
   for_cells_in_image([](float& nearest_m, float depth_m) { nearest_m = std::min(nearest_m, depth_m); });

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/bits.hpp"
 #include "core/image_lanes.hpp"
 #include "core/patch_scatter.hpp"
 #include "core/residuals.hpp"
@@ -361,15 +362,14 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
     for (std::size_t group = 0; group < warped.size(); ++group) {
       const WarpedLanes& w = warped[group];
       const Float8 observed = observed_at(w);
-      for (unsigned bits = lane_bits(w.visible); bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      for_each_bit(lane_bits(w.visible), [&](std::size_t lane) {
         const PatchPixel& pixel = pixels[group * kLanes + lane];
         const float reference = pixel.intensity;
         tracked.intensity.push_back(
             {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
         tracked.landings.push_back(
             {static_cast<std::uint32_t>(p), {w.x[lane], w.y[lane]}, reference, observed[lane]});
-      }
+      });
     }
   }
   return tracked;

@@ -40,7 +40,7 @@ std::array<Float8, DisplacementParabola::kCount> Readout::to_rows(Float8 u, floa
   return parabola_through(back(u, v, 0.0F, R), back(u, v, 1.0F, R), back(u, v, 2.0F, R));
 }
 
-std::array<Float8, DisplacementParabola::kCount + 2> Readout::from_rows(Float8 u, float v) const {
+std::array<Float8, Readout::kFromRows> Readout::from_rows(Float8 u, float v) const {
   const Eigen::Matrix3f R = turn_until(v, 1.0F);
   const Carried at_0 = forth(u, v, 0.0F, R);
   const Carried at_1 = forth(u, v, 1.0F, R);

@@ -51,9 +51,14 @@ class Readout {
   /// From pixels of the frame to where the points behind them were when their rows were read.
   [[nodiscard]] std::array<Float8, DisplacementParabola::kCount> to_rows(Float8 u, float v) const;
 
+  /// Places among what from_rows() gives, after the parabolas.
+  static constexpr std::size_t kDepthFactor = DisplacementParabola::kCount;
+  static constexpr std::size_t kDepthShift_m = kDepthFactor + 1;
+  static constexpr std::size_t kFromRows = kDepthShift_m + 1;
+
   /// From pixels of the frame to the pixels of the image that the motion carries there, by *their* inverse
   /// depth (as the image measured it); and what their depth is times to be there, and plus.
-  [[nodiscard]] std::array<Float8, DisplacementParabola::kCount + 2> from_rows(Float8 u, float v) const;
+  [[nodiscard]] std::array<Float8, kFromRows> from_rows(Float8 u, float v) const;
 
  private:
   struct Carried {

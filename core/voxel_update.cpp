@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 
+#include "core/bits.hpp"
 #include "core/image_lanes.hpp"
 
 namespace fusebench {
@@ -27,12 +27,6 @@ constexpr float kMostRounding = 1.0F - 0x1p-16F;
 float spread(std::uint32_t frame_number) {
   return std::min(static_cast<float>((frame_number * 0x9E3779B9U) >> 8) / static_cast<float>(1U << 24),
                   kMostRounding);
-}
-
-/// Calls use(i) for each bit i that is set.
-template <class Use>
-void for_each_bit(unsigned bits, const Use& use) {
-  for (; bits != 0; bits &= bits - 1) use(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 }  // namespace

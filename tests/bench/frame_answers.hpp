@@ -171,42 +171,39 @@ class PlainCompensation {
   const CameraVelocity& velocity_;
 };
 
-/// Nearly every pixel that is looked at is what the plain iterations say; at edges of depth there may be two
-/// answers.
-inline bool is_compensated(const RgbdFrame& compensated, const BenchScene& scene) {
+/// Nearly every pixel that is looked at is the same, as same(x, y, expected) says of it and of what the plain
+/// iterations find. Looked at are those where there is depth of a mask, or all.
+template <class Same>
+bool is_nearly_plain(const BenchScene& scene, const DepthImage* mask_m, const Same& same) {
   constexpr int kStep_px = 5;
   const PlainCompensation plain(scene);
   int looked_at = 0;
-  int same = 0;
+  int alike = 0;
   for (int y = 0; y < scene.camera.height_px; y += kStep_px) {
     for (int x = 0; x < scene.camera.width_px; x += kStep_px) {
-      const PlainCompensation::Pixel expected = plain.at(x, y);
-      const double depth_error_m =
-          std::abs(static_cast<double>(compensated.depth_m(x, y)) - expected.depth_m);
-      const double grey_error = std::abs(compensated.grey(x, y) - expected.grey);
+      if (mask_m != nullptr && !((*mask_m)(x, y) > 0.0F)) continue;
       ++looked_at;
-      same += depth_error_m < 1e-3 && grey_error < 1.5 ? 1 : 0;
+      alike += same(x, y, plain.at(x, y)) ? 1 : 0;
     }
   }
-  return same > 0.95 * looked_at;
+  return looked_at > 0 && alike > 0.95 * looked_at;
+}
+
+/// At edges of depth there may be two answers.
+inline bool is_compensated(const RgbdFrame& compensated, const BenchScene& scene) {
+  return is_nearly_plain(scene, nullptr, [&](int x, int y, const PlainCompensation::Pixel& expected) {
+    return std::abs(static_cast<double>(compensated.depth_m(x, y)) - expected.depth_m) < 1e-3 &&
+           std::abs(compensated.grey(x, y) - expected.grey) < 1.5;
+  });
 }
 
 /// The same of colour, where there is depth.
 inline bool is_color_compensated(const ColorImage& color, const DepthImage& depth_m,
                                  const BenchScene& scene) {
-  constexpr int kStep_px = 5;
-  const PlainCompensation plain(scene);
-  int looked_at = 0;
-  int same = 0;
-  for (int y = 0; y < scene.camera.height_px; y += kStep_px) {
-    for (int x = 0; x < scene.camera.width_px; x += kStep_px) {
-      if (!(depth_m(x, y) > 0.0F)) continue;
-      const Rgb& rgb = color(x, y);
-      ++looked_at;
-      same += (Vector3d(rgb[0], rgb[1], rgb[2]) - plain.at(x, y).color).cwiseAbs().maxCoeff() < 1.5 ? 1 : 0;
-    }
-  }
-  return looked_at > 0 && same > 0.95 * looked_at;
+  return is_nearly_plain(scene, &depth_m, [&](int x, int y, const PlainCompensation::Pixel& expected) {
+    const Rgb& rgb = color(x, y);
+    return (Vector3d(rgb[0], rgb[1], rgb[2]) - expected.color).cwiseAbs().maxCoeff() < 1.5;
+  });
 }
 
 }  // namespace fusebench::testing

@@ -86,15 +86,16 @@ TEST_P(ReadoutMotion, LeadsToWhereThePointsWereWhenTheirRowsWereRead) {
 }
 
 TEST_P(ReadoutMotion, FindsThePixelsThatMotionCarriesToAPlaceAndTheirDepthThere) {
-  const NodeGrid<DisplacementParabola::kCount + 2> grid(
-      kCamera.width_px, kCamera.height_px, [&](Float8 u, float v) { return readout.from_rows(u, v); });
+  const NodeGrid<Readout::kFromRows> grid(kCamera.width_px, kCamera.height_px,
+                                          [&](Float8 u, float v) { return readout.from_rows(u, v); });
   double worst_px = 0;
   double worst_share = 0;
   for_each_pixel(grid, [&](const Vector2d& pixel, const Vector2d& by, float depth_m, const auto& number) {
     const auto measured_m = static_cast<double>(depth_m);
     const Vector3d landed = from_row(pixel + by, measured_m, GetParam().velocity);
     worst_px = std::max(worst_px, (landed.head<2>() - pixel).norm());
-    const double carried_m = measured_m * (number(6) + number(7) / measured_m);
+    const double carried_m =
+        measured_m * (number(Readout::kDepthFactor) + number(Readout::kDepthShift_m) / measured_m);
     worst_share = std::max(worst_share, std::abs(carried_m - landed.z()) / landed.z());
   });
   RecordProperty("worst_px", std::to_string(worst_px));
