@@ -18,6 +18,8 @@ namespace {
 constexpr int kFeatures = 800;
 // Twice what a place needs to be found, so that a keyframe that shows half of an image can still tell.
 constexpr std::size_t kMinFeatures = 60;
+// With so many corners of full resolution a frame has enough features, without looking for them.
+constexpr std::size_t kPlentyOfCorners = 2 * kMinFeatures;
 // Keyframes that are tried, most matches first: the right one is not behind this many wrong ones.
 constexpr std::size_t kTried = 8;
 // Corners move and soften when an image is blurred by more; half the blur is worth the work.
@@ -51,19 +53,26 @@ double feature_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px) {
   return static_cast<double>(centre_m);
 }
 
-std::vector<SeenPoint> seen_points(std::span<const PlaceFeature> query, const Keyframe& keyframe,
+bool has_plenty_of_corners(const GreyImage& grey, const DepthImage& depth_m) {
+  const std::vector<Vector2d> corners_px = find_corners(grey);
+  const auto with_depth = std::count_if(corners_px.begin(), corners_px.end(),
+                                        [&](const Vector2d& px) { return feature_depth_m(depth_m, px) > 0; });
+  return static_cast<std::size_t>(with_depth) >= kPlentyOfCorners;
+}
+
+std::vector<SeenPoint> seen_points(std::span<const PlaceFeature> query, const Landmarks& known,
                                    std::span<const FeatureMatch> matches) {
   std::vector<SeenPoint> seen;
   seen.reserve(matches.size());
   for (const FeatureMatch& m : matches)
-    seen.push_back({keyframe.points_camera[m.known], query[m.query].pixel_px, query[m.query].scale});
+    seen.push_back({known.points_camera[m.known], query[m.query].pixel_px, query[m.query].scale});
   return seen;
 }
 
 /// The pose by one keyframe, if it is certain.
 std::optional<FoundPlace> place_by(std::span<const PlaceFeature> query, const Keyframe& keyframe,
                                    std::span<const FeatureMatch> matches, const PinholeCamera& camera) {
-  const std::vector<SeenPoint> seen = seen_points(query, keyframe, matches);
+  const std::vector<SeenPoint> seen = seen_points(query, *keyframe.landmarks, matches);
   const auto pose = pose_from_points(seen, camera);
   if (!pose || !is_certain_place(seen, *pose, camera)) return std::nullopt;
   FoundPlace found;
@@ -82,6 +91,17 @@ std::optional<FoundPlace> place_by(std::span<const PlaceFeature> query, const Ke
 
 }  // namespace
 
+Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera) {
+  Landmarks landmarks;
+  for (const PlaceFeature& feature : find_place_features(grey, kFeatures)) {
+    const double z_m = feature_depth_m(depth_m, feature.pixel_px);
+    if (z_m <= 0) continue;
+    landmarks.features.push_back(feature);
+    landmarks.points_camera.push_back(camera.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
+  }
+  return landmarks;
+}
+
 Keyframes::Keyframes(const PinholeCamera& camera, const KeyframeSpacing& spacing)
     : camera_(camera), spacing_(spacing) {
   check(spacing.distance_m > 0 && spacing.angle_rad > 0 && spacing.max_count > 0, "spacing is positive");
@@ -91,20 +111,6 @@ Keyframes::Keyframes(const PinholeCamera& camera, const KeyframeSpacing& spacing
 double Keyframes::separation(const SE3& a, const SE3& b) const {
   return std::max((a.translation - b.translation).norm() / spacing_.distance_m,
                   angle_between_axes_rad(a, b) / spacing_.angle_rad);
-}
-
-/// Images and the features that have depth.
-Keyframe Keyframes::described(const GreyImage& grey, const DepthImage& depth_m) const {
-  Keyframe keyframe;
-  for (const PlaceFeature& feature : find_place_features(grey, kFeatures)) {
-    const double z_m = feature_depth_m(depth_m, feature.pixel_px);
-    if (z_m <= 0) continue;
-    keyframe.features.push_back(feature);
-    keyframe.points_camera.push_back(camera_.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
-  }
-  keyframe.grey = grey;
-  keyframe.depth = PackedDepth(depth_m);
-  return keyframe;
 }
 
 bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE3& T_world_camera,
@@ -122,14 +128,14 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
   if (near && !takes_over) return false;
   if (T_world_barren_ && separation(*T_world_barren_, T_world_camera) < kBarrenReach) return false;
 
-  Keyframe keyframe = described(grey, depth_m);
-  if (keyframe.features.size() < kMinFeatures) {
-    T_world_barren_ = T_world_camera;
-    return false;
+  Keyframe keyframe{timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), {}};
+  if (!has_plenty_of_corners(grey, depth_m)) {
+    keyframe.landmarks = landmarks_of(grey, depth_m, camera_);
+    if (keyframe.landmarks->features.size() < kMinFeatures) {
+      T_world_barren_ = T_world_camera;
+      return false;
+    }
   }
-  keyframe.timestamp_ns = timestamp_ns;
-  keyframe.T_world_camera = T_world_camera;
-  keyframe.blur_px = blur_px;
   if (takes_over) kept_.erase(nearest);
   kept_.push_back(std::move(keyframe));
   if (kept_.size() > spacing_.max_count) drop_most_crowded();
@@ -151,7 +157,7 @@ void Keyframes::drop_most_crowded() {
   kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(crowded));
 }
 
-std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) const {
+std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
   check(grey.width == camera_.width_px && grey.height == camera_.height_px,
         "the image has the size of the camera's");
   if (kept_.empty()) return std::nullopt;
@@ -160,7 +166,11 @@ std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) const {
 
   std::vector<std::vector<FeatureMatch>> matches;
   matches.reserve(kept_.size());
-  for (const Keyframe& keyframe : kept_) matches.push_back(match_features(query, keyframe.features));
+  for (Keyframe& keyframe : kept_) {
+    if (!keyframe.landmarks)
+      keyframe.landmarks = landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_);
+    matches.push_back(match_features(query, keyframe.landmarks->features));
+  }
   std::vector<std::size_t> order(kept_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

@@ -134,10 +134,11 @@ Int8 nearest_pixel(Float8 x, Float8 y, int width_px, Int8 inside) {
 
 }  // namespace
 
-MutualOcclusion::MutualOcclusion(int width_px, int height_px)
-    : width_px_(width_px),
-      nearest_m_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px),
-                 std::numeric_limits<float>::infinity()) {}
+void MutualOcclusion::resize(int width_px, int height_px) {
+  width_px_ = width_px;
+  nearest_m_.resize(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px),
+                    std::numeric_limits<float>::infinity());
+}
 
 void MutualOcclusion::test(std::span<WarpedLanes> warped, const DepthConfig& depth) {
   const auto for_cells_in_image = [&](const auto& visit) {

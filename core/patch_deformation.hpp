@@ -25,14 +25,14 @@ void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLan
 /// nearest become invisible (an occluder may belong to another patch).
 class MutualOcclusion {
  public:
-  /// Of a level's image.
-  MutualOcclusion(int width_px, int height_px);
+  /// To the size of a level's image.
+  void resize(int width_px, int height_px);
 
   /// All pixels of the level.
   void test(std::span<WarpedLanes> warped, const DepthConfig& depth);
 
  private:
-  int width_px_;
+  int width_px_ = 0;
   std::vector<float> nearest_m_;  ///< by cell; infinite between tests
 };
 

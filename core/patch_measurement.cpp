@@ -43,24 +43,27 @@ struct PatchMeasurement::PosedLevels {
   PosedLanes by_model;
 };
 
-PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, const ObservedFrame& frame,
-                                   std::span<const Patch> patches, const ResidualScale& scale,
-                                   const Workers& workers)
+PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, const Workers& workers)
     : config_(config),
       rig_(rig),
-      frame_(frame),
-      patches_(patches),
-      scale_(scale),
       workers_(workers),
-      origin_world_(origin_of(patches)),
-      gates_(config.geometric, config.depth, scale.geometric),
-      states_(patches.size()),
-      outcomes_(patches.size()) {
-  for (std::size_t l = 0; l < static_cast<std::size_t>(config.patches.levels); ++l)
-    levels_.push_back({{}, {}, MutualOcclusion(frame.pyramid[l].width, frame.pyramid[l].height)});
-  workers.for_chunks(levels_.size(), 1, [&](std::size_t l, std::size_t /*end*/) {
-    pack(patches, l, origin_world_, levels_[l].lanes);
-    levels_[l].fixed.resize(levels_[l].lanes.pixels.size());
+      gates_(config.geometric, config.depth, scale_.geometric),
+      levels_(static_cast<std::size_t>(config.patches.levels)) {}
+
+void PatchMeasurement::observe(const ObservedFrame& frame, std::span<const Patch> patches,
+                               const ResidualScale& scale) {
+  frame_.emplace(frame);
+  patches_ = patches;
+  scale_ = scale;
+  origin_world_ = origin_of(patches);
+  gates_ = AssociationGates(config_.geometric, config_.depth, scale.geometric);
+  states_.assign(patches.size(), {});
+  outcomes_.assign(patches.size(), {});
+  workers_.for_chunks(levels_.size(), 1, [&](std::size_t l, std::size_t /*end*/) {
+    Level& level = levels_[l];
+    pack(patches, l, origin_world_, level.lanes);
+    level.fixed.assign(level.lanes.pixels.size(), {});
+    level.occlusion.resize(frame.pyramid[l].width, frame.pyramid[l].height);
   });
 }
 
@@ -105,7 +108,7 @@ void PatchMeasurement::warp_all(const PosedLevels& posed) {
     warp_level(lanes.pixels, lanes.warp_points, posed.at[l], lanes.warped);
     if (!config_.terms.visibility_test) return;
     levels_[l].occlusion.test(lanes.warped, config_.depth);
-    test_measured_occlusion(lanes.warped, frame_.depth_m, 1 << l, tolerance_m, config_.depth);
+    test_measured_occlusion(lanes.warped, frame_->depth_m, 1 << l, tolerance_m, config_.depth);
   });
 }
 
@@ -115,7 +118,7 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
     Level& level = levels_[l];
     for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
       PlanePairs& pairs = level.fixed[i].pairs;
-      pairs = associate(posed.by_model, level.lanes.pixels[i], frame_.depth_m, gates_, pairs);
+      pairs = associate(posed.by_model, level.lanes.pixels[i], frame_->depth_m, gates_, pairs);
     }
   }
 }
@@ -147,7 +150,7 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       level.fixed[i].photometric = used;
       if (!any(used)) continue;
       const IntensityLanes observed =
-          sample_bicubic(frame_.pyramid[l], used ? w.x : all_lanes(1.0F), used ? w.y : all_lanes(1.0F));
+          sample_bicubic(frame_->pyramid[l], used ? w.x : all_lanes(1.0F), used ? w.y : all_lanes(1.0F));
       Points point =
           posed.at[l].to_camera(lanes.warp_points.empty() ? pixels.point : lanes.warp_points[i].point);
       point.z = used ? point.z : all_lanes(1.0F);
@@ -319,7 +322,7 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
   Float8 cost{};
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     const LevelLanes& lanes = levels_[l].lanes;
-    const GreyImage& image = frame_.pyramid[l];
+    const GreyImage& image = frame_->pyramid[l];
     const PosedLanes& camera = posed.at[l];
     for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
       const Int8 used = levels_[l].fixed[i].photometric;
@@ -349,12 +352,17 @@ void PatchMeasurement::accept() {
 }
 
 Float8 PatchMeasurement::observed_at(const WarpedLanes& warped) const {
-  return sample_bilinear_value(frame_.pyramid.front(), warped.visible ? warped.x : all_lanes(1.0F),
+  return sample_bilinear_value(frame_->pyramid.front(), warped.visible ? warped.x : all_lanes(1.0F),
                                warped.visible ? warped.y : all_lanes(1.0F));
 }
 
 TrackedPixels PatchMeasurement::tracked_pixels() const {
   TrackedPixels tracked;
+  std::size_t count = 0;
+  for (const PatchOutcome& outcome : outcomes_)
+    count += outcome.tracked ? static_cast<std::size_t>(outcome.usable_pixels) : 0;
+  tracked.intensity.reserve(count);
+  tracked.landings.reserve(count);
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     if (!outcomes_[p].tracked) continue;
     const auto& pixels = patches_[p].levels.front().pixels;

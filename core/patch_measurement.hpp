@@ -4,6 +4,7 @@
 // model.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,8 +49,10 @@ struct PatchOutcome {
 class PatchMeasurement final : public PoseMeasurement {
  public:
   /// All references must outlive the measurement.
-  PatchMeasurement(const Config& config, const SensorRig& rig, const ObservedFrame& frame,
-                   std::span<const Patch> patches, const ResidualScale& scale, const Workers& workers);
+  PatchMeasurement(const Config& config, const SensorRig& rig, const Workers& workers);
+
+  /// Begins with a frame, in the memory of the one before. What is referred to must outlive its use.
+  void observe(const ObservedFrame& frame, std::span<const Patch> patches, const ResidualScale& scale);
 
   [[nodiscard]] int stages() const override { return config_.patches.levels; }
   [[nodiscard]] MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) override;
@@ -113,11 +116,11 @@ class PatchMeasurement final : public PoseMeasurement {
 
   const Config& config_;
   const SensorRig& rig_;
-  const ObservedFrame& frame_;
-  std::span<const Patch> patches_;
-  const ResidualScale scale_;
   const Workers& workers_;
-  Vector3d origin_world_;  ///< of the lanes' coordinates
+  std::optional<ObservedFrame> frame_;
+  std::span<const Patch> patches_;
+  ResidualScale scale_;
+  Vector3d origin_world_ = Vector3d::Zero();  ///< of the lanes' coordinates
   AssociationGates gates_;
   std::size_t finest_ = 0;  ///< level that the last linearise() began with
   std::vector<Level> levels_;

@@ -16,7 +16,6 @@ namespace fusebench {
 namespace {
 
 constexpr std::size_t kPatchesPerChunk = 8;
-constexpr std::size_t kPixelsPerChunk = 512;
 constexpr std::size_t kMostLevels = 6;  // of patches.levels
 
 /// What walks over all squares of all patches need to know.
@@ -65,11 +64,14 @@ struct Squares {
 };
 
 /// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
-/// once, since a coarse level's are partly those of a finer one.
+/// once, since a coarse level's are partly those of a finer one. Coarse pixels without measured depth are
+/// left out unless the whole patch lies in a hole: nothing is aligned by them, and intensity errors are taken
+/// on the finest level.
 void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
   const GreyImage& full = squares.frame.pyramid[0];
   const int size = squares.size_px;
   std::array<Squares::Corner, kMostLevels> corners;
+  bool measured = false;  // any pixel of the finest level
   for (std::size_t l = 0; l < squares.levels; ++l) {
     const GreyImage& image = squares.frame.pyramid[l];
     const Squares::Corner corner = corners[l] = squares.corner(patch, l);
@@ -80,6 +82,9 @@ void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work)
         pixel = -1;
         // A coarse square may reach over the border, and its last row beyond level 0's.
         if (!image.contains(x, y) || !full.contains(x << l, y << l)) continue;
+        const float measured_m = squares.frame.depth_m(x << l, y << l);
+        if (l == 0) measured |= measured_m > 0;
+        if (l > 0 && measured && measured_m <= 0) continue;
         for (std::size_t finer = 0; finer < l && pixel < 0; ++finer) {
           const int column = (x << (l - finer)) - corners[finer].x;
           const int row = (y << (l - finer)) - corners[finer].y;
@@ -88,96 +93,11 @@ void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work)
         }
         if (pixel >= 0) continue;
         pixel = static_cast<std::int32_t>(work.pixels.size());
-        const float measured_m = squares.frame.depth_m(x << l, y << l);
         work.pixels.push_back({static_cast<float>(x << l), static_cast<float>(y << l), measured_m,
                                squares.reach_m(measured_m)});
       }
     }
   }
-}
-
-/// Surfaces of the pixels of a patch beside what was measured there, where there are any.
-class BesideMeasurements {
- public:
-  void find(const SurfaceSearch& search, std::span<const ExpectedSurface> pixels,
-            std::span<SurfacePoint> surfaces) {
-    measured_.clear();
-    places_.clear();
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      surfaces[i] = {};
-      if (pixels[i].depth_m <= 0) continue;
-      measured_.push_back(pixels[i]);
-      places_.push_back(i);
-    }
-    found_.resize(measured_.size());
-    search.find_beside(measured_, brick_, found_);
-    for (std::size_t i = 0; i < places_.size(); ++i) surfaces[places_[i]] = found_[i];
-  }
-
- private:
-  TsdfBrick brick_;
-  std::vector<ExpectedSurface> measured_;
-  std::vector<std::size_t> places_;
-  std::vector<SurfacePoint> found_;
-};
-
-/// Beside what was measured. Patches are independent of each other.
-void find_beside_measurements(const SurfaceSearch& search, const Workers& workers, PatchWorkspace& work) {
-  const std::size_t patches = work.first.size() - 1;
-  workers.for_chunks(patches, kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-    BesideMeasurements beside;
-    for (std::size_t p = begin; p < end; ++p) {
-      const std::size_t first = work.first[p];
-      const std::size_t count = work.first[p + 1] - first;
-      beside.find(search, std::span(work.pixels).subspan(first, count),
-                  std::span(work.surfaces).subspan(first, count));
-    }
-  });
-}
-
-/// Further from it.
-void find_around_measurements(const SurfaceSearch& search, const Workers& workers, PatchWorkspace& work) {
-  work.expected.clear();
-  work.places.clear();
-  for (std::size_t i = 0; i < work.pixels.size(); ++i) {
-    if (work.surfaces[i].valid || work.pixels[i].depth_m <= 0) continue;
-    work.expected.push_back(work.pixels[i]);
-    work.places.push_back(i);
-  }
-  work.hits.resize(work.places.size());
-  workers.for_chunks(work.places.size(), kPixelsPerChunk, [&](std::size_t begin, std::size_t end) {
-    search.find(std::span(work.expected).subspan(begin, end - begin),
-                std::span(work.hits).subspan(begin, end - begin));
-  });
-  for (std::size_t i = 0; i < work.places.size(); ++i) work.surfaces[work.places[i]] = work.hits[i];
-}
-
-/// The surfaces behind pixels, each looked for where it would be usable: around what was measured, or all
-/// along the ray where nothing was.
-void find_surfaces(const ReferenceFrame& frame, const TsdfVolume& model, const Config& config,
-                   const Workers& workers, PatchWorkspace& work) {
-  work.surfaces.resize(work.pixels.size());
-  const SurfaceSearch search(model, frame.camera, frame.T_world_camera, config.depth);
-  find_beside_measurements(search, workers, work);
-  find_around_measurements(search, workers, work);
-
-  work.rays.clear();
-  work.places.clear();
-  for (std::size_t i = 0; i < work.pixels.size(); ++i) {
-    if (work.surfaces[i].valid) continue;
-    const ExpectedSurface& pixel = work.pixels[i];
-    PixelRay& ray = work.rays.emplace_back();
-    ray.u_px = static_cast<double>(pixel.u_px);
-    ray.v_px = static_cast<double>(pixel.v_px);
-    if (pixel.depth_m > 0) {
-      ray.begin_m = pixel.depth_m - pixel.reach_m;
-      ray.end_m = pixel.depth_m + pixel.reach_m;
-    }
-    work.places.push_back(i);
-  }
-  if (work.rays.empty()) return;
-  raycast_pixels(model, frame.camera, frame.T_world_camera, work.rays, config.depth, workers, work.hits);
-  for (std::size_t i = 0; i < work.places.size(); ++i) work.surfaces[work.places[i]] = work.hits[i];
 }
 
 /// What the model says of a pixel, if it can stand for what the camera sees there.
@@ -229,8 +149,8 @@ void trust_model_in_holes(Patch& patch) {
 }
 
 /// The pixels of a patch that have a usable surface.
-void fill_patch(const Squares& squares, std::size_t p, const Config& config, const UsableSurface& usable,
-                const PatchWorkspace& work, Patch& patch) {
+void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usable,
+                const PatchWorkspace& work, std::span<const SurfacePoint> surfaces, Patch& patch) {
   const ReferenceFrame& frame = squares.frame;
   const Vector2d& centre_px = squares.centres[p].pixel_px;
   patch.centre_px = {static_cast<int>(std::lround(centre_px.x())),
@@ -247,13 +167,13 @@ void fill_patch(const Squares& squares, std::size_t p, const Config& config, con
       const std::int32_t number = work.pixel_of[squares.first(p, l) + i];
       if (number < 0) continue;
       const auto at = static_cast<std::size_t>(number);
-      const std::optional<PatchPixel> pixel = usable(work.pixels[at], work.surfaces[at]);
+      const std::optional<PatchPixel> pixel = usable(work.pixels[at], surfaces[at]);
       if (!pixel) continue;
       const auto x = static_cast<int>(work.pixels[at].u_px);
       const auto y = static_cast<int>(work.pixels[at].v_px);
       pixels.push_back(*pixel);
       pixels.back().intensity = frame.pyramid[l](x >> l, y >> l);
-      pixels.back().depth_confirmed = is_one_surface(frame.depth_m, x, y, reach_px, config.depth.edge_jump);
+      pixels.back().depth_confirmed = is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
     }
   }
   trust_model_in_holes(patch);
@@ -272,11 +192,13 @@ void cut_patches(const ReferenceFrame& frame, const TsdfVolume& model, std::span
     add_pixels(squares, p, work);
     work.first.push_back(work.pixels.size());
   }
-  find_surfaces(frame, model, config, workers, work);
+  const std::span<const SurfacePoint> surfaces = work.surfaces.find(
+      model, frame.camera, frame.T_world_camera, config.depth, work.pixels, work.first, workers);
   const UsableSurface usable(frame, config);
   patches.resize(centres.size());
   workers.for_chunks(patches.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) fill_patch(squares, p, config, usable, work, patches[p]);
+    for (std::size_t p = begin; p < end; ++p)
+      fill_patch(squares, p, usable, work, surfaces, patches[p]);
   });
 }
 

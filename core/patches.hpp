@@ -8,8 +8,7 @@
 
 #include "core/config.hpp"
 #include "core/parallel.hpp"
-#include "core/raycast.hpp"
-#include "core/surface_search.hpp"
+#include "core/patch_surfaces.hpp"
 #include "core/tsdf_volume.hpp"
 #include "core/types.hpp"
 
@@ -68,13 +67,8 @@ struct PatchWorkspace {
   std::vector<ExpectedSurface>
       pixels;                      ///< of level 0 that a patch needs at any level, by patch; depth 0 = none
   std::vector<std::size_t> first;  ///< of each patch, and the end
-  std::vector<std::int32_t> pixel_of;  ///< by patch, level, row, column; -1 = outside of the image
-  std::vector<SurfacePoint> surfaces;  ///< one a pixel
-  // Pixels that were not found at once:
-  std::vector<std::size_t> places;
-  std::vector<ExpectedSurface> expected;
-  std::vector<PixelRay> rays;
-  std::vector<SurfacePoint> hits;
+  std::vector<std::int32_t> pixel_of;  ///< by patch, level, row, column; -1 = none
+  PatchSurfaces surfaces;
 };
 
 /// Sec. 2.3: surviving patches are cut again as squares at their new places, and FAST corners with enough

@@ -71,7 +71,8 @@ struct Pipeline::State {
         imu(imu_in),
         workers(workers_in),
         model(config_in.tsdf),
-        keyframes(rig_in.camera) {
+        keyframes(rig_in.camera),
+        measurement(config, rig, workers) {
     // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
     if (config.terms.prior == Prior::constant_velocity) rig.T_imu_camera = SE3{};
   }
@@ -108,6 +109,7 @@ struct Pipeline::State {
   std::optional<FilterState> initial_motion;
   std::vector<Patch> patches;  ///< cut from the last fused frame
   PatchWorkspace patch_workspace;
+  PatchMeasurement measurement;          ///< of them in the current frame
   int occluded_frames = 0;               ///< in a row
   int lost_frames = 0;                   ///< in a row, before the current one
   ResidualScale residual_scale;          ///< what the residuals of the frames so far showed
@@ -284,7 +286,7 @@ bool Pipeline::State::settled_wrongly(const FrameReport& report) const {
 bool Pipeline::State::track(const GaussianState& prior, bool after_gap, FrameReport& report) {
   const StageClock clock(report, Stage::update);
   const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
-  PatchMeasurement measurement(config, rig, observed, patches, residual_scale, workers);
+  measurement.observe(observed, patches, residual_scale);
   const IekfResult result = iekf_update(prior, measurement, config.iekf);
   describe_update(measurement, result, patches, report);
   report.blur_px = predicted_blur_px(prior.mean);

@@ -29,6 +29,11 @@ constexpr int kSurplus = 8;
 constexpr int kGridColumns = 8;
 constexpr int kGridRows = 6;
 
+// OpenCV has no read-only view; nothing writes through this one.
+cv::Mat view_of(const GreyImage& grey) {
+  return {grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data.data())};
+}
+
 int cell_of(const cv::KeyPoint& corner, const GreyImage& grey) {
   const int column = static_cast<int>(corner.pt.x) * kGridColumns / grey.width;
   const int row = static_cast<int>(corner.pt.y) * kGridRows / grey.height;
@@ -90,8 +95,7 @@ struct Nearest {
 
 std::vector<PlaceFeature> find_place_features(const GreyImage& grey, int max_count) {
   if (grey.width <= 2 * kPatch_px || grey.height <= 2 * kPatch_px) return {};
-  // OpenCV has no read-only view; nothing writes through this one.
-  const cv::Mat view(grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data.data()));
+  const cv::Mat view = view_of(grey);
   // The score of FAST is an integer, that of Harris is not.
   const auto orb = cv::ORB::create(kSurplus * max_count, kLevelFactor, kLevels, kEdge_px, 0, 2,
                                    cv::ORB::FAST_SCORE, kPatch_px, kFastThreshold);
@@ -110,6 +114,20 @@ std::vector<PlaceFeature> find_place_features(const GreyImage& grey, int max_cou
            std::make_tuple(b.pixel_px.y(), b.pixel_px.x(), b.scale, b.descriptor);
   });
   return features;
+}
+
+std::vector<Vector2d> find_corners(const GreyImage& grey) {
+  if (grey.width <= 2 * kPatch_px || grey.height <= 2 * kPatch_px) return {};
+  const cv::Rect inside(kEdge_px, kEdge_px, grey.width - 2 * kEdge_px, grey.height - 2 * kEdge_px);
+  std::vector<cv::KeyPoint> corners;
+  cv::FAST(view_of(grey)(inside), corners, kFastThreshold, true);
+  std::vector<Vector2d> corners_px;
+  corners_px.reserve(corners.size());
+  for (const cv::KeyPoint& corner : corners) {
+    corners_px.emplace_back(static_cast<double>(corner.pt.x) + kEdge_px,
+                            static_cast<double>(corner.pt.y) + kEdge_px);
+  }
+  return corners_px;
 }
 
 int hamming_distance(const OrbDescriptor& a, const OrbDescriptor& b) {

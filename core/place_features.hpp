@@ -29,6 +29,9 @@ struct PlaceFeature {
 /// rows, columns and scales.
 [[nodiscard]] std::vector<PlaceFeature> find_place_features(const GreyImage& grey, int max_count);
 
+/// Corners of level 0 alone that could be features: some twentieth of the work of finding those.
+[[nodiscard]] std::vector<Vector2d> find_corners(const GreyImage& grey);
+
 /// Different bits of two descriptors, 0 to 256.
 [[nodiscard]] int hamming_distance(const OrbDescriptor& a, const OrbDescriptor& b);
 

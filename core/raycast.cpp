@@ -75,24 +75,20 @@ struct PixelLanes {
 // of one while it waits for the memory of another. A ray's result does not depend on those beside it.
 class RayCaster {
  public:
-  RayCaster(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
+  RayCaster(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
             const DepthConfig& depth)
-      : pixels_(camera, T_world_camera, volume.voxel_m()),
-        field_(field_in_view(volume, camera, T_world_camera, depth)),
+      : field_(field),
+        pixels_(camera, T_world_camera, field.volume().voxel_m()),
+        bounds_(field.volume(), camera, T_world_camera, depth),
+        origin_((T_world_camera.translation / field.volume().voxel_m() - field.origin_voxel()).cast<float>()),
         nearest_m_(static_cast<float>(depth.min_m)),
         farthest_m_(static_cast<float>(depth.max_m)),
-        voxel_m_(static_cast<float>(volume.voxel_m())) {
-    if (!field_) return;
-    bounds_.emplace(volume, camera, T_world_camera, depth);
-    origin_ = (T_world_camera.translation / volume.voxel_m() - field_->origin_voxel()).cast<float>();
-  }
+        voxel_m_(static_cast<float>(field.volume().voxel_m())) {}
 
   static constexpr std::size_t kMostTurns = 8;
 
   /// At most kMostTurns times eight pixels.
   void cast(std::span<const PixelLanes> pixels, std::span<Hits> hits) const {
-    std::fill(hits.begin(), hits.end(), Hits{});
-    if (!field_) return;
     std::array<Walk, kMostTurns> storage;
     const std::span<Walk> walks = std::span(storage).first(pixels.size());
     std::array<Walk*, kMostTurns> on_their_way;
@@ -105,7 +101,7 @@ class RayCaster {
     while (count > 0) {
       const std::span<Walk*> active = std::span(on_their_way).first(count);
       for (Walk* walk : active) locate(*walk);
-      for (Walk* walk : active) walk->nearest_m = field_->distances_m(walk->location);
+      for (Walk* walk : active) walk->nearest_m = field_.distances_m(walk->location);
       for (Walk* walk : active) step(*walk);
       const auto arrived =
           std::remove_if(active.begin(), active.end(), [](const Walk* walk) { return !any(walk->walking); });
@@ -134,7 +130,7 @@ class RayCaster {
     // Half a voxel more, so that the floor is the nearest voxel.
     const Points at = walk.rays.at(walk.z_m);
     walk.voxel = {floor_to_int(at.x + 0.5F), floor_to_int(at.y + 0.5F), floor_to_int(at.z + 0.5F)};
-    walk.location = field_->locate(walk.voxel);
+    walk.location = field_.locate(walk.voxel);
   }
 
   [[nodiscard]] Sample sample(const Walk& walk) const {
@@ -154,7 +150,7 @@ class RayCaster {
     }
     result.near = (abs(walk.nearest_m) < kNear_voxels * voxel_m_) & walking;
     if (any(result.near)) {
-      const Float8 interpolated_m = field_->sample(at);
+      const Float8 interpolated_m = field_.sample(at);
       result.distance_m = result.near ? interpolated_m : result.distance_m;
     }
     return result;
@@ -164,7 +160,7 @@ class RayCaster {
     Walk walk;
     walk.rays = rays_of(pixels.u, pixels.v);
     const Float8 begin_m =
-        max(max(pixels.begin_m, bounds_->nearest_m(pixels.u, pixels.v)), all_lanes(nearest_m_));
+        max(max(pixels.begin_m, bounds_.nearest_m(pixels.u, pixels.v)), all_lanes(nearest_m_));
     walk.end_m = min(pixels.end_m, all_lanes(farthest_m_));
     walk.walking = begin_m <= walk.end_m;
     walk.z_m = walk.walking ? begin_m : all_lanes(nearest_m_);
@@ -211,7 +207,7 @@ class RayCaster {
     Int8 found = walk.brackets.front_z_m == walk.brackets.front_z_m;
     if (!any(found)) return {};
     const Float8 depth_m = refined(rays, walk.brackets, found);
-    const Points gradient = field_->gradient(rays.at(found ? depth_m : all_lanes(nearest_m_)));
+    const Points gradient = field_.gradient(rays.at(found ? depth_m : all_lanes(nearest_m_)));
     return hits_at(found, depth_m, gradient, rays.direction);
   }
 
@@ -222,7 +218,7 @@ class RayCaster {
     Int8 open = found & (bracket.back_z_m - bracket.front_z_m > enough_z);
     for (int i = 0; i < kMostRefinements && any(open); ++i) {
       const Float8 z_m = i % 2 == 0 ? bracket.zero_of_chord() : 0.5F * (bracket.front_z_m + bracket.back_z_m);
-      const Float8 distance_m = field_->sample(rays.at(open ? z_m : all_lanes(nearest_m_)));
+      const Float8 distance_m = field_.sample(rays.at(open ? z_m : all_lanes(nearest_m_)));
       const Int8 unknown = open & (distance_m != distance_m);
       found &= ~unknown;
       open &= ~unknown;
@@ -238,10 +234,10 @@ class RayCaster {
     return found ? bracket.zero_of_chord() : all_lanes(nearest_m_);
   }
 
+  const TsdfLanes& field_;
   PixelRays pixels_;
-  std::optional<TsdfLanes> field_;  // none if there is nothing to see, as of
-  std::optional<BlockBounds> bounds_;
-  Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();
+  BlockBounds bounds_;
+  Eigen::Vector3f origin_;
   float nearest_m_, farthest_m_;
   float voxel_m_;
 };
@@ -261,8 +257,19 @@ SurfacePoint raycast_pixel(const TsdfVolume& volume, const PinholeCamera& camera
 void raycast_pixels(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
                     std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
                     std::vector<SurfacePoint>& points) {
+  const std::optional<TsdfLanes> field = field_in_view(volume, camera, T_world_camera, depth);
+  if (field) {
+    raycast_pixels(*field, camera, T_world_camera, pixels, depth, workers, points);
+  } else {
+    points.assign(pixels.size(), SurfacePoint{});
+  }
+}
+
+void raycast_pixels(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
+                    std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
+                    std::vector<SurfacePoint>& points) {
   points.resize(pixels.size());
-  const RayCaster caster(volume, camera, T_world_camera, depth);
+  const RayCaster caster(field, camera, T_world_camera, depth);
   workers.for_chunks(pixels.size(), kPixelsPerTurn, [&](std::size_t begin, std::size_t end) {
     std::array<PixelLanes, RayCaster::kMostTurns> lanes;
     std::array<Hits, RayCaster::kMostTurns> hits;
@@ -286,7 +293,9 @@ SurfaceImage raycast_image(const TsdfVolume& volume, const PinholeCamera& camera
                            const DepthConfig& depth, const Workers& workers) {
   SurfaceImage image = {DepthImage(camera.width_px, camera.height_px),
                         Image<Eigen::Vector3f>(camera.width_px, camera.height_px, Eigen::Vector3f::Zero())};
-  const RayCaster caster(volume, camera, T_world_camera, depth);
+  const std::optional<TsdfLanes> field = field_in_view(volume, camera, T_world_camera, depth);
+  if (!field) return image;
+  const RayCaster caster(*field, camera, T_world_camera, depth);
   const auto rows = static_cast<std::size_t>(camera.height_px);
   workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
     std::array<PixelLanes, RayCaster::kMostTurns> lanes;

@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "core/surface_point.hpp"
+#include "core/tsdf_lanes.hpp"
 #include "core/tsdf_volume.hpp"
 #include "core/types.hpp"
 
@@ -31,6 +32,10 @@ struct PixelRay {
 /// raycast_pixel for a list of pixels, in parallel; results in the order of the pixels, in memory that is
 /// used again. Neighbours in the list should be neighbours in the image.
 void raycast_pixels(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
+                    std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
+                    std::vector<SurfacePoint>& points);
+/// The same in a field that is already in view of the camera (field_in_view).
+void raycast_pixels(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                     std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
                     std::vector<SurfacePoint>& points);
 

@@ -48,27 +48,24 @@ struct SurfaceSearch::Eight {
   Float8 reach_m;
 };
 
-SurfaceSearch::SurfaceSearch(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
+SurfaceSearch::SurfaceSearch(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                              const DepthConfig& depth)
-    : volume_(volume),
-      rays_(camera, T_world_camera, volume.voxel_m()),
-      camera_voxel_(T_world_camera.translation / volume.voxel_m()),
+    : field_(field),
+      rays_(camera, T_world_camera, field.volume().voxel_m()),
+      camera_voxel_(T_world_camera.translation / field.volume().voxel_m()),
       depth_(depth),
-      voxel_m_(static_cast<float>(volume.voxel_m())),
-      field_(field_in_view(volume, camera, T_world_camera, depth)) {}
+      voxel_m_(static_cast<float>(field.volume().voxel_m())) {}
 
 void SurfaceSearch::find(std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const {
-  std::fill(surfaces.begin(), surfaces.end(), SurfacePoint{});
-  if (field_) find_in(*field_, field_->origin_voxel(), false, pixels, surfaces);
+  find_in(field_, field_.origin_voxel(), false, pixels, surfaces);
 }
 
 void SurfaceSearch::find_beside(std::span<const ExpectedSurface> pixels, TsdfBrick& brick,
                                 std::span<SurfacePoint> surfaces) const {
-  std::fill(surfaces.begin(), surfaces.end(), SurfacePoint{});
-  if (!field_ || pixels.empty()) return;
+  if (pixels.empty()) return;
   const Box box = box_around(pixels);
   if (box.voxels() <= kMostVoxels && box.voxels() <= kVoxelsPerPixel * static_cast<double>(pixels.size())) {
-    brick.copy(volume_, box.first, box.last);
+    brick.copy(field_.volume(), box.first, box.last);
     find_in(brick, brick.origin_voxel().cast<double>(), true, pixels, surfaces);
   } else if (pixels.size() > kFewPixels) {
     // An edge between near and far, or pixels that are far apart: parts of them may do.
@@ -76,7 +73,7 @@ void SurfaceSearch::find_beside(std::span<const ExpectedSurface> pixels, TsdfBri
     find_beside(pixels.first(half), brick, surfaces.first(half));
     find_beside(pixels.subspan(half), brick, surfaces.subspan(half));
   } else {
-    find_in(*field_, field_->origin_voxel(), true, pixels, surfaces);
+    find_in(field_, field_.origin_voxel(), true, pixels, surfaces);
   }
 }
 

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 
 #include "core/ray_lanes.hpp"
 #include "core/tsdf_brick.hpp"
 #include "core/tsdf_lanes.hpp"
-#include "core/tsdf_volume.hpp"
 
 namespace fusebench {
 
@@ -23,8 +21,8 @@ struct ExpectedSurface {
 
 class SurfaceSearch {
  public:
-  /// The volume must outlive the search, and not change meanwhile.
-  SurfaceSearch(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
+  /// field: in view of that camera (field_in_view); must outlive the search.
+  SurfaceSearch(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                 const DepthConfig& depth);
 
   /// The zero of the trilinear field that the field at the expected place leads to, to a fiftieth of a voxel,
@@ -49,12 +47,11 @@ class SurfaceSearch {
   [[nodiscard]] Eight eight_of(std::span<const ExpectedSurface> pixels, std::size_t begin, bool beside) const;
   [[nodiscard]] Box box_around(std::span<const ExpectedSurface> pixels) const;
 
-  const TsdfVolume& volume_;
+  const TsdfLanes& field_;
   PixelRays rays_;
   Vector3d camera_voxel_;
   DepthConfig depth_;
   float voxel_m_;
-  std::optional<TsdfLanes> field_;  // none if there is nothing to see
 };
 
 }  // namespace fusebench

@@ -18,6 +18,7 @@ class TsdfLanes {
   /// Further than reach_m from the centre there may seem to be no blocks.
   TsdfLanes(const TsdfVolume& volume, const Vector3d& centre_world, double reach_m);
 
+  [[nodiscard]] const TsdfVolume& volume() const { return volume_; }
   /// World coordinates in voxels of the origin.
   [[nodiscard]] const Vector3d& origin_voxel() const { return origin_voxel_; }
 

@@ -111,7 +111,8 @@ double flop_of_linearisation(const ResidualCounts& counts) {
 void linearise(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(3)));
   const PatchProblem problem(scene_of(state), workers, static_cast<int>(state.range(2)));
-  PatchMeasurement measurement = problem.measurement(workers);
+  const auto in_frame = problem.measurement(workers);
+  PatchMeasurement& measurement = *in_frame;
   const SE3 start = problem.start();
   const auto once = [&] { return measurement.linearise({start, start}, measurement.stages() - 1, true); };
 
@@ -137,7 +138,8 @@ void linearise(benchmark::State& state) {
 void trial_cost(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(3)));
   const PatchProblem problem(scene_of(state), workers, static_cast<int>(state.range(2)));
-  PatchMeasurement measurement = problem.measurement(workers);
+  const auto in_frame = problem.measurement(workers);
+  PatchMeasurement& measurement = *in_frame;
   const SE3 start = problem.start();
   const MeasurementQuadratic parts = measurement.linearise({start, start}, measurement.stages() - 1, true);
   if (!testing::is_slope_of_cost(measurement, parts, start))

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "core/depth_gates.hpp"
@@ -33,8 +34,11 @@ struct PatchProblem {
   [[nodiscard]] ReferenceFrame reference() const {
     return {reference_pyramid, reference_depth_m, scene.camera, scene.views.back().T_world_camera};
   }
-  [[nodiscard]] PatchMeasurement measurement(const Workers& workers) const {
-    return {config, rig, observed, patches, {}, workers};
+  /// The patches in the frame.
+  [[nodiscard]] std::unique_ptr<PatchMeasurement> measurement(const Workers& workers) const {
+    auto measurement = std::make_unique<PatchMeasurement>(config, rig, workers);
+    measurement->observe(observed, patches, {});
+    return measurement;
   }
   /// Distance of a pose from where the patches fit.
   [[nodiscard]] double error_m(const SE3& T_world_camera) const {
@@ -73,7 +77,8 @@ struct PatchProblem {
   }
   /// A frame's update, from its patches on.
   [[nodiscard]] IekfResult update(const GaussianState& prior, const Workers& workers) const {
-    PatchMeasurement measured = measurement(workers);
+    const auto in_frame = measurement(workers);
+    PatchMeasurement& measured = *in_frame;
     return iekf_update(prior, measured, config.iekf);
   }
   [[nodiscard]] bool is_updated(const IekfResult& result) const {
@@ -106,7 +111,8 @@ struct PatchProblem {
   /// The true poses of a recording are off by some millimetres: the pose to be found is the one at which a
   /// dozen plain Gauss-Newton steps end, and that is where the truth is, as far as it is known.
   [[nodiscard]] SE3 best_fit(const Workers& workers) const {
-    PatchMeasurement measured = measurement(workers);
+    const auto in_frame = measurement(workers);
+    PatchMeasurement& measured = *in_frame;
     SE3 pose = scene.T_world_camera;
     double last_step = 1;
     for (int i = 0; i < 12; ++i) {

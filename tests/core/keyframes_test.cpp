@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "core/error.hpp"
@@ -108,7 +109,7 @@ TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
 }
 
 TEST(Keyframes, FindNothingWhereNoneHasBeen) {
-  const Keyframes keyframes = one_keyframe();
+  Keyframes keyframes = one_keyframe();
   ASSERT_EQ(keyframes.size(), 1U);
   EXPECT_TRUE(keyframes.find(seen_from({}).grey)) << "else the rest says nothing";
   const SE3 back{so3_exp({0, radians(180), 0}), Vector3d::Zero()};
@@ -122,7 +123,7 @@ TEST(Keyframes, FindNothingWhereNoneHasBeen) {
 
 TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
   // A poster may hang in two rooms: what is seen in one corner of the image tells no pose.
-  const Keyframes keyframes = one_keyframe();
+  Keyframes keyframes = one_keyframe();
   const GreyImage whole = seen_from({}).grey;
   GreyImage corner(320, 240, 140);
   for (int y = 60; y < 180; ++y) {
@@ -134,7 +135,7 @@ TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
 }
 
 TEST(Keyframes, AnEmptyStoreFindsNothing) {
-  const Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera());
   EXPECT_EQ(keyframes.size(), 0U);
   EXPECT_FALSE(keyframes.find(seen_from({}).grey));
 }
@@ -197,16 +198,46 @@ TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
     for (int x = 160; x < 320; ++x) frame.depth_m(x, y) = 0;
     for (int x = 100; x < 160; ++x) frame.depth_m(x, y) = 9;  // behind all else
   }
-  Keyframes keyframes(small_camera());
-  ASSERT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
-  const Keyframe& kept = keyframes[0];
-  ASSERT_EQ(kept.features.size(), kept.points_camera.size());
-  for (std::size_t i = 0; i < kept.features.size(); ++i) {
-    const Vector2d& pixel_px = kept.features[i].pixel_px;
+  const Landmarks landmarks = landmarks_of(frame.grey, frame.depth_m, small_camera());
+  ASSERT_GT(landmarks.features.size(), 100U);
+  ASSERT_EQ(landmarks.features.size(), landmarks.points_camera.size());
+  for (std::size_t i = 0; i < landmarks.features.size(); ++i) {
+    const Vector2d& pixel_px = landmarks.features[i].pixel_px;
     EXPECT_LT(pixel_px.x(), 160);
     EXPECT_GT(std::abs(pixel_px.x() - 99.5), 1.0);
-    EXPECT_LT((small_camera().project(kept.points_camera[i]) - pixel_px).norm(), 1e-9);
+    EXPECT_LT((small_camera().project(landmarks.points_camera[i]) - pixel_px).norm(), 1e-9);
   }
+}
+
+TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
+  RgbdFrame frame = seen_from({});
+  frame.grey = noise_image();
+  ASSERT_GT(find_corners(frame.grey).size(), 500U);
+  Keyframes keyframes(small_camera());
+  ASSERT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
+  EXPECT_FALSE(keyframes[0].landmarks);
+  ASSERT_TRUE(keyframes.find(frame.grey));
+  ASSERT_TRUE(keyframes[0].landmarks);
+  const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera());
+  const Landmarks& later = *keyframes[0].landmarks;
+  ASSERT_EQ(later.features.size(), at_once.features.size());
+  for (std::size_t i = 0; i < later.features.size(); ++i) {
+    EXPECT_EQ(later.features[i].descriptor, at_once.features[i].descriptor);
+    EXPECT_LT((later.points_camera[i] - at_once.points_camera[i]).norm(), 3e-4) << "depth is packed";
+  }
+}
+
+TEST(Keyframes, WhereCornersAreFewTheLandmarksDecide) {
+  // A blurred image has corners on coarse levels only.
+  RgbdFrame frame = seen_from({});
+  cv::Mat sharp(240, 320, CV_8UC1, frame.grey.data.data());
+  GreyImage blurred(320, 240);
+  cv::Mat smooth(240, 320, CV_8UC1, blurred.data.data());
+  cv::GaussianBlur(sharp, smooth, {}, 2.5);
+  ASSERT_LT(find_corners(blurred).size(), 120U);
+  Keyframes keyframes(small_camera());
+  EXPECT_TRUE(keyframes.offer(blurred, frame.depth_m, {}, 0));
+  EXPECT_TRUE(keyframes[0].landmarks);
 }
 
 TEST(Keyframes, TheNumberOfThreadsDoesNotShow) {
@@ -215,11 +246,11 @@ TEST(Keyframes, TheNumberOfThreadsDoesNotShow) {
   const auto bytes = [&](int threads) {
     cv::setNumThreads(threads);
     cv::theRNG().state = static_cast<std::uint64_t>(threads);  // nor what others drew
-    const Keyframes keyframes = one_keyframe();
+    Keyframes keyframes = one_keyframe();
     const auto found = keyframes.find(query);
     EXPECT_TRUE(found);
     std::vector<double> numbers;
-    for (const PlaceFeature& f : keyframes[0].features) {
+    for (const PlaceFeature& f : keyframes[0].landmarks->features) {
       numbers.insert(numbers.end(), {f.pixel_px.x(), f.pixel_px.y(), f.scale});
       for (const std::uint64_t word : f.descriptor) {
         numbers.push_back(static_cast<double>(word >> 32U));

@@ -96,7 +96,8 @@ TEST(PatchDeformation, ShrinkTestRemovesTheOccludedFarPlaneAndNothingElse) {
   Patch patch = cut({160, 120}, two_planes);
   set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
   LevelLanes lanes = warp(patch, camera_at({-0.05, 0, 0}));
-  MutualOcclusion occlusion(320, 240);
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
   occlusion.test(lanes.warped, DepthConfig{});
   const auto warped = pixels_of(lanes);
   for (std::size_t i = 0; i < warped.size(); ++i) {
@@ -116,7 +117,8 @@ TEST(PatchDeformation, AnOccluderInAnotherPatchCounts) {
     set_deformation(*patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
   const PosedCamera posed = camera_at({-0.05, 0, 0});  // near: +12 px, far: +6 px: the squares coincide
   const std::vector<Patch> both = {near, far};
-  MutualOcclusion occlusion(320, 240);
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
   for (int time = 0; time < 2; ++time) {  // it forgets the test before
     LevelLanes lanes = warp(both, posed);
     occlusion.test(lanes.warped, DepthConfig{});
@@ -133,7 +135,9 @@ TEST(PatchDeformation, BackingAwayFromOneSurfaceHidesNothing) {
   Patch patch = cut({160, 120}, slanted);
   set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
   LevelLanes lanes = warp(patch, camera_at({0, 0, -1.5}));
-  MutualOcclusion(320, 240).test(lanes.warped, DepthConfig{});
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
+  occlusion.test(lanes.warped, DepthConfig{});
   for (const Pixel& pixel : pixels_of(lanes)) EXPECT_TRUE(pixel.visible);
   EXPECT_FALSE(is_extended(lanes.warped, kSize));
 }

@@ -57,6 +57,28 @@ TEST(Patches, PixelsAreAlignedByWhereTheySeeOneSurface) {
   EXPECT_GT(mixed, 50U) << "the furniture has edges that coarse pixels reach over";
 }
 
+TEST(Patches, CoarsePixelsWithoutMeasuredDepthAreLeftOut) {
+  FusedFrame scene;
+  // A shadow right of a patch: it reaches into its finest square by two columns.
+  constexpr int kShadow = 223;
+  for (int y = 0; y < 130; ++y) {
+    for (int x = kShadow; x < 310; ++x) scene.gated_m(x, y) = 0;
+  }
+  const std::vector<Patch> patches = scene.cut({{Vector2d(220, 60), 3}});
+  const auto survivor =
+      std::find_if(patches.begin(), patches.end(), [](const Patch& p) { return p.age > 0; });
+  ASSERT_NE(survivor, patches.end());
+  for (std::size_t level = 0; level < survivor->levels.size(); ++level) {
+    const std::vector<PatchPixel>& pixels = survivor->levels[level].pixels;
+    ASSERT_GT(pixels.size(), 30U);
+    const auto in_shadow = std::count_if(pixels.begin(), pixels.end(), [&](const PatchPixel& pixel) {
+      return static_cast<int>(pixel.reference_pixel) % scene.camera.width_px >= kShadow;
+    });
+    // The finest ones are compared, whether or not they were measured.
+    EXPECT_EQ(in_shadow > 0, level == 0) << "level " << level;
+  }
+}
+
 TEST(Patches, WithoutAnyMeasuredDepthThePatchTrustsTheModel) {
   FusedFrame scene;
   constexpr std::array<int, 2> kMiddle = {220, 60};
@@ -67,8 +89,8 @@ TEST(Patches, WithoutAnyMeasuredDepthThePatchTrustsTheModel) {
   const auto survivor =
       std::find_if(patches.begin(), patches.end(), [](const Patch& p) { return p.age > 0; });
   ASSERT_NE(survivor, patches.end());
-  ASSERT_FALSE(survivor->levels[0].pixels.empty());
   for (const PatchLevel& level : survivor->levels) {
+    EXPECT_FALSE(level.pixels.empty());
     for (const PatchPixel& pixel : level.pixels) EXPECT_TRUE(pixel.depth_confirmed);
   }
 }

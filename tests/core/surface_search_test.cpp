@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "core/raycast.hpp"
@@ -23,6 +24,7 @@ AnalyticScene furnished_room() {
 struct Room {
   TsdfVolume model = fuse(furnished_room(), kCamera, {SE3{}, look_at({0.2, 0.1, -0.3}, {0.3, 0.2, 1.0})});
   RgbdFrame frame = furnished_room().render(kCamera, SE3{}, 75.0);
+  std::optional<TsdfLanes> field = field_in_view(model, kCamera, SE3{}, kDepth);
 
   /// The measured pixels of a rectangle, with an error of depth that `error_m` draws.
   template <class Error>
@@ -42,12 +44,12 @@ struct Room {
   [[nodiscard]] std::vector<SurfacePoint> found_beside(const std::vector<ExpectedSurface>& pixels) const {
     TsdfBrick brick;
     std::vector<SurfacePoint> surfaces(pixels.size());
-    SurfaceSearch(model, kCamera, SE3{}, kDepth).find_beside(pixels, brick, surfaces);
+    SurfaceSearch(*field, kCamera, SE3{}, kDepth).find_beside(pixels, brick, surfaces);
     return surfaces;
   }
   [[nodiscard]] std::vector<SurfacePoint> found(const std::vector<ExpectedSurface>& pixels) const {
     std::vector<SurfacePoint> surfaces(pixels.size());
-    SurfaceSearch(model, kCamera, SE3{}, kDepth).find(pixels, surfaces);
+    SurfaceSearch(*field, kCamera, SE3{}, kDepth).find(pixels, surfaces);
     return surfaces;
   }
   [[nodiscard]] std::vector<SurfacePoint> walked(const std::vector<ExpectedSurface>& pixels) const {
@@ -130,23 +132,6 @@ TEST(SurfaceSearch, ASurfaceOutOfReachIsNone) {
       for (const SurfacePoint& surface : room.found(pixels))
         EXPECT_EQ(surface.valid, reach_m > std::abs(error_m));
     }
-  }
-}
-
-TEST(SurfaceSearch, EmptyModelAndNoPoseGiveNothing) {
-  const Room room;
-  const auto pixels = room.pixels(60, 60, 4, exact);
-  const SE3 nowhere{Quaterniond::Identity(), Vector3d::Constant(std::nan(""))};
-  const TsdfVolume empty{TsdfConfig{}};
-  TsdfBrick brick;
-  for (const auto& search :
-       {SurfaceSearch(empty, kCamera, SE3{}, kDepth), SurfaceSearch(room.model, kCamera, nowhere, kDepth)}) {
-    std::vector<SurfacePoint> found(pixels.size(), SurfacePoint{true, 1.0, Vector3d::UnitX()});
-    search.find(pixels, found);
-    for (const SurfacePoint& surface : found) EXPECT_FALSE(surface.valid);
-    found.assign(pixels.size(), SurfacePoint{true, 1.0, Vector3d::UnitX()});
-    search.find_beside(pixels, brick, found);
-    for (const SurfacePoint& surface : found) EXPECT_FALSE(surface.valid);
   }
 }
 

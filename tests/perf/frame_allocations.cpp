@@ -67,10 +67,10 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
 namespace fusebench::perf {
 namespace {
 
-// A bound, not a goal: what a frame takes once the first ones have made room. The buffers of an update and of
-// a search for surfaces are made anew in each frame, and OpenCV's pyramid and corners have their own.
-constexpr std::size_t kMostAllocations = 350;
-constexpr std::size_t kMostOfImageSize = 30;
+// What a frame takes once the first ones have made room: what it is reported by, the matrices of an update, a
+// window of the field, and what OpenCV finds corners with.
+constexpr std::size_t kMostAllocations = 130;
+constexpr std::size_t kMostOfImageSize = 5;
 constexpr std::size_t kFrames = 60;
 constexpr std::size_t kWarmUp = 30;
 

@@ -25,7 +25,8 @@ void count_refresh(KernelCounts& counts, const testing::PatchProblem& problem, c
 }
 
 void count_linearisation(KernelCounts& counts, const testing::PatchProblem& problem, const Workers& workers) {
-  PatchMeasurement measurement = problem.measurement(workers);
+  const auto in_frame = problem.measurement(workers);
+  PatchMeasurement& measurement = *in_frame;
   const int finest = measurement.stages() - 1;
   const SE3 start = problem.start();
   MeasurementQuadratic parts;

@@ -109,7 +109,9 @@ void track(const RgbdFrame& frame, const TsdfVolume& model, const Workers& worke
   const SE3 moved = kTWorldCamera * SE3{so3_exp({0.01, -0.02, 0.005}), {0.01, 0.02, -0.03}};
   const PosedLanes posed(PosedCamera(kCamera, moved, SE3{}), origin);
   warp_level(lanes.pixels, lanes.warp_points, posed, lanes.warped);
-  MutualOcclusion(kCamera.width_px, kCamera.height_px).test(lanes.warped, DepthConfig{});
+  MutualOcclusion occlusion;
+  occlusion.resize(kCamera.width_px, kCamera.height_px);
+  occlusion.test(lanes.warped, DepthConfig{});
   test_measured_occlusion(lanes.warped, frame.depth_m, 1, 0.1, DepthConfig{});
   Bytes bytes;
   QuadraticSums sums;
