@@ -107,13 +107,10 @@ class PixelSegments {
     const Float8 ray_y = all_lanes((static_cast<float>(y) - cy_) * per_fy_);
     const Float8 columns = static_cast<float>(stride) * kLaneNumber;
     for (int x = 0; x < width; x += stride * kPixels) {
-      std::array<float, 2 * kLanes> pixels_m{};
-      std::memcpy(pixels_m.data(), row_m + x,
-                  static_cast<std::size_t>(std::min(stride * kPixels, width - x)) * sizeof(float));
-      Float8 depth_m = load(pixels_m.data());
-      if (stride == 2) {
-        depth_m = __builtin_shuffle(depth_m, load(&pixels_m[kLanes]), Int8{0, 2, 4, 6, 8, 10, 12, 14});
-      }
+      // Pixels beyond the end of the row were not measured.
+      const Int8 offset = stride * to_int(kLaneNumber);
+      const Int8 inside = offset < width - x;
+      const Float8 depth_m = inside ? gather(row_m + x, inside ? offset : Int8{}) : Float8{};
       add_pixels(depth_m, (static_cast<float>(x) - cx_ + columns) * per_fx_, ray_y, blocks);
     }
   }
@@ -186,7 +183,7 @@ void BandBlocks::find(const DepthImage& depth_m, const PinholeCamera& camera, co
                       double block_m, const TsdfConfig& tsdf, const DepthConfig& depth,
                       const Workers& workers) {
   const double block_px = block_m * std::min(camera.fx_px, camera.fy_px) / depth.max_m;
-  const int stride = block_px >= kFinePixels ? 2 : 1;
+  const int stride = block_px >= kFinePixels ? 4 : (block_px >= kFinePixels / 2 ? 2 : 1);
   const auto rows = static_cast<std::size_t>(depth_m.height);
   chunks_.resize((rows + kRowsPerChunk - 1) / kRowsPerChunk);
   workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {

@@ -50,8 +50,9 @@ class BandBlocks {
  public:
   /// Finds every block that a ray of a measured pixel passes from half a band in front of the measurement to
   /// as far behind it (both along z). Depth outside [min_m, max_m] of `depth` is skipped. Where a block is at
-  /// least kFinePixels wide in the image as far away as max_m, every second pixel of every second row stands
-  /// for its neighbours: what it may miss are corners, a fraction of a block wide. Single precision
+  /// least kFinePixels wide in the image as far away as max_m, every fourth pixel of every fourth row stands
+  /// for its neighbours, every second one where it is half as wide: what they may miss are corners, half a
+  /// block wide. Single precision
   /// from the camera on: a ray that misses a corner of a block by less than a micrometre may count as a hit.
   void find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
             const TsdfConfig& tsdf, const DepthConfig& depth, const Workers& workers);
