@@ -12,8 +12,15 @@
 namespace fusebench {
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 32;
+constexpr std::size_t kRowsPerChunk = 32;  // a multiple of any stride
 constexpr int kPixels = static_cast<int>(kLanes);
+
+/// The one to take of `stride` in a row (a power of two, 4 at most), another one for the next number: first
+/// those that are far apart (van der Corput 1935).
+int taken_of(int stride, std::uint32_t number) {
+  constexpr std::array<int, 4> kOfFour = {0, 2, 1, 3};
+  return stride == 4 ? kOfFour[number % 4] : static_cast<int>(number % 2) * (stride - 1);
+}
 
 /// What the segments of eight rays do along one axis of the lattice, in units of blocks.
 struct AxisSegments {
@@ -101,12 +108,12 @@ class PixelSegments {
         truncation_sigmas_(static_cast<float>(tsdf.truncation_sigmas)),
         depth_sigma_(depth) {}
 
-  /// Adds the blocks of every stride-th pixel of a row.
-  void add_row(const float* row_m, int width, int y, int stride, OrderedBlocks& blocks) {
+  /// Adds the blocks of every stride-th pixel of a row, from the `first` one on.
+  void add_row(const float* row_m, int width, int y, int first, int stride, OrderedBlocks& blocks) {
     last_.order = all_lanes(-1);
     const Float8 ray_y = all_lanes((static_cast<float>(y) - cy_) * per_fy_);
     const Float8 columns = static_cast<float>(stride) * kLaneNumber;
-    for (int x = 0; x < width; x += stride * kPixels) {
+    for (int x = first; x < width; x += stride * kPixels) {
       // Pixels beyond the end of the row were not measured.
       const Int8 offset = stride * to_int(kLaneNumber);
       const Int8 inside = offset < width - x;
@@ -181,7 +188,7 @@ void OrderedBlocks::forget_recent() {
 
 void BandBlocks::find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera,
                       double block_m, const TsdfConfig& tsdf, const DepthConfig& depth,
-                      const Workers& workers) {
+                      std::uint32_t frame_number, const Workers& workers) {
   const double block_px = block_m * std::min(camera.fx_px, camera.fy_px) / depth.max_m;
   const int stride = block_px >= kFinePixels ? 4 : (block_px >= kFinePixels / 2 ? 2 : 1);
   const auto rows = static_cast<std::size_t>(depth_m.height);
@@ -190,8 +197,10 @@ void BandBlocks::find(const DepthImage& depth_m, const PinholeCamera& camera, co
     OrderedBlocks& blocks = chunks_[begin / kRowsPerChunk];
     blocks.clear();
     PixelSegments segments(camera, T_world_camera, block_m, tsdf, depth);
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); y += stride) {
-      segments.add_row(&depth_m.data[depth_m.index(0, y)], depth_m.width, y, stride, blocks);
+    for (int y = static_cast<int>(begin) + taken_of(stride, frame_number); y < static_cast<int>(end);
+         y += stride) {
+      const int first = taken_of(stride, static_cast<std::uint32_t>(y / stride) + frame_number);
+      segments.add_row(&depth_m.data[depth_m.index(0, y)], depth_m.width, y, first, stride, blocks);
     }
   });
   found_.clear();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/block_table.hpp"
@@ -51,11 +52,13 @@ class BandBlocks {
   /// Finds every block that a ray of a measured pixel passes from half a band in front of the measurement to
   /// as far behind it (both along z). Depth outside [min_m, max_m] of `depth` is skipped. Where a block is at
   /// least kFinePixels wide in the image as far away as max_m, every fourth pixel of every fourth row stands
-  /// for its neighbours, every second one where it is half as wide: what they may miss are corners, half a
-  /// block wide. Single precision
-  /// from the camera on: a ray that misses a corner of a block by less than a micrometre may count as a hit.
+  /// for its neighbours, every second one where it is half as wide: of a surface they may miss corners, half
+  /// a block wide. Which pixels these are changes from row to row and with the number of the frame, so that
+  /// something thin is not passed over all along, nor again and again. Single precision from the camera on: a
+  /// ray that misses a corner of a block by less than a micrometre may count as a hit.
   void find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
-            const TsdfConfig& tsdf, const DepthConfig& depth, const Workers& workers);
+            const TsdfConfig& tsdf, const DepthConfig& depth, std::uint32_t frame_number,
+            const Workers& workers);
 
   static constexpr double kFinePixels = 8;
 

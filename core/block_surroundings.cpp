@@ -10,22 +10,6 @@ namespace {
 
 static_assert(kBlockSide == kLanes, "a row of a block is one vector");
 
-/// Voxels that a neighbour at an offset of -1, 0 or 1 adds along an axis, by their places in the block and in
-/// the neighbour.
-struct Overlap {
-  explicit Overlap(int offset)
-      : first(offset < 0    ? -1
-              : offset == 0 ? 0
-                            : kBlockSide),
-        count(offset < 0    ? 1
-              : offset == 0 ? kBlockSide
-                            : 2),
-        source(offset < 0 ? kBlockSide - 1 : 0) {}
-  int first;
-  int count;
-  int source;
-};
-
 // Change of the distance from one voxel to the next at the middle of three; the outer ones may be unobserved
 // (NaN).
 double slope(float before_m, float centre_m, float after_m) {
@@ -38,33 +22,35 @@ double slope(float before_m, float centre_m, float after_m) {
 
 }  // namespace
 
-void BlockSurroundings::load(const TsdfVolume& volume, const BlockIndex& index) {
-  distances_m_.fill(std::numeric_limits<float>::quiet_NaN());
+void BlockSurroundings::load(const BlockIndex& index) {
   for (int z = -1; z <= 1; ++z) {
     for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) load_neighbour(volume, index, {x, y, z});
+      for (int x = -1; x <= 1; ++x) around_[neighbour(x, y, z)] = slots_.find(index + BlockIndex(x, y, z));
     }
+  }
+  for (int z = -kBefore; z < kSide - kBefore; ++z) {
+    for (int y = -kBefore; y < kSide - kBefore; ++y) load_row(y, z);
   }
 }
 
-void BlockSurroundings::load_neighbour(const TsdfVolume& volume, const BlockIndex& index,
-                                       const BlockIndex& offset) {
-  const int slot = volume.find_block(index + offset);
-  if (slot < 0) return;
-  const Half* const block_m = volume.distances_m() + static_cast<std::size_t>(slot) * kBlockVoxels;
-  const Overlap x(offset.x()), y(offset.y()), z(offset.z());
-  for (int k = 0; k < z.count; ++k) {
-    for (int j = 0; j < y.count; ++j) {
-      const std::size_t from = offset_in_block({x.source, y.source + j, z.source + k});
-      float* const to = &distances_m_[place({x.first, y.first + j, z.first + k})];
-      if (x.count == kBlockSide) {
-        store(fusebench::load(block_m + from), to);
-      } else {
-        std::transform(block_m + from, block_m + from + x.count, to,
-                       [](Half distance_m) { return static_cast<float>(distance_m); });
-      }
-    }
-  }
+// From the block before to the one behind; of one that is not there, slot -1 is read: nothing observed.
+void BlockSurroundings::load_row(int y, int z) {
+  const std::size_t row = offset_in_block({0, y, z});
+  const auto block_row_m = [&](int x) {
+    const std::ptrdiff_t slot = around_[neighbour(x, y >> 3, z >> 3)];
+    return volume_.distances_m() + slot * kBlockVoxels + row;
+  };
+  float* const to = &distances_m_[place({-kBefore, y, z})];
+  to[0] = static_cast<float>(block_row_m(-1)[kBlockSide - 1]);
+  store(fusebench::load(block_row_m(0)), to + 1);
+  to[kBlockSide + 1] = static_cast<float>(block_row_m(1)[0]);
+  to[kBlockSide + 2] = static_cast<float>(block_row_m(1)[1]);
+}
+
+std::uint32_t BlockSurroundings::color(const VoxelIndex& local) const {
+  const int slot = around_[neighbour(local.x() >> 3, local.y() >> 3, local.z() >> 3)];
+  if (slot < 0) return 0;
+  return volume_.colors()[static_cast<std::size_t>(slot) * kBlockVoxels + offset_in_block(local)];
 }
 
 Vector3d BlockSurroundings::gradient(const VoxelIndex& local) const {

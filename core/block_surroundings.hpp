@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "core/block_slots.hpp"
 #include "core/tsdf_volume.hpp"
 
 namespace fusebench {
@@ -11,9 +12,16 @@ namespace fusebench {
 /// Distances of a block's voxels and of those around it, copied once so that neighbours need no lookup.
 class BlockSurroundings {
  public:
-  /// Copies from one voxel before the block to two behind it on each axis.
-  void load(const TsdfVolume& volume, const BlockIndex& index);
+  explicit BlockSurroundings(const TsdfVolume& volume) : volume_(volume), slots_(volume) {}
 
+  /// Copies from one voxel before the block to two behind it on each axis.
+  void load(const BlockIndex& index);
+
+  /// Distance (metres, NaN = never observed) at a voxel by its place in the block, from -1 to kBlockSide + 1
+  /// on each axis.
+  [[nodiscard]] float distance_m(const VoxelIndex& local) const { return distances_m_[place(local)]; }
+  /// Colour there as it is stored (BlockVoxels), from 0 on; 0 where no block is allocated.
+  [[nodiscard]] std::uint32_t color(const VoxelIndex& local) const;
   /// Gradient of the field (metres of distance per voxel) at a voxel by its place in the block, from 0 to
   /// kBlockSide on each axis: central differences, one-sided next to unobserved voxels, 0 along an axis where
   /// both neighbours are unobserved. The voxel itself must be observed.
@@ -27,8 +35,14 @@ class BlockSurroundings {
     const auto at = (local.array() + kBefore).cast<std::size_t>();
     return at.x() + kSide * (at.y() + kSide * at.z());
   }
-  void load_neighbour(const TsdfVolume& volume, const BlockIndex& index, const BlockIndex& offset);
+  static std::size_t neighbour(int x, int y, int z) {
+    return static_cast<std::size_t>(x + 1 + 3 * (y + 1 + 3 * (z + 1)));
+  }
+  void load_row(int y, int z);
 
+  const TsdfVolume& volume_;
+  BlockSlots slots_;
+  std::array<int, 27> around_{};  // slots of the block and of its neighbours, x fastest
   std::array<float, static_cast<std::size_t>(kSide* kSide* kSide)> distances_m_{};
 };
 

@@ -18,7 +18,8 @@ namespace {
 constexpr int kFeatures = 800;
 // Twice what a place needs to be found, so that a keyframe that shows half of an image can still tell.
 constexpr std::size_t kMinFeatures = 60;
-// With so many corners of full resolution a frame has enough features, without looking for them.
+// With so many corners of full resolution a frame has enough features but in odd cases (all depth in one
+// corner of a richly textured image), so that they need not be looked for.
 constexpr std::size_t kPlentyOfCorners = 2 * kMinFeatures;
 // Keyframes that are tried, most matches first: the right one is not behind this many wrong ones.
 constexpr std::size_t kTried = 8;
@@ -128,16 +129,16 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
   if (near && !takes_over) return false;
   if (T_world_barren_ && separation(*T_world_barren_, T_world_camera) < kBarrenReach) return false;
 
-  Keyframe keyframe{timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), {}};
+  std::optional<Landmarks> landmarks;
   if (!has_plenty_of_corners(grey, depth_m)) {
-    keyframe.landmarks = landmarks_of(grey, depth_m, camera_);
-    if (keyframe.landmarks->features.size() < kMinFeatures) {
+    landmarks = landmarks_of(grey, depth_m, camera_);
+    if (landmarks->features.size() < kMinFeatures) {
       T_world_barren_ = T_world_camera;
       return false;
     }
   }
   if (takes_over) kept_.erase(nearest);
-  kept_.push_back(std::move(keyframe));
+  kept_.push_back({timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), std::move(landmarks)});
   if (kept_.size() > spacing_.max_count) drop_most_crowded();
   return true;
 }

@@ -1,9 +1,9 @@
 // Places seen before: a small store of fused frames by which a tracker that is lost finds its pose again.
 //
-// A kept frame has ORB features (place_features.hpp) with the depth of each. The features of a later image
-// are matched against those of every kept frame; three points give the pose in RANSAC, all inliers refine it
-// (as the relocalisation of ORB-SLAM2, Mur-Artal and Tardos, T-RO 2017, but without a vocabulary: for some
-// tens of frames comparing all descriptors is fast enough).
+// A kept frame has landmarks: ORB features (place_features.hpp) with the depth of each, found when a place is
+// first looked for. The features of a later image are matched against those of every kept frame; three points
+// give the pose in RANSAC, all inliers refine it (as the relocalisation of ORB-SLAM2, Mur-Artal and Tardos,
+// T-RO 2017, but without a vocabulary: for some tens of frames comparing all descriptors is fast enough).
 //
 // Frames and units: poses map camera to world; metres, pixels of level 0. The same offers and the same image
 // give the same bytes, whatever the number of threads. Errors: none; a place that is not found is no value.
@@ -37,7 +37,7 @@ struct Keyframe {
   GreyImage grey;
   double blur_px = 0;                  ///< as it was offered
   PackedDepth depth;                   ///< as it was offered, to cut patches again
-  std::optional<Landmarks> landmarks;  ///< once they were asked for: most trackers are never lost
+  std::optional<Landmarks> landmarks;  ///< when they were first asked for: most trackers are never lost
 };
 
 /// Which frames are kept.
@@ -68,14 +68,15 @@ class Keyframes {
   explicit Keyframes(const PinholeCamera& camera, const KeyframeSpacing& spacing = {});
 
   /// Keeps the frame if no kept one shows the place from near, or a much more blurred one does, whose place
-  /// it takes, and if it has enough corners with depth (> 0). Says whether it did. If the store is full, one
-  /// of the two that are nearest to each other makes room. Offer what was fused at a pose to be trusted;
-  /// images have the size of the camera's. blur_px: how far the image moved while it was exposed.
+  /// it takes, and if it has enough corners or landmarks with depth (> 0). Says whether it did. If the store
+  /// is full, one of the two that are nearest to each other makes room. Offer what was fused at a pose to be
+  /// trusted; images have the size of the camera's. blur_px: how far the image moved while it was exposed.
   bool offer(const GreyImage& grey, const DepthImage& depth_m, const SE3& T_world_camera,
              std::int64_t timestamp_ns, double blur_px = 0);
 
   /// The pose of an image by the kept frame with which most of it agrees; nothing if it is not certain. The
-  /// first time finds the landmarks of every kept frame, which takes some 20 ms each at 640x480.
+  /// first time finds the landmarks of every kept frame, which takes some 20 ms each at 640x480: as long as
+  /// offering them would have taken, but all in one frame.
   [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
 
   [[nodiscard]] std::size_t size() const { return kept_.size(); }

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/bits.hpp"
+#include "core/block_slots.hpp"
 #include "core/block_surroundings.hpp"
 #include "core/marching_cubes_table.hpp"
-#include "core/tsdf_sampler.hpp"
 
 namespace fusebench {
 namespace {
@@ -106,7 +106,7 @@ struct BlockVertices {
 class BlockCells {
  public:
   BlockCells(const TsdfVolume& volume, const SortedBlocks& sorted, double min_weight)
-      : volume_(volume), sorted_(sorted), min_weight_(static_cast<float>(min_weight)) {}
+      : volume_(volume), slots_(volume), sorted_(sorted), min_weight_(static_cast<float>(min_weight)) {}
 
   void append(std::size_t rank, Surface& surface) {
     load(volume_.block_indices()[sorted_.slots[rank]]);
@@ -114,8 +114,9 @@ class BlockCells {
     const std::size_t before = surface.triangles.size();
     for (int z = 0; z < kBlockSide; ++z) {
       for (int y = 0; y < kBlockSide; ++y) {
-        for_each_bit(crossed_cells(y, z), [&](std::size_t bit) {
-          append_cell({static_cast<int>(bit) / 8, y, z}, surface.triangles);
+        const Row row = crossed_cells(y, z);
+        for_each_bit(row.crossed, [&](std::size_t bit) {
+          append_cell({static_cast<int>(bit) / 8, y, z}, row.patterns >> bit & 0xFF, surface.triangles);
         });
       }
     }
@@ -138,7 +139,7 @@ class BlockCells {
   void load(const BlockIndex& index) {
     sign_.fill(0);
     for (std::size_t n = 0; n < 8; ++n) {
-      const int slot = volume_.find_block(index + BlockIndex(n & 1 ? 1 : 0, n & 2 ? 1 : 0, n & 4 ? 1 : 0));
+      const int slot = slots_.find(index + BlockIndex(n & 1 ? 1 : 0, n & 2 ? 1 : 0, n & 4 ? 1 : 0));
       // Edges of a missing block are never used: its voxels are unobserved.
       neighbour_ranks_[n] = slot < 0 ? 0 : sorted_.ranks[static_cast<std::size_t>(slot)];
       if (slot >= 0) load_neighbour(n, static_cast<std::size_t>(slot));
@@ -182,55 +183,78 @@ class BlockCells {
     return byte_each(lane_bits(seen)) | byte_each(lane_bits(seen & (distance_m < 0.0F))) << 1;
   }
 
-  // The cells of a row that are observed and whose corners have both signs: 1 in the byte of each.
-  [[nodiscard]] std::uint64_t crossed_cells(int y, int z) const {
+  // The cells of a row, a byte each.
+  struct Row {
+    std::uint64_t crossed;   // 1: all corners are observed, and they have both signs
+    std::uint64_t patterns;  // bit c: corner c is inside
+  };
+  [[nodiscard]] Row crossed_cells(int y, int z) const {
+    constexpr std::uint64_t kOnes = 0x0101010101010101U;
     const std::size_t first = kSide * static_cast<std::size_t>(y) + kSlice * static_cast<std::size_t>(z);
     std::uint64_t all = ~std::uint64_t{0};
     std::uint64_t some = 0;
-    for (const std::size_t corner : kCorner) {
+    std::uint64_t patterns = 0;
+    for (std::size_t corner = 0; corner < kCorner.size(); ++corner) {
       std::uint64_t signs = 0;
-      std::memcpy(&signs, &sign_[first + corner], sizeof(signs));
+      std::memcpy(&signs, &sign_[first + kCorner[corner]], sizeof(signs));
       all &= signs;
       some |= signs;
+      patterns |= (signs >> 1 & kOnes) << corner;
     }
-    return all & ((some & ~all) >> 1) & 0x0101010101010101U;
+    return {all & ((some & ~all) >> 1) & kOnes, patterns};
   }
 
-  void append_cell(const VoxelIndex& base, std::vector<EdgeTriangle>& triangles) const {
-    const auto local = base.cast<std::size_t>();
-    const std::size_t first = local.x() + kSide * local.y() + kSlice * local.z();
-    unsigned pattern = 0;
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      pattern |= static_cast<unsigned>(sign_[first + kCorner[corner]] / kInside) << corner;
+  void append_cell(const VoxelIndex& base, std::size_t pattern, std::vector<EdgeTriangle>& triangles) const {
+    if (base.maxCoeff() < kBlockSide - 1) {  // all edges are the block's own: two of three cells
+      const auto first = static_cast<LocalEdge>(3 * offset_in_block(base));
+      for (const CellTriangle& triangle : triangles_[pattern]) {
+        triangles.push_back(
+            {own_edge(first, triangle[0]), own_edge(first, triangle[1]), own_edge(first, triangle[2])});
+      }
+      return;
     }
-    for (const CellTriangle& triangle : cell_triangles()[pattern]) {
+    for (const CellTriangle& triangle : triangles_[pattern]) {
       triangles.push_back(
           {local_edge(base, triangle[0]), local_edge(base, triangle[1]), local_edge(base, triangle[2])});
     }
   }
 
+  [[nodiscard]] LocalEdge own_edge(LocalEdge first, std::uint8_t cell_edge) const {
+    return static_cast<LocalEdge>(first + edge_offsets_[cell_edge]);
+  }
   [[nodiscard]] static LocalEdge local_edge(const VoxelIndex& base, std::uint8_t cell_edge) {
     const CellEdge& edge = cell_edges()[cell_edge];
     const VoxelIndex local = base + VoxelIndex(edge.from & 1, (edge.from >> 1) & 1, edge.from >> 2);
     return static_cast<LocalEdge>(neighbour_of(local) * kNeighbourEdges + offset_in_block(local) * 3 +
                                   edge.axis);
   }
+  // From the first edge of a cell's lowest corner to each of the cell's, where they are of one block.
+  static std::array<LocalEdge, 12> edge_offsets() {
+    std::array<LocalEdge, 12> offsets{};
+    for (std::uint8_t edge = 0; edge < offsets.size(); ++edge) offsets[edge] = local_edge({0, 0, 0}, edge);
+    return offsets;
+  }
 
   const TsdfVolume& volume_;
+  BlockSlots slots_;
   const SortedBlocks& sorted_;
   float min_weight_;
+  const std::array<std::vector<CellTriangle>, 256>& triangles_ = cell_triangles();
+  const std::array<LocalEdge, 12> edge_offsets_ = edge_offsets();
   std::array<std::uint32_t, 8> neighbour_ranks_{};
   std::array<std::uint8_t, kSide * kSide * kSide> sign_{};
 };
 
-// Colour between two voxels; a voxel without colour takes the other's. False if neither has one.
-bool blend(const Voxel& low, const Voxel& high, float share, Rgb& color) {
-  if (low.color_count == 0 && high.color_count == 0) return false;
-  const Eigen::Vector3f from = (low.color_count > 0 ? low : high).rgb();
-  const Eigen::Vector3f to = (high.color_count > 0 ? high : low).rgb();
-  const Eigen::Vector3f mixed = from + share * (to - from);
-  for (Eigen::Index channel = 0; channel < 3; ++channel) {
-    color[static_cast<std::size_t>(channel)] = static_cast<std::uint8_t>(mixed[channel] + 0.5F);
+// Colour between two voxels (BlockVoxels); a voxel without colour takes the other's. False if neither has
+// one.
+bool blend(std::uint32_t low, std::uint32_t high, float share, Rgb& color) {
+  constexpr int kCountByte = 24;
+  const std::uint32_t from = low >> kCountByte != 0 ? low : high;
+  const std::uint32_t to = high >> kCountByte != 0 ? high : low;
+  if (from >> kCountByte == 0) return false;
+  for (std::size_t channel = 0; channel < color.size(); ++channel) {
+    const auto level = [&](std::uint32_t bytes) { return static_cast<float>(bytes >> (8 * channel) & 0xFF); };
+    color[channel] = static_cast<std::uint8_t>(level(from) + share * (level(to) - level(from)) + 0.5F);
   }
   return true;
 }
@@ -238,12 +262,13 @@ bool blend(const Voxel& low, const Voxel& high, float share, Rgb& color) {
 // Writes vertices, block by block.
 class VertexWriter {
  public:
-  VertexWriter(const TsdfVolume& volume, Mesh& mesh) : volume_(volume), sampler_(volume), mesh_(mesh) {}
+  VertexWriter(const TsdfVolume& volume, Mesh& mesh)
+      : voxel_m_(volume.voxel_m()), surroundings_(volume), mesh_(mesh) {}
 
   // Those of one block. True if any has a colour.
   bool write(const BlockIndex& block, const BlockVertices& vertices) {
     if (!vertices.any()) return false;
-    surroundings_.load(volume_, block);
+    surroundings_.load(block);
     bool colored = false;
     for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
       std::size_t vertex = vertices.before[word];
@@ -262,21 +287,19 @@ class VertexWriter {
   bool write_vertex(const BlockIndex& block, const VoxelIndex& local, Eigen::Index axis, std::size_t vertex) {
     const VoxelIndex index = block * kBlockSide + local;
     const VoxelIndex unit = VoxelIndex::Unit(axis);
-    const Voxel low = sampler_.voxel(index);
-    const Voxel high = sampler_.voxel(index + unit);
-    const double low_m = low.distance_m;
-    const double share = low_m / (low_m - static_cast<double>(high.distance_m));
-    const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * volume_.voxel_m();
+    const double low_m = surroundings_.distance_m(local);
+    const double share = low_m / (low_m - static_cast<double>(surroundings_.distance_m(local + unit)));
+    const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m_;
     Vector3d normal =
         (1.0 - share) * surroundings_.gradient(local) + share * surroundings_.gradient(local + unit);
     if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
     mesh_.vertices[vertex] = position.cast<float>();
     mesh_.normals[vertex] = normal.normalized().cast<float>();
-    return blend(low, high, static_cast<float>(share), mesh_.colors[vertex]);
+    return blend(surroundings_.color(local), surroundings_.color(local + unit), static_cast<float>(share),
+                 mesh_.colors[vertex]);
   }
 
-  const TsdfVolume& volume_;
-  TsdfSampler sampler_;
+  double voxel_m_;
   BlockSurroundings surroundings_;
   Mesh& mesh_;
 };

@@ -43,7 +43,7 @@ struct PixelLanes {
   Points normal;  ///< of it, world axes
   Float8 intensity{};
   Int8 present{};          ///< there is a pixel
-  Int8 depth_confirmed{};  ///< and it may be aligned by
+  Int8 depth_confirmed{};  ///< and its colour may be aligned by
 };
 
 /// What is projected in place of the points, if the deformation is not by pixel.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/bits.hpp"
+#include "core/error.hpp"
 #include "core/image_lanes.hpp"
 #include "core/patch_scatter.hpp"
 #include "core/residuals.hpp"
@@ -68,6 +69,7 @@ void PatchMeasurement::observe(const ObservedFrame& frame, std::span<const Patch
 }
 
 MeasurementQuadratic PatchMeasurement::linearise(const PoseHypothesis& poses, int stage, bool gate) {
+  check(frame_.has_value(), "a frame is observed before it is measured by");
   finest_ = static_cast<std::size_t>(config_.patches.levels - 1 - stage);
   const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
   warp_all(posed);

@@ -51,7 +51,8 @@ class PatchMeasurement final : public PoseMeasurement {
   /// All references must outlive the measurement.
   PatchMeasurement(const Config& config, const SensorRig& rig, const Workers& workers);
 
-  /// Begins with a frame, in the memory of the one before. What is referred to must outlive its use.
+  /// Begins with a frame, in the memory of the one before; comes before all else. Frame and patches must stay
+  /// as they are until the next one, or until nothing more is asked.
   void observe(const ObservedFrame& frame, std::span<const Patch> patches, const ResidualScale& scale);
 
   [[nodiscard]] int stages() const override { return config_.patches.levels; }

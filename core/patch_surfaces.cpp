@@ -1,6 +1,9 @@
 #include "core/patch_surfaces.hpp"
 
+#include <algorithm>
 #include <optional>
+
+#include "core/error.hpp"
 
 namespace fusebench {
 
@@ -16,6 +19,7 @@ std::span<const SurfacePoint> PatchSurfaces::find(const TsdfVolume& model, const
                                                   std::span<const ExpectedSurface> pixels,
                                                   std::span<const std::size_t> first,
                                                   const Workers& workers) {
+  check(!first.empty() && first.back() == pixels.size(), "patches have all pixels");
   surfaces_.assign(pixels.size(), SurfacePoint{});
   const std::optional<TsdfLanes> field = field_in_view(model, camera, T_world_camera, depth);
   if (!field) return surfaces_;

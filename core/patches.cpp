@@ -64,14 +64,15 @@ struct Squares {
 };
 
 /// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
-/// once, since a coarse level's are partly those of a finer one. Coarse pixels without measured depth are
-/// left out unless the whole patch lies in a hole: nothing is aligned by them, and intensity errors are taken
-/// on the finest level.
+/// once, since a coarse level's are partly those of a finer one. Where anything was measured in the finest
+/// square, coarse pixels without measured depth are left out: their colour would not be aligned by
+/// (trust_model_in_holes), intensity errors are taken on the finest level, and a ray each is much work for
+/// the few that would find a plane in the next frame.
 void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
   const GreyImage& full = squares.frame.pyramid[0];
   const int size = squares.size_px;
   std::array<Squares::Corner, kMostLevels> corners;
-  bool measured = false;  // any pixel of the finest level
+  bool measured = false;  // any pixel of the finest square
   for (std::size_t l = 0; l < squares.levels; ++l) {
     const GreyImage& image = squares.frame.pyramid[l];
     const Squares::Corner corner = corners[l] = squares.corner(patch, l);
@@ -173,7 +174,8 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
       const auto y = static_cast<int>(work.pixels[at].v_px);
       pixels.push_back(*pixel);
       pixels.back().intensity = frame.pyramid[l](x >> l, y >> l);
-      pixels.back().depth_confirmed = is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
+      pixels.back().depth_confirmed =
+          is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
     }
   }
   trust_model_in_holes(patch);
@@ -197,8 +199,7 @@ void cut_patches(const ReferenceFrame& frame, const TsdfVolume& model, std::span
   const UsableSurface usable(frame, config);
   patches.resize(centres.size());
   workers.for_chunks(patches.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p)
-      fill_patch(squares, p, usable, work, surfaces, patches[p]);
+    for (std::size_t p = begin; p < end; ++p) fill_patch(squares, p, usable, work, surfaces, patches[p]);
   });
 }
 

@@ -42,7 +42,8 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
                 "the estimate has diverged before this frame");
   }
 
-  touched_.find(frame.depth_m, camera, T_world_camera, kBlockSide * config_.voxel_m, config_, depth, workers);
+  touched_.find(frame.depth_m, camera, T_world_camera, kBlockSide * config_.voxel_m, config_, depth,
+                frame_count_, workers);
   const Result<void> allocated = allocate();
   if (!allocated) return allocated;
 

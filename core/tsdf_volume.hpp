@@ -93,6 +93,8 @@ class TsdfVolume {
   /// read as well: there is nothing observed in it. So can one number beyond the last, see gather().
   [[nodiscard]] const Half* distances_m() const { return distances_m_.data() + kBlockVoxels; }
   [[nodiscard]] const Half* weights() const { return weights_.data(); }
+  /// As BlockVoxels has them, by slot from 0 on, like the weights.
+  [[nodiscard]] const std::uint32_t* colors() const { return colors_.data(); }
 
   /// Slot of a block in storage order, or -1.
   [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }

@@ -209,7 +209,7 @@ inline bool is_same_voxel(const Voxel& a, const Voxel& b) {
 inline FusedVoxels fused_voxels(const TsdfVolume& before, const TsdfVolume& after, const BenchScene& scene) {
   BandBlocks band;
   band.find(scene.frame.depth_m, scene.camera, scene.T_world_camera, kBlockSide * scene.config.tsdf.voxel_m,
-            scene.config.tsdf, scene.config.depth, Workers(1));
+            scene.config.tsdf, scene.config.depth, before.frame_count(), Workers(1));
   const PlainVoxelUpdate update(scene.frame, scene.camera, scene.T_world_camera, scene.config.depth,
                                 scene.config.tsdf, before.frame_count());
   FusedVoxels fused;

@@ -27,7 +27,7 @@ void band_blocks(benchmark::State& state) {
   BandBlocks band;
   const auto find = [&] {
     band.find(scene.frame.depth_m, scene.camera, scene.T_world_camera, kBlockSide * scene.config.tsdf.voxel_m,
-              scene.config.tsdf, scene.config.depth, workers);
+              scene.config.tsdf, scene.config.depth, 0, workers);
   };
   find();
   if (!testing::are_band_blocks(band.blocks(), scene))

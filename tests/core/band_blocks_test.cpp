@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <utility>
+
 #include "tests/support/analytic_scene.hpp"
 #include "tests/support/felt_blocks.hpp"
 
@@ -29,11 +32,11 @@ DepthImage step_and_wall() {
 }
 
 Blocks found_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig& tsdf,
-                    const DepthConfig& depth) {
+                    const DepthConfig& depth, std::uint32_t frame_number = 0) {
   BandBlocks band;
   const Workers workers(1);
   for (int time = 0; time < 2; ++time) {  // it forgets the image before
-    band.find(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth, workers);
+    band.find(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth, frame_number, workers);
   }
   const Blocks blocks = testing::block_set(band.blocks());
   EXPECT_EQ(blocks.size(), band.blocks().size()) << "each once";
@@ -57,25 +60,40 @@ TEST(BandBlocks, OfFinePixelsAreAllThatTheirRaysPass) {
 TEST(BandBlocks, OfEverySecondOrFourthPixelMissCornersAtMost) {
   const DepthConfig depth;
   const DepthImage depth_m = step_and_wall();
-  struct Stride {
-    double voxel_m;
-    double block_px;  // at least, as far away as depth reaches
-    int pixels;
-  };
-  for (const Stride& stride :
-       {Stride{0.005, BandBlocks::kFinePixels / 2, 2}, Stride{0.01, BandBlocks::kFinePixels, 4}}) {
-    const TsdfConfig tsdf{.voxel_m = stride.voxel_m};
+  for (const auto& [voxel_m, least_px] : {std::pair{0.005, BandBlocks::kFinePixels / 2},  // every second
+                                          std::pair{0.01, BandBlocks::kFinePixels}}) {    // every fourth
+    const TsdfConfig tsdf{.voxel_m = voxel_m};
     const double block_m = 8 * tsdf.voxel_m;
-    ASSERT_GE(block_m * kCamera.fx_px / depth.max_m, stride.block_px);
-    const auto felt = [&](int every_px) {
-      return felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth, every_px);
-    };
-    const Blocks found = found_blocks(depth_m, block_m, tsdf, depth);
-    EXPECT_EQ(missing(felt(stride.pixels), found), 0U) << stride.pixels;
-    const Blocks all = felt(1);
-    EXPECT_GT(all.size(), 20U);
-    EXPECT_LE(static_cast<double>(missing(all, found)), 0.07 * static_cast<double>(all.size()));
-    EXPECT_LE(static_cast<double>(missing(found, all)), 0.03 * static_cast<double>(found.size()));
+    ASSERT_GE(block_m * kCamera.fx_px / depth.max_m, least_px);
+    const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
+    EXPECT_GT(felt.size(), 20U);
+    for (const std::uint32_t frame_number : {0U, 1U, 2U, 3U, 0xFFFFFFFFU}) {
+      const Blocks found = found_blocks(depth_m, block_m, tsdf, depth, frame_number);
+      EXPECT_LE(static_cast<double>(missing(felt, found)), 0.07 * static_cast<double>(felt.size()))
+          << voxel_m;
+      EXPECT_LE(static_cast<double>(missing(found, felt)), 0.03 * static_cast<double>(found.size()))
+          << voxel_m;
+    }
+  }
+}
+
+TEST(BandBlocks, OfSomethingThinAreFoundWithinFourFrames) {
+  const TsdfConfig tsdf;
+  const DepthConfig depth;
+  const double block_m = 8 * tsdf.voxel_m;
+  for (const bool upright : {true, false}) {
+    for (int place = 60; place < 64; ++place) {
+      // A single row or column of pixels, wherever it lies to the grid that is looked at.
+      DepthImage depth_m(kCamera.width_px, kCamera.height_px);
+      for (int i = 8; i < 112; ++i) depth_m(upright ? place : i, upright ? i : place) = 2.0F;
+      Blocks found;
+      for (std::uint32_t frame_number = 0; frame_number < 4; ++frame_number) {
+        found.merge(found_blocks(depth_m, block_m, tsdf, depth, frame_number));
+      }
+      const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
+      ASSERT_GT(felt.size(), 8U);
+      EXPECT_LE(missing(felt, found), felt.size() / 4) << place;
+    }
   }
 }
 
@@ -84,8 +102,8 @@ TEST(BandBlocks, AreTheSameForEveryNumberOfThreads) {
   const TsdfConfig tsdf;
   const Workers one(1), many(8);
   BandBlocks first, second;
-  first.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, one);
-  second.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, many);
+  first.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, 1, one);
+  second.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, 1, many);
   EXPECT_EQ(first.blocks(), second.blocks());
 }
 

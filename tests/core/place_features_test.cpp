@@ -44,6 +44,18 @@ TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
   EXPECT_EQ(matches.front().query, 1U);
 }
 
+TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
+  GreyImage grey(200, 150, 60);
+  grey(50, 61) = 200;
+  grey(119, 88) = 200;
+  grey(5, 5) = 200;  // too close to the border to be described
+  const std::vector<Vector2d> corners_px = find_corners(grey);
+  ASSERT_EQ(corners_px.size(), 2U);
+  EXPECT_EQ(corners_px[0], Vector2d(50, 61));
+  EXPECT_EQ(corners_px[1], Vector2d(119, 88));
+  EXPECT_TRUE(find_corners(GreyImage(62, 62, 9)).empty());
+}
+
 TEST(PlaceFeatures, AreSpreadInsideAndNoMoreThanAsked) {
   const GreyImage grey = room_image();
   const auto features = find_place_features(grey, 300);

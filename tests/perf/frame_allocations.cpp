@@ -67,8 +67,8 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
 namespace fusebench::perf {
 namespace {
 
-// What a frame takes once the first ones have made room: what it is reported by, the matrices of an update, a
-// window of the field, and what OpenCV finds corners with.
+// Bounds of the median, once the first frames have made room: a frame takes memory for what it is reported
+// by, for the matrices of an update, for a window of the field, and for what OpenCV finds corners with.
 constexpr std::size_t kMostAllocations = 130;
 constexpr std::size_t kMostOfImageSize = 5;
 constexpr std::size_t kFrames = 60;

@@ -14,7 +14,7 @@ void count_band_blocks(KernelCounts& counts, const testing::BenchScene& scene, c
       "band_blocks", "block",
       [&] {
         band.find(scene.frame.depth_m, scene.camera, scene.T_world_camera,
-                  kBlockSide * scene.config.tsdf.voxel_m, scene.config.tsdf, scene.config.depth, workers);
+                  kBlockSide * scene.config.tsdf.voxel_m, scene.config.tsdf, scene.config.depth, 0, workers);
       },
       [&] {
         for (const BlockIndex& block : band.blocks())
