@@ -75,7 +75,7 @@ class Keyframes {
              std::int64_t timestamp_ns, double blur_px = 0);
 
   /// The pose of an image by the kept frame with which most of it agrees; nothing if it is not certain. The
-  /// first time finds the landmarks of every kept frame, which takes some 20 ms each at 640x480: as long as
+  /// first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long as
   /// offering them would have taken, but all in one frame.
   [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
 

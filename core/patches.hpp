@@ -23,8 +23,8 @@ struct PatchPixel {
       0;  ///< v * width + u of its place in the reference frame, level 0 coordinates
   /// The frame measured depth here as well, of one surface as far as the pixel of its level sees, so that
   /// colour and depth belong together. At a silhouette a pixel of the near surface may have the depth of the
-  /// far one, which would move it the wrong way: the colour of such pixels is not aligned by (it counts in the
-  /// intensity error all the same).
+  /// far one, which would move it the wrong way: the colour of such pixels is not aligned by (it counts in
+  /// the intensity error all the same).
   bool depth_confirmed = true;
 };
 
