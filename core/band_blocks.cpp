@@ -19,7 +19,7 @@ constexpr int kPixels = static_cast<int>(kLanes);
 /// those that are far apart (van der Corput 1935).
 int taken_of(int stride, std::uint32_t number) {
   constexpr std::array<int, 4> kOfFour = {0, 2, 1, 3};
-  return stride == 4 ? kOfFour[number % 4] : static_cast<int>(number % 2) * (stride - 1);
+  return kOfFour[number % kOfFour.size()] * stride / 4;
 }
 
 /// What the segments of eight rays do along one axis of the lattice, in units of blocks.

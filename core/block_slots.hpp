@@ -27,7 +27,7 @@ class BlockSlots {
       const auto number = static_cast<std::ptrdiff_t>(volume_.find_region(region));
       entry = {region, volume_.region_slots() + number * static_cast<std::ptrdiff_t>(kRegionBlocks)};
     }
-    return entry.slots[(index.x() & 3) + kRegionSide * ((index.y() & 3) + kRegionSide * (index.z() & 3))];
+    return entry.slots[place_in_region(index)];
   }
 
  private:

@@ -5,26 +5,20 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/block_slots.hpp"
 #include "core/tsdf_volume.hpp"
 
 namespace fusebench {
 
-/// Reads the field of a volume. Remembers the blocks it looked up last, so use one for a ray or a region, one
-/// a thread; the volume must not change meanwhile.
+/// Reads the field of a volume. Remembers where blocks are (BlockSlots), so use one for a ray or a region,
+/// one a thread; the volume must not change meanwhile.
 class TsdfSampler {
  public:
   explicit TsdfSampler(const TsdfVolume& volume)
-      : volume_(volume), per_voxel_(1.0 / volume.voxel_m()), reach_m_(volume.reach_m()) {}
+      : volume_(volume), slots_(volume), per_voxel_(1.0 / volume.voxel_m()), reach_m_(volume.reach_m()) {}
 
   /// The slot of the block at these lattice coordinates, or -1.
-  [[nodiscard]] int slot(const BlockIndex& index) {
-    // Neighbouring blocks differ in the parity of a coordinate, so those around a point never evict each
-    // other.
-    Remembered& entry =
-        remembered_[static_cast<std::size_t>((index.x() & 1) | (index.y() & 1) << 1 | (index.z() & 1) << 2)];
-    if (entry.index != index) entry = {index, volume_.find_block(index)};
-    return entry.slot;
-  }
+  [[nodiscard]] int slot(const BlockIndex& index) { return slots_.find(index); }
 
   /// The distance at a voxel (metres); NaN if it was not observed.
   [[nodiscard]] float distance_m(const VoxelIndex& index) {
@@ -44,11 +38,6 @@ class TsdfSampler {
   [[nodiscard]] TsdfSample sample(const Vector3d& point_world);
 
  private:
-  struct Remembered {
-    BlockIndex index =
-        BlockIndex::Constant(std::numeric_limits<int>::max());  // no block: nothing reaches that far
-    int slot = -1;
-  };
   struct Cell {
     VoxelIndex base;                // lower corner
     Vector3d fraction;              // position in the cell, in [0, 1)
@@ -62,9 +51,9 @@ class TsdfSampler {
   [[nodiscard]] bool find_cell(const Vector3d& point_world, Cell& cell);
 
   const TsdfVolume& volume_;
+  BlockSlots slots_;
   double per_voxel_;
   double reach_m_;
-  std::array<Remembered, 8> remembered_;
 };
 
 }  // namespace fusebench

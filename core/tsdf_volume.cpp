@@ -97,11 +97,8 @@ void TsdfVolume::add_block(const BlockIndex& index) {
     region_indices_.push_back(region);
     region_slots_.insert(region_slots_.end(), kRegionBlocks, -1);
   }
-  const BlockIndex in_region = index - region * kRegionSide;
-  const auto place =
-      static_cast<std::size_t>(in_region.x() + kRegionSide * (in_region.y() + kRegionSide * in_region.z()));
-  region_slots_[(static_cast<std::size_t>(regions_.find(region)) + 1) * kRegionBlocks + place] =
-      static_cast<std::int32_t>(block_count());
+  region_slots_[(static_cast<std::size_t>(regions_.find(region)) + 1) * kRegionBlocks +
+                place_in_region(index)] = static_cast<std::int32_t>(block_count());
   table_.insert(index);
   indices_.push_back(index);
 }

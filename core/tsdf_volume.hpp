@@ -142,6 +142,11 @@ class TsdfVolume {
 [[nodiscard]] inline Eigen::Vector3i region_of(const BlockIndex& block) {
   return {block.x() >> 2, block.y() >> 2, block.z() >> 2};
 }
+/// Of a block among the kRegionBlocks of its region.
+[[nodiscard]] inline std::size_t place_in_region(const BlockIndex& block) {
+  return static_cast<std::size_t>((block.x() & 3) +
+                                  kRegionSide * ((block.y() & 3) + kRegionSide * (block.z() & 3)));
+}
 [[nodiscard]] inline std::size_t offset_in_block(const VoxelIndex& voxel) {
   return static_cast<std::size_t>((voxel.x() & 7) +
                                   kBlockSide * ((voxel.y() & 7) + kBlockSide * (voxel.z() & 7)));

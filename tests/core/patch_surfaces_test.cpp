@@ -14,11 +14,6 @@ namespace {
 const PinholeCamera kCamera = test_camera(320, 240, 60.0);
 const DepthConfig kDepth;
 
-AnalyticScene room_with_a_ball() {
-  return {{AnalyticBox{{-1.513, -1.207, -1.411}, {1.509, 1.211, 1.607}, true, {90, 100, 110}},
-           AnalyticSphere{{0.4, 0.3, 0.9}, 0.3, {200, 20, 20}}}};
-}
-
 TsdfVolume fused_room() { return fuse(room_with_a_ball(), kCamera, {SE3{}}); }
 
 /// Patches of a frame of the room, up to twenty, with holes in what was measured, and errors too large to

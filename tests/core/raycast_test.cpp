@@ -51,11 +51,6 @@ Agreement compare(const SurfaceImage& image, const AnalyticScene& scene, const S
   return result;
 }
 
-AnalyticScene furnished_room() {
-  return {{AnalyticBox{{-1.513, -1.207, -1.411}, {1.509, 1.211, 1.607}, true, {90, 100, 110}},
-           AnalyticSphere{{0.4, 0.3, 0.9}, 0.3, {200, 20, 20}}}};
-}
-
 TEST(Raycast, EmptyModelGivesNothing) {
   const Workers workers(1);
   const TsdfVolume volume{TsdfConfig{}};
@@ -83,10 +78,10 @@ TEST(Raycast, AgreesWithABall) {
 
 TEST(Raycast, AgreesWithARoomFromInside) {
   const Workers workers(2);
-  const TsdfVolume volume = fuse(furnished_room(), kCamera, poses_looking_out({-0.2, 0.1, -0.3}, 40));
+  const TsdfVolume volume = fuse(room_with_a_ball(), kCamera, poses_looking_out({-0.2, 0.1, -0.3}, 40));
   const SE3 T_world_camera = look_at({-0.7, -0.5, -0.6}, {0.5, 0.2, 1.0});
   const SurfaceImage image = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
-  const Agreement agreement = compare(image, furnished_room(), T_world_camera);
+  const Agreement agreement = compare(image, room_with_a_ball(), T_world_camera);
   EXPECT_GT(agreement.hit_share, 0.9);  // the ball hides some of the wall from where the frames were taken
   EXPECT_LT(agreement.mean_depth_m, 0.25 * volume.voxel_m());
   EXPECT_LT(agreement.mean_normal_deg, 3.0);
@@ -145,14 +140,14 @@ TEST(Raycast, LeavesASolidWithoutAHit) {
 }
 
 TEST(Raycast, SeesTheSurfaceBeyondTheSolidItLeaves) {
-  const TsdfVolume volume = fuse(furnished_room(), kCamera, poses_looking_out({-0.2, 0.1, -0.3}, 40));
+  const TsdfVolume volume = fuse(room_with_a_ball(), kCamera, poses_looking_out({-0.2, 0.1, -0.3}, 40));
   // From inside the ball towards the left wall: out through the ball's side that was seen, to the wall.
   const SE3 T_world_camera = look_at({0.35, 0.28, 0.8}, {-1.5, 0.1, -0.4});
   const SurfacePoint point =
       raycast_pixel(volume, kCamera, T_world_camera, kCamera.cx_px, kCamera.cy_px, DepthConfig{});
   ASSERT_TRUE(point.valid);
   EXPECT_GT(point.depth_m, 1.5);
-  EXPECT_LT(std::abs(furnished_room().distance_m(T_world_camera * Vector3d(0, 0, point.depth_m))),
+  EXPECT_LT(std::abs(room_with_a_ball().distance_m(T_world_camera * Vector3d(0, 0, point.depth_m))),
             volume.voxel_m());
 }
 

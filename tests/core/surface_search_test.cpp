@@ -15,15 +15,10 @@ namespace {
 const PinholeCamera kCamera = test_camera(320, 240, 60.0);
 const DepthConfig kDepth;
 
-AnalyticScene furnished_room() {
-  return {{AnalyticBox{{-1.513, -1.207, -1.411}, {1.509, 1.211, 1.607}, true, {90, 100, 110}},
-           AnalyticSphere{{0.4, 0.3, 0.9}, 0.3, {200, 20, 20}}}};
-}
-
 /// A model of the room, and what the camera at its origin would measure.
 struct Room {
-  TsdfVolume model = fuse(furnished_room(), kCamera, {SE3{}, look_at({0.2, 0.1, -0.3}, {0.3, 0.2, 1.0})});
-  RgbdFrame frame = furnished_room().render(kCamera, SE3{}, 75.0);
+  TsdfVolume model = fuse(room_with_a_ball(), kCamera, {SE3{}, look_at({0.2, 0.1, -0.3}, {0.3, 0.2, 1.0})});
+  RgbdFrame frame = room_with_a_ball().render(kCamera, SE3{}, 75.0);
   std::optional<TsdfLanes> field = field_in_view(model, kCamera, SE3{}, kDepth);
 
   /// The measured pixels of a rectangle, with an error of depth that `error_m` draws.

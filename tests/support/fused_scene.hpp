@@ -23,6 +23,12 @@ inline TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera, 
   return volume;
 }
 
+/// A room with a ball in it, seen from its middle.
+inline AnalyticScene room_with_a_ball() {
+  return {{AnalyticBox{{-1.513, -1.207, -1.411}, {1.509, 1.211, 1.607}, true, {90, 100, 110}},
+           AnalyticSphere{{0.4, 0.3, 0.9}, 0.3, {200, 20, 20}}}};
+}
+
 /// A ball of 0.3 m radius around a point that lies on no symmetry of the lattice.
 inline AnalyticScene ball_scene() {
   return {{AnalyticSphere{{0.0137, -0.0211, 0.0073}, 0.3, {180, 90, 30}}}};
