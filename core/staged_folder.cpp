@@ -59,6 +59,52 @@ int lock_folder(const fs::path& folder) {
   return -1;
 }
 
+/// Onto the disk, so that a power cut keeps it. A file system that cannot do this for a folder says that the
+/// argument is invalid; whatever else it says is an error of the disk.
+std::error_code sync_to_disk(const fs::path& place) {
+  const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return {errno, std::generic_category()};
+  const int failed = fsync(descriptor) == 0 ? 0 : errno;
+  close(descriptor);
+  if (failed == EINVAL || failed == ENOTSUP) return {};
+  return {failed, std::generic_category()};
+}
+
+/// Every file and folder below, and then the folder itself.
+std::error_code sync_tree(const fs::path& folder) {
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->is_symlink(error) || error) continue;
+    const bool is_kept = entry->is_regular_file(error) || entry->is_directory(error);
+    if (is_kept && !error) error = sync_to_disk(entry->path());
+    if (error) return error;
+  }
+  return error ? error : sync_to_disk(folder);
+}
+
+/// The folder that a path stands in.
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// ".<name>.<process>[-<attempt>].tmp".
+bool is_hidden_sibling(std::string_view name) {
+  constexpr std::string_view kEnd = ".tmp";
+  if (!name.starts_with('.') || !name.ends_with(kEnd)) return false;
+  name = name.substr(1, name.size() - 1 - kEnd.size());
+  const std::size_t point = name.rfind('.');
+  if (point == std::string_view::npos || point == 0) return false;
+  const std::string_view numbers = name.substr(point + 1);
+  const std::size_t dash = numbers.find('-');
+  return is_number(numbers.substr(0, dash)) &&
+         (dash == std::string_view::npos || is_number(numbers.substr(dash + 1)));
+}
+
 bool is_older_than_a_day(const fs::path& folder) {
   std::error_code error;
   const auto written = fs::last_write_time(folder, error);
@@ -114,15 +160,19 @@ Result<void> StagedFolder::write(std::string_view name, std::string_view text) c
 
 Result<void> StagedFolder::commit() {
   const fs::path old = temporary_ / "old";
-  std::error_code error;
+  std::error_code error = sync_tree(path());
+  if (error) return io_error(final_, error);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     fs::rename(final_, old, error);
     if (error && error != std::errc::no_such_file_or_directory) break;
     fs::rename(path(), final_, error);
     std::error_code ignored;
     if (!error) {
+      // What was replaced goes once the new one is on the disk.
+      error = sync_places();
       fs::remove_all(std::exchange(temporary_, {}), ignored);
       created_.clear();
+      if (error) break;
       return {};
     }
     // Another one was committed in between. It is replaced in its turn; what it replaced is out of date.
@@ -136,28 +186,64 @@ Result<void> StagedFolder::commit() {
   return io_error(final_, error);
 }
 
-std::size_t remove_abandoned(const fs::path& parent, bool only_count) {
+/// The names of the folder, and of those above it that were made for it.
+std::error_code StagedFolder::sync_places() const {
+  std::error_code error = sync_to_disk(folder_of(final_));
+  for (auto parent = created_.rbegin(); parent != created_.rend() && !error; ++parent)
+    error = sync_to_disk(folder_of(*parent));
+  return error;
+}
+
+bool is_staged_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!is_hidden_sibling(folder.filename().string()) || !fs::is_directory(folder, error)) return false;
+  if (fs::is_symlink(folder, error)) return false;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path name = entry->path().filename();
+    std::error_code ignored;
+    if ((name != "new" && name != "old") || !entry->is_directory(ignored)) return false;
+  }
+  return !error;
+}
+
+std::error_code remove_whole(const fs::path& folder) {
+  std::error_code error;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const fs::path hidden = hidden_sibling(folder, attempt);
+    if (!fs::create_directory(hidden, error)) {
+      if (error && error != std::errc::file_exists) return error;
+      error = std::make_error_code(std::errc::file_exists);
+      continue;
+    }
+    const int lock = lock_folder(hidden);
+    fs::rename(folder, hidden / "old", error);
+    std::error_code removing;
+    fs::remove_all(hidden, removing);
+    if (lock >= 0) close(lock);
+    return error ? error : removing;
+  }
+  return error;
+}
+
+std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
   std::vector<fs::path> hidden;
   std::error_code error;
   for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    std::error_code ignored;
-    if (name.starts_with('.') && name.ends_with(".tmp") && entry->is_directory(ignored))
-      hidden.push_back(entry->path());
+    if (is_staged_folder(entry->path())) hidden.push_back(entry->path());
   }
-  std::size_t count = 0;
+  std::vector<fs::path> abandoned;
   for (const fs::path& folder : hidden) {
     const int lock = lock_folder(folder);
     const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
     std::error_code ignored;
     if (lock >= 0 || (unlockable && is_older_than_a_day(folder))) {
-      ++count;
+      abandoned.push_back(folder);
       // The lock is held meanwhile, so that whoever has just made the folder learns it.
-      if (!only_count) fs::remove_all(folder, ignored);
+      if (!only_look) fs::remove_all(folder, ignored);
     }
     if (lock >= 0) close(lock);
   }
-  return count;
+  return abandoned;
 }
 
 }  // namespace fusebench

@@ -14,6 +14,7 @@
 #include "core/staged_folder.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/variants.hpp"
+#include "eval/record_files.hpp"
 #include "eval/record_origin.hpp"
 #include "eval/run_evaluation.hpp"
 #include "eval/trajectory/stamps.hpp"
@@ -116,23 +117,22 @@ Result<std::string> hash_of(const ImportSpec& spec, TrajectoryFormat format, con
   return identity.hex();
 }
 
-Result<void> write(const ImportedRun& run, const RunOutput& output, const Trajectory& truth) {
+Result<void> write(ImportedRun& run, const RunOutput& output, const Trajectory& truth) {
   auto folder = StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
   if (!output.mesh.vertices.empty()) {
     if (auto written = write_ply(output.mesh, folder->file("mesh.ply")); !written) return written;
   }
-  const std::array<std::pair<std::string_view, std::string>, 4> texts = {
+  const std::array<std::pair<std::string_view, std::string>, 3> texts = {
       {{"trajectory.tum", tum_text(output.trajectory)},
        {"truth.tum", tum_text(truth)},
        {"log.txt", fmt::format("imported: {} of {} frames have a pose\n", run.record.frames.tracked,
-                               run.record.frames.total)},
-       {"record.json", to_json(run.record)}}};
+                               run.record.frames.total)}}};
   for (const auto& [name, text] : texts) {
     if (text.empty()) continue;  // no truth
     if (auto written = folder->write(name, text); !written) return written;
   }
-  return folder->commit();
+  return commit_run(*folder, run.record);
 }
 
 }  // namespace

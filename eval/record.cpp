@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -68,6 +69,22 @@ std::vector<RecordedOption> config_of(const Json& json) {
   return config;
 }
 
+Json json_of(const std::vector<RecordedFile>& files) {
+  Json json = Json::object();
+  for (const RecordedFile& file : files) json[file.name] = {{"bytes", file.bytes}, {"xxh3", file.xxh3}};
+  return json;
+}
+
+/// None in an older record.
+std::vector<RecordedFile> files_of(const Json& json) {
+  std::vector<RecordedFile> files;
+  if (!json.contains("files")) return files;
+  for (const auto& [name, file] : json.at("files").items()) {
+    files.push_back({name, file.at("bytes").get<std::uint64_t>(), file.at("xxh3").get<std::string>()});
+  }
+  return files;
+}
+
 Json json_of(const RecordedTiming& timing) {
   Json stages = Json::object();
   for (const auto& [name, milliseconds] : timing.stages_ms) stages[name] = milliseconds;
@@ -77,6 +94,7 @@ Json json_of(const RecordedTiming& timing) {
                {"fps", timing.fps},
                {"stages_ms", stages}};
   for (const auto& [name, histogram] : timing.histograms) json["histogram_ms"][name] = json_of(histogram);
+  if (!timing.files.empty()) json["files"] = json_of(timing.files);
   return json;
 }
 
@@ -88,6 +106,7 @@ void read(const Json& json, RecordedTiming& timing) {
   for (const auto& [name, milliseconds] : json.at("stages_ms").items()) {
     timing.stages_ms.emplace_back(name, milliseconds.get<double>());
   }
+  timing.files = files_of(json);
   if (!json.contains("histogram_ms")) return;
   for (const auto& [name, histogram] : json.at("histogram_ms").items()) {
     timing.histograms.emplace_back(name, DurationHistogram{});
@@ -112,6 +131,11 @@ void read(const Json& json, RecordedProvenance& provenance) {
   provenance.host = json.at("host");
 }
 
+/// A record of another version of this program: not damaged, but not to be read here.
+struct OtherSchema {
+  int schema = 0;
+};
+
 RunStatus status_of(const std::string& text) {
   if (const auto status = parse_run_status(text)) return *status;
   throw std::invalid_argument(fmt::format("status = {} (allowed: ok | lost | failed)", text));
@@ -120,10 +144,7 @@ RunStatus status_of(const std::string& text) {
 RunRecord record_of(const Json& json) {
   RunRecord record;
   record.schema = json.at("schema");
-  if (record.schema != kRecordSchema) {
-    throw std::invalid_argument(
-        fmt::format("schema = {} (this program reads {})", record.schema, kRecordSchema));
-  }
+  if (record.schema != kRecordSchema) throw OtherSchema{record.schema};
   record.status = status_of(json.at("status"));
   record.reason = json.at("reason");
   record.run_id = json.value("run_id", "");
@@ -137,6 +158,7 @@ RunRecord record_of(const Json& json) {
   record.frames = {frames.at("total"), frames.at("tracked"), frames.at("lost")};
   const Json& model = json.at("model");
   record.model = {model.at("vertices"), model.at("triangles"), model.at("blocks")};
+  record.files = files_of(json);
   read(json.at("timing"), record.timing);
   read(json.at("provenance"), record.provenance);
   return record;
@@ -180,17 +202,39 @@ std::string to_json(const RunRecord& record) {
        {{"vertices", record.model.vertices},
         {"triangles", record.model.triangles},
         {"blocks", record.model.blocks}}},
+      {"files", json_of(record.files)},
       {"config", json_of(record.config)},
       {"timing", json_of(record.timing)},
       {"provenance", json_of(record.provenance)}};
   return json_text(json) + "\n";
 }
 
+std::string no_json(std::string_view text, std::size_t byte) {
+  if (text.empty()) return "empty";
+  const std::size_t at = std::min(byte, text.size());
+  const bool ends = byte > text.size();
+  const bool zeros = at > 0 && text[at - 1] == '\0';
+  return fmt::format("not JSON at byte {}{}", at,
+                     zeros  ? " (zeros after a power cut?)"
+                     : ends ? ", where it ends"
+                            : "");
+}
+
 Result<RunRecord> parse_record(std::string_view json, const std::string& name) {
   try {
     return record_of(Json::parse(json));
+  } catch (const OtherSchema& other) {
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: schema = {} (this program reads {})", name, other.schema, kRecordSchema),
+                "another version of this program wrote it");
+  } catch (const nlohmann::json::parse_error& error) {
+    return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", name, no_json(json, error.byte)));
   } catch (const nlohmann::json::exception& error) {
-    return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", name, error.what()));
+    // "[json.exception.out_of_range.403] key 'variant' not found"
+    const std::string_view text = error.what();
+    const std::size_t prefix = text.find("] ");
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: {}", name, text.substr(prefix == std::string_view::npos ? 0 : prefix + 2)));
   } catch (const std::invalid_argument& error) {
     return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", name, error.what()));
   }

@@ -110,6 +110,15 @@ struct RecordedModel {
   std::size_t blocks = 0;
 };
 
+/// A file of a run as it was written, beside its record.
+struct RecordedFile {
+  std::string name;  ///< relative to the run's folder, with "/"
+  std::uint64_t bytes = 0;
+  std::string xxh3;  ///< Fingerprint::add_file() of it
+
+  friend bool operator==(const RecordedFile&, const RecordedFile&) = default;
+};
+
 /// Never the same twice.
 struct RecordedTiming {
   double wall_s = 0;
@@ -119,6 +128,7 @@ struct RecordedTiming {
   std::vector<std::pair<std::string, double>> stages_ms;  ///< mean over frames
   /// stage_histograms() of a profiled run; empty of others.
   std::vector<std::pair<std::string, DurationHistogram>> histograms = {};
+  std::vector<RecordedFile> files = {};  ///< those that hold times, as frames.csv does
 };
 
 struct RecordedProvenance {
@@ -146,6 +156,7 @@ struct RunRecord {
   RecordedMetrics metrics;
   RecordedFrames frames;
   RecordedModel model;
+  std::vector<RecordedFile> files;  ///< by name, without those that hold times; empty in older records
   RecordedTiming timing;
   RecordedProvenance provenance;
 };
@@ -154,7 +165,12 @@ struct RunRecord {
 /// alone. Statistics are SI; numbers that do not exist are null, with a reason beside them.
 [[nodiscard]] std::string to_json(const RunRecord& record);
 
-/// Error data_corrupt with the name (a file, for messages) and what is missing or wrong.
+/// What is wrong with a text that the parser took for no JSON at a byte, which it counts from 1: "not JSON at
+/// byte 4097 (zeros after a power cut?)".
+[[nodiscard]] std::string no_json(std::string_view text, std::size_t byte);
+
+/// Errors, with the name (a file, for messages) and what is missing or wrong: data_corrupt; configuration if
+/// it has the schema of another version of this program.
 [[nodiscard]] Result<RunRecord> parse_record(std::string_view json, const std::string& name);
 
 /// Errors: data_missing, and those of parse_record.

@@ -5,8 +5,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "core/fingerprint.hpp"
 #include "core/marching_cubes.hpp"
@@ -25,6 +23,7 @@
 #include "eval/process_meter.hpp"
 #include "eval/profile/run_profile.hpp"
 #include "eval/profile/trace_file.hpp"
+#include "eval/record_files.hpp"
 #include "eval/record_origin.hpp"
 #include "eval/run_evaluation.hpp"
 #include "eval/state_table.hpp"
@@ -268,26 +267,10 @@ Result<Recording> open_for_run(const RunSpec& spec) {
 }
 
 std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
-  // A record begins with these; all of it is a hundred times as long, and sweeps have thousands.
-  std::ifstream stream(folder / "record.json", std::ios::binary);
-  std::string begin(4096, '\0');
-  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<std::size_t>(stream.gcount()));
-  const std::size_t end = begin.find(",\n  \"repetition\"");
-  if (end == std::string::npos) {  // older, or with a very long reason
-    const auto record = read_record(folder / "record.json");
-    if (!record) return std::nullopt;
-    return RecordHead{record->status, record->reason, record->run_id};
-  }
-  const auto json = nlohmann::json::parse(begin.substr(0, end) + "}", nullptr, false);
-  if (!json.is_object()) return std::nullopt;
-  const auto text = [&](const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-  };
-  const auto status = parse_run_status(text("status"));
-  if (!status) return std::nullopt;
-  return RecordHead{*status, text("reason"), text("run_id")};
+  const auto run = found_run(folder);
+  if (!run) return std::nullopt;
+  return RecordHead{run->record.status, run->record.reason, run->record.run_id, run->state,
+                    missing_files(folder, run->record)};
 }
 
 PreparedRun place_run(RunSpec spec, Recording recording, const TakenFolders& taken) {
@@ -354,20 +337,19 @@ Result<RunRecord> execute_run(const PreparedRun& run, const RunControl& control)
   progress->log += fmt::format("{}: {} of {} frames tracked\n", to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
-  const std::array<std::pair<std::string_view, std::string>, 8> texts = {
+  const std::array<std::pair<std::string_view, std::string>, 7> texts = {
       {{"trajectory.tum", tum_text(progress->output.trajectory)},
        {"truth.tum", tum_text(true_trajectory(run.recording, frame_stamps(run.recording)))},
        {"frames.csv", progress->frame_table},
        {"states.csv", all ? progress->state_table : ""},
        {"nees.csv", nees_table(record.metrics.nees)},
        {kTraceFile, run.spec.profile ? trace_text(progress->profile, title) : ""},
-       {"log.txt", progress->log},
-       {"record.json", to_json(record)}}};
+       {"log.txt", progress->log}}};
   for (const auto& [name, text] : texts) {
     if (text.empty()) continue;  // no truth, not kept or not asked for
     if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
   }
-  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
+  if (auto done = commit_run(*folder, record); !done) return tl::unexpected(done.error());
   return record;
 }
 

@@ -11,10 +11,12 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/config_access.hpp"
 #include "core/error.hpp"
 #include "datasets/open_recording.hpp"
+#include "eval/found_runs.hpp"
 #include "eval/record.hpp"
 
 namespace fusebench {
@@ -74,13 +76,15 @@ struct PreparedRun {
 /// is none.
 [[nodiscard]] Result<Recording> open_for_run(const RunSpec& spec);
 
-/// What is known of a finished run without reading all of its record.
+/// What engines ask of a run that is there.
 struct RecordHead {
   RunStatus status = RunStatus::failed;
   std::string reason;
-  std::string run_id;
+  std::string run_id;                  ///< empty if the record does not say it, or cannot be read
+  RunState state = RunState::whole;    ///< failed if it is not whole
+  std::vector<std::string> missing{};  ///< recorded files that are not there
 };
-/// Nothing if there is no record in the folder, or none that can be read.
+/// Reads the whole record and looks at the sizes of the files. Nothing if there is no record in the folder.
 [[nodiscard]] std::optional<RecordHead> record_head(const std::filesystem::path& folder);
 
 /// Folders of runs that are planned, with their identities.

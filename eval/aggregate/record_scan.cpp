@@ -12,6 +12,8 @@
 #include <variant>
 #include <vector>
 
+#include "eval/record_files.hpp"
+
 namespace fusebench {
 
 namespace {
@@ -98,11 +100,13 @@ constexpr auto kFields = std::to_array<Field>({
     {"timing.fps", timing<&RunNumbers::fps>, true},
 });
 constexpr std::string_view kConfig = "config";
+constexpr std::string_view kFiles = "files";
 
 /// Follows the events of the parser; whatever no field begins with is passed over.
 class RecordHandler {
  public:
-  explicit RecordHandler(RunRow& row) : row_(row) {}
+  RecordHandler(std::string_view json, RunRow& row, std::vector<RecordedFile>* files)
+      : json_(json), row_(row), files_(files) {}
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   [[nodiscard]] bool has_config() const { return has_config_; }
@@ -150,6 +154,7 @@ class RecordHandler {
     switch (level.kind) {
       case Kind::fields:
         next_ = narrowed(level, key);
+        if (key == kFiles && (levels_.size() == 1 || is_timing(level))) next_ = {0, 0, 0, Kind::files};
         if (levels_.size() == 1 && key == kConfig) {
           next_ = {0, 0, 0, Kind::config};
           has_config_seen_ = true;
@@ -166,17 +171,27 @@ class RecordHandler {
       case Kind::option_member:
         next_ = {};
         break;
+      case Kind::files:
+        if (files_ != nullptr) files_->push_back({key, 0, {}});
+        next_ = {0, 0, 0, Kind::file};
+        break;
+      case Kind::file:
+        next_ = {0, 0, 0, key == "bytes" ? Kind::file_bytes : Kind::file_member};
+        break;
+      case Kind::file_bytes:
+      case Kind::file_member:
+        break;
     }
     return true;
   }
 
-  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
-    problem_ = error.what();
+  bool parse_error(std::size_t byte, const std::string&, const nlohmann::json::exception&) {
+    problem_ = no_json(json_, byte);
     return false;
   }
 
  private:
-  enum class Kind { fields, config, option, option_member };
+  enum class Kind { fields, config, option, option_member, files, file, file_bytes, file_member };
   /// Where in the document we are: the fields [first, last) share this beginning of `prefix` characters.
   struct Level {
     std::size_t first = 0;
@@ -192,6 +207,10 @@ class RecordHandler {
       origin.clear();
     }
   };
+
+  static bool is_timing(const Level& level) {
+    return level.first < level.last && kFields[level.first].path.substr(0, level.prefix) == "timing.";
+  }
 
   static Level narrowed(const Level& level, std::string_view key) {
     Level next{level.first, level.first, level.prefix + key.size(), Kind::fields};
@@ -209,6 +228,9 @@ class RecordHandler {
   bool scalar(const Scalar& value) {
     if (levels_.empty()) return true;  // the document is one value: fields will be missing
     if (next_.kind == Kind::option_member) return option_member(value);
+    if (next_.kind == Kind::file_member) return true;
+    if (next_.kind == Kind::file_bytes) return file_bytes(value);
+    if (next_.kind == Kind::files || next_.kind == Kind::file) return wrong(kFiles);
     if (next_.kind != Kind::fields) return wrong(kConfig);
     if (next_.first == next_.last || levels_.back().first == levels_.back().last) return true;
     const Field& field = kFields[next_.first];
@@ -227,6 +249,13 @@ class RecordHandler {
       if (std::holds_alternative<std::nullptr_t>(value)) return wrong(option_key_);
       option_.value = text_of(value);
     }
+    return true;
+  }
+
+  bool file_bytes(const Scalar& value) {
+    const auto* given = std::get_if<std::int64_t>(&value);
+    if (given == nullptr || *given < 0) return wrong(kFiles);
+    if (files_ != nullptr) files_->back().bytes = static_cast<std::uint64_t>(*given);
     return true;
   }
 
@@ -251,7 +280,9 @@ class RecordHandler {
     return false;
   }
 
+  std::string_view json_;
   RunRow& row_;
+  std::vector<RecordedFile>* files_;
   std::vector<Level> levels_;
   Level next_;
   std::string option_key_;
@@ -263,25 +294,30 @@ class RecordHandler {
   std::string problem_;
 };
 
-RunRow damaged(RunRow row, const std::string& problem) {
+/// A record of another version of this program is not damaged.
+std::string reason_of(const std::string& problem) {
+  return problem.starts_with("schema ") ? "record.json: " + problem : damage_text("record.json", problem);
+}
+
+}  // namespace
+
+RunRow damaged_row(RunRow row, std::string reason) {
   static_cast<RunNumbers&>(row) = {};
   row.status = RunStatus::failed;
   row.readable = false;
-  row.reason = "record.json: " + problem;
+  row.reason = std::move(reason);
   row.options.clear();
   row.total = row.tracked = row.lost = 0;
   return row;
 }
 
-}  // namespace
-
-RunRow scan_record(std::string_view json) {
+RunRow scan_record(std::string_view json, std::vector<RecordedFile>* files) {
   RunRow row;
-  RecordHandler handler(row);
+  RecordHandler handler(json, row, files);
   if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler))
-    return damaged(std::move(row), handler.problem());
+    return damaged_row(std::move(row), reason_of(handler.problem()));
   if (const auto missing = handler.missing(); !missing.empty())
-    return damaged(std::move(row), fmt::format("{} is missing", missing));
+    return damaged_row(std::move(row), reason_of(fmt::format("{} is missing", missing)));
   std::ranges::sort(row.options);
   // A run that was never started says nothing of its options; one of another program has none.
   row.options_known = handler.has_config() || row.status != RunStatus::failed;

@@ -1,14 +1,20 @@
 // The few numbers of a record that aggregations need, without building the whole document.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "eval/aggregate/run_rows.hpp"
 
 namespace fusebench {
 
 /// A row without `run` and `folder`. Text that is no record gives a row that is not readable, failed, with
-/// the reason and with what was read of recording and variant before the damage.
-[[nodiscard]] RunRow scan_record(std::string_view json);
+/// the reason and with what was read of recording and variant before the damage. The names and sizes of the
+/// files that stand in the record (without hashes) are added to `files`, if there is one.
+[[nodiscard]] RunRow scan_record(std::string_view json, std::vector<RecordedFile>* files = nullptr);
+
+/// The row of a run that is not whole: failed, without numbers and options.
+[[nodiscard]] RunRow damaged_row(RunRow row, std::string reason);
 
 }  // namespace fusebench

@@ -10,10 +10,12 @@
 #include <string>
 #include <system_error>
 #include <tuple>
+#include <utility>
 
 #include "eval/aggregate/option_order.hpp"
 #include "eval/aggregate/record_scan.hpp"
 #include "eval/found_runs.hpp"
+#include "eval/record_files.hpp"
 
 namespace fusebench {
 
@@ -23,17 +25,25 @@ namespace {
 
 RunRow read_row(const fs::path& root, const fs::path& file) {
   RunRow row;
+  const fs::path folder = file.parent_path();
   std::error_code error;
   const auto bytes = fs::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
   std::string text(error ? 0 : bytes, '\0');
   if (!error && stream.read(text.data(), static_cast<std::streamsize>(text.size()))) {
-    row = scan_record(text);
+    std::vector<RecordedFile> files;
+    row = scan_record(text, &files);
+    if (std::string damage = row.readable ? changed_size(folder, files) : ""; !damage.empty())
+      row = damaged_row(std::move(row), std::move(damage));
   } else {
     row.readable = false;
     row.reason = "record.json: cannot be read";
   }
-  const fs::path folder = file.parent_path();
+  if (!row.readable) {
+    const PlaceOfRun place = place_of_run(folder);
+    row.recording = place.recording;
+    row.variant = place.variant;
+  }
   row.run = folder.filename().string();
   row.folder = folder.lexically_relative(root).generic_string();
   return row;

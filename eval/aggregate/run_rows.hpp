@@ -38,7 +38,7 @@ struct RunRow : RunNumbers {
   std::size_t lost = 0;
   RunOptions options;
   std::string config_hash;
-  bool readable = true;  ///< false: the record is damaged; `reason` says how
+  bool readable = true;  ///< false: the record or a file is damaged; `reason` says how
   /// False for a run that failed before it wrote its options, where no other run has the same configuration.
   bool options_known = true;
 
@@ -54,10 +54,10 @@ struct RunRow : RunNumbers {
 
 [[nodiscard]] std::size_t unreadable_count(std::span<const RunRow> rows);
 
-/// Every record.json below `root` (hidden folders are unfinished runs and are skipped), by recording, variant
-/// in the order of all_variants(), options, run; the same for any number of threads. A record that cannot be
-/// read is a failed row with the reason. A failed run that never wrote its options has those of a run of the
-/// same variant and configuration hash. Error data_missing: no folder, or no records at all.
+/// Every run below `root` as record_files() finds them, by recording, variant
+/// in the order of all_variants(), options, run; the same for any number of threads. A run that is
+/// not whole is a failed row with the reason. A failed run that never wrote its options has those of a run of
+/// the same variant and configuration hash. Error data_missing: no folder, or no records at all.
 [[nodiscard]] Result<std::vector<RunRow>> read_run_rows(const std::filesystem::path& root,
                                                         const Workers& workers);
 

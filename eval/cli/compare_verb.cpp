@@ -40,16 +40,15 @@ Result<int> compare(const CompareOptions& options) {
   const auto confirming =
       options.confirm.empty() ? Result<std::vector<FoundRun>>() : find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
-  const auto comparison = compare_runs(*base, *fresh, *gates, *confirming);
-  if (!comparison) return tl::unexpected(comparison.error());
-  const std::string text = render_comparison(*comparison, *format, options.all);
+  const RunComparison comparison = compare_runs(*base, *fresh, *gates, *confirming);
+  const std::string text = render_comparison(comparison, *format, options.all);
   if (options.out.empty()) {
     print_output(text);
   } else {
     if (auto written = write_text_file(options.out, text); !written) return tl::unexpected(written.error());
-    print_progress(comparison_summary(*comparison));
+    print_progress(comparison_summary(comparison));
   }
-  return comparison->passed() ? 0 : kExitGateFailed;
+  return comparison.passed() ? 0 : kExitGateFailed;
 }
 
 }  // namespace

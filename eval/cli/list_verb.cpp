@@ -32,6 +32,7 @@ struct ListOptions {
   std::string what;
   std::filesystem::path runs = "results/runs";
   std::string status;
+  bool verify = false;
   std::filesystem::path data;
   std::filesystem::path configs = "configs";
   bool markdown = false;
@@ -127,7 +128,7 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
 }
 
 Result<Listing> list_runs_of(const ListOptions& options) {
-  const auto runs = list_runs(options.runs);
+  const auto runs = list_runs(options.runs, options.verify);
   if (!runs) return tl::unexpected(runs.error());
   Listing listing{{"run", "status", "reason"}, {}};
   for (const ListedRun& run : *runs) {
@@ -203,6 +204,8 @@ Verb add_list_verb(CLI::App& app) {
   verb->add_option("-o,--only", options->status, "Of runs: those that ended so: ok, lost or failed")
       ->check(CLI::IsMember({"ok", "lost", "failed"}))
       ->type_name("STATUS");
+  verb->add_flag("--verify", options->verify,
+                 "Of runs: reads every file and compares it with what the run wrote; otherwise only sizes");
   add_data_option(*verb, options->data);
   verb->add_option("--configs", options->configs, "Folder that holds suites/")
       ->type_name("DIR")

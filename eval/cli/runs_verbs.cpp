@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "eval/cli/console.hpp"
@@ -25,13 +26,19 @@ struct GcOptions {
 Result<int> collect(const GcOptions& options) {
   const auto report = collect_garbage(options.runs, options.garbage);
   if (!report) return tl::unexpected(report.error());
+  std::vector<std::string> paths;
+  for (const std::filesystem::path& path : report->paths) paths.push_back(path.string());
   if (options.json) {
     print_output(json_text({{"temporaries", report->temporaries},
                             {"runs", report->runs},
                             {"bytes", report->bytes},
+                            {"paths", paths},
                             {"removed", !options.garbage.only_look}}) +
                  "\n");
   } else {
+    for (const std::string& path : paths) {
+      if (options.garbage.only_look) print_output(path + "\n");
+    }
     print_output(fmt::format("{}{} left by killed processes, {} runs of {:.1f} MB\n",
                              options.garbage.only_look ? "would remove " : "removed ", report->temporaries,
                              report->runs, static_cast<double>(report->bytes) / 1e6));
@@ -50,8 +57,9 @@ Result<int> merge(const MergeOptions& options) {
     const auto report = merge_runs(from, options.into);
     if (!report) return tl::unexpected(report.error());
     differing += report->differing;
-    print_progress(
-        fmt::format("{}: {} runs copied, {} were there", from.string(), report->copied, report->there));
+    print_progress(fmt::format(
+        "{}: {} runs copied, {} were there{}", from.string(), report->copied, report->there,
+        report->damaged == 0 ? "" : fmt::format(", {} are damaged and were left out", report->damaged)));
   }
   if (differing == 0) return 0;
   return fail(ErrorCode::data_corrupt,
@@ -65,9 +73,9 @@ Verb add_gc_verb(CLI::App& app) {
   auto options = std::make_shared<GcOptions>();
   CLI::App* verb = app.add_subcommand("gc", "Removes what nobody needs from a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder of runs")->required();
-  verb->add_flag("--failed", options->garbage.failed, "Failed runs, too");
+  verb->add_flag("--failed", options->garbage.failed, "Failed and damaged runs, too");
   verb->add_flag("--stale", options->garbage.stale, "Runs of other versions of the estimator, too");
-  verb->add_flag("--dry-run", options->garbage.only_look, "Only says what it would remove");
+  verb->add_flag("--dry-run", options->garbage.only_look, "Only lists what it would remove");
   add_json_flag(*verb, options->json);
   return {verb, [options] { return collect(*options); }};
 }

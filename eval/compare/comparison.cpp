@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/toml_document.hpp"
+#include "eval/record_files.hpp"
 
 namespace fusebench {
 
@@ -134,12 +135,21 @@ void add_config_gates(const RunRecord& base, const RunRecord& fresh, const Gates
   results.push_back(gates.changed_defaults_fail ? regression("config", text) : note("config", text));
 }
 
+/// As first_divergence(), of trajectories that are the ones that the runs wrote.
+Result<std::optional<Divergence>> checked_divergence(const FoundRun& base, const FoundRun& fresh) {
+  for (const FoundRun* run : {&base, &fresh}) {
+    if (auto checked = check_file(run->folder, run->record, "trajectory.tum"); !checked)
+      return fail(checked.error().code, fmt::format("{}: {}", run->folder.string(), checked.error().message));
+  }
+  return first_divergence(base.folder, fresh.folder);
+}
+
 /// How a repetition differs from the first run of its side; empty if it does not.
-Result<std::string> difference(const FoundRun& first, const FoundRun& other) {
+std::string difference(const FoundRun& first, const FoundRun& other) {
   if (first.record.status != other.record.status)
     return fmt::format("status {} and {}", status_text(first.record), status_text(other.record));
   if (first.record.recording.fingerprint != other.record.recording.fingerprint)
-    return std::string("the recording's content");
+    return "the recording's content";
   for (const GatedMetric& metric : gated_metrics()) {
     const auto a = metric.of(first.record).value;
     const auto b = metric.of(other.record).value;
@@ -149,20 +159,19 @@ Result<std::string> difference(const FoundRun& first, const FoundRun& other) {
     };
     return fmt::format("{} is {} and {}", metric.key, text(a), text(b));
   }
-  if (!has_trajectory(first.folder) || !has_trajectory(other.folder)) return std::string();
-  const auto divergence = first_divergence(first.folder, other.folder);
-  if (!divergence) return tl::unexpected(divergence.error());
+  if (!has_trajectory(first.folder) || !has_trajectory(other.folder)) return {};
+  const auto divergence = checked_divergence(first, other);
+  if (!divergence) return divergence.error().message;
   return *divergence ? fmt::format("the trajectory {}", (*divergence)->text()) : std::string();
 }
 
-Result<void> add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results) {
+void add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results) {
   for (const auto& [side, runs] : {std::pair("BASE", &pair.base), std::pair("NEW", &pair.fresh)}) {
     for (std::size_t i = 1; i < runs->size(); ++i) {
-      const auto differs = difference(runs->front(), (*runs)[i]);
-      if (!differs) return tl::unexpected(differs.error());
-      if (differs->empty()) continue;
+      const std::string differs = difference(runs->front(), (*runs)[i]);
+      if (differs.empty()) continue;
       results.push_back(
-          regression("repetitions", fmt::format("repetitions of {} differ: {} ({} and {})", side, *differs,
+          regression("repetitions", fmt::format("repetitions of {} differ: {} ({} and {})", side, differs,
                                                 runs->front().folder.string(), (*runs)[i].folder.string())));
       break;
     }
@@ -171,22 +180,25 @@ Result<void> add_repetition_gates(const RunPair& pair, std::vector<GateResult>& 
   const bool differ =
       std::ranges::any_of(results, [](const GateResult& r) { return r.gate == "repetitions"; });
   if (repeated && !differ) results.push_back({"repetitions", GateVerdict::unchanged, false, {}});
-  return {};
 }
 
-Result<void> add_divergence(ComparedRun& run, const Gates& gates) {
-  const auto& base = run.runs.base.front().folder;
-  const auto& fresh = run.runs.fresh.front().folder;
-  if (!has_trajectory(base)) {
-    if (has_trajectory(fresh)) run.gates.push_back(note("trajectory", "BASE keeps no trajectory to compare"));
-    return {};
+void add_divergence(ComparedRun& run, const Gates& gates) {
+  const FoundRun& base = run.runs.base.front();
+  const FoundRun& fresh = run.runs.fresh.front();
+  if (!has_trajectory(base.folder)) {
+    if (has_trajectory(fresh.folder))
+      run.gates.push_back(note("trajectory", "BASE keeps no trajectory to compare"));
+    return;
   }
-  if (!has_trajectory(fresh)) {
+  if (!has_trajectory(fresh.folder)) {
     run.gates.push_back(regression("trajectory", "NEW has no trajectory.tum, and BASE has one"));
-    return {};
+    return;
   }
-  auto divergence = first_divergence(base, fresh);
-  if (!divergence) return tl::unexpected(divergence.error());
+  auto divergence = checked_divergence(base, fresh);
+  if (!divergence) {
+    run.gates.push_back(regression("trajectory", divergence.error().message));
+    return;
+  }
   run.divergence = std::move(*divergence);
   run.is_identical = !run.divergence.has_value();
   GateResult result{"trajectory", GateVerdict::unchanged, false, {}};
@@ -195,7 +207,6 @@ Result<void> add_divergence(ComparedRun& run, const Gates& gates) {
                                     : note("trajectory", run.divergence->text());
   }
   run.gates.push_back(std::move(result));
-  return {};
 }
 
 /// A run that never opened its recording does not know its content.
@@ -215,7 +226,7 @@ std::string other_data_text(const RunRecord& base, const RunRecord& fresh) {
       after.fingerprint, after.frames, kUpdate);
 }
 
-Result<ComparedRun> compare_pair(RunPair pair, const Gates& gates, const std::vector<FoundRun>& confirming) {
+ComparedRun compare_pair(RunPair pair, const Gates& gates, const std::vector<FoundRun>& confirming) {
   ComparedRun run{std::move(pair), {}, std::nullopt, false};
   if (run.runs.fresh.empty()) {
     run.gates.push_back(regression("run", "missing in NEW"));
@@ -236,11 +247,11 @@ Result<ComparedRun> compare_pair(RunPair pair, const Gates& gates, const std::ve
   run.gates.push_back({"data", GateVerdict::unchanged, false, {}});
   run.gates.push_back(status_gate(base, fresh, gates));
   add_config_gates(base, fresh, gates, run.gates);
-  if (auto added = add_repetition_gates(run.runs, run.gates); !added) return tl::unexpected(added.error());
+  add_repetition_gates(run.runs, run.gates);
   // Where one side failed the other's numbers would only repeat it.
   if (base.status != RunStatus::failed && fresh.status != RunStatus::failed) {
     if (fresh.status == base.status) add_metric_gates(run.runs, gates, run.gates);
-    if (auto added = add_divergence(run, gates); !added) return tl::unexpected(added.error());
+    add_divergence(run, gates);
   }
   if (base.status != RunStatus::ok || fresh.status != RunStatus::ok) return run;
   std::vector<FoundRun> again;
@@ -319,13 +330,11 @@ std::vector<const ComparedRun*> RunComparison::diverging() const {
   return result;
 }
 
-Result<RunComparison> compare_runs(const std::vector<FoundRun>& base, const std::vector<FoundRun>& fresh,
-                                   const Gates& gates, const std::vector<FoundRun>& confirming) {
+RunComparison compare_runs(const std::vector<FoundRun>& base, const std::vector<FoundRun>& fresh,
+                           const Gates& gates, const std::vector<FoundRun>& confirming) {
   RunComparison comparison;
   for (RunPair& pair : pair_runs(base, fresh)) {
-    auto run = compare_pair(std::move(pair), gates, confirming);
-    if (!run) return tl::unexpected(run.error());
-    comparison.runs.push_back(std::move(*run));
+    comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming));
   }
   add_unused_overrides(gates, comparison);
   return comparison;

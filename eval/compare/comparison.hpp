@@ -59,10 +59,11 @@ struct RunComparison {
 
 /// Deterministic numbers are taken from the first run of each side. `confirming` are the runs of a rerun of
 /// NEW (empty: none was made): a time or a size that failed is a regression only if it fails there as well,
-/// against the same baseline. Errors: those of first_divergence().
-[[nodiscard]] Result<RunComparison> compare_runs(const std::vector<FoundRun>& base,
-                                                 const std::vector<FoundRun>& fresh, const Gates& gates,
-                                                 const std::vector<FoundRun>& confirming = {});
+/// against the same baseline. A trajectory that is damaged or cannot be read is a regression with that
+/// reason.
+[[nodiscard]] RunComparison compare_runs(const std::vector<FoundRun>& base,
+                                         const std::vector<FoundRun>& fresh, const Gates& gates,
+                                         const std::vector<FoundRun>& confirming = {});
 
 /// The gates of times and memory of a pair, see timed_gates.cpp. confirming: runs of the same experiment.
 [[nodiscard]] std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,

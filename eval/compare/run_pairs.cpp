@@ -48,7 +48,7 @@ bool alike(const RunKey& a, const RunKey& b) {
 
 /// Whether the runs of `lone`, which have no counterpart, belong to `pair`.
 bool belongs(const RunPair& lone, const RunPair& pair) {
-  if (&lone == &pair || !alike(lone.key, pair.key)) return false;
+  if (!alike(lone.key, pair.key)) return false;
   const bool is_base = !lone.base.empty();
   const auto& own = is_base ? lone.base : lone.fresh;
   const auto& others = is_base ? pair.fresh : pair.base;
@@ -66,17 +66,37 @@ void move_runs(std::vector<FoundRun>& from, std::vector<FoundRun>& to) {
   std::ranges::sort(to, {}, [](const FoundRun& run) { return run.folder.string(); });
 }
 
+/// A run whose record says nothing has no options to be known by, but the name of its folder.
+bool has_same_folder(const RunPair& lone, const RunPair& pair) {
+  const auto& own = lone.base.empty() ? lone.fresh : lone.base;
+  const auto& others = lone.base.empty() ? pair.base : pair.fresh;
+  return lone.key.recording == pair.key.recording && lone.key.variant == pair.key.variant &&
+         std::ranges::all_of(own, [&](const FoundRun& run) {
+           if (run.state == RunState::whole || !run.record.config.empty()) return false;
+           return std::ranges::any_of(others, [&](const FoundRun& other) {
+             return other.folder.filename() == run.folder.filename();
+           });
+         });
+}
+
+/// The one pair that a run without a counterpart belongs to, if there is only one.
+template <class Belongs>
+RunPair* only_pair_of(const RunPair& lone, std::vector<RunPair>& pairs, const Belongs& is_one) {
+  RunPair* only = nullptr;
+  for (RunPair& pair : pairs) {
+    if (&pair == &lone || !is_one(lone, pair)) continue;
+    if (only != nullptr) return nullptr;
+    only = &pair;
+  }
+  return only;
+}
+
 void join_lone_runs(std::vector<RunPair>& pairs) {
   for (RunPair& lone : pairs) {
     if (lone.base.empty() == lone.fresh.empty()) continue;
-    RunPair* only = nullptr;
-    std::size_t found = 0;
-    for (RunPair& pair : pairs) {
-      if (!belongs(lone, pair)) continue;
-      only = &pair;
-      ++found;
-    }
-    if (found != 1) continue;
+    RunPair* only = only_pair_of(lone, pairs, has_same_folder);
+    if (only == nullptr) only = only_pair_of(lone, pairs, belongs);
+    if (only == nullptr) continue;
     move_runs(lone.base, only->base);
     move_runs(lone.fresh, only->fresh);
   }

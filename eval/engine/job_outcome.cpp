@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "core/config_access.hpp"
 #include "core/staged_folder.hpp"
 #include "eval/profile/trace_file.hpp"
+#include "eval/record_files.hpp"
 
 namespace fusebench {
 
@@ -20,6 +24,13 @@ fs::path not_started_folder(const BatchJob& job) {
   if (job.spec.frames) name += fmt::format("-{}-{}", job.spec.frames->begin, job.spec.frames->end);
   if (job.spec.repetition > 1) name += fmt::format("-r{}", job.spec.repetition);
   return job.spec.out / job.recording.filename() / job.variant / name;
+}
+
+/// Of KeptFiles::small, without the profile.
+bool is_kept_of_small(const std::string& name) {
+  constexpr std::array<std::string_view, 5> kSmall = {"trajectory.tum", "truth.tum", "frames.csv", "nees.csv",
+                                                      "log.txt"};
+  return std::ranges::find(kSmall, name) != kSmall.end();
 }
 
 std::string reason_of(const JobEnd& end) { return end.error ? end.error->message : end.reason; }
@@ -52,9 +63,7 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
   outcome.folder = not_started_folder(job);
   auto folder = StagedFolder::create(outcome.folder);
   if (!folder) return tl::unexpected(folder.error());
-  if (auto written = folder->write("record.json", to_json(record)); !written)
-    return tl::unexpected(written.error());
-  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
+  if (auto done = commit_run(*folder, record); !done) return tl::unexpected(done.error());
   return outcome;
 }
 
@@ -65,14 +74,18 @@ bool was_not_started(const BatchJob& job) {
 
 bool is_finished(const PreparedRun& run, const RecordHead& head) {
   if (head.status == RunStatus::failed || head.run_id != run.run_id) return false;
+  const bool lacks_one = std::ranges::any_of(head.missing, [&](const std::string& name) {
+    return name != kTraceFile && (run.spec.kept == KeptFiles::all || is_kept_of_small(name));
+  });
+  if (lacks_one) return false;
   std::error_code ignored;
   if (run.spec.profile && !fs::exists(run.folder / kTraceFile, ignored)) return false;
   return run.spec.kept == KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
 }
 
 bool is_unreadable(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::exists(folder / "record.json", ignored) && !record_head(folder);
+  const auto head = record_head(folder);
+  return head && head->state != RunState::whole;
 }
 
 void forget_not_started(const BatchJob& job) {
@@ -96,10 +109,9 @@ Result<BatchOutcome> record_failed(const BatchJob& job, const PreparedRun& run, 
   const std::string log =
       fmt::format("{}{}failed: {}\n", end.output,
                   end.output.empty() || end.output.ends_with('\n') ? "" : "\n", outcome.reason);
-  for (const auto& [name, text] : {std::pair("record.json", to_json(record)), std::pair("log.txt", log)}) {
-    if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
-  }
-  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
+  if (auto written = folder->write("log.txt", log); !written) return tl::unexpected(written.error());
+  // What the process printed may depend on when it was ended.
+  if (auto done = commit_run(*folder, record, "log.txt"); !done) return tl::unexpected(done.error());
   return outcome;
 }
 

@@ -106,7 +106,7 @@ class Engine {
     PreparedRun run = place_run(job.spec, *recording, places_);
     places_.emplace(run.folder, run.run_id);
     if (ended_already(index, run)) return true;
-    auto claim = RunClaim::take(job.spec.out, claim_name(run));
+    auto claim = RunClaim::take(job.spec.out, claim_name(run.run_id, run.spec.repetition));
     if (!claim) {
       fatal_ = claim.error();
       return true;
@@ -177,10 +177,6 @@ class Engine {
     outcome.skipped = skipped;
     ++state_.resumed;
     end(index, std::move(outcome));
-  }
-
-  static std::string claim_name(const PreparedRun& run) {
-    return fmt::format("{}-{}", run.run_id, run.spec.repetition);
   }
 
   void prepare_place(const BatchJob& job, const PreparedRun& run) {

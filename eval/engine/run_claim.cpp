@@ -8,14 +8,34 @@
 
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 #include <utility>
+
+#include "eval/found_runs.hpp"
 
 namespace fusebench {
 
 namespace fs = std::filesystem;
 
-fs::path engine_folder(const fs::path& out) { return out / ".fusebench"; }
+namespace {
+
+/// As claim_name() makes them.
+bool is_claim(std::string_view name) {
+  constexpr std::size_t kIdentity = 32;
+  constexpr std::string_view kDigits = "0123456789";
+  return name.size() > kIdentity + 1 && name[kIdentity] == '-' &&
+         name.substr(0, kIdentity).find_first_not_of("0123456789abcdef") == std::string_view::npos &&
+         name.substr(kIdentity + 1).find_first_not_of(kDigits) == std::string_view::npos;
+}
+
+}  // namespace
+
+fs::path engine_folder(const fs::path& out) { return out / kEngineFolderName; }
+
+std::string claim_name(const std::string& run_id, int repetition) {
+  return fmt::format("{}-{}", run_id, repetition);
+}
 
 Result<std::optional<RunClaim>> RunClaim::take(const fs::path& out, const std::string& name) {
   const fs::path folder = engine_folder(out) / "claims";
@@ -53,19 +73,20 @@ RunClaim::~RunClaim() {
   close(descriptor_);
 }
 
-std::size_t remove_free_claims(const fs::path& out, bool only_count) {
-  std::size_t count = 0;
+std::vector<fs::path> remove_free_claims(const fs::path& out, bool only_look) {
+  std::vector<fs::path> free;
   std::error_code error;
   for (fs::directory_iterator entry(engine_folder(out) / "claims", error), end; !error && entry != end;
        entry.increment(error)) {
+    if (!is_claim(entry->path().filename().string())) continue;
     const int descriptor = open(entry->path().c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) continue;
     std::error_code ignored;
-    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && (only_count || fs::remove(entry->path(), ignored)))
-      ++count;
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && (only_look || fs::remove(entry->path(), ignored)))
+      free.push_back(entry->path());
     close(descriptor);
   }
-  return count;
+  return free;
 }
 
 }  // namespace fusebench

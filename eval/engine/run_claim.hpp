@@ -1,17 +1,20 @@
 // Who works on a run: two engines on one folder share the work instead of doing it twice.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 
 namespace fusebench {
 
-/// The folder of what engines keep among the runs of `out`; hidden, so that no table looks into it.
+/// The folder of what engines keep among the runs of `out`: no table looks into it, see is_engine_folder().
 [[nodiscard]] std::filesystem::path engine_folder(const std::filesystem::path& out);
+
+/// The name of the claim on a run: its identity (32 hex digits) and its repetition.
+[[nodiscard]] std::string claim_name(const std::string& run_id, int repetition);
 
 /// A claim on one run, as a lock that the system lets go of when its last holder ends, however it ends. It is
 /// inherited by processes that are forked while it is held.
@@ -33,8 +36,9 @@ class RunClaim {
   int descriptor_ = -1;
 };
 
-/// Removes the files of claims that nobody holds: engines that were killed left them. Returns how many, or
-/// how many there are to remove.
-std::size_t remove_free_claims(const std::filesystem::path& out, bool only_count = false);
+/// Removes the files of claims that nobody holds: engines that were killed left them. Returns them, or, if it
+/// shall only look, those that there are to remove.
+std::vector<std::filesystem::path> remove_free_claims(const std::filesystem::path& out,
+                                                      bool only_look = false);
 
 }  // namespace fusebench

@@ -11,6 +11,7 @@
 #include "eval/engine/run_claim.hpp"
 #include "eval/found_runs.hpp"
 #include "eval/record.hpp"
+#include "eval/record_files.hpp"
 
 namespace fusebench {
 
@@ -29,16 +30,19 @@ std::uint64_t size_of(const fs::path& folder) {
   return bytes;
 }
 
-/// Under a hidden name first, so that a kill in the middle leaves no half of a run.
-std::error_code remove_whole(const fs::path& folder) {
-  std::error_code error;
-  const fs::path hidden = folder.parent_path() / fmt::format(".{}.gc.tmp", folder.filename().string());
-  fs::rename(folder, hidden, error);
-  if (!error) fs::remove_all(hidden, error);
-  return error;
+/// As place_run() and record_not_started() call the folders of runs: what else is called record.json may be
+/// somebody else's.
+bool has_name_of_run(const fs::path& folder) {
+  constexpr std::size_t kFewestDigits = 8;
+  const std::string name = folder.filename().string();
+  const std::size_t digits = std::min(name.find_first_not_of("0123456789abcdef"), name.size());
+  return name.starts_with("not-started-") ||
+         (digits >= kFewestDigits && (digits == name.size() || name.compare(digits, 2, "-r") == 0));
 }
 
 bool is_garbage(const fs::path& folder, const RecordHead& head, const Garbage& garbage) {
+  if (head.state == RunState::unreadable) return false;  // what it is, nobody knows
+  if (head.state == RunState::damaged) return garbage.failed && has_name_of_run(folder);
   if (garbage.failed && head.status == RunStatus::failed) return true;
   if (!garbage.stale) return false;
   const auto record = read_record(folder / "record.json");
@@ -75,17 +79,43 @@ Result<void> copy_run(const fs::path& from, const fs::path& to) {
   return staged->commit();
 }
 
+/// A file that is not what the run wrote makes it a damaged one.
+void verify_files(const fs::path& folder, RecordHead& head) {
+  if (head.state != RunState::whole) return;
+  const auto record = read_record(folder / "record.json");
+  const auto checked = record ? check_files(folder, *record) : Result<void>();
+  if (checked) return;
+  head.status = RunStatus::failed;
+  head.state = RunState::damaged;
+  head.reason = checked.error().message;
+}
+
+std::set<fs::path> parents_of_staged_folders(const fs::path& root) {
+  std::set<fs::path> parents;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(root, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (!entry->is_directory(ignored)) continue;
+    const bool is_staged = is_staged_folder(entry->path());
+    if (is_staged) parents.insert(entry->path().parent_path());
+    if (is_staged || is_engine_folder(entry->path())) entry.disable_recursion_pending();
+  }
+  return parents;
+}
+
 }  // namespace
 
-Result<std::vector<ListedRun>> list_runs(const fs::path& root) {
+Result<std::vector<ListedRun>> list_runs(const fs::path& root, bool verify) {
   const auto files = record_files(root);
   if (!files) return tl::unexpected(files.error());
-  const RecordHead unreadable{RunStatus::failed, "its record cannot be read", ""};
   std::vector<ListedRun> runs;
   for (const fs::path& file : *files) {
     const fs::path folder = file.parent_path();
-    const auto head = record_head(folder);
-    runs.push_back({folder.lexically_relative(root), head.value_or(unreadable), head.has_value()});
+    auto head = record_head(folder);
+    if (!head) continue;  // removed just now
+    if (verify) verify_files(folder, *head);
+    runs.push_back({folder.lexically_relative(root), std::move(*head)});
   }
   std::ranges::sort(runs, {}, &ListedRun::folder);
   return runs;
@@ -94,32 +124,26 @@ Result<std::vector<ListedRun>> list_runs(const fs::path& root) {
 Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garbage) {
   const auto runs = list_runs(root);
   if (!runs) return tl::unexpected(runs.error());
+  if (runs->empty() && !is_engine_folder(engine_folder(root))) return holds_no_runs(root);
   GarbageReport report;
-  std::set<fs::path> parents;
   for (const ListedRun& run : *runs) {
     const fs::path folder = root / run.folder;
-    parents.insert(folder.parent_path());
-    if (!run.readable || !is_garbage(folder, run.head, garbage)) continue;  // what it is, nobody knows
+    if (!is_garbage(folder, run.head, garbage)) continue;
     ++report.runs;
     report.bytes += size_of(folder);
+    report.paths.push_back(folder);
     const auto error = garbage.only_look ? std::error_code() : remove_whole(folder);
     if (error)
       return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", folder.string(), error.message()));
   }
-  report.temporaries += remove_free_claims(root, garbage.only_look);
-  std::error_code error;
-  for (fs::recursive_directory_iterator entry(root, error), end; !error && entry != end;
-       entry.increment(error)) {
-    std::error_code ignored;
-    if (!entry->is_directory(ignored)) continue;
-    if (entry->path().filename().string().starts_with('.')) {
-      parents.insert(entry->path().parent_path());
-      entry.disable_recursion_pending();
-    }
-  }
-  for (const fs::path& parent : parents) {
-    report.temporaries += remove_abandoned(parent, garbage.only_look);
-  }
+  const auto add_temporaries = [&](const std::vector<fs::path>& paths) {
+    report.temporaries += paths.size();
+    report.paths.insert(report.paths.end(), paths.begin(), paths.end());
+  };
+  add_temporaries(remove_free_claims(root, garbage.only_look));
+  for (const fs::path& parent : parents_of_staged_folders(root))
+    add_temporaries(remove_abandoned(parent, garbage.only_look));
+  std::ranges::sort(report.paths);
   return report;
 }
 
@@ -128,10 +152,15 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
   if (!runs) return tl::unexpected(runs.error());
   MergeReport report;
   for (const ListedRun& run : *runs) {
+    if (run.head.state != RunState::whole) {
+      ++report.damaged;
+      continue;
+    }
     const fs::path target = into / run.folder;
     const auto there = record_head(target);
     std::error_code ignored;
-    const bool same = there && there->run_id == run.head.run_id;
+    const bool replaced = there && there->state == RunState::damaged;
+    const bool same = there && !replaced && there->run_id == run.head.run_id;
     const bool finished_there = same && there->status != RunStatus::failed;
     if (finished_there || (same && run.head.status == RunStatus::failed)) {
       ++report.there;
@@ -139,7 +168,7 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
         ++report.differing;
       continue;
     }
-    const bool taken = !same && fs::exists(target, ignored);
+    const bool taken = !same && !replaced && fs::exists(target, ignored);
     const fs::path free_place = taken ? longer_place(target, run.head.run_id) : target;
     if (auto copied = copy_run(from / run.folder, free_place); !copied) return tl::unexpected(copied.error());
     ++report.copied;

@@ -15,15 +15,16 @@ namespace fusebench {
 struct ListedRun {
   std::filesystem::path folder;  ///< relative to the root
   RecordHead head;
-  bool readable = true;  ///< false: what is called a record there cannot be read
 };
 
-/// Every run below a folder, by path; only the beginnings of records are read, so that tens of thousands take
-/// a second or two. What is no readable record is a failed run with that reason. Error data_missing.
-[[nodiscard]] Result<std::vector<ListedRun>> list_runs(const std::filesystem::path& root);
+/// Every run below a folder, by path. What is damaged, or no record that can be read, is a failed run with
+/// that reason; of the other files only the sizes are looked at, unless their content shall be verified.
+/// Error data_missing.
+[[nodiscard]] Result<std::vector<ListedRun>> list_runs(const std::filesystem::path& root,
+                                                       bool verify = false);
 
 struct Garbage {
-  bool failed = false;  ///< runs that failed, too
+  bool failed = false;  ///< runs that failed or are damaged, too
   bool stale = false;   ///< runs of another version of the estimator, too
   bool only_look = false;
 };
@@ -31,14 +32,17 @@ struct GarbageReport {
   std::size_t temporaries = 0;  ///< folders and claims that killed processes left
   std::size_t runs = 0;
   std::uint64_t bytes = 0;
+  std::vector<std::filesystem::path> paths;  ///< of all of them, sorted
 };
-/// Removes what nobody needs. What a living engine works on stays. Errors: data_missing, io.
+/// Removes what nobody needs of what this program wrote. What a living engine works on stays. Errors:
+/// data_missing, also for a folder that holds no runs; io.
 [[nodiscard]] Result<GarbageReport> collect_garbage(const std::filesystem::path& root,
                                                     const Garbage& garbage);
 
 struct MergeReport {
   std::size_t copied = 0;
   std::size_t there = 0;      ///< finished runs of the same identity were there already
+  std::size_t damaged = 0;    ///< not copied
   std::size_t differing = 0;  ///< of those, with another status: the same identity must give the same results
 };
 /// Copies runs from one folder to another, each whole or not at all; a failed run gives way to a finished one

@@ -250,7 +250,8 @@ class SlurmEngine {
     std::error_code unlisted;
     static_cast<void>(fs::directory_iterator(awaited.folder.parent_path(), unlisted));
     auto head = record_head(awaited.folder);
-    if (!head || head->run_id != awaited.run_id) return std::nullopt;
+    // Where a network file system shows the record before the other files, they come a moment later.
+    if (!head || head->run_id != awaited.run_id || head->state != RunState::whole) return std::nullopt;
     std::error_code ignored;
     if (awaited.written_before &&
         fs::last_write_time(awaited.folder / "record.json", ignored) == *awaited.written_before)

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "core/geometry.hpp"
 #include "eval/found_runs.hpp"
 #include "eval/intensity_file.hpp"
 #include "eval/intensity_metrics.hpp"
+#include "eval/record_files.hpp"
 #include "eval/report/common_pixels.hpp"
 #include "eval/report/data_labels.hpp"
 
@@ -50,6 +52,18 @@ TableRow row_of(const FoundRun& run) {
   return row;
 }
 
+/// Whether a run's intensity differences are not those that it wrote; the table says so then.
+bool is_damaged(const FoundRun& run, ResultTable& table) {
+  constexpr const char* kFile = "intensity.bin";
+  std::error_code ignored;
+  if (!fs::exists(run.folder / kFile, ignored)) return false;  // that is said where it is opened
+  const auto checked = check_file(run.folder, run.record, kFile);
+  if (checked) return false;
+  table.notes.push_back(fmt::format("{}, {}: left out of AIE common: {}", run.record.recording.name,
+                                    run.record.variant, checked.error().message));
+  return true;
+}
+
 /// Fills the common-pixel column, one recording (by content) at a time.
 void add_common_pixels(const std::vector<FoundRun>& runs, ResultTable& table) {
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
@@ -58,7 +72,9 @@ void add_common_pixels(const std::vector<FoundRun>& runs, ResultTable& table) {
     if (runs[i].record.status != RunStatus::ok || !runs[i].record.metrics.aie.value) continue;
     groups[{runs[i].record.recording.name, runs[i].record.recording.fingerprint}].push_back(i);
   }
-  for (const auto& [recording, members] : groups) {
+  for (auto& [recording, members] : groups) {
+    if (members.size() < 2) continue;
+    std::erase_if(members, [&](std::size_t member) { return is_damaged(runs[member], table); });
     if (members.size() < 2) continue;
     std::vector<fs::path> files;
     for (const std::size_t member : members) files.push_back(runs[member].folder / "intensity.bin");

@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "eval/record_files.hpp"
+
 namespace fusebench {
 
 namespace {
 
 /// The frames of the pair, with the motion that the reference saw.
 Result<std::vector<SharedFrame>> compared(const StudyRun& reference, const StudyRun& run) {
+  for (const StudyRun* side : {&reference, &run}) {
+    if (auto checked = check_file(side->folder, side->record, "intensity.bin"); !checked)
+      return tl::unexpected(checked.error());
+  }
   auto frames = shared_frames(reference.folder / "intensity.bin", run.folder / "intensity.bin");
   if (!frames) return frames;
   const auto motion = read_patch_motion(reference.folder / "frames.csv");

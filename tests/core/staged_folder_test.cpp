@@ -1,7 +1,11 @@
 #include "core/staged_folder.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include <atomic>
 #include <string>
@@ -9,6 +13,20 @@
 #include <vector>
 
 #include "tests/support/temporary_folder.hpp"
+
+namespace {
+
+/// What was written through to the disk while a test listened, in order, by the names that it had then.
+std::vector<std::filesystem::path>* synced = nullptr;
+
+}  // namespace
+
+/// In place of the C library's, for this program.
+extern "C" int fsync(int descriptor) {
+  if (synced != nullptr)
+    synced->push_back(std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", descriptor)));
+  return static_cast<int>(syscall(SYS_fsync, descriptor));
+}
 
 namespace fusebench {
 namespace {
@@ -130,6 +148,61 @@ TEST_F(StagedFolderTest, ASlashAtTheEndIsTheSamePlace) {
   auto run = StagedFolder::create(folder_ / "0123" / "");
   ASSERT_TRUE(run && run->write("record.json", "{}") && run->commit());
   EXPECT_EQ(testing::read_bytes(folder_ / "0123/record.json"), "{}");
+}
+
+/// Or a power cut would leave the name of a run with zeros behind it.
+TEST_F(StagedFolderTest, EverythingIsOnTheDiskBeforeItHasItsName) {
+  std::vector<std::filesystem::path> order;
+  auto run = StagedFolder::create(folder_ / "out" / "recording" / "0123");
+  ASSERT_TRUE(run && run->write("record.json", "{}"));
+  std::filesystem::create_directories(run->file("images"));
+  ASSERT_TRUE(run->write("images/1.png", "pixels"));
+  const auto hidden = std::filesystem::canonical(run->path());
+  synced = &order;
+  const auto done = run->commit();
+  synced = nullptr;
+  ASSERT_TRUE(done.has_value());
+  const auto root = std::filesystem::canonical(folder_);
+  const auto at = [&](const std::filesystem::path& path) {
+    return std::ranges::find(order, path) - order.begin();
+  };
+  const auto missing = static_cast<std::ptrdiff_t>(order.size());
+  // The folder goes after what is in it, and the names of the new folders last.
+  for (const char* name : {"record.json", "images", "images/1.png"})
+    EXPECT_LT(at(hidden / name), at(hidden)) << name;
+  EXPECT_LT(at(hidden), at(root / "out" / "recording"));
+  EXPECT_LT(at(root / "out" / "recording"), missing);
+  EXPECT_LT(at(root / "out"), missing);
+  EXPECT_LT(at(root), missing);
+}
+
+TEST_F(StagedFolderTest, OnlyTemporaryFoldersOfThisProgramAreAbandonedOnes) {
+  for (const char* ours : {".a.77.tmp/new/record.json", ".b.77-3.tmp/old/record.json", ".c.d.5.tmp/new/f"})
+    write(ours, "");
+  std::filesystem::create_directories(folder_ / ".c.d.5.tmp" / "old");
+  const std::vector<std::string> theirs = {".notes.tmp/f",     ".rec1.tmp/full/01234567/record.json",
+                                           ".a.78.tmp/note",   ".b.x7.tmp/new/f",
+                                           ".77.tmp/new/f",    "a.77.tmp/new/f",
+                                           ".a.77-.tmp/new/f", ".a.79.tmp/new"};
+  for (const std::string& file : theirs) write(file, "theirs");
+  const auto seen = remove_abandoned(folder_, true);
+  EXPECT_EQ(seen.size(), 3U);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / ".a.77.tmp"));
+  auto removed = remove_abandoned(folder_);
+  std::ranges::sort(removed);
+  const std::vector<std::filesystem::path> expected = {folder_ / ".a.77.tmp", folder_ / ".b.77-3.tmp",
+                                                       folder_ / ".c.d.5.tmp"};
+  EXPECT_EQ(removed, expected);
+  for (const auto& path : expected) EXPECT_FALSE(std::filesystem::exists(path)) << path;
+  for (const std::string& file : theirs) EXPECT_EQ(testing::read_bytes(folder_ / file), "theirs") << file;
+}
+
+TEST_F(StagedFolderTest, AFolderIsRemovedWhole) {
+  write("0123/images/1.png", "pixels");
+  EXPECT_FALSE(remove_whole(folder_ / "0123"));
+  EXPECT_EQ(entries(folder_), 0U);
+  EXPECT_TRUE(remove_whole(folder_ / "0123"));
+  EXPECT_EQ(entries(folder_), 0U);
 }
 
 }  // namespace

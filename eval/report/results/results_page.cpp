@@ -14,6 +14,7 @@
 #include "eval/mesh/error_colors.hpp"
 #include "eval/mesh/mesh_clustering.hpp"
 #include "eval/mesh/mesh_metrics.hpp"
+#include "eval/record_files.hpp"
 #include "eval/report/data_labels.hpp"
 #include "eval/report/results/patch_pictures.hpp"
 #include "eval/report/results/profile_charts.hpp"
@@ -117,8 +118,11 @@ PatchPictures pictures_of(Group group, std::vector<std::string>& warnings) {
   std::vector<LabelledPatches> runs;
   for (const std::string_view variant : kPicturedVariants) {
     const auto run = std::ranges::find(group, variant, [](const FoundRun& r) { return r.record.variant; });
-    if (run == group.end() || runs.size() == 2) continue;
-    auto frames = read_patch_table(run->folder);
+    if (run == group.end() || runs.size() == 2 || run->state != RunState::whole) continue;
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(run->folder / "patches.csv", ignored);
+    const auto checked = is_there ? check_file(run->folder, run->record, "patches.csv") : Result<void>();
+    auto frames = checked ? read_patch_table(run->folder) : tl::unexpected(checked.error());
     if (!frames) warnings.push_back(frames.error().message);
     if (frames && !frames->empty()) runs.push_back({std::string(variant), std::move(*frames)});
   }
@@ -152,7 +156,8 @@ PageScene scene_of(std::span<const RunSeries> runs, std::size_t triangles,
   for (const RunSeries& run : runs) {
     const auto file = run.run->folder / "mesh.ply";
     if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
-    const auto mesh = read_ply(file);
+    const auto checked = check_file(run.run->folder, run.run->record, "mesh.ply");
+    const auto mesh = checked ? read_ply(file) : tl::unexpected(checked.error());
     if (!mesh) warnings.push_back(mesh.error().message);
     if (!mesh || mesh->triangles.empty()) continue;
     SceneMesh shown{run.label, reduced(*mesh, triangles), {}};
@@ -230,6 +235,10 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   }
   std::vector<RunSeries> series;
   for (const FoundRun& run : drawn) {
+    if (run.state != RunState::whole) {
+      result.warnings.push_back(fmt::format("{}: {}", run.folder.string(), run.record.reason));
+      continue;
+    }
     if (run.record.frames.total == 0) continue;  // failed before its first frame: there is nothing to draw
     series.push_back(series_of(run, label_of(run, group)));
     for (const std::string& warning : series.back().warnings) result.warnings.push_back(warning);

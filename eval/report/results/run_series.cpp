@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/trajectory_file.hpp"
+#include "eval/record_files.hpp"
 
 namespace fusebench {
 
@@ -15,9 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Nothing of a trajectory that is not there: a run without truth, or that lost its first frame.
-Trajectory trajectory_of(const fs::path& file, std::vector<std::string>& warnings) {
+Trajectory trajectory_of(const FoundRun& run, const char* name, std::vector<std::string>& warnings) {
+  const fs::path file = run.folder / name;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return {};
+  if (auto checked = check_file(run.folder, run.record, name); !checked) {
+    warnings.push_back(fmt::format("{}: {}", run.folder.string(), checked.error().message));
+    return {};
+  }
   auto read = read_tum_trajectory(file, warnings);
   if (read) return std::move(*read);
   warnings.push_back(read.error().message);
@@ -55,8 +61,8 @@ RunSeries series_of(const FoundRun& run, std::string label) {
   } else {
     series.warnings.push_back(frames.error().message);
   }
-  series.truth = trajectory_of(run.folder / "truth.tum", series.warnings);
-  const Trajectory estimate = trajectory_of(run.folder / "trajectory.tum", series.warnings);
+  series.truth = trajectory_of(run, "truth.tum", series.warnings);
+  const Trajectory estimate = trajectory_of(run, "trajectory.tum", series.warnings);
   if (!estimate.empty()) series.T_first_world = estimate.front().T_world_camera.inverse();
   if (!series.frames.empty()) {
     series.start_ns = series.frames.front().timestamp_ns;

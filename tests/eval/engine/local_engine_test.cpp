@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <fstream>
+#include <map>
 
 #include "core/staged_folder.hpp"
 #include "eval/engine/invocation.hpp"
@@ -225,15 +226,125 @@ TEST_F(LocalEngineTest, AProfileIsMadeWhenItIsAskedFor) {
   EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);  // more than what is asked for
 }
 
-TEST_F(LocalEngineTest, WhatCannotBeReadIsNeverGarbage) {
+TEST_F(LocalEngineTest, DamagedRunsAreGarbageIfFailedOnesAre) {
   write("out/r/full/00000000/record.json", "{ half of a rec");
+  // Neither a run of another version nor what is not named as a run is: what it is, nobody knows.
+  write("out/r/full/00000001/record.json", "{\"schema\": 99}");
+  write("out/r/full/notes/record.json", "my own record");
   const auto listed = list_runs(folder_ / "out");
   ASSERT_TRUE(listed.has_value());
-  ASSERT_EQ(listed->size(), 1U);
+  ASSERT_EQ(listed->size(), 3U);
   EXPECT_EQ(listed->front().head.status, RunStatus::failed);
-  const auto report = collect_garbage(folder_ / "out", {.failed = true, .stale = true, .only_look = false});
-  EXPECT_EQ(report->runs, 0U);
+  EXPECT_EQ(listed->front().head.reason, "record.json is damaged: not JSON at byte 3; run it again");
+  EXPECT_EQ(collect_garbage(folder_ / "out", {.stale = true})->runs, 0U);
+  const auto seen = collect_garbage(folder_ / "out", {.failed = true, .stale = true, .only_look = true});
+  EXPECT_EQ(seen->paths, std::vector{folder_ / "out/r/full/00000000"});
   EXPECT_TRUE(fs::exists(folder_ / "out/r/full/00000000/record.json"));
+  const auto report = collect_garbage(folder_ / "out", {.failed = true, .stale = true, .only_look = false});
+  EXPECT_EQ(report->runs, 1U);
+  EXPECT_EQ(report->paths, seen->paths);
+  EXPECT_FALSE(fs::exists(folder_ / "out/r/full/00000000"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/r/full/00000001/record.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/r/full/notes/record.json"));
+}
+
+TEST_F(LocalEngineTest, ADamagedRunIsRunAgain) {
+  BatchPlan one = plan();
+  one.jobs[0].spec.kept = KeptFiles::all;
+  const auto first = run_locally(one.jobs, {});
+  ASSERT_TRUE(first.has_value()) << first.error().message;
+  const fs::path run = first->front().folder;
+  const std::string record = testing::read_bytes(run / "record.json");
+  const std::string mesh = testing::read_bytes(run / "mesh.ply");
+  ASSERT_GT(record.size(), 8192U);
+  const std::string zeroed = record.substr(0, 4096) + std::string(record.size() - 4096, '\0');
+  const std::map<std::string, std::string> damages[] = {
+      {{"record.json", zeroed}},  {{"record.json", record.substr(0, 4096)}},
+      {{"record.json", ""}},      {{"mesh.ply", ""}},
+      {{"trajectory.tum", ""}},   {{"frames.csv", "frame\n"}},
+      {{"intensity.bin", "FBIN"}}};
+  for (const auto& damage : damages) {
+    const auto& [name, content] = *damage.begin();
+    for (const bool only_failed : {false, true}) {
+      std::ofstream(run / name, std::ios::binary | std::ios::trunc) << content;
+      ASSERT_EQ(preview_of(one).finished, 0U) << name;
+      const auto listed = list_runs(folder_ / "out");
+      EXPECT_EQ(listed->front().head.status, RunStatus::failed) << name;
+      EXPECT_TRUE(listed->front().head.reason.starts_with(name + " is damaged: "))
+          << listed->front().head.reason;
+      const auto again = run_locally(one.jobs, {.only_failed = only_failed});
+      ASSERT_TRUE(again.has_value());
+      EXPECT_FALSE(again->front().resumed) << name;
+      EXPECT_EQ(again->front().folder, run);
+      EXPECT_EQ(testing::read_bytes(run / "mesh.ply"), mesh);
+    }
+  }
+  fs::remove(run / "mesh.ply");
+  EXPECT_FALSE(run_locally(one.jobs, {})->front().resumed);
+  EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);
+  // Whoever keeps less needs no more.
+  fs::remove(run / "mesh.ply");
+  one.jobs[0].spec.kept = KeptFiles::small;
+  EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);
+}
+
+TEST_F(LocalEngineTest, ARunOfBeforeFilesWereRecordedIsFinished) {
+  const BatchPlan one = plan();
+  const auto first = run_locally(one.jobs, {});
+  ASSERT_TRUE(first.has_value());
+  auto record = read_record(first->front().folder / "record.json");
+  ASSERT_TRUE(record.has_value());
+  EXPECT_FALSE(record->files.empty());
+  EXPECT_FALSE(record->timing.files.empty());
+  record->files.clear();
+  record->timing.files.clear();
+  std::string older = to_json(*record);
+  const std::string empty = "  \"files\": {},\n";
+  ASSERT_NE(older.find(empty), std::string::npos);
+  older.erase(older.find(empty), empty.size());
+  std::ofstream(first->front().folder / "record.json", std::ios::trunc) << older;
+  EXPECT_TRUE(run_locally(one.jobs, {})->front().resumed);
+}
+
+TEST_F(LocalEngineTest, OnlyItsOwnFoldersAreTidied) {
+  EXPECT_EQ(collect_garbage(folder_, {}).error().code, ErrorCode::data_missing);
+  write(".notes.tmp/f", "mine");
+  EXPECT_EQ(collect_garbage(folder_, {}).error().code, ErrorCode::data_missing);
+  EXPECT_TRUE(fs::exists(folder_ / ".notes.tmp/f"));
+  const std::string failed = to_json(RunRecord{});
+  RunRecord good;
+  good.status = RunStatus::ok;
+  for (const char* recording : {".rec1", ".rec1.tmp", "rec1"})
+    write(std::string("out/") + recording + "/full/01234567/record.json", to_json(good));
+  write("out/rec1/full/.01234567.77.tmp/old/record.json", failed);
+  write("out/rec1/.notes.tmp/f", "mine");
+  write("out/.fusebench/claims/notes", "mine");
+  const std::string claim = std::string(32, 'a') + "-1";
+  write("out/.fusebench/claims/" + claim, "");
+  EXPECT_EQ(list_runs(folder_ / "out")->size(), 3U);
+  const auto report = collect_garbage(folder_ / "out", {.failed = true});
+  ASSERT_TRUE(report.has_value());
+  const std::vector<fs::path> expected = {folder_ / "out/.fusebench/claims" / claim,
+                                          folder_ / "out/rec1/full/.01234567.77.tmp"};
+  EXPECT_EQ(report->paths, expected);
+  EXPECT_EQ(report->temporaries, 2U);
+  EXPECT_EQ(list_runs(folder_ / "out")->size(), 3U);
+  EXPECT_TRUE(fs::exists(folder_ / "out/rec1/.notes.tmp/f"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/.fusebench/claims/notes"));
+}
+
+TEST_F(LocalEngineTest, DamagedRunsAreNotMergedAndGiveWay) {
+  const BatchPlan one = plan();
+  ASSERT_TRUE(run_locally(one.jobs, {}).has_value());
+  ASSERT_EQ(merge_runs(folder_ / "out", folder_ / "all")->copied, 1U);
+  const fs::path place = folder_ / "all" / list_runs(folder_ / "all")->front().folder;
+  std::ofstream(place / "record.json", std::ios::trunc) << "{";
+  const auto kept = merge_runs(folder_ / "all", folder_ / "out");
+  EXPECT_EQ(kept->damaged, 1U);
+  EXPECT_EQ(kept->copied, 0U);
+  EXPECT_EQ(merge_runs(folder_ / "out", folder_ / "all")->copied, 1U);
+  EXPECT_EQ(list_runs(folder_ / "all")->size(), 1U);
+  EXPECT_EQ(list_runs(folder_ / "all")->front().head.status, RunStatus::ok);
 }
 
 TEST_F(LocalEngineTest, FoldersAreMergedAndTidied) {
