@@ -211,9 +211,32 @@ check_verbs() {
   says 0 'removed 0 left by killed processes, 0 runs' gc together
   says 0 'would remove .* 0 runs' gc together --failed --stale --dry-run
 
+  mkdir -p theirs/.notes.tmp
+  touch theirs/.notes.tmp/file
+  says 3 'holds no runs' gc theirs
+  [[ -e theirs/.notes.tmp/file ]] || complain "gc removes what is not its own"
+
+  # After a power cut the end of a record is zeros: the run is a row that says so, and is run again.
+  cp -r undisturbed cut
+  local record size
+  record=$(find cut -name record.json -not -path '*/.*/*' | LC_ALL=C sort | head -n 1)
+  size=$(stat -c %s "$record")
+  truncate -s 4096 "$record"
+  truncate -s "$size" "$record"
+  says 0 "$((runs - 1)) of $runs runs ok" table cut
+  local verb
+  for verb in 'list runs' collect; do
+    # shellcheck disable=SC2086  # two words
+    says 0 'record.json is damaged: not JSON at byte 4097 .zeros after a power cut' $verb cut
+  done
+  says 0 "$runs runs" report cut --out cut.html
+  says 1 'ok -> failed .record.json is damaged' compare undisturbed cut
+  says 0 "^$(dirname "$record")\$" gc cut --failed --dry-run
+  says 0 "$runs of $runs runs ok" "${suite[@]}" --out cut
+  same_as_undisturbed cut cut
+
   says 0 'PASS' compare undisturbed undisturbed
   cp -r undisturbed worse
-  local record
   record=$(find worse -name record.json -not -path '*/.*/*' | LC_ALL=C sort | head -n 1)
   sed -i 's/"tracked": [0-9]*/"tracked": 0/' "$record"
   says 1 'REGRESSION' compare undisturbed worse
