@@ -5,7 +5,8 @@
 
 #include <atomic>
 #include <fstream>
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "core/staged_folder.hpp"
 #include "eval/engine/invocation.hpp"
@@ -258,13 +259,12 @@ TEST_F(LocalEngineTest, ADamagedRunIsRunAgain) {
   const std::string mesh = testing::read_bytes(run / "mesh.ply");
   ASSERT_GT(record.size(), 8192U);
   const std::string zeroed = record.substr(0, 4096) + std::string(record.size() - 4096, '\0');
-  const std::map<std::string, std::string> damages[] = {
-      {{"record.json", zeroed}},  {{"record.json", record.substr(0, 4096)}},
-      {{"record.json", ""}},      {{"mesh.ply", ""}},
-      {{"trajectory.tum", ""}},   {{"frames.csv", "frame\n"}},
-      {{"intensity.bin", "FBIN"}}};
-  for (const auto& damage : damages) {
-    const auto& [name, content] = *damage.begin();
+  const std::vector<std::pair<std::string, std::string>> damages = {
+      {"record.json", zeroed},  {"record.json", record.substr(0, 4096)},
+      {"record.json", ""},      {"mesh.ply", ""},
+      {"trajectory.tum", ""},   {"frames.csv", "frame\n"},
+      {"intensity.bin", "FBIN"}};
+  for (const auto& [name, content] : damages) {
     for (const bool only_failed : {false, true}) {
       std::ofstream(run / name, std::ios::binary | std::ios::trunc) << content;
       ASSERT_EQ(preview_of(one).finished, 0U) << name;
