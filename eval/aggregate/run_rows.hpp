@@ -54,10 +54,10 @@ struct RunRow : RunNumbers {
 
 [[nodiscard]] std::size_t unreadable_count(std::span<const RunRow> rows);
 
-/// Every run below `root` as record_files() finds them, by recording, variant
-/// in the order of all_variants(), options, run; the same for any number of threads. A run that is
-/// not whole is a failed row with the reason. A failed run that never wrote its options has those of a run of
-/// the same variant and configuration hash. Error data_missing: no folder, or no records at all.
+/// Every run below `root` as record_files() finds them, by recording, variant in the order of all_variants(),
+/// options, run; the same for any number of threads. A run that is not whole is a failed row with the reason.
+/// A failed run that never wrote its options has those of a run of the same variant and configuration hash.
+/// Error data_missing: no folder, or no records at all.
 [[nodiscard]] Result<std::vector<RunRow>> read_run_rows(const std::filesystem::path& root,
                                                         const Workers& workers);
 
