@@ -79,6 +79,7 @@ int command_line(int argc, const char* const* argv) {
 }  // namespace fusebench
 
 int main(int argc, char** argv) {
+  fusebench::prepare_standard_streams();
   try {
     const int code = fusebench::command_line(argc, argv);
     return fusebench::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
