@@ -86,7 +86,7 @@ struct CatalogueFile {
   std::string_view text;
 };
 
-/// All files, by name. Defined by a generated source (cmake/embed_recordings.cmake).
+/// All files, by name. Defined by a generated source (cmake/embed_toml.cmake).
 [[nodiscard]] std::span<const CatalogueFile> catalogue_files();
 
 }  // namespace fusebench

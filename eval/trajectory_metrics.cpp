@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 
 #include "core/association.hpp"
@@ -69,6 +70,78 @@ Result<void> check_rpe_input(const Trajectory& ground_truth, const Trajectory& e
   return {};
 }
 
+/// An estimate, and the ground truth nearest in time to each of its poses.
+struct MatchedPoses {
+  std::vector<SE3> estimate;
+  std::vector<std::optional<SE3>> truth;
+  double limit_ns = 0;
+};
+
+MatchedPoses match(const Trajectory& ground_truth, const Trajectory& estimate, const RpeOptions& options) {
+  const std::vector<std::int64_t> truth_ns = stamps_of(ground_truth);
+  const std::int64_t offset = nanoseconds(options.offset_s);
+  MatchedPoses poses;
+  poses.limit_ns = std::min(2 * median_interval(truth_ns), options.max_difference_s * 1e9);
+  for (const StampedPose& pose : estimate) {
+    const std::int64_t wanted = pose.timestamp_ns + offset;
+    const std::size_t nearest = nearest_stamp(truth_ns, wanted);
+    const bool near = static_cast<double>(std::abs(truth_ns[nearest] - wanted)) <= poses.limit_ns;
+    poses.estimate.push_back(pose.T_world_camera);
+    poses.truth.push_back(near ? std::optional(ground_truth[nearest].T_world_camera) : std::nullopt);
+  }
+  return poses;
+}
+
+/// (P_j^-1 P_i)^-1 (G_j^-1 G_i); both have ground truth.
+SE3 motion_error(const MatchedPoses& poses, std::size_t i, std::size_t j) {
+  const SE3 estimate_motion = poses.estimate[j].inverse() * poses.estimate[i];
+  const SE3 truth_motion = poses.truth[j]->inverse() * *poses.truth[i];
+  return estimate_motion.inverse() * truth_motion;
+}
+
+void list_errors(const MatchedPoses& poses, const IndexPairs& motions,
+                 std::span<const std::int64_t> estimate_ns, RpeResult& result) {
+  result.possible = motions.size();
+  result.errors_m.reserve(motions.size());
+  result.errors_rad.reserve(motions.size());
+  result.at_ns.reserve(motions.size());
+  for (const auto& [i, j] : motions) {
+    if (!poses.truth[i] || !poses.truth[j]) continue;
+    const SE3 error = motion_error(poses, i, j);
+    result.errors_m.push_back(error.translation.norm());
+    result.errors_rad.push_back(so3_log(error.rotation).norm());
+    result.at_ns.push_back(estimate_ns[j]);
+  }
+  result.pairs = result.errors_m.size();
+  result.translation = statistics(result.errors_m);
+  result.rotation = statistics(result.errors_rad);
+}
+
+/// Errors of every pose with every pose that have ground truth, in the order of all_to_all().
+template <typename ErrorOf>
+ValueSource each_to_each(std::shared_ptr<const MatchedPoses> poses, bool with_itself, ErrorOf error_of) {
+  return [poses = std::move(poses), with_itself, error_of](const ValueVisitor& visit) {
+    for (std::size_t i = 0; i < poses->estimate.size(); ++i) {
+      for (std::size_t j = 0; poses->truth[i] && j < poses->estimate.size(); ++j) {
+        if (poses->truth[j] && (with_itself || i != j)) visit(error_of(motion_error(*poses, i, j)));
+      }
+    }
+  };
+}
+
+void stream_errors(MatchedPoses matched, bool with_itself, RpeResult& result) {
+  const std::size_t count = matched.estimate.size();
+  const auto poses = std::make_shared<const MatchedPoses>(std::move(matched));
+  result.possible = count * count - (with_itself ? 0 : count);
+  result.streamed_m =
+      each_to_each(poses, with_itself, [](const SE3& error) { return error.translation.norm(); });
+  result.streamed_rad =
+      each_to_each(poses, with_itself, [](const SE3& error) { return so3_log(error.rotation).norm(); });
+  result.translation = streamed_statistics(result.streamed_m);
+  result.rotation = streamed_statistics(result.streamed_rad);
+  result.pairs = result.translation.count;
+}
+
 }  // namespace
 
 std::array<double, 16> matrix_of(const SE3& transform) {
@@ -121,36 +194,19 @@ Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Traj
                                       const RpeOptions& options) {
   if (auto usable = check_rpe_input(ground_truth, estimate, options); !usable)
     return tl::unexpected(usable.error());
-  const std::vector<std::int64_t> truth_ns = stamps_of(ground_truth);
-  const std::vector<std::int64_t> estimate_ns = stamps_of(estimate);
-  const std::int64_t offset = nanoseconds(options.offset_s);
-  const double limit_ns = std::min(2 * median_interval(truth_ns), options.max_difference_s * 1e9);
-
-  std::vector<std::optional<std::size_t>> truth_of;
-  for (const std::int64_t stamp_ns : estimate_ns) {
-    const std::int64_t wanted = stamp_ns + offset;
-    const std::size_t nearest = nearest_stamp(truth_ns, wanted);
-    const bool near = static_cast<double>(std::abs(truth_ns[nearest] - wanted)) <= limit_ns;
-    truth_of.push_back(near ? std::optional(nearest) : std::nullopt);
-  }
-
+  MatchedPoses poses = match(ground_truth, estimate, options);
   RpeResult result;
   result.delta = options.delta;
   result.unit = options.unit;
-  result.max_difference_s = limit_ns * 1e-9;
-  const IndexPairs motions = motions_of(estimate, estimate_ns, options);
-  result.possible = motions.size();
-  for (const auto& [i, j] : motions) {
-    if (!truth_of[i] || !truth_of[j]) continue;
-    const SE3 estimate_motion = estimate[j].T_world_camera.inverse() * estimate[i].T_world_camera;
-    const SE3 truth_motion =
-        ground_truth[*truth_of[j]].T_world_camera.inverse() * ground_truth[*truth_of[i]].T_world_camera;
-    const SE3 error = estimate_motion.inverse() * truth_motion;
-    result.errors_m.push_back(error.translation.norm());
-    result.errors_rad.push_back(so3_log(error.rotation).norm());
-    result.at_ns.push_back(estimate_ns[j]);
+  result.max_difference_s = poses.limit_ns * 1e-9;
+  if (options.all_pairs && estimate.size() > options.listing.most / estimate.size()) {
+    if (auto listed = check_listing(options.listing, estimate.size() * estimate.size()); !listed)
+      return tl::unexpected(listed.error());
+    stream_errors(std::move(poses), !options.skip_gaps, result);
+  } else {
+    const std::vector<std::int64_t> estimate_ns = stamps_of(estimate);
+    list_errors(poses, motions_of(estimate, estimate_ns, options), estimate_ns, result);
   }
-  result.pairs = result.errors_m.size();
   result.coverage = share(result.pairs, result.possible);
   if (result.pairs < 2) {
     return fail(ErrorCode::data_corrupt,
@@ -159,8 +215,6 @@ Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Traj
                             result.max_difference_s),
                 "is the trajectory shorter than delta, or is its clock another?");
   }
-  result.translation = statistics(result.errors_m);
-  result.rotation = statistics(result.errors_rad);
   return result;
 }
 

@@ -15,6 +15,7 @@
 #include "core/types.hpp"
 #include "eval/statistics.hpp"
 #include "eval/trajectory/motion_pairs.hpp"
+#include "eval/trajectory/streamed_statistics.hpp"
 
 namespace fusebench {
 
@@ -67,6 +68,7 @@ struct RpeOptions {
   /// median intervals of the estimate is skipped; with seconds, a pose is never its own partner. False: as in
   /// the script.
   bool skip_gaps = true;
+  MotionListing listing = {};  ///< of all pairs
 };
 
 /// Relative pose error over a fixed delta (evaluate_rpe.py --fixed_delta).
@@ -89,8 +91,11 @@ struct RpeResult {
   std::vector<double> errors_m;
   std::vector<double> errors_rad;
   std::vector<std::int64_t> at_ns;  ///< of each error, the estimate's stamp at the motion's end
-  Statistics translation;           ///< metres
-  Statistics rotation;              ///< radians
+  /// Of more pairs than are listed, the errors one by one; the lists above are then empty.
+  ValueSource streamed_m;
+  ValueSource streamed_rad;
+  Statistics translation;  ///< metres
+  Statistics rotation;     ///< radians
 };
 
 /// Errors: configuration for a delta that makes no sense, data_corrupt for fewer than two poses on either

@@ -1,26 +1,29 @@
 #!/usr/bin/env bash
-# Every check and test: formatting, include directions, a warning-free build, generated pages, a minute of fuzzing, the
-# baseline, instruction counts, tests (pages are read in headless Chromium, which is installed); clang-tidy on request. Runs
-# all of them even if one fails, and ends with the tests and a summary.
+# Every check and test: formatting, include directions, references to files, a warning-free build (of every test there is),
+# generated pages, a minute of fuzzing, the baseline, instruction counts, tests (pages are read in headless Chromium, which
+# is installed); clang-tidy on request. Runs all of them even if one fails, and ends with the tests and a summary.
 # shellcheck disable=SC2317  # the checks are called through step
 set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: scripts/test.sh [--tidy]
+Usage: scripts/test.sh [--tidy] [--odr]
 
 Installs missing packages, builds the preset ci (release with warnings as errors and tests) and runs every check.
   --tidy    install clang-tidy-19 if it is missing, and run it over core, datasets and eval as well (slow)
+  --odr     let the linker compare the definitions of all objects as well (scripts/check_odr.sh: 17 CPU minutes)
 Tests on real recordings read the folder FUSEBENCH_DATA; where it is not set they are reported as skipped.
 Exit code: 0 when everything passed, 1 otherwise.
 TEXT
 }
 
 tidy=false
+odr=false
 for argument in "$@"; do
   case "$argument" in
     -h | --help) usage; exit 0 ;;
     --tidy) tidy=true ;;
+    --odr) odr=true ;;
     *) usage >&2; exit 2 ;;
   esac
 done
@@ -97,10 +100,14 @@ if ((failures > 0)); then finish; fi
 step scripts check_scripts
 step formatting check_format
 step includes ./scripts/check_includes.sh
+step references ./scripts/check_references.sh
+step type-names ./scripts/check_type_names.sh
 step build ./scripts/build.sh ci
 if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi
+step tests-built ./scripts/check_tests_built.sh build/ci
 step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
 if $tidy; then step clang-tidy check_tidy; fi
+if $odr; then step one-definition ./scripts/check_odr.sh; fi
 step fuzz ./scripts/fuzz.sh 60
 step browser ./scripts/setup.sh chromium-driver python3-selenium
 step cluster ./scripts/setup.sh slurm-wlm munge iproute2

@@ -1,8 +1,12 @@
 #include "eval/cli/console.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 
@@ -22,11 +26,33 @@ extern "C" void on_stop_signal(int signal) {
   if (stop_flag().exchange(true)) std::signal(signal, SIG_DFL);
 }
 
+/// Whether standard output is a pipe that nobody reads any more.
+bool reader_has_left() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
 }  // namespace
 
+void prepare_standard_streams() {
+  constexpr std::array kModes = {O_RDONLY, O_RDONLY, O_WRONLY};  // of input, output, errors
+  for (int stream = 0; stream < 3; ++stream) {
+    if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest number that is free, which is this one: those below are open.
+    const int opened = open("/dev/null", kModes[static_cast<std::size_t>(stream)]);
+    if (opened != stream) return;  // no /dev/null: as it was
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
 void print_error(const Error& error) {
-  fmt::print(stderr, "error: {}\n", error.message);
-  if (!error.hint.empty()) fmt::print(stderr, "  hint: {}\n", error.hint);
+  print_status(fmt::format("error: {}\n", error.message));
+  if (!error.hint.empty()) print_status(fmt::format("  hint: {}\n", error.hint));
+}
+
+void print_status(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
 void print_output(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
@@ -34,11 +60,16 @@ void print_output(std::string_view text) { std::fwrite(text.data(), 1, text.size
 bool output_arrived() {
   const bool flushed = std::fflush(stdout) == 0;
   if (flushed && std::ferror(stdout) == 0) return true;
+  if (reader_has_left()) {
+    // `| head` has what it wanted: the end that a pipeline expects, without a word.
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
   print_error({ErrorCode::io, "standard output cannot be written", "is there room where it goes to?"});
   return false;
 }
 
-void print_progress(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+void print_progress(std::string_view line) { print_status(fmt::format("{}\n", line)); }
 
 const std::atomic<bool>& stop_requested() { return stop_flag(); }
 
@@ -58,13 +89,12 @@ void ProgressBar::show(std::size_t done, std::size_t total) {
   last_percent_ = percent;
   constexpr std::size_t kWidth = 30;
   const std::size_t filled = kWidth * done / total;
-  fmt::print(stderr, "\r\033[K{} [{}{}] {}/{}", title_, std::string(filled, '#'),
-             std::string(kWidth - filled, '.'), done, total);
-  std::fflush(stderr);
+  print_status(fmt::format("\r\033[K{} [{}{}] {}/{}", title_, std::string(filled, '#'),
+                           std::string(kWidth - filled, '.'), done, total));
 }
 
 void ProgressBar::clear() {
-  if (terminal_) fmt::print(stderr, "\r\033[K");
+  if (terminal_) print_status("\r\033[K");
 }
 
 std::string summary_line(const RunRecord& record) {

@@ -1,4 +1,7 @@
 // What the command line shows: errors and progress on standard error, results on standard output.
+//
+// Nothing that cannot be shown on standard error ends a verb: it is left out, be the disk full, the
+// descriptor closed, or the reader of a pipe gone.
 #pragma once
 
 #include <atomic>
@@ -14,12 +17,19 @@ namespace fusebench {
 inline constexpr int kExitRunFailed = 4;
 inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have it
 
+/// First of all in a process. A standard descriptor that the caller closed would be given to the first file
+/// that is opened, and that file then hold what is printed: each is opened on /dev/null instead, standard
+/// output so that writing to it fails. A pipe without a reader is an error of writing, no signal.
+void prepare_standard_streams();
+
 /// "error: <sentence>" and "  hint: ..." on standard error.
 void print_error(const Error& error);
 void print_output(std::string_view text);  ///< standard output
-/// Once, at the end: false, with an error, if standard output could not take all of it (a full disk).
+/// Once, at the end: false, with an error, if standard output could not take all of it (a full disk, a closed
+/// descriptor). Where it is a pipe whose reader has left, the process ends by SIGPIPE.
 [[nodiscard]] bool output_arrived();
 void print_progress(std::string_view line);  ///< a line on standard error
+void print_status(std::string_view text);    ///< on standard error, as it is: of a line that is redrawn
 
 /// Set by Ctrl-C (and SIGTERM) once install_stop_handler() was called; runs check it at each frame.
 [[nodiscard]] const std::atomic<bool>& stop_requested();

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "eval/record.hpp"
 #include "eval/report/text_layout.hpp"
@@ -35,7 +34,7 @@ EngineControl EngineConsole::control() {
 }
 
 void EngineConsole::clear() {
-  if (terminal_) fmt::print(stderr, "\r\033[K");
+  if (terminal_) print_status("\r\033[K");
 }
 
 void EngineConsole::tell(std::size_t index, const BatchOutcome& outcome) {
@@ -55,8 +54,7 @@ void EngineConsole::show(const EngineState& state) {
   for (const std::string& job : state.running) line += " | " + job;
   constexpr std::size_t kWidth = 150;
   if (line.size() > kWidth) line = line.substr(0, kWidth - 3) + "...";
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  print_status(fmt::format("\r\033[K{}", line));
 }
 
 std::string rate_text(const EngineState& state) {

@@ -163,6 +163,7 @@ Result<TrajectoryRequest> request_of(const EvalOptions& options, TrajectoryMetri
   request->relation = *relation;
   request->plane = named(kPlanes, options.plane);
   request->downsample = options.downsample;
+  request->listing.needed = !options.errors.empty();
   if (!options.motion_filter.empty())
     request->motion_filter = MotionFilter{options.motion_filter[0], radians(options.motion_filter[1])};
   for (const auto& set :
@@ -225,32 +226,6 @@ Result<void> suit_stamps(const Sides& sides, TrajectoryRequest& request) {
   return {};
 }
 
-/// Errors in another unit of the same kind.
-Result<void> convert(ErrorSeries& series, const std::string& unit) {
-  struct Conversion {
-    const char* from;
-    const char* to;
-    double factor;
-  };
-  constexpr std::array<Conversion, 5> kConversions{{{"m", "mm", 1e3},
-                                                    {"m", "cm", 1e2},
-                                                    {"m", "km", 1e-3},
-                                                    {"deg", "rad", 1 / kDegreesPerRadian},
-                                                    {"rad", "deg", kDegreesPerRadian}}};
-  if (series.unit == unit) return {};
-  for (const Conversion& conversion : kConversions) {
-    if (series.unit != conversion.from || unit != conversion.to) continue;
-    for (double& error : series.errors) error *= conversion.factor;
-    series.stats = statistics(series.errors);
-    series.unit = unit;
-    return {};
-  }
-  return fail(ErrorCode::usage,
-              fmt::format("--change_unit {}: {} is in {}", unit, series.relation,
-                          series.unit.empty() ? "no unit" : series.unit),
-              "metres become mm, cm or km, and degrees radians or the other way round");
-}
-
 std::string errors_text(const ErrorSeries& series) {
   std::string text =
       fmt::format("timestamp_ns,{}{}{}\n", series.relation, series.unit.empty() ? "" : "_", series.unit);
@@ -278,7 +253,7 @@ Result<int> run(EvalOptions options, TrajectoryMetric metric) {
   auto evaluation = evaluate(sides->reference.poses, sides->estimate.poses, *request);
   if (!evaluation) return tl::unexpected(evaluation.error());
   if (!options.change_unit.empty()) {
-    if (auto converted = convert(evaluation->series.front(), options.change_unit); !converted)
+    if (auto converted = change_unit(evaluation->series.front(), options.change_unit); !converted)
       return tl::unexpected(converted.error());
   }
   warn_of_few(*evaluation);

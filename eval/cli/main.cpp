@@ -54,7 +54,7 @@ int command_line(int argc, const char* const* argv) {
   app.footer(
       "Exit codes: 0 ok; 1 a regression or a failed gate; 2 usage or configuration; 3 data missing or "
       "corrupt;\n"
-      "4 a run failed or was lost; 5 internal error; 130 interrupted.");
+      "4 a run failed or was lost, or something cannot be written; 5 internal error; 130 interrupted.");
   const std::vector<Verb> verbs = {
       add_run_verb(app),        add_bench_verb(app),   add_sweep_verb(app),     add_rerun_verb(app),
       add_slurm_task_verb(app), add_best_verb(app),    add_collect_verb(app),   add_compare_verb(app),
@@ -79,6 +79,7 @@ int command_line(int argc, const char* const* argv) {
 }  // namespace fusebench
 
 int main(int argc, char** argv) {
+  fusebench::prepare_standard_streams();
   try {
     const int code = fusebench::command_line(argc, argv);
     return fusebench::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);

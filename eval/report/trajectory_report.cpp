@@ -116,7 +116,7 @@ std::string statistics_text(const TrajectoryEvaluation& e) {
     for (const ErrorSeries& series : e.series) lines.back().push_back(shown(series.stats.*value));
   }
   lines.push_back({"errors"});
-  for (const ErrorSeries& series : e.series) lines.back().push_back(fmt::format("{}", series.errors.size()));
+  for (const ErrorSeries& series : e.series) lines.back().push_back(fmt::format("{}", series.stats.count));
   return aligned_columns(lines);
 }
 
@@ -141,8 +141,9 @@ Json json_of(const Similarity& alignment) {
 
 Json json_of(const ErrorSeries& series) {
   Json json = {{"relation", series.relation}, {"unit", series.unit}};
-  json["errors"] = series.errors;
-  json["timestamps_ns"] = series.at_ns;
+  // Null, not an empty list, where there are more errors than are listed.
+  json["errors"] = series.streamed ? Json() : Json(series.errors);
+  json["timestamps_ns"] = series.streamed ? Json() : Json(series.at_ns);
   json["stats"] = json_of(series.stats);
   return json;
 }

@@ -68,7 +68,7 @@ Result<void> read_entry(const TomlEntry& entry, Suite& suite) {
     target = std::move(*value);
     return {};
   };
-  if (entry.key == "name") return store(text_entry(entry), suite.name);
+  if (entry.key == "name") return store(folder_name_entry(entry), suite.name);
   if (entry.key == "all") return store(flag_entry(entry), suite.all);
   if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
   if (entry.key == "imu") return read_imu(entry, suite);

@@ -28,6 +28,28 @@ Result<std::string> text_entry(const TomlEntry& entry) {
   return std::move(*text);
 }
 
+Result<void> check_folder_name(const TomlEntry& entry, std::string_view name) {
+  const auto plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  constexpr std::size_t kLongest = 200;  // file systems take 255, and hidden names are a little longer
+  if (std::all_of(name.begin(), name.end(), plain) && !name.starts_with('.') && name.size() <= kLongest)
+    return {};
+  return fail(
+      ErrorCode::configuration,
+      fmt::format("{}: {} = '{}' is no name of letters, digits, _, - and . (at most {}, the first no .)",
+                  entry.place, entry.key, name, kLongest),
+      "it becomes the name of a folder");
+}
+
+Result<std::string> folder_name_entry(const TomlEntry& entry) {
+  auto name = text_entry(entry);
+  if (!name) return name;
+  if (auto good = check_folder_name(entry, *name); !good) return tl::unexpected(good.error());
+  return name;
+}
+
 Result<bool> flag_entry(const TomlEntry& entry) {
   const auto flag = plain_entry<bool>(entry);
   if (!flag) return wrong_entry(entry, "true or false");

@@ -30,6 +30,9 @@ template <class T>
 }
 
 [[nodiscard]] Result<std::string> text_entry(const TomlEntry& entry);  ///< not empty
+/// A name that becomes a folder, and that --only and tables go by: letters, digits, _, - and .
+[[nodiscard]] Result<void> check_folder_name(const TomlEntry& entry, std::string_view name);
+[[nodiscard]] Result<std::string> folder_name_entry(const TomlEntry& entry);
 [[nodiscard]] Result<bool> flag_entry(const TomlEntry& entry);
 [[nodiscard]] Result<double> number_entry(const TomlEntry& entry);        ///< also from an integer; finite
 [[nodiscard]] Result<std::uint64_t> count_entry(const TomlEntry& entry);  ///< an integer that is not negative

@@ -203,17 +203,6 @@ Result<std::vector<std::uint64_t>> tuning_seeds(const EntryTable& table) {
   return seeds;
 }
 
-/// Names become folders, and are what --only and tables go by.
-Result<void> check_name(const TomlEntry& entry, const std::string& name) {
-  const auto plain = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-           c == '-' || c == '.';
-  };
-  if (std::all_of(name.begin(), name.end(), plain) && !name.starts_with('.')) return {};
-  return fail(ErrorCode::configuration,
-              fmt::format("{}: '{}' is no name of letters, digits, _, - and .", entry.place, name));
-}
-
 Result<void> check_table(const EntryTable& table) {
   for (const TomlEntry& entry : table.entries) {
     if (!contains(kKeys, entry.key)) return unknown_key(entry.place, entry.key, kKeys, "a simulation");
@@ -243,7 +232,7 @@ Result<SuiteSimulation> simulation_of(const EntryTable& table, const Assignments
   const TomlEntry& name = *table.find("name");
   auto filled = filled_in(name, values);
   if (!filled) return tl::unexpected(filled.error());
-  if (auto good = check_name(name, *filled); !good) return tl::unexpected(good.error());
+  if (auto good = check_folder_name(name, *filled); !good) return tl::unexpected(good.error());
   simulation.name = std::move(*filled);
   const TomlEntry* group = table.find("group");
   auto group_name = group == nullptr ? Result<std::string>(std::string(to_string(simulation.request.preset)))

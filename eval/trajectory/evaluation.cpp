@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
 #include "eval/trajectory/segment_errors.hpp"
@@ -14,12 +15,27 @@ namespace {
 ErrorSeries series_of(std::string relation, std::string unit, std::vector<double> errors,
                       std::vector<std::int64_t> at_ns) {
   const Statistics stats = statistics(errors);
-  return {std::move(relation), std::move(unit), std::move(errors), std::move(at_ns), stats};
+  return {std::move(relation), std::move(unit), std::move(errors), std::move(at_ns), {}, stats};
 }
 
 ErrorSeries series_of(TrajectoryError error) {
-  return {std::string(to_string(error.relation)), std::string(unit_of(error.relation)),
-          std::move(error.errors), std::move(error.at_ns), error.stats};
+  return {std::string(to_string(error.relation)),
+          std::string(unit_of(error.relation)),
+          std::move(error.errors),
+          std::move(error.at_ns),
+          std::move(error.streamed),
+          error.stats};
+}
+
+/// Every error times a factor.
+void scale(ErrorSeries& series, double factor) {
+  for (double& error : series.errors) error *= factor;
+  if (series.streamed) {
+    series.streamed = [unscaled = std::move(series.streamed), factor](const ValueVisitor& visit) {
+      unscaled([&](double error) { visit(error * factor); });
+    };
+  }
+  series.stats = series.streamed ? streamed_statistics(series.streamed) : statistics(series.errors);
 }
 
 Trajectory thinned(Trajectory trajectory, const TrajectoryRequest& request) {
@@ -54,7 +70,7 @@ Result<TrajectoryEvaluation> of_motions(const TrajectoryPair& pair, const Trajec
       relative_error(pair, RelativeOptions{request.relation, request.alignment, request.plane, request.delta,
                                            request.motions == MotionRule::all ? MotionSelection::all
                                                                               : MotionSelection::consecutive,
-                                           request.delta_tolerance, request.from_reference});
+                                           request.delta_tolerance, request.from_reference, request.listing});
   if (!error) return tl::unexpected(error.error());
   TrajectoryEvaluation result = described(request, pair, error->alignment);
   result.series.push_back(series_of(std::move(*error)));
@@ -81,15 +97,18 @@ Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Traject
   options.max_difference_s = std::numeric_limits<double>::infinity();
   options.offset_s = request.association.offset_s;
   options.skip_gaps = false;
+  options.listing = request.listing;
   Result<RpeResult> rpe = relative_pose_error(reference, estimate, options);
   if (!rpe) return tl::unexpected(rpe.error());
   result.pairs = rpe->pairs;
   result.possible = rpe->possible;
   result.coverage = rpe->coverage;
   result.request.association.max_difference_s = rpe->max_difference_s;
-  result.series.push_back(series_of("trans_part", "m", std::move(rpe->errors_m), rpe->at_ns));
-  for (double& angle : rpe->errors_rad) angle = degrees(angle);
-  result.series.push_back(series_of("angle_deg", "deg", std::move(rpe->errors_rad), std::move(rpe->at_ns)));
+  result.series.push_back({"trans_part", "m", std::move(rpe->errors_m), rpe->at_ns,
+                           std::move(rpe->streamed_m), rpe->translation});
+  result.series.push_back({"angle_deg", "deg", std::move(rpe->errors_rad), std::move(rpe->at_ns),
+                           std::move(rpe->streamed_rad), rpe->rotation});
+  scale(result.series.back(), kDegreesPerRadian);
   return result;
 }
 
@@ -196,6 +215,30 @@ Result<TrajectoryEvaluation> evaluate_thinned(const Trajectory& reference, const
 }
 
 }  // namespace
+
+Result<void> change_unit(ErrorSeries& series, const std::string& unit) {
+  struct Conversion {
+    const char* from;
+    const char* to;
+    double factor;
+  };
+  constexpr std::array<Conversion, 5> kConversions{{{"m", "mm", 1e3},
+                                                    {"m", "cm", 1e2},
+                                                    {"m", "km", 1e-3},
+                                                    {"deg", "rad", 1 / kDegreesPerRadian},
+                                                    {"rad", "deg", kDegreesPerRadian}}};
+  if (series.unit == unit) return {};
+  for (const Conversion& conversion : kConversions) {
+    if (series.unit != conversion.from || unit != conversion.to) continue;
+    scale(series, conversion.factor);
+    series.unit = unit;
+    return {};
+  }
+  return fail(ErrorCode::usage,
+              fmt::format("--change_unit {}: {} is in {}", unit, series.relation,
+                          series.unit.empty() ? "no unit" : series.unit),
+              "metres become mm, cm or km, and degrees radians or the other way round");
+}
 
 Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
                                       const TrajectoryRequest& request) {

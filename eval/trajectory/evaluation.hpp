@@ -11,6 +11,7 @@
 #include "eval/statistics.hpp"
 #include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/protocol.hpp"
+#include "eval/trajectory/streamed_statistics.hpp"
 
 namespace fusebench {
 
@@ -20,6 +21,8 @@ struct ErrorSeries {
   std::string unit;      ///< "m", "%", "rad", "deg", "deg/m", or "" of what has none
   std::vector<double> errors;
   std::vector<std::int64_t> at_ns;  ///< of each error: the stamp of the pose, or of the motion's end
+  /// Of more motions than are listed, the errors one by one; `errors` and `at_ns` are then empty.
+  ValueSource streamed;
   Statistics stats;
 };
 
@@ -46,6 +49,10 @@ struct TrajectoryEvaluation {
   std::vector<ErrorSeries> series;   ///< the first is the protocol's own number
   std::vector<SegmentRow> segments;  ///< where segments are what is compared
 };
+
+/// The same errors in another unit of the kind: mm, cm or km of metres, degrees of radians or the other way
+/// round. Error usage: it is another kind.
+[[nodiscard]] Result<void> change_unit(ErrorSeries& series, const std::string& unit);
 
 /// Errors: configuration for deltas that make no sense, data_corrupt for trajectories that do not match or do
 /// not determine the alignment, and where no motion is left.

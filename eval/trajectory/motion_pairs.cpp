@@ -26,8 +26,6 @@ constexpr std::array kUnits{
     UnitSpelling{DeltaUnit::seconds, "s", "seconds"},
 };
 
-bool is_angle(DeltaUnit unit) { return unit == DeltaUnit::degrees || unit == DeltaUnit::radians; }
-
 double in_radians(const Delta& delta) {
   return delta.unit == DeltaUnit::degrees ? radians(delta.value) : delta.value;
 }
@@ -80,18 +78,6 @@ IndexPairs nearest_later(std::span<const double> along, double delta, double tol
       best = std::ranges::lower_bound(later.begin(), best, *(best - 1));
     if (miss(best) <= tolerance)
       pairs.emplace_back(i, i + 1 + static_cast<std::size_t>(best - later.begin()));
-  }
-  return pairs;
-}
-
-IndexPairs all_turns(const Trajectory& trajectory, double delta_rad, double tolerance_rad) {
-  IndexPairs pairs;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    for (std::size_t j = i + 1; j < trajectory.size(); ++j) {
-      const double angle_rad = angle_between(trajectory[i], trajectory[j]);
-      if (angle_rad >= delta_rad - tolerance_rad && angle_rad <= delta_rad + tolerance_rad)
-        pairs.emplace_back(i, j);
-    }
   }
   return pairs;
 }
@@ -149,12 +135,26 @@ std::string_view to_string(DeltaUnit unit) {
   return "";
 }
 
+bool is_angle(DeltaUnit unit) { return unit == DeltaUnit::degrees || unit == DeltaUnit::radians; }
+
 Result<DeltaUnit> parse_delta_unit(std::string_view text) {
   for (const UnitSpelling& spelling : kUnits) {
     if (text == spelling.letter || text == spelling.name) return spelling.unit;
   }
   return fail(ErrorCode::usage, fmt::format("unknown delta unit '{}'", text),
               "units are f (frames), m (metres), d (degrees), r (radians) and s (seconds)");
+}
+
+Result<void> check_listing(const MotionListing& listing, std::size_t motions) {
+  if (!listing.needed || motions <= listing.most) return {};
+  constexpr double kBytesEach = 64;
+  return fail(
+      ErrorCode::usage,
+      fmt::format("{} motions are too many to list each error, which would take {:.1f} GB (allowed: up "
+                  "to {} motions)",
+                  motions, kBytesEach * 1e-9 * static_cast<double>(motions), listing.most),
+      "leave out --all_pairs or take fewer poses (--downsample N); without --errors, any number is "
+      "compared");
 }
 
 std::vector<double> path_lengths(const Trajectory& trajectory) {
@@ -198,9 +198,26 @@ IndexPairs all_motions(const Trajectory& trajectory, const Delta& delta, double 
     for (std::size_t i = step; i < trajectory.size(); ++i) pairs.emplace_back(i - step, i);
     return pairs;
   }
-  if (is_angle(delta.unit)) return all_turns(trajectory, in_radians(delta), tolerance * in_radians(delta));
+  if (is_angle(delta.unit)) {
+    IndexPairs pairs;
+    visit_turns(trajectory, delta, tolerance,
+                [&](std::size_t i, std::size_t j) { pairs.emplace_back(i, j); });
+    return pairs;
+  }
   const std::vector<double> along = measured_along(trajectory, delta.unit);
   return nearest_later(along, delta.value, tolerance * delta.value);
+}
+
+void visit_turns(const Trajectory& trajectory, const Delta& delta, double tolerance,
+                 const MotionVisitor& visit) {
+  const double delta_rad = in_radians(delta);
+  const double tolerance_rad = tolerance * delta_rad;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    for (std::size_t j = i + 1; j < trajectory.size(); ++j) {
+      const double angle_rad = angle_between(trajectory[i], trajectory[j]);
+      if (angle_rad >= delta_rad - tolerance_rad && angle_rad <= delta_rad + tolerance_rad) visit(i, j);
+    }
+  }
 }
 
 IndexPairs tum_motions(const Trajectory& trajectory, const Delta& delta) {

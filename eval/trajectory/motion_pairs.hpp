@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -26,8 +27,18 @@ struct Delta {
 
 /// Indices (i, j), i before j but for the all-to-all pairs of TUM's script.
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+using MotionVisitor = std::function<void(std::size_t i, std::size_t j)>;
 
-/// Consecutive motions, one begins where the last one ended, as evo v1.36.5 selects them (core/filters.py):
+/// Up to how many motions are held as a list, which takes about 64 bytes each while they are compared. Of
+/// more, errors are computed again for each pass over them (see streamed_statistics()).
+struct MotionListing {
+  std::size_t most = std::size_t{1} << 22;
+  bool needed = false;  ///< somebody wants to see each error: more are refused
+};
+/// Error usage: a list is needed and would be too long.
+[[nodiscard]] Result<void> check_listing(const MotionListing& listing, std::size_t motions);
+
+/// Consecutive motions, one begins where the last one ended, as evo v1.36.5 selects them (its filters.py):
 ///   frames   poses 0, d, 2 d, ...
 ///   metres   marks where the path since the last mark reaches d; the first pose is no mark (but of d = 0)
 ///   degrees, radians   the sum of angles from pose to pose reaches d, from the first pose on
@@ -40,6 +51,12 @@ using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 ///   d degrees, radians   every later pose whose direct angle to i is within tolerance * d of d. O(n^2)
 ///   seconds  (ours) as metres
 [[nodiscard]] IndexPairs all_motions(const Trajectory& trajectory, const Delta& delta, double tolerance);
+
+/// all_motions() of degrees or radians one by one, in their order, without a list of them.
+void visit_turns(const Trajectory& trajectory, const Delta& delta, double tolerance,
+                 const MotionVisitor& visit);
+
+[[nodiscard]] bool is_angle(DeltaUnit unit);  ///< degrees or radians
 
 /// As `evaluate_rpe.py --fixed_delta`: for each pose that whose index, time, path or summed angle along the
 /// trajectory is found nearest to its own plus delta; pairs that end at the last pose are left out.

@@ -60,6 +60,7 @@ struct TrajectoryRequest {
   Delta delta;
   double delta_tolerance = 0.1;
   bool from_reference = false;
+  MotionListing listing = {};
 };
 
 /// What the protocol does if nothing else is asked for. Error usage: it has no such metric.

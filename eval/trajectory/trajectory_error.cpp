@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "eval/trajectory/euler_angles.hpp"
@@ -54,28 +56,66 @@ std::string described(const RelativeOptions& options) {
                      options.selection == MotionSelection::all ? "all" : "consecutive");
 }
 
+tl::unexpected<Error> without_errors(std::size_t poses, const RelativeOptions& options, std::size_t motions) {
+  if (motions == 0) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("no motion of {} poses fits ({})", poses, described(options)),
+                "a smaller delta, or a larger --delta_tol with --all_pairs, finds more");
+  }
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format("the reference does not move in any of {} motions ({})", motions, described(options)),
+      "ratios need a reference that moves: compare trans_part");
+}
+
+std::optional<double> error_of_motion(PoseRelation relation, const Compared& sides, std::size_t i,
+                                      std::size_t j) {
+  return relative_error(relation, Motion{sides.reference[i], sides.reference[j]},
+                        Motion{sides.estimate[i], sides.estimate[j]});
+}
+
 Result<TrajectoryError> errors_of_motions(Compared sides, const TrajectoryPair& pair,
                                           const RelativeOptions& options, const IndexPairs& motions) {
   TrajectoryError result = std::move(sides.error);
   result.relation = options.relation;
+  result.errors.reserve(motions.size());
+  result.at_ns.reserve(motions.size());
   for (const auto& [i, j] : motions) {
-    const auto error = relative_error(options.relation, Motion{sides.reference[i], sides.reference[j]},
-                                      Motion{sides.estimate[i], sides.estimate[j]});
+    const auto error = error_of_motion(options.relation, sides, i, j);
     if (!error) continue;
     result.errors.push_back(*error);
     result.at_ns.push_back(pair.estimate[j].timestamp_ns);
   }
-  if (result.errors.empty()) {
-    return fail(ErrorCode::data_corrupt,
-                motions.empty()
-                    ? fmt::format("no motion of {} poses fits ({})", pair.size(), described(options))
-                    : fmt::format("the reference does not move in any of {} motions ({})", motions.size(),
-                                  described(options)),
-                motions.empty() ? "a smaller delta, or a larger --delta_tol with --all_pairs, finds more"
-                                : "ratios need a reference that moves: compare trans_part");
-  }
+  if (result.errors.empty()) return without_errors(pair.size(), options, motions.size());
   result.stats = statistics(result.errors);
   return result;
+}
+
+/// Turns of about delta between any two poses, without a list of them.
+Result<TrajectoryError> errors_of_turns(Compared sides, Trajectory selecting, const RelativeOptions& options,
+                                        std::size_t turns) {
+  TrajectoryError result = std::move(sides.error);
+  result.relation = options.relation;
+  const auto both = std::make_shared<const Compared>(std::move(sides));
+  const auto turning = std::make_shared<const Trajectory>(std::move(selecting));
+  result.streamed = [both, turning, options](const ValueVisitor& visit) {
+    visit_turns(*turning, options.delta, options.tolerance, [&](std::size_t i, std::size_t j) {
+      if (const auto error = error_of_motion(options.relation, *both, i, j)) visit(*error);
+    });
+  };
+  result.stats = streamed_statistics(result.streamed);
+  if (result.stats.count == 0) return without_errors(turning->size(), options, turns);
+  return result;
+}
+
+/// How many turns there are, where all pairs of poses could be more than are listed; 0 elsewhere.
+std::size_t count_turns(const Trajectory& selecting, const RelativeOptions& options) {
+  const std::size_t poses = selecting.size();
+  const bool few = poses < 2 || (poses - 1) / 2 < options.listing.most / poses;
+  if (options.selection != MotionSelection::all || !is_angle(options.delta.unit) || few) return 0;
+  std::size_t turns = 0;
+  visit_turns(selecting, options.delta, options.tolerance, [&](std::size_t, std::size_t) { ++turns; });
+  return turns;
 }
 
 }  // namespace
@@ -123,6 +163,10 @@ Result<TrajectoryError> relative_error(const TrajectoryPair& pair, const Relativ
   Trajectory selecting = options.from_reference ? pair.reference : pair.estimate;
   const std::vector<SE3>& poses = options.from_reference ? sides->reference : sides->estimate;
   for (std::size_t i = 0; i < selecting.size(); ++i) selecting[i].T_world_camera = poses[i];
+  const std::size_t turns = count_turns(selecting, options);
+  if (auto listed = check_listing(options.listing, turns); !listed) return tl::unexpected(listed.error());
+  if (turns > options.listing.most)
+    return errors_of_turns(std::move(*sides), std::move(selecting), options, turns);
   const IndexPairs motions = options.selection == MotionSelection::all
                                  ? all_motions(selecting, options.delta, options.tolerance)
                                  : consecutive_motions(selecting, options.delta);

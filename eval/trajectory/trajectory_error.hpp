@@ -10,6 +10,7 @@
 #include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/motion_pairs.hpp"
 #include "eval/trajectory/pose_relation.hpp"
+#include "eval/trajectory/streamed_statistics.hpp"
 #include "eval/trajectory/trajectory_pair.hpp"
 
 namespace fusebench {
@@ -24,6 +25,8 @@ struct TrajectoryError {
   Similarity alignment;             ///< reference from estimate
   std::vector<double> errors;       ///< in the relation's unit
   std::vector<std::int64_t> at_ns;  ///< of each error, the estimate's stamp (of a motion: of its end)
+  /// Of more motions than are listed, the errors one by one; `errors` and `at_ns` are then empty.
+  ValueSource streamed;
   Statistics stats;
 };
 
@@ -54,6 +57,7 @@ struct RelativeOptions {
   MotionSelection selection = MotionSelection::consecutive;
   double tolerance = 0.1;       ///< of delta, where all motions are taken
   bool from_reference = false;  ///< the reference's motions decide which are taken
+  MotionListing listing = {};
 };
 
 /// Error of motions over a delta, selected from the associated poses. Errors: configuration for a delta that

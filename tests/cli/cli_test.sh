@@ -182,6 +182,14 @@ check_bad_usage() {
   printf 'name = "s"\nrecordings = ["absent"]\nvariants = ["no-imu"]\n' >suite.toml
   refused "unknown recording of a suite" 3 'absent' -- bench suite.toml --data . --out out
 
+  # The name of a suite is a folder below results/runs.
+  local escape
+  for escape in ../../../escaped "$PWD/escaped" a/b .. .hidden; do
+    printf 'variants = ["no-imu"]\nall = true\nname = "%s"\n' "$escape" >suite.toml
+    refused "name of a suite: $escape" 2 'suite.toml:3: name = ' 'hint:folder' -- bench suite.toml --data .
+  done
+  if [[ -e results || -e escaped || -e ../escaped ]]; then complain "name of a suite: something was written"; fi
+
   printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\npreset = "quick"\n' >suite.toml
   refused "unknown preset of a suite" 2 'suite.toml:5' 'slow' -- bench suite.toml --out out
   printf 'name = "s"\nall = true\nvariants = ["full"]\n[[bars]]\ntitle = "t"\nvariant = "full"\nmetric = "ate_rmse"\n' >suite.toml
@@ -438,6 +446,13 @@ check_evaluation() {
 
   prints 'rmse' "errors of tum's motions as a file" eval rpe gt.txt est.txt --protocol tum --errors errors/rpe.csv
   [[ $(sed -n 2p errors/rpe.csv) =~ ^13050311[0-9]{11}, ]] || complain "errors of tum's motions have no stamps"
+
+  # Each pose with each pose of 2100: more motions than are listed, but not than are compared.
+  awk 'BEGIN { for (i = 0; i < 2100; ++i) printf "%.2f %.9f %.9f 0 0 0 0 1\n", i / 20, cos(i / 50), i / 100 }' >many.txt
+  prints 'errors +4410000 +4410000' "many motions" eval rpe many.txt many.txt --protocol tum --all_pairs
+  prints '"errors": null' "many motions as JSON" eval rpe many.txt many.txt --protocol tum --all_pairs --json
+  refused "a list of many motions" 2 '4410000 motions.*0.3 GB.*4194304' 'hint:--downsample' -- \
+    eval rpe many.txt many.txt --protocol tum --all_pairs --errors out
 
   awk '{ print $0, "1e-4 0 0 1e-4 0 1e-4 1e-3 0 0 1e-3 0 1e-3" }' est.txt >openvins.txt
   prints 'NEES / 3 mean' "NEES" eval nees gt.txt openvins.txt --align origin --errors errors/nees.csv

@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/engine_test.sh BINARY kills|disks|engines|verbs [RUNS]
+Usage: tests/cli/engine_test.sh BINARY kills|disks|engines|verbs|streams [RUNS]
 RUNS: of the sweep; default 200.
 TEXT
 }
@@ -249,11 +249,68 @@ check_verbs() {
   says 3 'absent' compare undisturbed absent
 }
 
+# ends CODE WHAT: of the last command, kept in `status`.
+ends() {
+  ((status == $1)) || complain "$2: exit code $status instead of $1"
+}
+
+# Standard output and error that take nothing, or are closed: what cannot be shown never ends a suite, and what was to be
+# the result is an error with one sentence.
+check_streams() {
+  undisturbed
+  local suite=(bench tiny.toml --simulated simulated -j 2 --threads 1) status
+  "$binary" "${suite[@]}" --out full 2>/dev/full
+  status=$?
+  ends 0 'a suite whose progress meets a full disk'
+  same_as_undisturbed full full
+  "$binary" "${suite[@]}" --out closed 2>&-
+  status=$?
+  ends 0 'a suite with standard error closed'
+  same_as_undisturbed closed closed
+  "$binary" "${suite[@]}" --out all_closed <&- >&- 2>&-
+  status=$?
+  ends 0 'a suite with everything closed'
+  same_as_undisturbed all_closed all_closed
+  "$binary" "${suite[@]}" --out left 2>&1 >/dev/null | true
+  status=${PIPESTATUS[0]}
+  ends 0 'a suite whose progress nobody reads any more'
+  same_as_undisturbed left left
+  "$binary" table absent 2>/dev/full
+  status=$?
+  ends 3 'an error that cannot be shown'
+
+  local verb
+  for verb in 'list variants' 'table undisturbed' '--help' '--version' \
+    'bench tiny.toml --simulated simulated --out undisturbed --json'; do
+    # shellcheck disable=SC2086  # several arguments
+    "$binary" $verb >/dev/full 2>stderr
+    status=$?
+    ends 4 "$verb: output to a full disk"
+    [[ $(grep -c '^error: standard output cannot be written' stderr) == 1 ]] || complain "$verb: a full disk is not said once"
+    # shellcheck disable=SC2086
+    "$binary" $verb >&- 2>stderr
+    status=$?
+    ends 4 "$verb: output closed"
+    [[ $(grep -c '^error: ' stderr) == 1 ]] || complain "$verb: a closed output is not said once"
+    # shellcheck disable=SC2086
+    "$binary" $verb >/dev/full 2>&-
+    status=$?
+    ends 4 "$verb: neither output nor error"
+  done
+  : >stderr
+  # A reader that has seen enough is no error, and nothing is said of it.
+  "$binary" list variants 2>stderr | true
+  status=${PIPESTATUS[0]}
+  if ((status != 0)); then ends 141 'a pipe whose reader has left'; fi
+  [[ ! -s stderr ]] || complain 'a pipe whose reader has left: something is said'
+}
+
 case $group in
   kills) check_kills ;;
   disks) check_disks ;;
   engines) check_engines ;;
   verbs) check_verbs ;;
+  streams) check_streams ;;
   *)
     usage >&2
     exit 2

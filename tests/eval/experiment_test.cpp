@@ -45,6 +45,18 @@ TEST_F(SuiteTest, ReadsEveryKey) {
   EXPECT_TRUE(config->origin("iekf.max_iterations").ends_with("suite.toml:6"));
 }
 
+TEST_F(SuiteTest, ItsNameIsThatOfAFolder) {
+  const std::vector<std::string> wrong = {"../x", "/tmp/x", "a/b",    "..",
+                                          ".x",   "a b",    "a\\\\b", std::string(201, 'a')};
+  for (const std::string& name : wrong)
+    expect_error("all = true\nname = \"" + name + "\"\nvariants = [\"full\"]\n",
+                 ":2: name = ", "letters, digits, _, - and .");
+  for (const std::string& name : std::vector<std::string>{"x", "my-suite_2.1", std::string(200, 'a')}) {
+    const auto suite = read("name = \"" + name + "\"\nall = true\nvariants = [\"full\"]\n");
+    EXPECT_TRUE(suite.has_value()) << name;
+  }
+}
+
 TEST_F(SuiteTest, ErrorsNameTheLine) {
   expect_error("name = \"x\"\nvariant = [\"full\"]\n", ":2", "variants");
   expect_error("name = 3\n", ":1", "text");

@@ -1,5 +1,4 @@
-// Against numbers that rpg_trajectory_evaluation (8c8ceec) computed. The inputs are read from beside the
-// recordings; where those are not, the tests say so.
+// Against numbers that rpg_trajectory_evaluation (8c8ceec) computed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +16,9 @@ namespace fusebench {
 namespace {
 
 using nlohmann::json;
-using testing::trajectory_vectors;
-using testing::vector_cases;
+
+using RpgVectors = testing::TrajectoryVectors;
+OVER_BOTH_VECTOR_SETS(RpgVectors);
 
 Trajectory load(const std::filesystem::path& file) {
   std::vector<std::string> warnings;
@@ -59,15 +59,13 @@ AlignmentRequest requested(const json& options) {
   return request;
 }
 
-TEST(RpgVectors, AbsoluteAndRelativeErrors) {
-  const auto folder = trajectory_vectors();
-  SKIP_WITHOUT_VECTORS(folder);
+TEST_P(RpgVectors, AbsoluteAndRelativeErrors) {
   int compared = 0;
-  const json tests = vector_cases(*folder, "rpg_expected.json");
+  const json tests = cases("rpg_expected.json");
   for (const json& test : tests) {
     SCOPED_TRACE(test.at("est").get<std::string>() + " " + test.at("options").dump());
-    const Trajectory reference = load(*folder / "inputs" / test.at("gt").get<std::string>());
-    const auto pair = pair_up(reference, load(*folder / "inputs" / test.at("est").get<std::string>()),
+    const Trajectory reference = load(input(test.at("gt").get<std::string>()));
+    const auto pair = pair_up(reference, load(input(test.at("est").get<std::string>())),
                               {.rule = AssociationRule::greedy, .max_difference_s = 0.02});
     ASSERT_TRUE(pair.has_value());
     EXPECT_EQ(pair->size(), test.at("n_pairs").get<std::size_t>());
@@ -97,7 +95,7 @@ TEST(RpgVectors, AbsoluteAndRelativeErrors) {
     }
     ++compared;
   }
-  EXPECT_GE(compared, 40);
+  EXPECT_EQ(compared, count(10, 40));
 }
 
 }  // namespace

@@ -51,12 +51,13 @@ expect_refused eval/statistics.cpp '#include "core/pipeline.hpp"' 'metrics never
 expect_refused eval/trajectory/alignment.cpp '#include "datasets/recording.hpp"' 'metrics never include'
 expect_refused eval/record.cpp "$both" 'know both'
 expect_refused eval/run.hpp "$both" 'know both'
+expect_refused eval/batch.cpp "$both" 'know both'
 expect_refused eval/run.cpp '#include "tests/support/scene.hpp"' 'only tests include tests'
 expect_refused core/iekf.cpp '#include "../eval/run.hpp"' 'start at the repository root'
 expect_refused core/iekf.cpp '#include "types.hpp"' 'start at the repository root'
 
 expect_accepted eval/run.cpp "$both"
-expect_accepted eval/batch.cpp "$both"
+expect_accepted eval/measured_motion.cpp "$both"
 expect_accepted eval/cli/run.cpp "$both"
 expect_accepted eval/trajectory_metrics.cpp '#include "core/types.hpp"\n#include "eval/statistics.hpp"'
 expect_accepted datasets/tum_rgbd.cpp '#include "core/types.hpp"'

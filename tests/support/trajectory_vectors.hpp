@@ -1,32 +1,80 @@
-// Numbers that the tools of others computed, beside the recordings. Where those are not, tests say so.
+// Numbers that the tools of others computed: a part of them in the repository (tests/golden/trajectories),
+// all of them beside the recordings. Where those are not, tests on all of them say so.
 #pragma once
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <string>
 
 #include "tests/support/expect_close.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench::testing {
 
-/// The folder of the vectors, or nothing if FUSEBENCH_DATA is not set or has none beside it.
-[[nodiscard]] inline std::optional<std::filesystem::path> trajectory_vectors() {
-  const char* const data = std::getenv("FUSEBENCH_DATA");
-  if (data == nullptr) return std::nullopt;
-  const auto folder = std::filesystem::path(data) / ".." / "vectors" / "trajectory";
-  if (!std::filesystem::exists(folder / "tum_expected.json")) return std::nullopt;
-  return folder;
+enum class VectorSet { golden, large };
+
+/// What gunzip makes of a file; empty if it cannot be read.
+[[nodiscard]] inline std::string unzipped(const std::filesystem::path& file) {
+  std::string text;
+  const gzFile opened = gzopen(file.c_str(), "rb");
+  if (opened == nullptr) return text;
+  std::array<char, 65536> buffer;
+  for (int count = 0; (count = gzread(opened, buffer.data(), buffer.size())) > 0;)
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  gzclose(opened);
+  return text;
 }
 
-[[nodiscard]] inline nlohmann::json vector_cases(const std::filesystem::path& folder, const char* file) {
-  return nlohmann::json::parse(std::ifstream(folder / file)).at("cases");
+/// A fixture that runs once over either set.
+class TrajectoryVectors : public ::testing::TestWithParam<VectorSet> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == VectorSet::golden) {
+      folder_ = std::filesystem::path(__FILE__).parent_path().parent_path() / "golden" / "trajectories";
+      return;
+    }
+    const char* const data = std::getenv("FUSEBENCH_DATA");
+    if (data != nullptr) folder_ = std::filesystem::path(data) / ".." / "vectors" / "trajectory";
+    if (data == nullptr || !std::filesystem::exists(folder_ / "tum_expected.json"))
+      GTEST_SKIP() << "FUSEBENCH_DATA is not set, or has no ../vectors/trajectory beside it";
+  }
+
+  [[nodiscard]] nlohmann::json cases(const char* file) const {
+    return nlohmann::json::parse(std::ifstream(folder_ / file)).at("cases");
+  }
+
+  /// An input, unpacked.
+  [[nodiscard]] std::filesystem::path input(const std::string& name) const {
+    const std::filesystem::path plain = folder_ / "inputs" / name;
+    if (std::filesystem::exists(plain)) return plain;
+    const std::filesystem::path unpacked = temporary_.path() / name;
+    return std::filesystem::exists(unpacked) ? unpacked
+                                             : temporary_.write(name, unzipped(plain.string() + ".gz"));
+  }
+
+  /// How many cases have to be there: none is left out in silence.
+  [[nodiscard]] static int count(int golden, int large) {
+    return GetParam() == VectorSet::golden ? golden : large;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+};
+
+[[nodiscard]] inline std::string name_of(const ::testing::TestParamInfo<VectorSet>& set) {
+  return set.param == VectorSet::golden ? "golden" : "large";
 }
 
 }  // namespace fusebench::testing
 
-#define SKIP_WITHOUT_VECTORS(folder) \
-  if (!folder) GTEST_SKIP() << "FUSEBENCH_DATA is not set, or has no ../vectors/trajectory beside it"
+#define OVER_BOTH_VECTOR_SETS(fixture)                                                               \
+  INSTANTIATE_TEST_SUITE_P(Of, fixture,                                                              \
+                           ::testing::Values(testing::VectorSet::golden, testing::VectorSet::large), \
+                           testing::name_of)
