@@ -7,11 +7,11 @@
 
 #include "core/lane_points.hpp"
 #include "core/patches.hpp"
-#include "core/residuals.hpp"
+#include "core/posed_camera.hpp"
 
 namespace fusebench {
 
-/// A posed camera (residuals.hpp) for points relative to an origin: X_camera = R_camera_world * (P_world -
+/// A posed camera (posed_camera.hpp) for points relative to an origin: X_camera = R_camera_world * (P_world -
 /// origin_world) + t_camera_m.
 struct PosedLanes {
   PosedLanes(const PosedCamera& posed, const Vector3d& origin_world);

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/image_lanes.hpp"
 #include "core/patch_scatter.hpp"
-#include "core/residuals.hpp"
+#include "core/posed_camera.hpp"
 
 namespace fusebench {
 

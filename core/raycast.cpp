@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "core/block_bounds.hpp"
@@ -14,7 +13,6 @@
 namespace fusebench {
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 4;
 // Seen from the side, the field overstates the distance; a step of less than its value rarely jumps the
 // surface, and where it jumps into the unknown, the walk repeats it in fine steps.
 constexpr float kStepShare = 0.8F;
@@ -246,25 +244,6 @@ constexpr std::size_t kPixelsPerTurn = RayCaster::kMostTurns * kLanes;
 
 }  // namespace
 
-SurfacePoint raycast_pixel(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
-                           double u_px, double v_px, const DepthConfig& depth) {
-  std::vector<SurfacePoint> points;
-  raycast_pixels(volume, camera, T_world_camera, std::vector<PixelRay>{PixelRay{u_px, v_px}}, depth,
-                 Workers(1), points);
-  return points[0];
-}
-
-void raycast_pixels(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
-                    std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
-                    std::vector<SurfacePoint>& points) {
-  const std::optional<TsdfLanes> field = field_in_view(volume, camera, T_world_camera, depth);
-  if (field) {
-    raycast_pixels(*field, camera, T_world_camera, pixels, depth, workers, points);
-  } else {
-    points.assign(pixels.size(), SurfacePoint{});
-  }
-}
-
 void raycast_pixels(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                     std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
                     std::vector<SurfacePoint>& points) {
@@ -287,38 +266,6 @@ void raycast_pixels(const TsdfLanes& field, const PinholeCamera& camera, const S
       points[i] = surface_point(hits[(i - begin) / kLanes], (i - begin) % kLanes);
     }
   });
-}
-
-SurfaceImage raycast_image(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
-                           const DepthConfig& depth, const Workers& workers) {
-  SurfaceImage image = {DepthImage(camera.width_px, camera.height_px),
-                        Image<Eigen::Vector3f>(camera.width_px, camera.height_px, Eigen::Vector3f::Zero())};
-  const std::optional<TsdfLanes> field = field_in_view(volume, camera, T_world_camera, depth);
-  if (!field) return image;
-  const RayCaster caster(*field, camera, T_world_camera, depth);
-  const auto rows = static_cast<std::size_t>(camera.height_px);
-  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    std::array<PixelLanes, RayCaster::kMostTurns> lanes;
-    std::array<Hits, RayCaster::kMostTurns> hits;
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int first = 0; first < camera.width_px; first += static_cast<int>(kPixelsPerTurn)) {
-        for (std::size_t i = 0; i < lanes.size(); ++i) {
-          lanes[i].u = static_cast<float>(first) + static_cast<float>(i * kLanes) + kLaneNumber;
-          lanes[i].v = all_lanes(static_cast<float>(y));
-        }
-        caster.cast(lanes, hits);
-        const int count = std::min(static_cast<int>(kPixelsPerTurn), camera.width_px - first);
-        for (int i = 0; i < count; ++i) {
-          const auto place = static_cast<std::size_t>(i);
-          const SurfacePoint point = surface_point(hits[place / kLanes], place % kLanes);
-          if (!point.valid) continue;
-          image.depth_m(first + i, y) = static_cast<float>(point.depth_m);
-          image.normal_world(first + i, y) = point.normal_world.cast<float>();
-        }
-      }
-    }
-  });
-  return image;
 }
 
 }  // namespace fusebench
