@@ -70,6 +70,10 @@ struct LevelLanes {
   std::vector<WarpedLanes> warped;          ///< one each
   std::vector<std::size_t> first;           ///< of each patch, and the end
 
+  /// What is projected of eight pixels.
+  [[nodiscard]] const Points& projected(std::size_t eight) const {
+    return warp_points.empty() ? pixels[eight].point : warp_points[eight].point;
+  }
   [[nodiscard]] std::span<const PixelLanes> pixels_of(std::size_t patch) const {
     return std::span(pixels).subspan(first[patch], first[patch + 1] - first[patch]);
   }
