@@ -137,19 +137,19 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
   }
 }
 
-PatchMeasurement::Noise PatchMeasurement::photometric_noise() const {
+PatchMeasurement::Weighting PatchMeasurement::photometric_weighting() const {
   return {static_cast<float>(config_.terms.photometric_weight / config_.photometric.pixels_per_measurement),
           static_cast<float>(config_.photometric.huber_sigmas)};
 }
 
-PatchMeasurement::Noise PatchMeasurement::geometric_noise() const {
+PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
   return {static_cast<float>(config_.terms.geometric_weight / config_.geometric.pixels_per_measurement),
           static_cast<float>(config_.geometric.huber_sigmas)};
 }
 
 void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed) {
   PatchState& state = states_[patch];
-  const Noise noise = photometric_noise();
+  const Weighting weighting = photometric_weighting();
   const GreyResidual residual_of(state.brightness.value, scale_.photometric * config_.photometric.noise_grey);
   QuadraticSums sums;
   BrightnessSums light;
@@ -170,10 +170,10 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       const JacobianLanes jacobian = photometric_jacobian(posed.at[l], point, observed.dx, observed.dy);
       const Float8 residual = residual_of(observed.value, pixels.intensity);
       const Float8 whitened = residual * residual_of.per_noise;
-      const RobustLanes robust = huber(whitened, noise.robust_sigmas);
+      const RobustLanes robust = huber(whitened, weighting.robust_sigmas);
       const Float8 weight =
-          used ? noise.share * residual_of.per_noise * residual_of.per_noise * robust.weight : Float8{};
-      sums.add(jacobian, residual, weight, used ? noise.share * robust.cost : Float8{});
+          used ? weighting.share * residual_of.per_noise * residual_of.per_noise * robust.weight : Float8{};
+      sums.add(jacobian, residual, weight, used ? weighting.share * robust.cost : Float8{});
       light.add(jacobian, residual, weight, pixels.intensity);
       fit.add(whitened, robust.weight, used);
     }
@@ -189,7 +189,7 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
 }
 
 void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed) {
-  const Noise noise = geometric_noise();
+  const Weighting weighting = geometric_weighting();
   QuadraticSums sums;
   FitSums fit;
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
@@ -201,10 +201,10 @@ void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed
       const Float8 per_sigma = 1.0F / (pairs.valid ? pairs.sigma_m : all_lanes(1.0F));
       const Float8 residual_m = pairs.valid ? plane_residual(posed.by_model, pairs, planes) : Float8{};
       const Float8 whitened = residual_m * per_sigma;
-      const RobustLanes robust = huber(whitened, noise.robust_sigmas);
-      const Float8 weight = pairs.valid ? noise.share * per_sigma * per_sigma * robust.weight : Float8{};
+      const RobustLanes robust = huber(whitened, weighting.robust_sigmas);
+      const Float8 weight = pairs.valid ? weighting.share * per_sigma * per_sigma * robust.weight : Float8{};
       sums.add(plane_jacobian(posed.by_model, pairs, planes), residual_m, weight,
-               pairs.valid ? noise.share * robust.cost : Float8{});
+               pairs.valid ? weighting.share * robust.cost : Float8{});
       fit.add(whitened, robust.weight, pairs.valid);
     }
   }
@@ -253,7 +253,7 @@ double PatchMeasurement::patch_cost(std::size_t patch, const PosedLevels& posed)
 }
 
 double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& posed) const {
-  const Noise noise = geometric_noise();
+  const Weighting weighting = geometric_weighting();
   Float8 cost{};
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     const Level& level = levels_[l];
@@ -262,14 +262,14 @@ double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& po
       if (!any(pairs.valid)) continue;
       const Float8 whitened = plane_residual(posed.by_model, pairs, level.lanes.pixels[i]) /
                               (pairs.valid ? pairs.sigma_m : all_lanes(1.0F));
-      cost += pairs.valid ? huber(whitened, noise.robust_sigmas).cost : Float8{};
+      cost += pairs.valid ? huber(whitened, weighting.robust_sigmas).cost : Float8{};
     }
   }
-  return static_cast<double>(noise.share) * sum_of_lanes(cost);
+  return static_cast<double>(weighting.share) * sum_of_lanes(cost);
 }
 
 double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
-  const Noise noise = photometric_noise();
+  const Weighting weighting = photometric_weighting();
   const GreyResidual residual_of(states_[patch].brightness.trial,
                                  scale_.photometric * config_.photometric.noise_grey);
   Float8 cost{};
@@ -293,10 +293,10 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
       const Float8 observed = sample_bicubic_value(image, clamp(x, 1.0F, static_cast<float>(image.width - 2)),
                                                    clamp(y, 1.0F, static_cast<float>(image.height - 2)));
       const Float8 whitened = residual_of(observed, lanes.pixels[i].intensity) * residual_of.per_noise;
-      cost += used ? huber(whitened, noise.robust_sigmas).cost : Float8{};
+      cost += used ? huber(whitened, weighting.robust_sigmas).cost : Float8{};
     }
   }
-  return static_cast<double>(noise.share) * sum_of_lanes(cost);
+  return static_cast<double>(weighting.share) * sum_of_lanes(cost);
 }
 
 void PatchMeasurement::accept() {

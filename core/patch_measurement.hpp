@@ -71,8 +71,8 @@ class PatchMeasurement final : public PoseMeasurement {
   };
   /// The hypothesis for colour at all pyramid levels, and for depth.
   struct PosedLevels;
-  /// Of the residuals of one kind.
-  struct Noise {
+  /// How residuals of one kind are weighted.
+  struct Weighting {
     float share = 0;          ///< of a pixel's residual in one measurement
     float robust_sigmas = 0;  ///< Huber's k
   };
@@ -82,8 +82,8 @@ class PatchMeasurement final : public PoseMeasurement {
   void associate_planes(std::size_t patch, const PosedLevels& posed);
   void sum_photometric(std::size_t patch, const PosedLevels& posed);
   void sum_geometric(std::size_t patch, const PosedLevels& posed);
-  [[nodiscard]] Noise photometric_noise() const;
-  [[nodiscard]] Noise geometric_noise() const;
+  [[nodiscard]] Weighting photometric_weighting() const;
+  [[nodiscard]] Weighting geometric_weighting() const;
   [[nodiscard]] double measured_variance(PoseQuadratic PatchState::*kind) const;
   [[nodiscard]] double patch_cost(std::size_t patch, const PosedLevels& posed) const;
   [[nodiscard]] double photometric_cost(std::size_t patch, const PosedLevels& posed) const;
