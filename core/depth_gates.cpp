@@ -62,12 +62,6 @@ void gate_depth(const DepthImage& depth_m, const DepthConfig& config, DepthImage
   }
 }
 
-DepthImage gate_depth(const DepthImage& depth_m, const DepthConfig& config) {
-  DepthImage gated_m;
-  gate_depth(depth_m, config, gated_m);
-  return gated_m;
-}
-
 bool is_one_surface(const DepthImage& depth_m, int x, int y, int reach_px, double edge_jump) {
   const float middle_m = depth_m(x, y);
   if (middle_m <= 0) return false;
@@ -82,25 +76,6 @@ bool is_one_surface(const DepthImage& depth_m, int x, int y, int reach_px, doubl
     }
   }
   return true;
-}
-
-Vector3d measured_normal(const DepthImage& depth_m, const PinholeCamera& camera, int x, int y) {
-  constexpr int kReach = 4;
-  if (!depth_m.contains(x - kReach, y - kReach) || !depth_m.contains(x + kReach, y + kReach)) {
-    return Vector3d::Zero();
-  }
-  const auto point = [&](int dx, int dy) -> Vector3d {
-    return camera.back_project(x + dx, y + dy, depth_m(x + dx, y + dy));
-  };
-  const Vector3d left = point(-kReach, 0);
-  const Vector3d right = point(kReach, 0);
-  const Vector3d up = point(0, -kReach);
-  const Vector3d down = point(0, kReach);
-  if (left.z() <= 0 || right.z() <= 0 || up.z() <= 0 || down.z() <= 0) return Vector3d::Zero();
-  // y points down, so (down - up) x (right - left) looks back at the camera.
-  const Vector3d normal = (down - up).cross(right - left);
-  const double length = normal.norm();
-  return length > 0 ? Vector3d(normal / length) : Vector3d::Zero();
 }
 
 }  // namespace fusebench

@@ -36,17 +36,11 @@ class DepthSigma {
 }
 
 /// Depth without what cannot be trusted: values outside [min, max] and pixels at a depth edge become 0.
-[[nodiscard]] DepthImage gate_depth(const DepthImage& depth_m, const DepthConfig& config);
-/// The same into another image, whose memory is used again.
+/// Into another image, whose memory is used again.
 void gate_depth(const DepthImage& depth_m, const DepthConfig& config, DepthImage& gated_m);
 
 /// True if there is depth at the pixel and at the eight around it at a distance of reach_px, as far as they
 /// are in the image, without a jump of more than `edge_jump` of the middle's depth. Reach 0: the pixel alone.
 [[nodiscard]] bool is_one_surface(const DepthImage& depth_m, int x, int y, int reach_px, double edge_jump);
-
-/// Unit normal of the measured surface at a pixel, camera frame, towards the camera; zero where a neighbour
-/// is missing. Central differences over +-4 pixels, since neighbouring pixels of structured-light depth share
-/// their disparity step.
-[[nodiscard]] Vector3d measured_normal(const DepthImage& depth_m, const PinholeCamera& camera, int x, int y);
 
 }  // namespace fusebench

@@ -1,27 +1,11 @@
 #include "core/image.hpp"
 
 #include <algorithm>
-#include <array>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
 
 namespace fusebench {
-
-namespace {
-
-/// Weights of the four pixels around a place between the second and the third, and their derivatives.
-struct CubicWeights {
-  explicit CubicWeights(double t)
-      : value{t * (-0.5 + t * (1.0 - 0.5 * t)), 1.0 + t * t * (-2.5 + 1.5 * t),
-              t * (0.5 + t * (2.0 - 1.5 * t)), t * t * (-0.5 + 0.5 * t)},
-        slope{-0.5 + t * (2.0 - 1.5 * t), t * (-5.0 + 4.5 * t), 0.5 + t * (4.0 - 4.5 * t),
-              t * (-1.0 + 1.5 * t)} {}
-  std::array<double, 4> value;
-  std::array<double, 4> slope;
-};
-
-}  // namespace
 
 IntensitySample sample_bilinear(const GreyImage& image, double x, double y) {
   // The cell [x0, x0 + 1) x [y0, y0 + 1); the last row and column belong to the cell before them.
@@ -38,27 +22,6 @@ IntensitySample sample_bilinear(const GreyImage& image, double x, double y) {
   const double upper = i00 + ax * (i10 - i00);
   const double lower = i01 + ax * (i11 - i01);
   return {upper + ay * (lower - upper), (1.0 - ay) * (i10 - i00) + ay * (i11 - i01), lower - upper};
-}
-
-IntensitySample sample_bicubic(const GreyImage& image, double x, double y) {
-  const int x0 = std::clamp(static_cast<int>(x), 1, image.width - 3);
-  const int y0 = std::clamp(static_cast<int>(y), 1, image.height - 3);
-  const CubicWeights across(x - x0);
-  const CubicWeights down(y - y0);
-  IntensitySample sample;
-  const std::uint8_t* row = &image.data[image.index(x0 - 1, y0 - 1)];
-  for (std::size_t j = 0; j < 4; ++j, row += image.width) {
-    double value = 0;
-    double slope = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      value += across.value[i] * row[i];
-      slope += across.slope[i] * row[i];
-    }
-    sample.value += down.value[j] * value;
-    sample.dx += down.value[j] * slope;
-    sample.dy += down.slope[j] * value;
-  }
-  return sample;
 }
 
 void build_pyramid(const GreyImage& image, int levels, std::vector<GreyImage>& pyramid) {

@@ -51,11 +51,6 @@ struct IntensitySample {
 /// numeric ones. Needs 0 <= x <= width - 1 (same for y); the caller checks.
 [[nodiscard]] IntensitySample sample_bilinear(const GreyImage& image, double x, double y);
 
-/// Cubic convolution (Keys 1981, a = -1/2) with the exact derivative of the interpolant. A bilinear sample is
-/// blurred by as much as it lies between pixels, which draws an alignment towards whole pixels; this one
-/// hardly is. Needs 1 <= x <= width - 2 (same for y); the caller checks.
-[[nodiscard]] IntensitySample sample_bicubic(const GreyImage& image, double x, double y);
-
 /// Grey-level pyramid, level 0 = the image, each level half the size (5x5 binomial filter in integer
 /// arithmetic, hence the same on every machine). Pixel (x, y) of level l lies at (x, y) * 2^l of level 0.
 [[nodiscard]] std::vector<GreyImage> build_pyramid(const GreyImage& image, int levels);

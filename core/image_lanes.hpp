@@ -54,7 +54,9 @@ namespace lane_details {
 
 }  // namespace lane_details
 
-/// As the other sample_bicubic. Needs 1 <= x <= width - 2 (same for y) in all lanes.
+/// Cubic convolution (Keys 1981, a = -1/2) with the exact derivative of the interpolant. A bilinear sample is
+/// blurred by as much as it lies between pixels, which draws an alignment towards whole pixels; this one
+/// hardly is. Needs 1 <= x <= width - 2 (same for y) in all lanes.
 [[nodiscard]] inline IntensityLanes sample_bicubic(const GreyImage& image, Float8 x, Float8 y) {
   using namespace lane_details;
   const Int8 left = min(to_int(x), all_lanes(image.width - 3));

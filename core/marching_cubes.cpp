@@ -12,15 +12,13 @@
 
 #include "core/bits.hpp"
 #include "core/block_slots.hpp"
-#include "core/block_surroundings.hpp"
 #include "core/marching_cubes_table.hpp"
+#include "core/mesh_vertices.hpp"
 
 namespace fusebench {
 namespace {
 
 constexpr std::size_t kBlocksPerChunk = 16;
-constexpr std::size_t kBlockEdges =
-    3 * kBlockVoxels;  // each voxel owns the three edges that leave it upwards
 
 // An edge of the lattice as a block sees it: which of the eight blocks at its upper corner has the edge's
 // lower end * kNeighbourEdges + offset of that end in it * 3 + axis.
@@ -79,27 +77,6 @@ struct SortedBlocks {
   }
   std::vector<std::size_t> slots;    // by rank
   std::vector<std::uint32_t> ranks;  // by slot
-};
-
-// The used edges of one block, and the number of the vertex on each.
-struct BlockVertices {
-  static constexpr std::size_t kWords = kBlockEdges / 64;
-  std::array<std::uint64_t, kWords> used{};
-  std::array<std::uint32_t, kWords> before{};  // vertices on all earlier edges
-
-  [[nodiscard]] bool any() const {
-    return std::any_of(used.begin(), used.end(), [](std::uint64_t word) { return word != 0; });
-  }
-  void number(std::uint32_t& count) {
-    for (std::size_t word = 0; word < kWords; ++word) {
-      before[word] = count;
-      count += static_cast<std::uint32_t>(std::popcount(used[word]));
-    }
-  }
-  [[nodiscard]] std::uint32_t vertex(std::size_t edge) const {
-    const std::uint64_t earlier = used[edge / 64] & ((std::uint64_t{1} << edge % 64) - 1);
-    return before[edge / 64] + static_cast<std::uint32_t>(std::popcount(earlier));
-  }
 };
 
 // Triangles of the cells whose lower corner lies in one block.
@@ -243,65 +220,6 @@ class BlockCells {
   const std::array<LocalEdge, 12> edge_offsets_ = edge_offsets();
   std::array<std::uint32_t, 8> neighbour_ranks_{};
   std::array<std::uint8_t, kSide * kSide * kSide> sign_{};
-};
-
-// Colour between two voxels (BlockVoxels); a voxel without colour takes the other's. False if neither has
-// one.
-bool blend(std::uint32_t low, std::uint32_t high, float share, Rgb& color) {
-  constexpr int kCountByte = 24;
-  const std::uint32_t from = low >> kCountByte != 0 ? low : high;
-  const std::uint32_t to = high >> kCountByte != 0 ? high : low;
-  if (from >> kCountByte == 0) return false;
-  for (std::size_t channel = 0; channel < color.size(); ++channel) {
-    const auto level = [&](std::uint32_t bytes) { return static_cast<float>(bytes >> (8 * channel) & 0xFF); };
-    color[channel] = static_cast<std::uint8_t>(level(from) + share * (level(to) - level(from)) + 0.5F);
-  }
-  return true;
-}
-
-// Writes vertices, block by block.
-class VertexWriter {
- public:
-  VertexWriter(const TsdfVolume& volume, Mesh& mesh)
-      : voxel_m_(volume.voxel_m()), surroundings_(volume), mesh_(mesh) {}
-
-  // Those of one block. True if any has a colour.
-  bool write(const BlockIndex& block, const BlockVertices& vertices) {
-    if (!vertices.any()) return false;
-    surroundings_.load(block);
-    bool colored = false;
-    for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
-      std::size_t vertex = vertices.before[word];
-      for_each_bit(vertices.used[word], [&](std::size_t bit) {
-        const int edge = static_cast<int>(word * 64 + bit);
-        const int offset = edge / 3;
-        const VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
-        colored |= write_vertex(block, local, edge % 3, vertex++);
-      });
-    }
-    return colored;
-  }
-
- private:
-  // The vertex on the edge that leaves a voxel along an axis. True if it has a colour.
-  bool write_vertex(const BlockIndex& block, const VoxelIndex& local, Eigen::Index axis, std::size_t vertex) {
-    const VoxelIndex index = block * kBlockSide + local;
-    const VoxelIndex unit = VoxelIndex::Unit(axis);
-    const double low_m = surroundings_.distance_m(local);
-    const double share = low_m / (low_m - static_cast<double>(surroundings_.distance_m(local + unit)));
-    const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m_;
-    Vector3d normal =
-        (1.0 - share) * surroundings_.gradient(local) + share * surroundings_.gradient(local + unit);
-    if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
-    mesh_.vertices[vertex] = position.cast<float>();
-    mesh_.normals[vertex] = normal.normalized().cast<float>();
-    return blend(surroundings_.color(local), surroundings_.color(local + unit), static_cast<float>(share),
-                 mesh_.colors[vertex]);
-  }
-
-  double voxel_m_;
-  BlockSurroundings surroundings_;
-  Mesh& mesh_;
 };
 
 }  // namespace

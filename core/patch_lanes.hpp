@@ -7,11 +7,11 @@
 
 #include "core/lane_points.hpp"
 #include "core/patches.hpp"
-#include "core/residuals.hpp"
+#include "core/posed_camera.hpp"
 
 namespace fusebench {
 
-/// A posed camera (residuals.hpp) for points relative to an origin: X_camera = R_camera_world * (P_world -
+/// A posed camera (posed_camera.hpp) for points relative to an origin: X_camera = R_camera_world * (P_world -
 /// origin_world) + t_camera_m.
 struct PosedLanes {
   PosedLanes(const PosedCamera& posed, const Vector3d& origin_world);
@@ -70,6 +70,10 @@ struct LevelLanes {
   std::vector<WarpedLanes> warped;          ///< one each
   std::vector<std::size_t> first;           ///< of each patch, and the end
 
+  /// What is projected of eight pixels.
+  [[nodiscard]] const Points& projected(std::size_t eight) const {
+    return warp_points.empty() ? pixels[eight].point : warp_points[eight].point;
+  }
   [[nodiscard]] std::span<const PixelLanes> pixels_of(std::size_t patch) const {
     return std::span(pixels).subspan(first[patch], first[patch + 1] - first[patch]);
   }

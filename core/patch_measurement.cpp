@@ -1,15 +1,13 @@
 #include "core/patch_measurement.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "core/bits.hpp"
 #include "core/error.hpp"
 #include "core/image_lanes.hpp"
 #include "core/patch_scatter.hpp"
-#include "core/residuals.hpp"
+#include "core/posed_camera.hpp"
 
 namespace fusebench {
 
@@ -27,8 +25,21 @@ Vector3d origin_of(std::span<const Patch> patches) {
   return Vector3d::Zero();
 }
 
-/// Information of a prior with that standard deviation; zero sigma pins the value.
-double prior_information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 1e18; }
+/// A pixel's residual against the patch's grey level at this brightness, and what whitens it.
+struct GreyResidual {
+  GreyResidual(const Vector2d& gain_and_offset, double noise_grey)
+      : gain(static_cast<float>(gain_and_offset.x())),
+        offset(static_cast<float>(gain_and_offset.y())),
+        per_noise(static_cast<float>(1.0 / noise_grey)) {}
+
+  [[nodiscard]] Float8 operator()(Float8 observed, Float8 reference) const {
+    return observed - (gain * reference + offset);
+  }
+
+  float gain;
+  float offset;
+  float per_noise;
+};
 }  // namespace
 
 struct PatchMeasurement::PosedLevels {
@@ -48,6 +59,7 @@ PatchMeasurement::PatchMeasurement(const Config& config, const SensorRig& rig, c
     : config_(config),
       rig_(rig),
       workers_(workers),
+      brightness_prior_(config.photometric),
       gates_(config.geometric, config.depth, scale_.geometric),
       levels_(static_cast<std::size_t>(config.patches.levels)) {}
 
@@ -80,7 +92,7 @@ MeasurementQuadratic PatchMeasurement::linearise(const PoseHypothesis& poses, in
       sum_photometric(p, posed);
       sum_geometric(p, posed);
       states_[p].counts = outcomes_[p].photometric_residuals + outcomes_[p].geometric_residuals > 0;
-      if (finest_ == 0) judge_visibility(p, gate);
+      if (finest_ == 0) judge(p, gate);
     }
   });
   photometric_variance_ = measured_variance(&PatchState::photometric);
@@ -125,20 +137,20 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
   }
 }
 
-float PatchMeasurement::photometric_share() const {
-  return static_cast<float>(config_.terms.photometric_weight / config_.photometric.pixels_per_measurement);
+PatchMeasurement::Weighting PatchMeasurement::photometric_weighting() const {
+  return {static_cast<float>(config_.terms.photometric_weight / config_.photometric.pixels_per_measurement),
+          static_cast<float>(config_.photometric.huber_sigmas)};
 }
 
-float PatchMeasurement::geometric_share() const {
-  return static_cast<float>(config_.terms.geometric_weight / config_.geometric.pixels_per_measurement);
+PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
+  return {static_cast<float>(config_.terms.geometric_weight / config_.geometric.pixels_per_measurement),
+          static_cast<float>(config_.geometric.huber_sigmas)};
 }
 
 void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed) {
   PatchState& state = states_[patch];
-  const auto per_noise = static_cast<float>(1.0 / (scale_.photometric * config_.photometric.noise_grey));
-  const auto robust_sigmas = static_cast<float>(config_.photometric.huber_sigmas);
-  const auto gain = static_cast<float>(state.brightness.value.x());
-  const auto offset = static_cast<float>(state.brightness.value.y());
+  const Weighting weighting = photometric_weighting();
+  const GreyResidual residual_of(state.brightness.value, scale_.photometric * config_.photometric.noise_grey);
   QuadraticSums sums;
   BrightnessSums light;
   FitSums fit;
@@ -153,15 +165,15 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       if (!any(used)) continue;
       const IntensityLanes observed =
           sample_bicubic(frame_->pyramid[l], used ? w.x : all_lanes(1.0F), used ? w.y : all_lanes(1.0F));
-      Points point =
-          posed.at[l].to_camera(lanes.warp_points.empty() ? pixels.point : lanes.warp_points[i].point);
+      Points point = posed.at[l].to_camera(lanes.projected(i));
       point.z = used ? point.z : all_lanes(1.0F);
       const JacobianLanes jacobian = photometric_jacobian(posed.at[l], point, observed.dx, observed.dy);
-      const Float8 residual = observed.value - (gain * pixels.intensity + offset);
-      const Float8 whitened = residual * per_noise;
-      const RobustLanes robust = huber(whitened, robust_sigmas);
-      const Float8 weight = used ? photometric_share() * per_noise * per_noise * robust.weight : Float8{};
-      sums.add(jacobian, residual, weight, used ? photometric_share() * robust.cost : Float8{});
+      const Float8 residual = residual_of(observed.value, pixels.intensity);
+      const Float8 whitened = residual * residual_of.per_noise;
+      const RobustLanes robust = huber(whitened, weighting.robust_sigmas);
+      const Float8 weight =
+          used ? weighting.share * residual_of.per_noise * residual_of.per_noise * robust.weight : Float8{};
+      sums.add(jacobian, residual, weight, used ? weighting.share * robust.cost : Float8{});
       light.add(jacobian, residual, weight, pixels.intensity);
       fit.add(whitened, robust.weight, used);
     }
@@ -173,30 +185,11 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
   outcomes_[patch].chi2_photometric = sum_of_lanes(fit.chi2);
   outcomes_[patch].robust_photometric = sum_of_lanes(fit.robust);
   outcomes_[patch].photometric_residuals = fit.count;
-  reduce_brightness(state);
-}
-
-void PatchMeasurement::reduce_brightness(PatchState& state) const {
-  Brightness& light = state.brightness;
-  const Vector2d prior(prior_information(config_.photometric.gain_sigma),
-                       prior_information(config_.photometric.offset_sigma_grey));
-  light.information += prior.asDiagonal().toDenseMatrix();
-  light.gradient += prior.cwiseProduct(light.value - Vector2d(1.0, 0.0));
-  state.photometric.cost += brightness_cost(light.value);
-  const Eigen::Matrix2d inverse = light.information.inverse();
-  state.photometric.information -= light.by_pose.transpose() * inverse * light.by_pose;
-  state.photometric.gradient -= light.by_pose.transpose() * inverse * light.gradient;
-}
-
-double PatchMeasurement::brightness_cost(const Vector2d& value) const {
-  const double gain = value.x() - 1.0;
-  const double offset = value.y();
-  return 0.5 * (gain * gain * prior_information(config_.photometric.gain_sigma) +
-                offset * offset * prior_information(config_.photometric.offset_sigma_grey));
+  brightness_prior_.eliminate(state.brightness, state.photometric);
 }
 
 void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed) {
-  const auto robust_sigmas = static_cast<float>(config_.geometric.huber_sigmas);
+  const Weighting weighting = geometric_weighting();
   QuadraticSums sums;
   FitSums fit;
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
@@ -208,11 +201,10 @@ void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed
       const Float8 per_sigma = 1.0F / (pairs.valid ? pairs.sigma_m : all_lanes(1.0F));
       const Float8 residual_m = pairs.valid ? plane_residual(posed.by_model, pairs, planes) : Float8{};
       const Float8 whitened = residual_m * per_sigma;
-      const RobustLanes robust = huber(whitened, robust_sigmas);
-      const Float8 weight =
-          pairs.valid ? geometric_share() * per_sigma * per_sigma * robust.weight : Float8{};
+      const RobustLanes robust = huber(whitened, weighting.robust_sigmas);
+      const Float8 weight = pairs.valid ? weighting.share * per_sigma * per_sigma * robust.weight : Float8{};
       sums.add(plane_jacobian(posed.by_model, pairs, planes), residual_m, weight,
-               pairs.valid ? geometric_share() * robust.cost : Float8{});
+               pairs.valid ? weighting.share * robust.cost : Float8{});
       fit.add(whitened, robust.weight, pairs.valid);
     }
   }
@@ -222,39 +214,13 @@ void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed
   outcomes_[patch].geometric_residuals = fit.count;
 }
 
-void PatchMeasurement::judge_visibility(std::size_t patch, bool gate) {
+void PatchMeasurement::judge(std::size_t patch, bool gate) {
   PatchState& state = states_[patch];
   PatchOutcome& outcome = outcomes_[patch];
-  const auto pixels = levels_.front().lanes.pixels_of(patch);
-  const auto warped = levels_.front().lanes.warped_of(patch);
-  const auto count = [](Int8 condition) { return std::popcount(lane_bits(condition)); };
-  int in_image = 0;
-  Float8 difference{}, sum_x{}, sum_y{};
-  for (std::size_t i = 0; i < warped.size(); ++i) {
-    const WarpedLanes& w = warped[i];
-    in_image += count(w.in_image);
-    outcome.covered_pixels += count(w.covered);
-    outcome.usable_pixels += count(w.visible);
-    sum_x += w.visible ? w.x : Float8{};
-    sum_y += w.visible ? w.y : Float8{};
-    const Float8 apart = abs(observed_at(w) - pixels[i].intensity);
-    difference += w.visible ? apart : Float8{};
-  }
-  outcome.centre_px = {sum_of_lanes(sum_x), sum_of_lanes(sum_y)};
-  const int square = config_.patches.size_px * config_.patches.size_px;
-  outcome.in_view = in_image > 0;
   outcome.gain = state.brightness.value.x();
-  outcome.shrunk = outcome.usable_pixels < in_image;
-  outcome.extended = is_extended(warped, config_.patches.size_px);
-  outcome.tracked = outcome.usable_pixels >= config_.patches.min_valid_px &&
-                    outcome.usable_pixels >= config_.patches.min_valid_fraction * square;
-  if (outcome.usable_pixels > 0) {
-    // An even square [c - s/2, c + s/2) has the mean of its pixel centres half a pixel before c.
-    outcome.centre_px = outcome.centre_px / outcome.usable_pixels +
-                        Vector2d::Constant(config_.patches.size_px % 2 == 0 ? 0.5 : 0.0);
-    outcome.mean_error_grey = sum_of_lanes(difference) / outcome.usable_pixels;
-  }
-  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome));
+  judge_visibility(levels_.front().lanes.pixels_of(patch), levels_.front().lanes.warped_of(patch),
+                   frame_->pyramid.front(), config_.patches, outcome);
+  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_));
   if (!outcome.accepted) {
     // Rejected honestly: neither its residuals nor its brightness prior count.
     state.counts = false;
@@ -263,28 +229,13 @@ void PatchMeasurement::judge_visibility(std::size_t patch, bool gate) {
   }
 }
 
-bool PatchMeasurement::is_consistent(const PatchOutcome& outcome) const {
-  const double limit = config_.iekf.max_chi2_per_measurement;
-  const bool photometric = config_.terms.photometric_weight <= 0 ||
-                           outcome.chi2_photometric <= limit * outcome.photometric_residuals;
-  // Any image explains a patch that is dimmed to nothing: a gain far from 1 is no brightness change but
-  // another scene.
-  constexpr double kMaxGain = 2.0;
-  const bool plausible = outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
-  return photometric && plausible &&
-         outcome.chi2_geometric <= limit * std::max(1, outcome.geometric_residuals);
-}
-
 double PatchMeasurement::trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
                                     double fraction) {
   const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
   std::vector<double> costs(states_.size(), 0.0);
   workers_.for_chunks(states_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      Brightness& light = states_[p].brightness;
-      const Vector2d light_step =
-          -light.information.inverse() * (light.gradient + light.by_pose * step.head<kPoseSize>());
-      light.trial = light.value + fraction * light_step;
+      states_[p].brightness.try_step(step.head<kPoseSize>(), fraction);
       costs[p] = patch_cost(p, posed);
     }
   });
@@ -296,12 +247,13 @@ double PatchMeasurement::trial_cost(const PoseHypothesis& poses, const MeasuredV
 double PatchMeasurement::patch_cost(std::size_t patch, const PosedLevels& posed) const {
   const PatchState& state = states_[patch];
   if (!state.counts) return 0;
-  return (brightness_cost(state.brightness.trial) + photometric_cost(patch, posed)) / photometric_variance_ +
+  return (brightness_prior_.cost(state.brightness.trial) + photometric_cost(patch, posed)) /
+             photometric_variance_ +
          geometric_cost(patch, posed) / geometric_variance_;
 }
 
 double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& posed) const {
-  const auto robust_sigmas = static_cast<float>(config_.geometric.huber_sigmas);
+  const Weighting weighting = geometric_weighting();
   Float8 cost{};
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     const Level& level = levels_[l];
@@ -310,17 +262,16 @@ double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& po
       if (!any(pairs.valid)) continue;
       const Float8 whitened = plane_residual(posed.by_model, pairs, level.lanes.pixels[i]) /
                               (pairs.valid ? pairs.sigma_m : all_lanes(1.0F));
-      cost += pairs.valid ? huber(whitened, robust_sigmas).cost : Float8{};
+      cost += pairs.valid ? huber(whitened, weighting.robust_sigmas).cost : Float8{};
     }
   }
-  return static_cast<double>(geometric_share()) * sum_of_lanes(cost);
+  return static_cast<double>(weighting.share) * sum_of_lanes(cost);
 }
 
 double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
-  const auto per_noise = static_cast<float>(1.0 / (scale_.photometric * config_.photometric.noise_grey));
-  const auto robust_sigmas = static_cast<float>(config_.photometric.huber_sigmas);
-  const auto gain = static_cast<float>(states_[patch].brightness.trial.x());
-  const auto offset = static_cast<float>(states_[patch].brightness.trial.y());
+  const Weighting weighting = photometric_weighting();
+  const GreyResidual residual_of(states_[patch].brightness.trial,
+                                 scale_.photometric * config_.photometric.noise_grey);
   Float8 cost{};
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     const LevelLanes& lanes = levels_[l].lanes;
@@ -331,31 +282,25 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
       if (!any(used)) continue;
       // A pixel that leaves the image, or passes behind the camera, keeps counting at the border: leaving
       // must not pay.
-      const bool own_points = lanes.warp_points.empty();
-      const Points point = camera.to_camera(own_points ? lanes.pixels[i].point : lanes.warp_points[i].point);
+      const Points point = camera.to_camera(lanes.projected(i));
       const Float8 inverse_z = 1.0F / max(used ? point.z : all_lanes(1.0F), all_lanes(1e-3F));
       Float8 x = camera.fx_px * point.x * inverse_z + camera.cx_px;
       Float8 y = camera.fy_px * point.y * inverse_z + camera.cy_px;
-      if (!own_points) {
+      if (!lanes.warp_points.empty()) {
         x += lanes.warp_points[i].offset_x;
         y += lanes.warp_points[i].offset_y;
       }
       const Float8 observed = sample_bicubic_value(image, clamp(x, 1.0F, static_cast<float>(image.width - 2)),
                                                    clamp(y, 1.0F, static_cast<float>(image.height - 2)));
-      const Float8 whitened = (observed - (gain * lanes.pixels[i].intensity + offset)) * per_noise;
-      cost += used ? huber(whitened, robust_sigmas).cost : Float8{};
+      const Float8 whitened = residual_of(observed, lanes.pixels[i].intensity) * residual_of.per_noise;
+      cost += used ? huber(whitened, weighting.robust_sigmas).cost : Float8{};
     }
   }
-  return static_cast<double>(photometric_share()) * sum_of_lanes(cost);
+  return static_cast<double>(weighting.share) * sum_of_lanes(cost);
 }
 
 void PatchMeasurement::accept() {
   for (PatchState& state : states_) state.brightness.value = state.brightness.trial;
-}
-
-Float8 PatchMeasurement::observed_at(const WarpedLanes& warped) const {
-  return sample_bilinear_value(frame_->pyramid.front(), warped.visible ? warped.x : all_lanes(1.0F),
-                               warped.visible ? warped.y : all_lanes(1.0F));
 }
 
 TrackedPixels PatchMeasurement::tracked_pixels() const {
@@ -371,7 +316,7 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
     const auto warped = levels_.front().lanes.warped_of(p);
     for (std::size_t group = 0; group < warped.size(); ++group) {
       const WarpedLanes& w = warped[group];
-      const Float8 observed = observed_at(w);
+      const Float8 observed = grey_at(frame_->pyramid.front(), w);
       for_each_bit(lane_bits(w.visible), [&](std::size_t lane) {
         const PatchPixel& pixel = pixels[group * kLanes + lane];
         const float reference = pixel.intensity;

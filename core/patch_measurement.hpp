@@ -12,7 +12,9 @@
 #include "core/iekf.hpp"
 #include "core/intensity_residual.hpp"
 #include "core/parallel.hpp"
+#include "core/patch_brightness.hpp"
 #include "core/patch_deformation.hpp"
+#include "core/patch_outcome.hpp"
 #include "core/patch_sums.hpp"
 #include "core/patches.hpp"
 #include "core/residual_scale.hpp"
@@ -24,26 +26,6 @@ namespace fusebench {
 struct ObservedFrame {
   std::span<const GreyImage> pyramid;
   const DepthImage& depth_m;  ///< gated
-};
-
-/// What became of one patch at the last linearisation.
-struct PatchOutcome {
-  bool in_view = false;   ///< at least one pixel inside the image
-  bool tracked = false;   ///< enough usable pixels at level 0
-  bool accepted = false;  ///< tracked, and consistent (chi-square gate)
-  bool shrunk = false;    ///< lost pixels to occlusion
-  bool extended = false;
-  int usable_pixels = 0;   ///< visible, level 0
-  int covered_pixels = 0;  ///< in the image, behind something that was measured before them
-  int photometric_residuals = 0;
-  int geometric_residuals = 0;
-  double chi2_photometric = 0;  ///< sum of squared whitened residuals
-  double chi2_geometric = 0;
-  double robust_photometric = 0;  ///< sum of min(r^2, k |r|) of the same, with Huber's k
-  double robust_geometric = 0;
-  double gain = 1;             ///< brightness of the frame against the patch's reference
-  double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
-  Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
 };
 
 class PatchMeasurement final : public PoseMeasurement {
@@ -70,17 +52,9 @@ class PatchMeasurement final : public PoseMeasurement {
   [[nodiscard]] TrackedPixels tracked_pixels() const;
 
  private:
-  /// Gain and offset of a patch's brightness, eliminated from each step (Schur complement) and carried along.
-  struct Brightness {
-    Vector2d value{1.0, 0.0};
-    Vector2d trial{1.0, 0.0};
-    Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-    Vector2d gradient = Vector2d::Zero();
-    Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
-  };
   /// Everything that the last linearisation fixed for one patch.
   struct PatchState {
-    Brightness brightness;
+    PatchBrightness brightness;
     PoseQuadratic photometric;
     PoseQuadratic geometric;
     bool counts = false;  ///< has residuals, and was not rejected
@@ -97,23 +71,23 @@ class PatchMeasurement final : public PoseMeasurement {
   };
   /// The hypothesis for colour at all pyramid levels, and for depth.
   struct PosedLevels;
+  /// How residuals of one kind are weighted.
+  struct Weighting {
+    float share = 0;          ///< of a pixel's residual in one measurement
+    float robust_sigmas = 0;  ///< Huber's k
+  };
 
   void warp_all(const PosedLevels& posed);
-  void judge_visibility(std::size_t patch, bool gate);
+  void judge(std::size_t patch, bool gate);
   void associate_planes(std::size_t patch, const PosedLevels& posed);
   void sum_photometric(std::size_t patch, const PosedLevels& posed);
   void sum_geometric(std::size_t patch, const PosedLevels& posed);
-  void reduce_brightness(PatchState& state) const;
+  [[nodiscard]] Weighting photometric_weighting() const;
+  [[nodiscard]] Weighting geometric_weighting() const;
   [[nodiscard]] double measured_variance(PoseQuadratic PatchState::*kind) const;
-  [[nodiscard]] double brightness_cost(const Vector2d& value) const;
   [[nodiscard]] double patch_cost(std::size_t patch, const PosedLevels& posed) const;
   [[nodiscard]] double photometric_cost(std::size_t patch, const PosedLevels& posed) const;
   [[nodiscard]] double geometric_cost(std::size_t patch, const PosedLevels& posed) const;
-  [[nodiscard]] bool is_consistent(const PatchOutcome& outcome) const;
-  /// Grey levels of the frame at level 0 where pixels landed; anything where they are not visible.
-  [[nodiscard]] Float8 observed_at(const WarpedLanes& warped) const;
-  [[nodiscard]] float photometric_share() const;
-  [[nodiscard]] float geometric_share() const;
 
   const Config& config_;
   const SensorRig& rig_;
@@ -121,6 +95,7 @@ class PatchMeasurement final : public PoseMeasurement {
   std::optional<ObservedFrame> frame_;
   std::span<const Patch> patches_;
   ResidualScale scale_;
+  BrightnessPrior brightness_prior_;
   Vector3d origin_world_ = Vector3d::Zero();  ///< of the lanes' coordinates
   AssociationGates gates_;
   std::size_t finest_ = 0;  ///< level that the last linearise() began with

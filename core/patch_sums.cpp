@@ -22,7 +22,8 @@ struct MeasuredNormals {
   Int8 valid;
 };
 
-/// measured_normal() at eight pixels.
+/// Central differences over +-4 pixels, since neighbouring pixels of structured-light depth share their
+/// disparity step.
 MeasuredNormals measured_normals(const PosedLanes& camera, const DepthImage& depth_m, Int8 x, Int8 y,
                                  Int8 wanted) {
   constexpr int kReach = 4;

@@ -37,7 +37,8 @@ struct FitSums {
   int count = 0;
 };
 
-/// Huber's kernel (residuals.hpp) on whitened residuals.
+/// Huber's kernel on whitened residuals: quadratic up to k, linear beyond. The weight is that of the squared
+/// residual in the normal equations.
 struct RobustLanes {
   Float8 cost{};
   Float8 weight{};

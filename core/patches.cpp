@@ -5,11 +5,11 @@
 #include <optional>
 #include <span>
 
+#include "core/block_slots.hpp"
 #include "core/corner_selection.hpp"
 #include "core/depth_gates.hpp"
 #include "core/error.hpp"
 #include "core/patch_deformation.hpp"
-#include "core/tsdf_sampler.hpp"
 
 namespace fusebench {
 
@@ -262,7 +262,7 @@ std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const TsdfVolume
 double fused_share(const TsdfVolume& model, std::span<const Patch> patches, const ReferenceFrame& frame,
                    const DepthConfig& depth) {
   const SE3 T_camera_world = frame.T_world_camera.inverse();
-  TsdfSampler sampler(model);
+  BlockSlots slots(model);
   double sum = 0;
   std::size_t count = 0;
   for (const Patch& patch : patches) {
@@ -270,7 +270,10 @@ double fused_share(const TsdfVolume& model, std::span<const Patch> patches, cons
       ++count;
       if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
       const Vector3d lattice = pixel.point_world / model.voxel_m();
-      const float weight_there = sampler.voxel(lattice.array().round().cast<int>()).weight;
+      const VoxelIndex voxel = lattice.array().round().cast<int>();
+      const int slot = slots.find(block_of(voxel));
+      if (slot < 0) continue;
+      const float weight_there = model.voxel(static_cast<std::size_t>(slot), offset_in_block(voxel)).weight;
       if (!(weight_there > 0)) continue;
       const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
       sum += std::min(1.0, weight / static_cast<double>(weight_there));

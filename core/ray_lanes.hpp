@@ -48,17 +48,41 @@ class PixelRays {
   float per_fx_, per_fy_, cx_px_, cy_px_;
 };
 
-/// Two points of each ray with the surface between them: the field is + in front, - behind.
+/// Where the field is near zero, a step goes this far beyond the zero that it promises: two samples around a
+/// crossing tell it better than many before it.
+inline constexpr float kBeyond_voxels = 0.75F;
+
+/// Two points of each ray with the surface between them: the field is + in front, - behind. NaN where there
+/// is none yet.
 struct Brackets {
+  /// Takes samples of the field in the lanes `front` and `back` as the points there.
+  void take(Int8 front, Int8 back, Float8 z_m, Float8 distance_m) {
+    front_z_m = front ? z_m : front_z_m;
+    front_m = front ? distance_m : front_m;
+    back_z_m = back ? z_m : back_z_m;
+    back_m = back ? distance_m : back_m;
+  }
+  [[nodiscard]] Float8 zero_of_chord() const {
+    return multiply_add(front_m / (front_m - back_m), back_z_m - front_z_m, front_z_m);
+  }
+  [[nodiscard]] Float8 middle() const { return 0.5F * (front_z_m + back_z_m); }
+  /// The crossing is known well enough.
+  [[nodiscard]] Int8 are_narrow(Float8 z_per_voxel) const {
+    constexpr float kNarrow_voxels = 0.05F;
+    return back_z_m - front_z_m <= kNarrow_voxels * z_per_voxel;
+  }
+
   Float8 front_z_m = not_a_number();
   Float8 front_m{};  ///< field
   Float8 back_z_m = not_a_number();
   Float8 back_m{};
-
-  [[nodiscard]] Float8 zero_of_chord() const {
-    return multiply_add(front_m / (front_m - back_m), back_z_m - front_z_m, front_z_m);
-  }
 };
+
+/// The field there is as good as zero.
+[[nodiscard]] inline Int8 is_zero(Float8 distance_m, float voxel_m) {
+  constexpr float kZero_voxels = 0.02F;
+  return abs(distance_m) < kZero_voxels * voxel_m;
+}
 
 /// What eight rays meet.
 struct Hits {

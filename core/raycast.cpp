@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "core/block_bounds.hpp"
@@ -14,7 +13,6 @@
 namespace fusebench {
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 4;
 // Seen from the side, the field overstates the distance; a step of less than its value rarely jumps the
 // surface, and where it jumps into the unknown, the walk repeats it in fine steps.
 constexpr float kStepShare = 0.8F;
@@ -23,12 +21,6 @@ constexpr float kFineStep_voxels = 0.5F;
 constexpr float kUnknownStep_voxels = 1.5F;
 // Further from the surface than this the nearest voxel says enough; from here on the field is interpolated.
 constexpr float kNear_voxels = 1.75F;
-// Near by, a step goes this far beyond the surface: two samples around a crossing tell it better than many
-// before it.
-constexpr float kBeyond_voxels = 0.75F;
-// The crossing is found when it is known to this, or the field is this close to zero.
-constexpr float kBracket_voxels = 0.05F;
-constexpr float kZero_voxels = 0.02F;
 constexpr int kMostRefinements = 24;
 constexpr int kBlockShift = 3;   // voxels to blocks
 constexpr int kRegionShift = 5;  // voxels to regions
@@ -64,19 +56,20 @@ struct Walk {
 };
 
 /// Eight pixels, and the part of their rays that is asked for (z-depth).
-struct PixelLanes {
+struct RequestedRays {
   Float8 u{};
   Float8 v{};
   Float8 begin_m{};
   Float8 end_m = all_lanes(std::numeric_limits<float>::infinity());
 };
 
-// Casts rays of one camera, eight at a time, and several times eight by turns: a processor works on the steps
-// of one while it waits for the memory of another. A ray's result does not depend on those beside it.
-class RayCaster {
+// Marches along rays of one camera, eight at a time, and several times eight by turns: a processor works on
+// the steps of one while it waits for the memory of another. A ray's result does not depend on those beside
+// it.
+class RayMarcher {
  public:
-  RayCaster(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
-            const DepthConfig& depth)
+  RayMarcher(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
+             const DepthConfig& depth)
       : field_(field),
         pixels_(camera, T_world_camera, field.volume().voxel_m()),
         bounds_(field.volume(), camera, T_world_camera, depth),
@@ -88,7 +81,7 @@ class RayCaster {
   static constexpr std::size_t kMostTurns = 8;
 
   /// At most kMostTurns times eight pixels.
-  void cast(std::span<const PixelLanes> pixels, std::span<Hits> hits) const {
+  void march(std::span<const RequestedRays> pixels, std::span<Hits> hits) const {
     std::array<Walk, kMostTurns> storage;
     const std::span<Walk> walks = std::span(storage).first(pixels.size());
     std::array<Walk*, kMostTurns> on_their_way;
@@ -156,7 +149,7 @@ class RayCaster {
     return result;
   }
 
-  [[nodiscard]] Walk begin(const PixelLanes& pixels) const {
+  [[nodiscard]] Walk begin(const RequestedRays& pixels) const {
     Walk walk;
     walk.rays = rays_of(pixels.u, pixels.v);
     const Float8 begin_m =
@@ -214,22 +207,16 @@ class RayCaster {
   /// The zeros in the brackets: alternates the zero of the chord, which is close where the field is smooth,
   /// with the middle, which always helps. Removes those from `found` that lie in the unknown.
   [[nodiscard]] Float8 refined(const Rays& rays, Brackets bracket, Int8& found) const {
-    const Float8 enough_z = kBracket_voxels * rays.z_per_voxel;
-    Int8 open = found & (bracket.back_z_m - bracket.front_z_m > enough_z);
+    Int8 open = found & ~bracket.are_narrow(rays.z_per_voxel);
     for (int i = 0; i < kMostRefinements && any(open); ++i) {
-      const Float8 z_m = i % 2 == 0 ? bracket.zero_of_chord() : 0.5F * (bracket.front_z_m + bracket.back_z_m);
+      const Float8 z_m = i % 2 == 0 ? bracket.zero_of_chord() : bracket.middle();
       const Float8 distance_m = field_.sample(rays.at(open ? z_m : all_lanes(nearest_m_)));
       const Int8 unknown = open & (distance_m != distance_m);
       found &= ~unknown;
       open &= ~unknown;
       const Int8 behind = open & (distance_m < 0.0F);
-      const Int8 in_front = open & ~behind;
-      bracket.back_z_m = behind ? z_m : bracket.back_z_m;
-      bracket.back_m = behind ? distance_m : bracket.back_m;
-      bracket.front_z_m = in_front ? z_m : bracket.front_z_m;
-      bracket.front_m = in_front ? distance_m : bracket.front_m;
-      open &=
-          (abs(distance_m) >= kZero_voxels * voxel_m_) & (bracket.back_z_m - bracket.front_z_m > enough_z);
+      bracket.take(open & ~behind, behind, z_m, distance_m);
+      open &= ~(is_zero(distance_m, voxel_m_) | bracket.are_narrow(rays.z_per_voxel));
     }
     return found ? bracket.zero_of_chord() : all_lanes(nearest_m_);
   }
@@ -242,83 +229,32 @@ class RayCaster {
   float voxel_m_;
 };
 
-constexpr std::size_t kPixelsPerTurn = RayCaster::kMostTurns * kLanes;
+constexpr std::size_t kPixelsPerTurn = RayMarcher::kMostTurns * kLanes;
 
 }  // namespace
-
-SurfacePoint raycast_pixel(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
-                           double u_px, double v_px, const DepthConfig& depth) {
-  std::vector<SurfacePoint> points;
-  raycast_pixels(volume, camera, T_world_camera, std::vector<PixelRay>{PixelRay{u_px, v_px}}, depth,
-                 Workers(1), points);
-  return points[0];
-}
-
-void raycast_pixels(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
-                    std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
-                    std::vector<SurfacePoint>& points) {
-  const std::optional<TsdfLanes> field = field_in_view(volume, camera, T_world_camera, depth);
-  if (field) {
-    raycast_pixels(*field, camera, T_world_camera, pixels, depth, workers, points);
-  } else {
-    points.assign(pixels.size(), SurfacePoint{});
-  }
-}
 
 void raycast_pixels(const TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
                     std::span<const PixelRay> pixels, const DepthConfig& depth, const Workers& workers,
                     std::vector<SurfacePoint>& points) {
   points.resize(pixels.size());
-  const RayCaster caster(field, camera, T_world_camera, depth);
+  const RayMarcher marcher(field, camera, T_world_camera, depth);
   workers.for_chunks(pixels.size(), kPixelsPerTurn, [&](std::size_t begin, std::size_t end) {
-    std::array<PixelLanes, RayCaster::kMostTurns> lanes;
-    std::array<Hits, RayCaster::kMostTurns> hits;
+    std::array<RequestedRays, RayMarcher::kMostTurns> lanes;
+    std::array<Hits, RayMarcher::kMostTurns> hits;
     for (std::size_t i = begin; i < begin + kPixelsPerTurn; ++i) {
       const PixelRay& pixel = pixels[std::min(i, end - 1)];
-      PixelLanes& eight = lanes[(i - begin) / kLanes];
+      RequestedRays& eight = lanes[(i - begin) / kLanes];
       const std::size_t lane = (i - begin) % kLanes;
       eight.u[lane] = static_cast<float>(pixel.u_px);
       eight.v[lane] = static_cast<float>(pixel.v_px);
       eight.begin_m[lane] = pixel.begin_m;
       eight.end_m[lane] = pixel.end_m;
     }
-    caster.cast(lanes, hits);
+    marcher.march(lanes, hits);
     for (std::size_t i = begin; i < end; ++i) {
       points[i] = surface_point(hits[(i - begin) / kLanes], (i - begin) % kLanes);
     }
   });
-}
-
-SurfaceImage raycast_image(const TsdfVolume& volume, const PinholeCamera& camera, const SE3& T_world_camera,
-                           const DepthConfig& depth, const Workers& workers) {
-  SurfaceImage image = {DepthImage(camera.width_px, camera.height_px),
-                        Image<Eigen::Vector3f>(camera.width_px, camera.height_px, Eigen::Vector3f::Zero())};
-  const std::optional<TsdfLanes> field = field_in_view(volume, camera, T_world_camera, depth);
-  if (!field) return image;
-  const RayCaster caster(*field, camera, T_world_camera, depth);
-  const auto rows = static_cast<std::size_t>(camera.height_px);
-  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    std::array<PixelLanes, RayCaster::kMostTurns> lanes;
-    std::array<Hits, RayCaster::kMostTurns> hits;
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int first = 0; first < camera.width_px; first += static_cast<int>(kPixelsPerTurn)) {
-        for (std::size_t i = 0; i < lanes.size(); ++i) {
-          lanes[i].u = static_cast<float>(first) + static_cast<float>(i * kLanes) + kLaneNumber;
-          lanes[i].v = all_lanes(static_cast<float>(y));
-        }
-        caster.cast(lanes, hits);
-        const int count = std::min(static_cast<int>(kPixelsPerTurn), camera.width_px - first);
-        for (int i = 0; i < count; ++i) {
-          const auto place = static_cast<std::size_t>(i);
-          const SurfacePoint point = surface_point(hits[place / kLanes], place % kLanes);
-          if (!point.valid) continue;
-          image.depth_m(first + i, y) = static_cast<float>(point.depth_m);
-          image.normal_world(first + i, y) = point.normal_world.cast<float>();
-        }
-      }
-    }
-  });
-  return image;
 }
 
 }  // namespace fusebench

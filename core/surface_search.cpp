@@ -16,12 +16,6 @@ constexpr float kReach_voxels = 2.0F;
 // The gradient at a point needs the voxel before its cell's base and two after it.
 constexpr int kBefore = 1;
 constexpr int kAfter = 2;
-// A step goes this far beyond the zero that the field promises: two samples around a crossing tell it better
-// than many before it.
-constexpr float kBeyond_voxels = 0.75F;
-// The crossing is found when it is known to this, or the field is this close to zero.
-constexpr float kBracket_voxels = 0.05F;
-constexpr float kZero_voxels = 0.02F;
 constexpr int kMostSamples = 10;
 
 // A brick of more voxels than these takes longer to copy than looking for the blocks of each pixel, or does
@@ -144,22 +138,16 @@ Hits SurfaceSearch::search(const Eight& eight, const Eigen::Vector3f& origin, co
     const Float8 distance_m = field.sample(rays.at(z_m));
     open &= distance_m == distance_m;
     const Int8 front = open & (distance_m >= 0.0F);
-    const Int8 back = open & ~front;
-    bracket.front_z_m = front ? z_m : bracket.front_z_m;
-    bracket.front_m = front ? distance_m : bracket.front_m;
-    bracket.back_z_m = back ? z_m : bracket.back_z_m;
-    bracket.back_m = back ? distance_m : bracket.back_m;
+    bracket.take(front, open & ~front, z_m, distance_m);
     const Int8 bracketed = (bracket.front_z_m == bracket.front_z_m) & (bracket.back_z_m == bracket.back_z_m);
     const Float8 chord_m = bracketed ? bracket.zero_of_chord() : z_m + z_per_metre * distance_m;
-    const Int8 done = open & ((abs(distance_m) < kZero_voxels * voxel_m_) |
-                              (bracket.back_z_m - bracket.front_z_m <= kBracket_voxels * rays.z_per_voxel));
+    const Int8 done = open & (is_zero(distance_m, voxel_m_) | bracket.are_narrow(rays.z_per_voxel));
     crossing_m = done ? chord_m : crossing_m;
     found |= done;
     open &= ~done;
     const Float8 beyond_m = kBeyond_voxels * rays.z_per_voxel;
     const Float8 onward_m = chord_m + (front ? beyond_m : -beyond_m);
-    const Float8 middle_m = 0.5F * (bracket.front_z_m + bracket.back_z_m);
-    const Float8 next_m = bracketed ? (halve ? middle_m : chord_m) : onward_m;
+    const Float8 next_m = bracketed ? (halve ? bracket.middle() : chord_m) : onward_m;
     halve = bracketed & ~halve;
     open &= (next_m >= begin_m) & (next_m <= end_m);
     z_m = open ? next_m : z_m;

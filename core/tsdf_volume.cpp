@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/depth_gates.hpp"
-#include "core/tsdf_sampler.hpp"
 #include "core/voxel_update.hpp"
 
 namespace fusebench {
@@ -122,16 +121,6 @@ std::size_t TsdfVolume::memory_bytes() const {
   return distances_m_.memory_bytes() + weights_.memory_bytes() + colors_.memory_bytes() +
          indices_.capacity() * sizeof(BlockIndex) + table_.memory_bytes() + regions_.memory_bytes() +
          region_slots_.capacity() * sizeof(std::int32_t);
-}
-
-std::optional<Voxel> TsdfVolume::find_voxel(const VoxelIndex& index) const {
-  const int slot = table_.find(block_of(index));
-  if (slot < 0) return std::nullopt;
-  return voxel(static_cast<std::size_t>(slot), offset_in_block(index));
-}
-
-TsdfSample TsdfVolume::sample(const Vector3d& point_world) const {
-  return TsdfSampler(*this).sample(point_world);
 }
 
 double TsdfVolume::measurement_weight(double depth_m, const DepthConfig& depth) const {

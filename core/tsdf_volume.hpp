@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/band_blocks.hpp"
@@ -36,9 +35,6 @@ struct Voxel {
   float weight = 0.0F;                                         ///< 0 = never observed
   Rgb color{};                                                 ///< running mean
   std::uint8_t color_count = 0;  ///< observations in the mean (saturates); 0 = no colour
-
-  /// Red, green, blue, 0-255.
-  [[nodiscard]] Eigen::Vector3f rgb() const { return Eigen::Vector3f(color[0], color[1], color[2]); }
 };
 
 using VoxelIndex = Eigen::Vector3i;  ///< lattice coordinates of a voxel
@@ -53,12 +49,6 @@ struct BlockVoxels {
   Half* distance_m = nullptr;
   Half* weight = nullptr;
   std::uint32_t* color = nullptr;  ///< a byte each, from the lowest on: red, green, blue, count
-};
-
-/// Interpolated field at a point.
-struct TsdfSample {
-  bool valid = false;     ///< all eight neighbours were observed
-  double distance_m = 0;  ///< signed distance, metres
 };
 
 /// Once moved from, it can only be assigned or destroyed.
@@ -104,10 +94,6 @@ class TsdfVolume {
   /// Slots of the 64 blocks (x fastest) of each region by its number, -1 = none. Number -1, of no region, can
   /// be read as well: it has no blocks.
   [[nodiscard]] const std::int32_t* region_slots() const { return region_slots_.data() + kRegionBlocks; }
-  /// The voxel at a lattice point; nothing where no block is allocated.
-  [[nodiscard]] std::optional<Voxel> find_voxel(const VoxelIndex& index) const;
-  /// Trilinear interpolation of the distance at a world point (metres). For many points see TsdfSampler.
-  [[nodiscard]] TsdfSample sample(const Vector3d& point_world) const;
   /// Half width of the band (metres) of the voxels updated at this depth: tsdf.truncation_m, two voxels, or
   /// tsdf.truncation_sigmas of the depth noise, whichever is most.
   [[nodiscard]] double truncation_m(double depth_m, const DepthConfig& depth) const;

@@ -25,17 +25,6 @@ class ProcessMeter {
   double cpu_start_s_;
 };
 
-/// Milliseconds since it was made.
-class Stopwatch {
- public:
-  [[nodiscard]] double milliseconds() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 /// Gives memory that was freed back to the system where the C library keeps it (glibc).
 void return_freed_memory();
 

@@ -27,11 +27,6 @@ struct EffectValue {
   std::size_t n_total = 0;
   std::size_t n_lost = 0;
   std::size_t n_failed = 0;
-
-  /// Of all runs with this value, 0 to 1.
-  [[nodiscard]] double share_not_ok() const {
-    return n_total == 0 ? 0.0 : static_cast<double>(n_lost + n_failed) / static_cast<double>(n_total);
-  }
 };
 
 struct OptionEffect {

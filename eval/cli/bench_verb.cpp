@@ -113,7 +113,7 @@ Result<std::vector<BarResult>> conclude(const Suite& suite, const BenchOptions& 
                                         const BatchPlan& plan, const std::vector<BatchOutcome>& outcomes) {
   const bool files = !options.summary.empty() || !options.summary_page.empty();
   if (suite.bars.empty() && !files) return std::vector<BarResult>{};
-  const Study study = gather_study(study_runs(plan, outcomes));
+  const Study study = gather_study(study_runs(plan, outcomes), suite.variants);
   StudySummary summary = summarise(suite.name, study, suite.bars);
   if (!options.summary.empty()) {
     if (auto written = write_text_file(options.summary, summary_json(summary, study)); !written)

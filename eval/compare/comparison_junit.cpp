@@ -6,6 +6,7 @@
 
 #include "core/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
+#include "eval/report/markup_text.hpp"
 
 namespace fusebench {
 
@@ -13,29 +14,7 @@ namespace {
 
 /// As an attribute or text of XML 1.0, which takes no control characters at all.
 std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : printable(text, std::numeric_limits<std::size_t>::max())) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&apos;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+  return with_entities(printable(text, std::numeric_limits<std::size_t>::max()), "&<>\"'");
 }
 
 std::string test_case(const ComparedRun& run, const GateResult& gate) {

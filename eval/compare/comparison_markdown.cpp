@@ -4,6 +4,7 @@
 
 #include "core/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
+#include "eval/report/markup_text.hpp"
 #include "eval/report/plain_table.hpp"
 
 namespace fusebench {
@@ -12,33 +13,12 @@ namespace {
 
 /// Text that stays text: no tags, no emphasis, no links, no mentions. '|' is left to the table.
 std::string escaped(std::string_view text) {
-  std::string result;
+  std::string plain;
   for (const char c : printable(text, std::numeric_limits<std::size_t>::max())) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '@':
-        result += "&#64;";
-        break;
-      case '\\':
-      case '`':
-      case '*':
-      case '[':
-      case ']':
-        result += '\\';
-        [[fallthrough]];
-      default:
-        result += c;
-    }
+    if (std::string_view("\\`*[]").find(c) != std::string_view::npos) plain += '\\';
+    plain += c;
   }
-  return result;
+  return with_entities(plain, "&<>@");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/text_table.hpp"
 #include "eval/json_text.hpp"
 #include "eval/report/base64.hpp"
+#include "eval/report/markup_text.hpp"
 #include "eval/report/page_assets.hpp"
 
 namespace fusebench {
@@ -18,28 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
+std::string escaped(std::string_view text) { return with_entities(text, "&<>\""); }
 
 /// Six digits say what a chart can show, and halve the file.
 Json number(double value) {

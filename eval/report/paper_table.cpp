@@ -125,7 +125,7 @@ std::string markdown(const PaperTable& table) {
 std::string latex(const PaperTable& table) {
   std::string text = latex_begin(heading_of(table.of), kTextColumns);
   for (const PaperRow& row : table.rows) text += latex_line(cells_of(table.of, row));
-  text += "\\bottomrule\n\\end{tabular}\n";
+  text += kLatexEnd;
   for (const std::string& note : table.notes) text += "% " + note + "\n";
   return text;
 }

@@ -24,9 +24,9 @@ using TableCells = std::vector<std::string>;
 /// "a & b \\": cells are escaped; those whose number is in `bold` are set so.
 [[nodiscard]] std::string latex_line(const TableCells& cells, const std::vector<std::size_t>& bold = {});
 
-/// The beginning of a tabular, with its heading, as booktabs has it. It ends with
-/// "\bottomrule\n\end{tabular}\n".
+/// The beginning of a tabular, with its heading, as booktabs has it; and its end.
 [[nodiscard]] std::string latex_begin(const TableCells& heading, std::size_t text_columns);
+inline constexpr std::string_view kLatexEnd = "\\bottomrule\n\\end{tabular}\n";
 
 /// As RFC 4180: quoted where it must be.
 [[nodiscard]] std::string csv_cell(const std::string& text);

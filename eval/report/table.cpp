@@ -184,8 +184,4 @@ std::span<const TableColumn> table_columns() {
   return kColumns;
 }
 
-Result<ResultTable> collect_table(const fs::path& runs) {
-  return find_runs(runs).transform([](const std::vector<FoundRun>& found) { return table_of(found); });
-}
-
 }  // namespace fusebench

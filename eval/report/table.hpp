@@ -72,8 +72,6 @@ struct ResultTable {
 
 /// Reads the intensity differences beside the records.
 [[nodiscard]] ResultTable table_of(const std::vector<FoundRun>& runs);
-/// Of a folder. Errors as find_runs().
-[[nodiscard]] Result<ResultTable> collect_table(const std::filesystem::path& runs);
 
 /// The heading, a line a row and then a line a mean, as people see them: cm and degrees.
 [[nodiscard]] std::vector<std::vector<std::string>> table_cells(const ResultTable& table);

@@ -98,7 +98,8 @@ std::string latex(const ResultTable& table) {
   }
   if (!table.means.empty()) text += "\\midrule\n";
   for (const TableMean& mean : table.means) text += latex_line(shown_cells(mean));
-  text += "\\bottomrule\n\\end{tabular}\n% " + count_line(table) + "\n";
+  text += kLatexEnd;
+  text += "% " + count_line(table) + "\n";
   for (const std::string& note : table.notes) text += fmt::format("% {}\n", note);
   for (const std::string& line : table.footer) text += fmt::format("% {}\n", line);
   return text;

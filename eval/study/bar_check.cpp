@@ -78,7 +78,7 @@ void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items)
 
 /// All frames of all recordings together.
 std::optional<double> pooled(const Study& study, const Bar& bar, const Items& items) {
-  const bool reversed = bar.variant == kReferenceVariant;
+  const bool reversed = bar.variant == study.reference();
   std::vector<SharedFrame> frames;
   for (const Item& item : items.items) {
     const StudyRun& run = reversed ? *sibling(study, *item.run, bar.against) : *item.run;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/error.hpp"
 #include "eval/record_files.hpp"
 
 namespace fusebench {
@@ -30,11 +31,12 @@ Result<std::vector<SharedFrame>> compared(const StudyRun& reference, const Study
 
 }  // namespace
 
-Study gather_study(std::vector<StudyRun> runs) {
-  Study study{std::move(runs), {}};
+Study gather_study(std::vector<StudyRun> runs, std::vector<std::string> variants) {
+  check(!variants.empty(), "a suite names a variant");
+  Study study{std::move(variants), std::move(runs), {}};
   for (StudyRun& run : study.runs) {
-    if (run.variant == kReferenceVariant || run.record.status != RunStatus::ok) continue;
-    const StudyRun* reference = sibling(study, run, kReferenceVariant);
+    if (run.variant == study.reference() || run.record.status != RunStatus::ok) continue;
+    const StudyRun* reference = sibling(study, run, study.reference());
     if (reference == nullptr || reference->record.status != RunStatus::ok) continue;
     auto frames = compared(*reference, run);
     if (frames) {
@@ -58,8 +60,9 @@ std::optional<double> value_of(const Study& study, const StudyRun& run, const St
                                std::string_view partner) {
   if (run.record.status != RunStatus::ok && !value.of_every_run) return std::nullopt;
   if (value.of != nullptr) return value.of(run.record);
-  const bool is_reference = run.variant == kReferenceVariant;
-  const StudyRun* pair = is_reference ? sibling(study, run, partner) : &run;
+  const bool is_reference = run.variant == study.reference();
+  const StudyRun* pair =
+      is_reference ? sibling(study, run, partner.empty() ? study.partner() : partner) : &run;
   if (pair == nullptr) return std::nullopt;
   const SharedMeans means = shared_means(pair->shared);
   if (means.frames == 0) return std::nullopt;

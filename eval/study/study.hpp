@@ -27,19 +27,27 @@ struct StudyRun {
 };
 
 struct Study {
+  /// The variant that AIE on common pixels is measured against, and whose frames say how far patches moved.
+  [[nodiscard]] const std::string& reference() const { return variants.front(); }
+  /// The variant that the reference stands beside where no other one is asked for; empty if there is none.
+  [[nodiscard]] std::string partner() const { return variants.size() > 1 ? variants[1] : std::string(); }
+
+  std::vector<std::string> variants;  ///< as the suite names them: the reference, its partner, and more
   std::vector<StudyRun> runs;
   std::vector<std::string> notes;  ///< what could not be compared, and why
 };
 
 /// Reads the differences of all pairs with the reference variant, and the patches' motion.
-[[nodiscard]] Study gather_study(std::vector<StudyRun> runs);
+/// variants: as the suite names them, one at least.
+[[nodiscard]] Study gather_study(std::vector<StudyRun> runs, std::vector<std::string> variants);
 
 /// The run of that variant on the same recording; null if there is none.
 [[nodiscard]] const StudyRun* sibling(const Study& study, const StudyRun& run, std::string_view variant);
 
 /// A number of one run, as StudyValue says. On common pixels, a variant is measured on those that it shares
-/// with the reference, and the reference on those that it shares with `partner`.
+/// with the reference, and the reference on those that it shares with `partner`; empty: with the
+/// study's partner.
 [[nodiscard]] std::optional<double> value_of(const Study& study, const StudyRun& run, const StudyValue& value,
-                                             std::string_view partner = "dm");
+                                             std::string_view partner = {});
 
 }  // namespace fusebench

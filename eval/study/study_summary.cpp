@@ -38,7 +38,7 @@ ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& ru
   std::vector<double> values;
   std::vector<double> partners;
   for (const StudyRun* run : runs) {
-    const auto number = value_of(study, *run, value, kDirectMethod);
+    const auto number = value_of(study, *run, value);
     if (!number) continue;
     const bool worse =
         values.empty() || (value.higher_is_better ? *number < spread.worst : *number > spread.worst);
@@ -48,7 +48,7 @@ ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& ru
     }
     values.push_back(*number);
     if (value.of != nullptr) continue;
-    spread.partner = run->variant == kReferenceVariant ? kDirectMethod : kReferenceVariant;
+    spread.partner = run->variant == study.reference() ? study.partner() : study.reference();
     const auto partner = value_of(study, *sibling(study, *run, spread.partner), value, run->variant);
     if (partner) partners.push_back(*partner);
   }
@@ -90,7 +90,7 @@ std::optional<MotionCurve> curve_of(const Study& study, const std::string& half,
     if (i + 1 < kMotionEdges_px.size()) bin.to_px = kMotionEdges_px[i + 1];
     std::vector<SharedFrame> frames;
     for (const StudyRun& run : study.runs) {
-      if (run.half != half || run.variant != kDirectMethod) continue;
+      if (run.half != half || run.variant != study.partner()) continue;
       if (group != kAllGroups && run.group != group) continue;
       for (const SharedFrame& frame : run.shared) {
         const bool inside =
@@ -124,6 +124,8 @@ std::vector<std::string> data_notes(const Study& study) {
 StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars) {
   StudySummary summary;
   summary.suite = suite;
+  summary.reference = study.reference();
+  summary.partner = study.partner();
   summary.notes = data_notes(study);
   summary.notes.insert(summary.notes.end(), study.notes.begin(), study.notes.end());
   const std::vector<std::string> groups = distinct(study, &StudyRun::group);

@@ -44,11 +44,11 @@ struct SummaryRow {
 /// Edges of the bins of image motion, px between two frames; the last bin is open.
 inline constexpr std::array<double, 6> kMotionEdges_px = {0, 2, 5, 10, 20, 30};
 
-/// AIE on the pixels that the direct method and the reference share, where patches moved that far.
+/// AIE on the pixels that the reference and its partner (Study) share, where patches moved that far.
 struct MotionBin {
   double from_px = 0;
   double to_px = std::numeric_limits<double>::infinity();
-  SharedMeans means;  ///< of the variant dm
+  SharedMeans means;  ///< of the partner
 };
 struct MotionCurve {
   std::string half;
@@ -58,13 +58,14 @@ struct MotionCurve {
 
 struct StudySummary {
   std::string suite;
+  std::string reference;  ///< these two variants as Study says; curves compare them
+  std::string partner;
   std::vector<SummaryRow> rows;  ///< held-out half first; groups as the suite has them; variants as listed
   std::vector<MotionCurve> curves;
   std::vector<BarResult> bars;
   std::vector<std::string> notes;  ///< where the data of which groups come from; what was not compared
 };
 
-inline constexpr std::string_view kDirectMethod = "dm";
 inline constexpr std::string_view kAllGroups = "all";
 
 [[nodiscard]] StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars);

@@ -9,8 +9,6 @@
 
 namespace fusebench {
 
-/// The variant that AIE on common pixels is measured against, and whose frames say how far patches moved.
-inline constexpr std::string_view kReferenceVariant = "full";
 inline constexpr std::string_view kCommonPixelsValue = "aie_common_grey";
 
 /// One number of a run. Values of length are metres, of angle radians.

@@ -44,7 +44,7 @@ Json json_of(const SummaryRow& row) {
   return json;
 }
 
-Json json_of(const MotionCurve& curve) {
+Json json_of(const StudySummary& summary, const MotionCurve& curve) {
   Json bins = Json::array();
   for (const MotionBin& bin : curve.bins) {
     const SharedMeans& means = bin.means;
@@ -53,8 +53,8 @@ Json json_of(const MotionCurve& curve) {
                     {"to_px", number(bin.to_px)},
                     {"frames", means.frames},
                     {"pixels", means.pixels},
-                    {"full", any ? Json(means.reference_grey) : Json(nullptr)},
-                    {"dm", any ? Json(means.variant_grey) : Json(nullptr)},
+                    {summary.reference, any ? Json(means.reference_grey) : Json(nullptr)},
+                    {summary.partner, any ? Json(means.variant_grey) : Json(nullptr)},
                     {"ratio", any ? number(means.variant_grey / means.reference_grey) : Json(nullptr)}});
   }
   return {{"half", curve.half}, {"group", curve.group}, {"bins", bins}};
@@ -110,8 +110,10 @@ Json bars_json(const std::vector<BarResult>& bars) { return list_of(bars); }
 std::string summary_json(const StudySummary& summary, const Study& study) {
   Json runs = Json::array();
   for (const StudyRun& run : study.runs) runs.push_back(json_of(study, run));
+  Json motion = Json::array();
+  for (const MotionCurve& curve : summary.curves) motion.push_back(json_of(summary, curve));
   const Json document = {{"suite", summary.suite},        {"bars", bars_json(summary.bars)},
-                         {"rows", list_of(summary.rows)}, {"motion", list_of(summary.curves)},
+                         {"rows", list_of(summary.rows)}, {"motion", motion},
                          {"notes", summary.notes},        {"runs", runs}};
   return json_text(document) + "\n";
 }

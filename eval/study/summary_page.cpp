@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -27,38 +26,34 @@ double place_px(const MotionBin& bin) {
   return std::isfinite(bin.to_px) ? (bin.from_px + bin.to_px) / 2 : bin.from_px + 5;
 }
 
-/// The variants that charts show; each has its own colour wherever it occurs.
-constexpr std::array<std::string_view, 3> kChartedVariants = {kReferenceVariant, kDirectMethod, "no-imu"};
+/// Of the variants that the suite names, charts show so many; each has its own colour wherever it occurs.
+constexpr std::size_t kMostCharted = 3;
 
-ChartSeries series_of(std::string_view variant, SeriesStyle style) {
-  const auto* const found = std::find(kChartedVariants.begin(), kChartedVariants.end(), variant);
-  return {.label = std::string(variant),
-          .points = {},
-          .style = style,
-          .colour = static_cast<std::size_t>(found - kChartedVariants.begin())};
+ChartSeries series_of(const std::string& variant, std::size_t colour, SeriesStyle style) {
+  return {.label = variant, .points = {}, .style = style, .colour = colour};
 }
 
-Chart motion_chart(const MotionCurve& curve) {
+Chart motion_chart(const StudySummary& summary, const MotionCurve& curve) {
   Chart chart;
   chart.title = curve.group == kAllGroups ? "all groups" : curve.group;
   chart.x_label = "motion of patches between two frames [px]";
   chart.left_label = "AIE [grey levels]";
-  chart.right_label = "dm / full";
-  ChartSeries full = series_of(kReferenceVariant, SeriesStyle::line);
-  ChartSeries direct = series_of(kDirectMethod, SeriesStyle::line);
-  ChartSeries ratio{.label = "dm / full", .points = {}, .style = SeriesStyle::dots, .right = true};
-  ratio.colour = kChartedVariants.size();
+  chart.right_label = fmt::format("{} / {}", summary.partner, summary.reference);
+  ChartSeries reference = series_of(summary.reference, 0, SeriesStyle::line);
+  ChartSeries partner = series_of(summary.partner, 1, SeriesStyle::line);
+  ChartSeries ratio{.label = chart.right_label, .points = {}, .style = SeriesStyle::dots, .right = true};
+  ratio.colour = kMostCharted;
   std::size_t frames = 0;
   for (const MotionBin& bin : curve.bins) {
     const SharedMeans& means = bin.means;
     if (means.frames == 0) continue;
     frames += means.frames;
-    full.points.emplace_back(place_px(bin), means.reference_grey);
-    direct.points.emplace_back(place_px(bin), means.variant_grey);
+    reference.points.emplace_back(place_px(bin), means.reference_grey);
+    partner.points.emplace_back(place_px(bin), means.variant_grey);
     ratio.points.emplace_back(place_px(bin), means.variant_grey / means.reference_grey);
   }
   chart.caption = fmt::format("On common pixels of {} frames; the last bin is 30 px and more.", frames);
-  chart.series = {std::move(full), std::move(direct), std::move(ratio)};
+  chart.series = {std::move(reference), std::move(partner), std::move(ratio)};
   return chart;
 }
 
@@ -80,8 +75,9 @@ Chart value_chart(const StudySummary& summary, const Study& study, std::string_v
   chart.x_label = "recording";
   chart.left_label = value.label;
   const std::vector<std::string_view> recordings = recordings_of(study, group);
-  for (const std::string_view variant : kChartedVariants) {
-    ChartSeries series = series_of(variant, SeriesStyle::dots);
+  for (std::size_t i = 0; i < std::min(study.variants.size(), kMostCharted); ++i) {
+    const std::string& variant = study.variants[i];
+    ChartSeries series = series_of(variant, i, SeriesStyle::dots);
     for (const StudyRun& run : study.runs) {
       if (run.group != group || run.variant != variant) continue;
       const auto number = value_of(study, run, value);
@@ -127,7 +123,7 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
   }
   std::vector<Chart> motion;
   for (const MotionCurve& curve : summary.curves) {
-    if (curve.half == kHeldOutHalf) motion.push_back(motion_chart(curve));
+    if (curve.half == kHeldOutHalf) motion.push_back(motion_chart(summary, curve));
   }
   if (!motion.empty())
     page.sections.push_back({"AIE against image motion, held-out half", "", std::move(motion)});

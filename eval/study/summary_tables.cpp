@@ -136,8 +136,8 @@ std::vector<SummaryTable> motion_tables(const StudySummary& summary) {
   for (const std::string_view half : {kHeldOutHalf, kTuningHalf}) {
     SummaryTable table{
         fmt::format("AIE on common pixels against the motion of patches between two frames, {} half", half),
-        {"group", "motion [px]", "frames", "pixels", std::string(kReferenceVariant),
-         std::string(kDirectMethod), fmt::format("{} / {}", kDirectMethod, kReferenceVariant)},
+        {"group", "motion [px]", "frames", "pixels", summary.reference, summary.partner,
+         fmt::format("{} / {}", summary.partner, summary.reference)},
         {}};
     for (const MotionCurve& curve : summary.curves) {
       if (curve.half != half) continue;

@@ -130,7 +130,7 @@ Result<void> read_tables(const TomlDocument& document, Suite& suite) {
   auto exclusions = read_exclusions(entry_tables(document, "exclude"));
   if (!exclusions) return tl::unexpected(exclusions.error());
   suite.exclusions = std::move(*exclusions);
-  auto bars = read_bars(entry_tables(document, "bars"));
+  auto bars = read_bars(entry_tables(document, "bars"), suite.variants.empty() ? "" : suite.variants.front());
   if (!bars) return tl::unexpected(bars.error());
   suite.bars = std::move(*bars);
   return {};

@@ -131,7 +131,7 @@ Result<void> read_value(const TomlEntry& entry, BarTable& table) {
 }
 
 /// What makes no sense together, as a sentence; nothing if all is well.
-std::optional<std::string> contradiction(const Bar& bar) {
+std::optional<std::string> contradiction(const Bar& bar, std::string_view reference) {
   const StudyValue& value = *find_study_value(bar.metric);
   const bool pairs = value.of == nullptr;
   const bool share = bar.statistic == BarStatistic::share;
@@ -150,15 +150,16 @@ std::optional<std::string> contradiction(const Bar& bar) {
   if (bar.of_means && (bar.against.empty() || bar.statistic != BarStatistic::mean))
     return "of_means goes with 'against' and statistic = \"mean\"";
   if (pairs && (bar.against.empty() || bar.variant == bar.against ||
-                (bar.variant != kReferenceVariant && bar.against != kReferenceVariant)))
+                (bar.variant != reference && bar.against != reference)))
     return fmt::format("{} compares a variant with {}: one is 'variant', the other 'against'", bar.metric,
-                       kReferenceVariant);
+                       reference);
   if (bar.frames_above_px && !(pairs && bar.of_means))
     return fmt::format("frames_above_px goes with the metric {} and of_means = true", kCommonPixelsValue);
   return std::nullopt;
 }
 
-Result<void> add_bars(const EntryTable& entries, BarTable table, std::vector<Bar>& bars) {
+Result<void> add_bars(const EntryTable& entries, std::string_view reference, BarTable table,
+                      std::vector<Bar>& bars) {
   if (table.against.empty()) table.against = {""};
   for (const std::string& metric : table.metrics) {
     for (const std::string& against : table.against) {
@@ -167,7 +168,7 @@ Result<void> add_bars(const EntryTable& entries, BarTable table, std::vector<Bar
       bar.against = against;
       if (table.metrics.size() > 1) bar.title += fmt::format(": {}", metric);
       if (table.against.size() > 1) bar.title += fmt::format(" ({})", against);
-      if (const auto wrong = contradiction(bar))
+      if (const auto wrong = contradiction(bar, reference))
         return fail(ErrorCode::configuration, fmt::format("{}: {}", entries.place, *wrong));
       bars.push_back(std::move(bar));
     }
@@ -177,7 +178,7 @@ Result<void> add_bars(const EntryTable& entries, BarTable table, std::vector<Bar
 
 }  // namespace
 
-Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables) {
+Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables, std::string_view reference) {
   std::vector<Bar> bars;
   for (const EntryTable& entries : tables) {
     BarTable table;
@@ -190,7 +191,8 @@ Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables) {
       if (entries.find(key) == nullptr)
         return fail(ErrorCode::configuration, fmt::format("{}: the key '{}' is missing", entries.place, key));
     }
-    if (auto added = add_bars(entries, std::move(table), bars); !added) return tl::unexpected(added.error());
+    if (auto added = add_bars(entries, reference, std::move(table), bars); !added)
+      return tl::unexpected(added.error());
   }
   return bars;
 }

@@ -65,6 +65,8 @@ struct Bar {
 };
 
 /// In the order of the file; a table with lists gives several. Errors: configuration, with file:line.
-[[nodiscard]] Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables);
+/// reference: the variant that the suite names first, which AIE on common pixels is measured against.
+[[nodiscard]] Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables,
+                                                 std::string_view reference);
 
 }  // namespace fusebench

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/corner_selection.hpp"
-#include "core/depth_gates.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
+#include "tests/support/gated_depth.hpp"
 
 namespace fusebench {
 namespace {
@@ -118,7 +118,7 @@ class PlainCorners {
 
 void corner_selection(benchmark::State& state) {
   const BenchScene& scene = testing::scene_of(state);
-  const DepthImage depth_m = gate_depth(scene.frame.depth_m, scene.config.depth);
+  const DepthImage depth_m = testing::gated_depth(scene.frame.depth_m, scene.config.depth);
   const auto select = [&] { return select_corners(scene.frame.grey, depth_m, {}, scene.config.patches); };
   if (!PlainCorners(scene, depth_m).are_selected(select()))
     return state.SkipWithError("these are not spread FAST corners");

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/band_blocks.hpp"
-#include "core/raycast.hpp"
-#include "core/tsdf_sampler.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/support/felt_blocks.hpp"
+#include "tests/support/plain_field.hpp"
 #include "tests/support/plain_voxel_update.hpp"
+#include "tests/support/raycast_image.hpp"
 
 namespace fusebench::testing {
 
@@ -33,11 +33,6 @@ class DepthCheck {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       add(static_cast<int>(pixels[i].u_px), static_cast<int>(pixels[i].v_px),
           points[i].valid ? points[i].depth_m : 0.0);
-    }
-  }
-  void add(const DepthImage& depth_m) {
-    for (int y = 0; y < depth_m.height; ++y) {
-      for (int x = 0; x < depth_m.width; ++x) add(x, y, static_cast<double>(depth_m(x, y)));
     }
   }
   [[nodiscard]] bool passed() const { return found_ > 0.9 * asked_ && close_ > 0.97 * found_; }
@@ -74,9 +69,9 @@ class PlainRays {
     double before_m = std::nan("");
     for (double z_m = std::max(static_cast<double>(ray.begin_m), scene_.config.depth.min_m); z_m <= end_m;
          z_m += step_m) {
-      const TsdfSample sample =
-          field_.sample(scene_.T_world_camera * scene_.camera.back_project(ray.u_px, ray.v_px, z_m));
-      const double now_m = sample.valid ? sample.distance_m : std::nan("");
+      const Vector3d point_world =
+          scene_.T_world_camera * scene_.camera.back_project(ray.u_px, ray.v_px, z_m);
+      const double now_m = field_.distance_m(point_world).value_or(std::nan(""));
       if (before_m >= 0 && now_m < 0) return z_m - step_m * now_m / (now_m - before_m);
       before_m = now_m;
     }
@@ -105,22 +100,7 @@ class PlainRays {
   static constexpr double kSame_voxels = 0.1;
 
   const BenchScene& scene_;
-  TsdfSampler field_;
-};
-
-/// Rays and surface points of an image.
-struct ImageRays {
-  explicit ImageRays(const DepthImage& depth_m) {
-    for (int y = 0; y < depth_m.height; ++y) {
-      for (int x = 0; x < depth_m.width; ++x) {
-        const double z_m = static_cast<double>(depth_m(x, y));
-        rays.push_back({static_cast<double>(x), static_cast<double>(y)});
-        points.push_back({z_m > 0, z_m, Vector3d::Zero()});
-      }
-    }
-  }
-  std::vector<PixelRay> rays;
-  std::vector<SurfacePoint> points;
+  PlainField field_;
 };
 
 /// The voxels between which surface points lie, each counted once: what rays have to read at the least.
@@ -146,17 +126,18 @@ inline std::size_t voxels_around(const BenchScene& scene, const std::vector<Pixe
 
 /// On a surface that was fused the field is zero, within a voxel, wherever it can be interpolated.
 inline bool is_zero_on_surface(const TsdfVolume& model, const BenchScene& scene) {
+  PlainField field(model);
   double error_m = 0;
   int sampled = 0;
   for (const PixelRay& pixel : patch_pixels(scene.camera)) {
     const double depth_m =
         static_cast<double>(scene.frame.depth_m(static_cast<int>(pixel.u_px), static_cast<int>(pixel.v_px)));
     if (!(depth_m > 0)) continue;
-    const TsdfSample sample =
-        model.sample(scene.T_world_camera * scene.camera.back_project(pixel.u_px, pixel.v_px, depth_m));
-    if (!sample.valid) continue;
+    const auto distance_m =
+        field.distance_m(scene.T_world_camera * scene.camera.back_project(pixel.u_px, pixel.v_px, depth_m));
+    if (!distance_m) continue;
     ++sampled;
-    error_m += std::abs(sample.distance_m);
+    error_m += std::abs(*distance_m);
   }
   return sampled > 5000 && error_m < sampled * scene.config.tsdf.voxel_m;
 }
@@ -239,9 +220,9 @@ inline bool is_zero_level(const Mesh& mesh, const TsdfVolume& model) {
       if (corner >= mesh.vertices.size()) return false;
     }
   }
+  PlainField field(model);
   for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    const TsdfSample sample = model.sample(vertex.cast<double>());
-    if (sample.valid && std::abs(sample.distance_m) >= 1e-4) return false;
+    if (std::abs(field.distance_m(vertex.cast<double>()).value_or(0.0)) >= 1e-4) return false;
   }
   return true;
 }

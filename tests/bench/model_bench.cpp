@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "core/marching_cubes.hpp"
-#include "core/raycast.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
@@ -114,21 +113,22 @@ void integrate_into_nothing(benchmark::State& state) {
       static_cast<double>((kField + kColor) * kBlockVoxels * fused.blocks) + bytes_of_fusion(fused, scene));
 }
 
-/// rays: as long as they are said to be. Each answer in the room is held against what was rendered as well.
-void cast_rays(benchmark::State& state, const std::vector<PixelRay>& rays) {
+/// rays: as long as they are said to be; every so many-th one is felt along. Each answer in the room is held
+/// against what was rendered as well.
+void cast_rays(benchmark::State& state, const std::vector<PixelRay>& rays, std::size_t every) {
   const BenchScene& scene = scene_of(state);
   const Workers workers = workers_of(state);
   std::vector<SurfacePoint> points;
   const auto cast = [&] {
-    raycast_pixels(scene.model, scene.camera, scene.T_world_camera, rays, scene.config.depth, workers,
-                   points);
+    testing::raycast_pixels(scene.model, scene.camera, scene.T_world_camera, rays, scene.config.depth,
+                            workers, points);
   };
   cast();
   testing::DepthCheck depth(scene);
   depth.add(rays, points);
   if (scene.kind == SceneKind::room && !depth.passed())
     return state.SkipWithError("depth is not that of the room");
-  if (!testing::PlainRays(scene).agree(rays, points, 7))
+  if (!testing::PlainRays(scene).agree(rays, points, every))
     return state.SkipWithError("not what is felt for in small steps");
   for (auto _ : state) cast();
   // Pixels in, surfaces out; and the voxels around these.
@@ -138,7 +138,7 @@ void cast_rays(benchmark::State& state, const std::vector<PixelRay>& rays) {
 }
 
 void raycast_patches(benchmark::State& state) {
-  cast_rays(state, testing::patch_pixels(scene_of(state).camera));
+  cast_rays(state, testing::patch_pixels(scene_of(state).camera), 7);
 }
 
 /// From some decimetres before what was measured to as far behind it.
@@ -152,29 +152,11 @@ void raycast_around_depth(benchmark::State& state) {
     ray.begin_m = depth_m - kReach_m;
     ray.end_m = depth_m + kReach_m;
   }
-  cast_rays(state, rays);
+  cast_rays(state, rays, 7);
 }
 
 void raycast_whole_image(benchmark::State& state) {
-  const BenchScene& scene = scene_of(state);
-  const Workers workers = workers_of(state);
-  const auto cast = [&] {
-    return raycast_image(scene.model, scene.camera, scene.T_world_camera, scene.config.depth, workers);
-  };
-  const SurfaceImage surface = cast();
-  testing::DepthCheck depth(scene);
-  depth.add(surface.depth_m);
-  if (scene.kind == SceneKind::room && !depth.passed())
-    return state.SkipWithError("depth is not that of the room");
-  const testing::ImageRays image(surface.depth_m);
-  if (!testing::PlainRays(scene).agree(image.rays, image.points, 151))
-    return state.SkipWithError("not what is felt for in small steps");
-  for (auto _ : state) benchmark::DoNotOptimize(cast());
-  // Depth and normals out, the voxels around the surface in.
-  const std::size_t pixels = image.rays.size();
-  report_rates(state, {"rays", pixels,
-                       bytes_of<float>(pixels) + bytes_of<Eigen::Vector3f>(pixels) +
-                           bytes_of<float>(testing::voxels_around(scene, image.rays, image.points))});
+  cast_rays(state, testing::image_rays(scene_of(state).camera), 151);
 }
 
 void marching_cubes(benchmark::State& state) {

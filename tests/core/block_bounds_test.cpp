@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/raycast.hpp"
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/plain_field.hpp"
 
 namespace fusebench {
 namespace {
@@ -19,8 +19,8 @@ float bound_m(const BlockBounds& bounds, double u_px, double v_px) {
 
 TEST(BlockBounds, NoRayMeetsTheModelBefore) {
   const TsdfVolume volume = fuse(ball_scene(), kCamera, poses_around_ball());
+  testing::PlainField field(volume);
   const DepthConfig depth;
-  const Workers workers(1);
   int seen = 0;
   for (const SE3& T_world_camera :
        {look_at({0.5, -0.4, 0.55}, {0.02, 0, 0.01}), look_at({0, 0.2, -1.5}, {0, 0, 0})}) {
@@ -31,7 +31,7 @@ TEST(BlockBounds, NoRayMeetsTheModelBefore) {
         const Vector3d ray = kCamera.back_project(x, y, 1.0);
         double first_m = std::numeric_limits<double>::infinity();
         for (double z_m = depth.min_m; z_m < depth.max_m; z_m += 0.25 * volume.voxel_m()) {
-          if (!volume.sample(T_world_camera * Vector3d(z_m * ray)).valid) continue;
+          if (!field.distance_m(T_world_camera * Vector3d(z_m * ray))) continue;
           first_m = z_m;
           break;
         }

@@ -8,6 +8,7 @@
 
 #include "core/block_slots.hpp"
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/plain_field.hpp"
 
 namespace fusebench {
 namespace {
@@ -44,7 +45,7 @@ TEST(BlockSurroundings, HoldTheVoxelsInAndAroundABlock) {
       for (int y = -1; y < kBlockSide + 2; ++y) {
         for (int x = -1; x < kBlockSide + 2; ++x) {
           const VoxelIndex local(x, y, z);
-          const Voxel voxel = volume.find_voxel(block * kBlockSide + local).value_or(Voxel{});
+          const Voxel voxel = testing::find_voxel(volume, block * kBlockSide + local).value_or(Voxel{});
           const float distance_m = surroundings.distance_m(local);
           ASSERT_TRUE(distance_m == voxel.distance_m ||
                       (std::isnan(distance_m) && std::isnan(voxel.distance_m)));

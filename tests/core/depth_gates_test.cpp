@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/textured_room.hpp"
+#include "tests/support/gated_depth.hpp"
 
 namespace fusebench {
 namespace {
@@ -14,28 +14,13 @@ TEST(DepthGates, RangeAndEdgesBecomeHolesAndPlanesStay) {
   }
   depth(3, 3) = 0.1F;
   depth(16, 16) = 9.0F;
-  const DepthImage gated = gate_depth(depth, DepthConfig{});
+  const DepthImage gated = testing::gated_depth(depth, DepthConfig{});
   EXPECT_EQ(gated(3, 3), 0.0F);
   EXPECT_EQ(gated(16, 16), 0.0F);
   EXPECT_EQ(gated(9, 10), 0.0F) << "near side of the edge";
   EXPECT_EQ(gated(10, 10), 0.0F) << "far side of the edge";
   EXPECT_EQ(gated(7, 10), 1.0F);
   EXPECT_EQ(gated(13, 10), 1.5F);
-}
-
-TEST(DepthGates, NormalOfASlantedPlaneFacesTheCamera) {
-  const PinholeCamera camera = testing::small_camera();
-  const Vector3d normal = Vector3d(0.4, -0.2, -1.0).normalized();
-  DepthImage depth(320, 240);
-  for (int y = 0; y < 240; ++y) {
-    for (int x = 0; x < 320; ++x) {
-      depth(x, y) = static_cast<float>(normal.z() * 2.0 / normal.dot(camera.back_project(x, y, 1.0)));
-    }
-  }
-  EXPECT_LT((measured_normal(depth, camera, 200, 90) - normal).norm(), 1e-4);
-  EXPECT_EQ(measured_normal(depth, camera, 2, 90).norm(), 0.0) << "no neighbours at the border";
-  depth(204, 90) = 0;
-  EXPECT_EQ(measured_normal(depth, camera, 200, 90).norm(), 0.0) << "a missing neighbour";
 }
 
 TEST(DepthGates, OneSurfaceReachesAsFarAsNoJumpAndNoHoleIsNear) {

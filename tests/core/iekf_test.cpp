@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "core/motion_prior.hpp"
-#include "core/residuals.hpp"
+#include "core/posed_camera.hpp"
+#include "tests/support/scalar_residuals.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -176,9 +177,9 @@ class PlaneMeasurement final : public PoseMeasurement {
     PoseQuadratic q;
     const PosedCamera posed(testing::small_camera(), poses.T_world_imu_by_model, SE3{});
     for (std::size_t i = 0; i < problem_.normals.size(); ++i) {
-      const PlaneResidual r = point_to_plane_residual(posed, problem_.points_imu[i], problem_.plane_points[i],
-                                                      problem_.normals[i]);
-      const RobustValue robust = huber(r.value_m / problem_.sigma_m, problem_.huber_sigmas);
+      const testing::PlaneResidual r = testing::point_to_plane_residual(
+          posed, problem_.points_imu[i], problem_.plane_points[i], problem_.normals[i]);
+      const testing::RobustValue robust = testing::huber(r.value_m / problem_.sigma_m, problem_.huber_sigmas);
       const double weight = robust.weight / (problem_.sigma_m * problem_.sigma_m);
       q.information += weight * r.jacobian.transpose() * r.jacobian;
       q.gradient += weight * r.value_m * r.jacobian.transpose();

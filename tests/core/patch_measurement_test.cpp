@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/depth_gates.hpp"
 #include "core/error.hpp"
 #include "core/image.hpp"
+#include "tests/support/gated_depth.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -17,7 +17,7 @@ namespace {
 struct SeenFrame {
   SeenFrame(const SE3& T_world_camera, const Config& config)
       : frame(testing::TexturedRoom{}.render(testing::small_camera(), T_world_camera, 0)) {
-    frame.depth_m = gate_depth(frame.depth_m, config.depth);
+    frame.depth_m = testing::gated_depth(frame.depth_m, config.depth);
     pyramid = build_pyramid(frame.grey, config.patches.levels);
   }
   [[nodiscard]] ObservedFrame observed() const { return {pyramid, frame.depth_m}; }

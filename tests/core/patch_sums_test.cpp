@@ -1,13 +1,18 @@
-// The sums over eight pixels at a time against plain double precision, one pixel at a time (residuals.hpp).
+// The sums over eight pixels at a time against plain double precision, one pixel at a time (tests/support).
 #include "core/patch_sums.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "core/depth_gates.hpp"
 #include "core/image_lanes.hpp"
+#include "tests/support/measured_normal.hpp"
+#include "tests/support/scalar_residuals.hpp"
+#include "tests/support/scalar_sampling.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -59,8 +64,8 @@ TEST(PatchSums, PhotometricJacobianIsThePlainOne) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Vector3d point_camera = plain.to_camera(lane_of(pixels.point, lane) + kOrigin);
       EXPECT_LT((lane_of(in_camera, lane) - point_camera).norm(), 2e-6);
-      const PhotometricResidual expected = photometric_residual(
-          {0, dx[lane], dy[lane]}, project_with_jacobian(plain, point_camera).jacobian, 0, 1, 0);
+      const testing::PhotometricResidual expected = testing::photometric_residual(
+          {0, dx[lane], dy[lane]}, testing::project_with_jacobian(plain, point_camera).jacobian, 0, 1, 0);
       for (int k = 0; k < kPoseSize; ++k) {
         EXPECT_NEAR(jacobian[static_cast<std::size_t>(k)][lane], expected.jacobian[k],
                     1e-5 * expected.jacobian.norm());
@@ -81,9 +86,9 @@ TEST(PatchSums, PlaneResidualAndJacobianAreThePlainOnes) {
     const Float8 residual = plane_residual(lanes, pairs, planes);
     const JacobianLanes jacobian = plane_jacobian(lanes, pairs, planes);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const PlaneResidual expected =
-          point_to_plane_residual(plain, lane_of(pairs.point_imu, lane),
-                                  lane_of(planes.point, lane) + kOrigin, lane_of(planes.normal, lane));
+      const testing::PlaneResidual expected = testing::point_to_plane_residual(
+          plain, lane_of(pairs.point_imu, lane), lane_of(planes.point, lane) + kOrigin,
+          lane_of(planes.normal, lane));
       EXPECT_NEAR(residual[lane], expected.value_m, 3e-6);
       for (int k = 0; k < kPoseSize; ++k) {
         EXPECT_NEAR(jacobian[static_cast<std::size_t>(k)][lane], expected.jacobian[k], 2e-6);
@@ -105,7 +110,7 @@ TEST(PatchSums, SumsAreThoseOfTheNormalEquations) {
     JacobianLanes jacobian;
     Float8 residual{}, weight{}, cost{}, intensity{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      RowVector6d row;
+      testing::RowVector6d row;
       for (std::size_t k = 0; k < 6; ++k)
         row[static_cast<Eigen::Index>(k)] = jacobian[k][lane] = number(random);
       residual[lane] = number(random);
@@ -150,14 +155,14 @@ TEST(PatchSums, KernelAndSamplesAreThePlainOnes) {
     const Float8 linear = sample_bilinear_value(image, u, v);
     const RobustLanes robust = huber(whitened, 1.345F);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const IntensitySample expected = sample_bicubic(image, u[lane], v[lane]);
+      const IntensitySample expected = testing::sample_bicubic(image, u[lane], v[lane]);
       EXPECT_NEAR(cubic.value[lane], expected.value, 1e-3);
       EXPECT_NEAR(cubic.dx[lane], expected.dx, 1e-3);
       EXPECT_NEAR(cubic.dy[lane], expected.dy, 1e-3);
       EXPECT_EQ(alone[lane], cubic.value[lane]);
       EXPECT_NEAR(linear[lane], sample_bilinear(image, u[lane], v[lane]).value, 1e-3);
-      EXPECT_NEAR(robust.cost[lane], huber(whitened[lane], 1.345).cost, 1e-5);
-      EXPECT_NEAR(robust.weight[lane], huber(whitened[lane], 1.345).weight, 1e-6);
+      EXPECT_NEAR(robust.cost[lane], testing::huber(whitened[lane], 1.345).cost, 1e-5);
+      EXPECT_NEAR(robust.weight[lane], testing::huber(whitened[lane], 1.345).weight, 1e-6);
     }
   }
 }
@@ -195,6 +200,67 @@ TEST(PatchSums, PointsAreAssociatedWithWhatWasMeasuredWhereTheyLand) {
     const double sigma_m = 2.0 * std::hypot(depth_sigma_m(1.49, depth), geometric.model_noise_m);
     EXPECT_NEAR(pairs.sigma_m[lane], sigma_m, 1e-5);
   }
+}
+
+TEST(PatchSums, AssociatesByTheAngleToTheMeasuredNormal) {
+  // Waves, so that the normal changes from pixel to pixel.
+  const PinholeCamera camera = testing::small_camera();
+  DepthImage depth_m(camera.width_px, camera.height_px);
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x) {
+      depth_m(x, y) =
+          1.5F + 0.06F * std::sin(0.11F * static_cast<float>(x)) * std::cos(0.07F * static_cast<float>(y));
+    }
+  }
+  const PosedLanes lanes(PosedCamera(camera, SE3{}, SE3{}), Vector3d::Zero());
+  const GeometricConfig geometric;
+  const DepthConfig depth;
+  const AssociationGates gates(geometric, depth, 1.0);
+  const double most_deg = geometric.max_normal_angle_deg;
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> x(0, camera.width_px - 1), y(0, camera.height_px - 1);
+  std::uniform_real_distribution<double> turn_deg(0.0, 2.0 * most_deg), number(-1, 1);
+  int valid = 0;
+  int turned = 0;
+  int at_border = 0;
+  for (int i = 0; i < 400; ++i) {
+    PixelLanes pixels;
+    std::array<Vector3d, kLanes> measured;  // normals
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const int u = x(random);
+      const int v = y(random);
+      const Vector3d point = camera.back_project(u, v, static_cast<double>(depth_m(u, v)));
+      measured[lane] = testing::measured_normal(depth_m, camera, u, v);
+      const Vector3d facing = measured[lane].isZero() ? Vector3d(-Vector3d::UnitZ()) : measured[lane];
+      const Vector3d axis = facing.cross(Vector3d(number(random), number(random), 0.1)).normalized();
+      const Vector3d normal = so3_exp(radians(turn_deg(random)) * axis) * facing;
+      for (const auto& [target, value] :
+           {std::pair{&pixels.point, point}, std::pair{&pixels.normal, normal}}) {
+        target->x[lane] = static_cast<float>(value.x());
+        target->y[lane] = static_cast<float>(value.y());
+        target->z[lane] = static_cast<float>(value.z());
+      }
+      pixels.present[lane] = -1;
+    }
+    const PlanePairs pairs = associate(lanes, pixels, depth_m, gates);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (measured[lane].isZero()) {
+        EXPECT_EQ(pairs.valid[lane], 0);
+        ++at_border;
+        continue;
+      }
+      const Vector3d normal = lane_of(pixels.normal, lane);
+      const double incidence = -normal.dot(lane_of(pixels.point, lane).normalized());
+      const double normal_deg = degrees(std::acos(std::clamp(normal.dot(measured[lane]), -1.0, 1.0)));
+      const double incidence_deg = degrees(std::acos(incidence));
+      if (std::abs(normal_deg - most_deg) < 0.05 || incidence_deg > depth.max_incidence_deg - 0.05) continue;
+      ASSERT_EQ(pairs.valid[lane] != 0, normal_deg < most_deg) << normal_deg;
+      (normal_deg < most_deg ? valid : turned) += 1;
+    }
+  }
+  EXPECT_GT(valid, 500);
+  EXPECT_GT(turned, 500);
+  EXPECT_GT(at_border, 50);
 }
 
 TEST(PatchSums, AssociationsStayWhileAllPointsLandOnTheSamePixelsAsDeep) {

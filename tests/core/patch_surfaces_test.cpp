@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/raycast_image.hpp"
 
 namespace fusebench {
 namespace {
@@ -67,8 +68,8 @@ TEST(PatchSurfaces, AreWhereTheRaysMeetTheModel) {
   int hits = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const ExpectedSurface& pixel = cut.pixels[i];
-    const SurfacePoint by_ray = raycast_pixel(cut.model, kCamera, SE3{}, static_cast<double>(pixel.u_px),
-                                              static_cast<double>(pixel.v_px), kDepth);
+    const SurfacePoint by_ray = testing::raycast_pixel(
+        cut.model, kCamera, SE3{}, static_cast<double>(pixel.u_px), static_cast<double>(pixel.v_px), kDepth);
     hits += by_ray.valid ? 1 : 0;
     if (!by_ray.valid || !surfaces[i].valid) continue;
     ++both;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/depth_gates.hpp"
 #include "core/image.hpp"
+#include "tests/support/gated_depth.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -23,7 +23,7 @@ struct FusedFrame {
   std::vector<GreyImage> pyramid;
 
   FusedFrame() {
-    frame.depth_m = gate_depth(frame.depth_m, config.depth);
+    frame.depth_m = testing::gated_depth(frame.depth_m, config.depth);
     EXPECT_TRUE(model.integrate(frame, camera, SE3{}, config.depth, workers).has_value());
     gated_m = frame.depth_m;
     pyramid = build_pyramid(frame.grey, config.patches.levels);

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/plain_field.hpp"
+#include "tests/support/raycast_image.hpp"
 
 namespace fusebench {
 namespace {
@@ -24,7 +26,7 @@ struct Agreement {
 };
 
 // Compares a raycast image with the analytic scene where the surface is seen at less than 70 degrees.
-Agreement compare(const SurfaceImage& image, const AnalyticScene& scene, const SE3& T_world_camera) {
+Agreement compare(const testing::SurfaceImage& image, const AnalyticScene& scene, const SE3& T_world_camera) {
   Agreement result;
   const RgbdFrame truth = scene.render(kCamera, T_world_camera, 70.0);
   for (int y = 0; y < kCamera.height_px; ++y) {
@@ -54,12 +56,13 @@ Agreement compare(const SurfaceImage& image, const AnalyticScene& scene, const S
 TEST(Raycast, EmptyModelGivesNothing) {
   const Workers workers(1);
   const TsdfVolume volume{TsdfConfig{}};
-  EXPECT_FALSE(raycast_pixel(volume, kCamera, kOrigin, 10, 20, DepthConfig{}).valid);
-  const SurfaceImage image = raycast_image(volume, kCamera, kOrigin, DepthConfig{}, workers);
+  EXPECT_FALSE(testing::raycast_pixel(volume, kCamera, kOrigin, 10, 20, DepthConfig{}).valid);
+  const testing::SurfaceImage image =
+      testing::raycast_image(volume, kCamera, kOrigin, DepthConfig{}, workers);
   EXPECT_TRUE(
       std::all_of(image.depth_m.data.begin(), image.depth_m.data.end(), [](float z) { return z == 0.0F; }));
   const SE3 nowhere{Quaterniond::Identity(), Vector3d::Constant(std::nan(""))};
-  EXPECT_FALSE(raycast_pixel(volume, kCamera, nowhere, 10, 20, DepthConfig{}).valid);
+  EXPECT_FALSE(testing::raycast_pixel(volume, kCamera, nowhere, 10, 20, DepthConfig{}).valid);
 }
 
 TEST(Raycast, AgreesWithABall) {
@@ -67,7 +70,8 @@ TEST(Raycast, AgreesWithABall) {
   const TsdfVolume volume = fuse(ball_scene(), kCamera, poses_around_ball());
   // From a place and a distance that no frame had.
   const SE3 T_world_camera = look_at({0.5, -0.4, 0.55}, {0.02, 0, 0.01});
-  const SurfaceImage image = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
+  const testing::SurfaceImage image =
+      testing::raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
   const Agreement agreement = compare(image, ball_scene(), T_world_camera);
   EXPECT_GT(agreement.expected, 10000);
   EXPECT_EQ(agreement.hits, agreement.expected);
@@ -80,7 +84,8 @@ TEST(Raycast, AgreesWithARoomFromInside) {
   const Workers workers(2);
   const TsdfVolume volume = fuse(room_with_a_ball(), kCamera, poses_looking_out({-0.2, 0.1, -0.3}, 40));
   const SE3 T_world_camera = look_at({-0.7, -0.5, -0.6}, {0.5, 0.2, 1.0});
-  const SurfaceImage image = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
+  const testing::SurfaceImage image =
+      testing::raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
   const Agreement agreement = compare(image, room_with_a_ball(), T_world_camera);
   EXPECT_GT(agreement.hit_share, 0.9);  // the ball hides some of the wall from where the frames were taken
   EXPECT_LT(agreement.mean_depth_m, 0.25 * volume.voxel_m());
@@ -93,7 +98,7 @@ TEST(Raycast, RefinesBelowATwentiethOfAVoxel) {
     const AnalyticScene scene{{AnalyticPlane{{0, 0, -1}, -depth_m}}};
     const TsdfVolume volume = fuse(scene, kCamera, {kOrigin});
     for (const double u_px : {10.0, 100.25, 159.5, 300.0}) {
-      const SurfacePoint point = raycast_pixel(volume, kCamera, kOrigin, u_px, 77.7, DepthConfig{});
+      const SurfacePoint point = testing::raycast_pixel(volume, kCamera, kOrigin, u_px, 77.7, DepthConfig{});
       ASSERT_TRUE(point.valid) << depth_m;
       EXPECT_NEAR(point.depth_m, depth_m, 0.01 * volume.voxel_m());
       EXPECT_LT((point.normal_world - Vector3d(0, 0, -1)).norm(), 1e-4);
@@ -103,16 +108,18 @@ TEST(Raycast, RefinesBelowATwentiethOfAVoxel) {
 
 TEST(Raycast, FindsTheFirstCrossingOfTheTrilinearField) {
   const TsdfVolume volume = fuse(ball_scene(), kCamera, poses_around_ball());
+  testing::PlainField field(volume);
   const SE3 T_world_camera = look_at({0.5, -0.4, 0.55}, {0.02, 0, 0.01});
   for (int i = 0; i < 60; ++i) {
     const double u_px = 100.3 + 2.1 * i, v_px = 160.7 - 1.3 * i;
-    const SurfacePoint point = raycast_pixel(volume, kCamera, T_world_camera, u_px, v_px, DepthConfig{});
+    const SurfacePoint point =
+        testing::raycast_pixel(volume, kCamera, T_world_camera, u_px, v_px, DepthConfig{});
     ASSERT_TRUE(point.valid);
     // The same by tiny steps from 3 cm in front, without any cleverness.
     double z_m = point.depth_m - 0.03;
     const auto in_front = [&] {
-      const TsdfSample sample = volume.sample(T_world_camera * kCamera.back_project(u_px, v_px, z_m));
-      return !sample.valid || sample.distance_m >= 0.0;
+      const auto distance_m = field.distance_m(T_world_camera * kCamera.back_project(u_px, v_px, z_m));
+      return !distance_m || *distance_m >= 0.0;
     };
     while (in_front() && z_m < point.depth_m + 0.03) z_m += 0.00005;
     EXPECT_NEAR(point.depth_m, z_m, 0.05 * volume.voxel_m());
@@ -126,7 +133,7 @@ TEST(Raycast, LeavesASolidWithoutAHit) {
   depth.min_m = 0.0;
   const PinholeCamera coarse = test_camera(64, 48, 90.0);
   for (const SE3& T_world_camera : poses_looking_out({0.02, 0.0, 0.01}, 20)) {
-    const SurfaceImage image = raycast_image(ball, coarse, T_world_camera, depth, workers);
+    const testing::SurfaceImage image = testing::raycast_image(ball, coarse, T_world_camera, depth, workers);
     EXPECT_EQ(
         std::count_if(image.depth_m.data.begin(), image.depth_m.data.end(), [](float z) { return z > 0.0F; }),
         0);
@@ -135,7 +142,8 @@ TEST(Raycast, LeavesASolidWithoutAHit) {
   const TsdfVolume wall = fuse({{AnalyticPlane{{0, 0, -1}, -1.0}}}, kCamera, {kOrigin});
   for (const double start_z : {1.02, 1.4, 2.0}) {
     EXPECT_FALSE(
-        raycast_pixel(wall, kCamera, look_at({0, 0, start_z}, {0.01, 0.02, 0}), 160, 120, depth).valid);
+        testing::raycast_pixel(wall, kCamera, look_at({0, 0, start_z}, {0.01, 0.02, 0}), 160, 120, depth)
+            .valid);
   }
 }
 
@@ -144,7 +152,7 @@ TEST(Raycast, SeesTheSurfaceBeyondTheSolidItLeaves) {
   // From inside the ball towards the left wall: out through the ball's side that was seen, to the wall.
   const SE3 T_world_camera = look_at({0.35, 0.28, 0.8}, {-1.5, 0.1, -0.4});
   const SurfacePoint point =
-      raycast_pixel(volume, kCamera, T_world_camera, kCamera.cx_px, kCamera.cy_px, DepthConfig{});
+      testing::raycast_pixel(volume, kCamera, T_world_camera, kCamera.cx_px, kCamera.cy_px, DepthConfig{});
   ASSERT_TRUE(point.valid);
   EXPECT_GT(point.depth_m, 1.5);
   EXPECT_LT(std::abs(room_with_a_ball().distance_m(T_world_camera * Vector3d(0, 0, point.depth_m))),
@@ -159,7 +167,8 @@ TEST(Raycast, LeavesHolesOpen) {
   }
   TsdfVolume volume{TsdfConfig{}};
   ASSERT_TRUE(volume.integrate(frame, kCamera, kOrigin, DepthConfig{}, workers));
-  const SurfaceImage image = raycast_image(volume, kCamera, kOrigin, DepthConfig{}, workers);
+  const testing::SurfaceImage image =
+      testing::raycast_image(volume, kCamera, kOrigin, DepthConfig{}, workers);
   for (int y = 20; y < 220; ++y) {
     for (int x = 20; x < 300; ++x) {
       const bool in_hole = x >= 105 && x < 195 && y >= 85 && y < 155;
@@ -185,7 +194,7 @@ TEST(Raycast, DoesNotJumpASurfaceThatWasSeenFromTheSide) {
   for (double start_m = 0.6; start_m < 0.65; start_m += 0.0013) {
     const SE3 across = look_at({0.003, 0.004, -start_m}, {0.003, 0.004, 0});
     const SurfacePoint point =
-        raycast_pixel(volume, kCamera, across, kCamera.cx_px, kCamera.cy_px, DepthConfig{});
+        testing::raycast_pixel(volume, kCamera, across, kCamera.cx_px, kCamera.cy_px, DepthConfig{});
     ++rays;
     if (!point.valid) continue;
     ++hits;
@@ -198,11 +207,11 @@ TEST(Raycast, KeepsToTheDepthRange) {
   const TsdfVolume volume = fuse({{AnalyticPlane{{0, 0, -1}, -1.0}}}, kCamera, {kOrigin});
   DepthConfig depth;
   depth.max_m = 0.99;
-  EXPECT_FALSE(raycast_pixel(volume, kCamera, kOrigin, 100, 100, depth).valid);
+  EXPECT_FALSE(testing::raycast_pixel(volume, kCamera, kOrigin, 100, 100, depth).valid);
   depth.max_m = 1.06;
-  EXPECT_TRUE(raycast_pixel(volume, kCamera, kOrigin, 100, 100, depth).valid);
+  EXPECT_TRUE(testing::raycast_pixel(volume, kCamera, kOrigin, 100, 100, depth).valid);
   depth.min_m = 1.01;
-  EXPECT_FALSE(raycast_pixel(volume, kCamera, kOrigin, 100, 100, depth).valid);
+  EXPECT_FALSE(testing::raycast_pixel(volume, kCamera, kOrigin, 100, 100, depth).valid);
 }
 
 TEST(Raycast, IsTheSameForEveryWayToCall) {
@@ -213,14 +222,16 @@ TEST(Raycast, IsTheSameForEveryWayToCall) {
     for (int x = 0; x < kCamera.width_px; x += 2) pixels_px.push_back(PixelRay{double(x), double(y)});
   }
   std::reverse(pixels_px.begin(), pixels_px.end());
-  const SurfaceImage reference = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, Workers(1));
+  const testing::SurfaceImage reference =
+      testing::raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, Workers(1));
   for (const int threads : {1, 2, 8}) {
     const Workers workers(threads);
-    const SurfaceImage image = raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
+    const testing::SurfaceImage image =
+        testing::raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
     EXPECT_EQ(image.depth_m.data, reference.depth_m.data);
     EXPECT_EQ(image.normal_world.data, reference.normal_world.data);
     std::vector<SurfacePoint> points;
-    raycast_pixels(volume, kCamera, T_world_camera, pixels_px, DepthConfig{}, workers, points);
+    testing::raycast_pixels(volume, kCamera, T_world_camera, pixels_px, DepthConfig{}, workers, points);
     ASSERT_EQ(points.size(), pixels_px.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const float depth_m =

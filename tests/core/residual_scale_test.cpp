@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/patch_measurement.hpp"
-#include "core/residuals.hpp"
+#include "tests/support/scalar_residuals.hpp"
 
 namespace fusebench {
 namespace {
@@ -26,9 +26,9 @@ std::vector<PatchOutcome> outcomes(double sigma, const ResidualScale& scale, con
       const double photometric = r / scale.photometric;
       const double geometric = r / scale.geometric;
       outcome.robust_photometric +=
-          huber(photometric, config.photometric.huber_sigmas).weight * photometric * photometric;
+          testing::huber(photometric, config.photometric.huber_sigmas).weight * photometric * photometric;
       outcome.robust_geometric +=
-          huber(geometric, config.geometric.huber_sigmas).weight * geometric * geometric;
+          testing::huber(geometric, config.geometric.huber_sigmas).weight * geometric * geometric;
       ++outcome.photometric_residuals;
       ++outcome.geometric_residuals;
     }

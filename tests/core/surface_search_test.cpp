@@ -6,8 +6,8 @@
 #include <optional>
 #include <random>
 
-#include "core/raycast.hpp"
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/raycast_image.hpp"
 
 namespace fusebench {
 namespace {
@@ -53,7 +53,7 @@ struct Room {
       rays.push_back({static_cast<double>(pixel.u_px), static_cast<double>(pixel.v_px)});
     }
     std::vector<SurfacePoint> surfaces;
-    raycast_pixels(model, kCamera, SE3{}, rays, kDepth, Workers(1), surfaces);
+    testing::raycast_pixels(model, kCamera, SE3{}, rays, kDepth, Workers(1), surfaces);
     return surfaces;
   }
 };

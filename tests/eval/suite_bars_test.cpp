@@ -5,10 +5,10 @@
 namespace fusebench {
 namespace {
 
-Result<std::vector<Bar>> read(const std::string& text) {
+Result<std::vector<Bar>> read(const std::string& text, std::string_view reference = "full") {
   const auto document = parse_toml(text, "suite.toml");
   if (!document) return tl::unexpected(document.error());
-  return read_bars(entry_tables(*document, "bars"));
+  return read_bars(entry_tables(*document, "bars"), reference);
 }
 
 constexpr const char* kHead = "[[bars]]\ntitle = \"t\"\nvariant = \"full\"\n";
@@ -31,6 +31,17 @@ TEST(SuiteBarsTest, ReadsEveryKey) {
   EXPECT_DOUBLE_EQ(*bar.at_least, 1.75);
   EXPECT_DOUBLE_EQ(*bar.at_most, 9);
   EXPECT_EQ(bar.place, "suite.toml:1");
+}
+
+TEST(SuiteBarsTest, CommonPixelsAreThoseOfTheVariantThatTheSuiteNamesFirst) {
+  const std::string bar =
+      "[[bars]]\ntitle = \"t\"\nvariant = \"planar\"\nagainst = \"literal\"\nmetric = \"aie_common_grey\"\n"
+      "statistic = \"mean\"\nat_most = 1\n";
+  EXPECT_TRUE(read(bar, "literal").has_value());
+  const auto refused = read(bar, "full");
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_NE(refused.error().message.find("compares a variant with full"), std::string::npos)
+      << refused.error().message;
 }
 
 TEST(SuiteBarsTest, ListsMakeABarEach) {

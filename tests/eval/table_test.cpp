@@ -12,6 +12,11 @@
 namespace fusebench {
 namespace {
 
+/// Errors as find_runs().
+Result<ResultTable> collect_table(const std::filesystem::path& runs) {
+  return find_runs(runs).transform([](const std::vector<FoundRun>& found) { return table_of(found); });
+}
+
 class TableTest : public testing::InTemporaryFolder {
  protected:
   void add_run(const std::string& variant, RunStatus status, const std::string& reason, double ate_m,

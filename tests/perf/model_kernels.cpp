@@ -1,6 +1,5 @@
 #include "core/band_blocks.hpp"
 #include "core/marching_cubes.hpp"
-#include "core/raycast.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/perf/kernel_counts.hpp"
 
@@ -39,33 +38,20 @@ void count_integrate(KernelCounts& counts, const testing::BenchScene& scene, con
       });
 }
 
-void count_raycasts(KernelCounts& counts, const testing::BenchScene& scene, const Workers& workers) {
-  const std::vector<PixelRay> pixels = testing::patch_pixels(scene.camera);
+void count_rays(KernelCounts& counts, const testing::BenchScene& scene, const Workers& workers,
+                std::string_view kernel, const std::vector<PixelRay>& rays) {
   std::vector<SurfacePoint> points;
   counts.count(
-      "raycast_patches", "pixel",
+      kernel, "pixel",
       [&] {
-        raycast_pixels(scene.model, scene.camera, scene.T_world_camera, pixels, scene.config.depth, workers,
-                       points);
+        testing::raycast_pixels(scene.model, scene.camera, scene.T_world_camera, rays, scene.config.depth,
+                                workers, points);
       },
       [&] {
         testing::DepthCheck depth(scene);
-        depth.add(pixels, points);
+        depth.add(rays, points);
         check(depth.passed(), "depth is that of the room");
         return points.size();
-      });
-
-  SurfaceImage surface;
-  counts.count(
-      "raycast_image", "pixel",
-      [&] {
-        surface = raycast_image(scene.model, scene.camera, scene.T_world_camera, scene.config.depth, workers);
-      },
-      [&] {
-        testing::DepthCheck depth(scene);
-        depth.add(surface.depth_m);
-        check(depth.passed(), "depth is that of the room");
-        return surface.depth_m.data.size();
       });
 }
 
@@ -85,7 +71,8 @@ void count_model_kernels(KernelCounts& counts, const testing::BenchScene& scene)
   const Workers workers(1);
   count_band_blocks(counts, scene, workers);
   count_integrate(counts, scene, workers);
-  count_raycasts(counts, scene, workers);
+  count_rays(counts, scene, workers, "raycast_patches", testing::patch_pixels(scene.camera));
+  count_rays(counts, scene, workers, "raycast_image", testing::image_rays(scene.camera));
   count_meshing(counts, scene, workers);
 }
 

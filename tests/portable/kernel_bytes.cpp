@@ -6,13 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/depth_gates.hpp"
 #include "core/marching_cubes.hpp"
 #include "core/motion_compensation.hpp"
 #include "core/patch_deformation.hpp"
 #include "core/patch_sums.hpp"
-#include "core/raycast.hpp"
 #include "core/tsdf_volume.hpp"
+#include "tests/support/gated_depth.hpp"
+#include "tests/support/raycast_image.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -71,7 +71,8 @@ void fuse(const RgbdFrame& frame, TsdfVolume& model, const Workers& workers) {
 }
 
 void cast(const TsdfVolume& model, const Workers& workers) {
-  const SurfaceImage surface = raycast_image(model, kCamera, kTWorldCamera, DepthConfig{}, workers);
+  const testing::SurfaceImage surface =
+      testing::raycast_image(model, kCamera, kTWorldCamera, DepthConfig{}, workers);
   Bytes bytes;
   bytes.add(surface.depth_m.data);
   bytes.add(surface.normal_world.data);
@@ -92,7 +93,8 @@ void extract(const TsdfVolume& model, const Workers& workers) {
 void track(const RgbdFrame& frame, const TsdfVolume& model, const Workers& workers) {
   Patch patch;
   PatchLevel& level = patch.levels.emplace_back();
-  const SurfaceImage surface = raycast_image(model, kCamera, kTWorldCamera, DepthConfig{}, workers);
+  const testing::SurfaceImage surface =
+      testing::raycast_image(model, kCamera, kTWorldCamera, DepthConfig{}, workers);
   for (int y = 10; y < kCamera.height_px; y += 7) {
     for (int x = 10; x < kCamera.width_px; x += 7) {
       if (surface.depth_m(x, y) <= 0) continue;
@@ -135,7 +137,7 @@ int run() {
   const Workers workers(1);
   const RgbdFrame rendered = testing::TexturedRoom{}.render(kCamera, kTWorldCamera, 0);
   RgbdFrame frame = compensated(rendered, workers);
-  frame.depth_m = gate_depth(frame.depth_m, DepthConfig{});
+  frame.depth_m = testing::gated_depth(frame.depth_m, DepthConfig{});
   Bytes gated;
   gated.add(frame.depth_m.data);
   gated.print("depth_gates");

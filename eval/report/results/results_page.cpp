@@ -27,8 +27,8 @@ namespace fusebench {
 namespace {
 
 constexpr double kLargestError_m = 0.05;
-constexpr std::size_t kMostDrawn = 12;  // of a recording: more curves nobody can tell apart
-constexpr std::array<std::string_view, 3> kPicturedVariants = {"full", "dm", "literal"};
+constexpr std::size_t kMostDrawn = 12;    // of a recording: more curves nobody can tell apart
+constexpr std::size_t kMostPictured = 2;  // variants whose patches stand beside each other
 
 /// How much of each run a page of so many runs shows.
 struct Detail {
@@ -113,18 +113,20 @@ PageTable run_facts(Group group) {
   return table;
 }
 
-/// Variants that differ in how patches are deformed, where they kept their patches.
+/// Of the first variants that kept their patches.
 PatchPictures pictures_of(Group group, std::vector<std::string>& warnings) {
   std::vector<LabelledPatches> runs;
-  for (const std::string_view variant : kPicturedVariants) {
-    const auto run = std::ranges::find(group, variant, [](const FoundRun& r) { return r.record.variant; });
-    if (run == group.end() || runs.size() == 2 || run->state != RunState::whole) continue;
+  for (const FoundRun& run : group) {
+    if (runs.size() == kMostPictured) break;
+    const std::string& variant = run.record.variant;
+    if (run.state != RunState::whole) continue;
+    if (std::ranges::find(runs, variant, &LabelledPatches::label) != runs.end()) continue;
     std::error_code ignored;
-    const bool is_there = std::filesystem::exists(run->folder / "patches.csv", ignored);
-    const auto checked = is_there ? check_file(run->folder, run->record, "patches.csv") : Result<void>();
-    auto frames = checked ? read_patch_table(run->folder) : tl::unexpected(checked.error());
+    const bool is_there = std::filesystem::exists(run.folder / "patches.csv", ignored);
+    const auto checked = is_there ? check_file(run.folder, run.record, "patches.csv") : Result<void>();
+    auto frames = checked ? read_patch_table(run.folder) : tl::unexpected(checked.error());
     if (!frames) warnings.push_back(frames.error().message);
-    if (frames && !frames->empty()) runs.push_back({std::string(variant), std::move(*frames)});
+    if (frames && !frames->empty()) runs.push_back({variant, std::move(*frames)});
   }
   return patch_pictures(runs);
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "eval/statistics.hpp"
+#include "tests/support/plain_field.hpp"
 
 namespace fusebench::peers {
 
@@ -14,11 +15,11 @@ constexpr double kLeastShareRight = 0.9;
 /// Distance to the zero level of the field, metres; nothing where nothing was observed. Between voxels where
 /// all around are observed, else at the nearest one.
 std::optional<double> distance_m(const TsdfVolume& field, const Vector3d& point_world) {
-  const TsdfSample sample = field.sample(point_world);
-  if (sample.valid) return std::abs(sample.distance_m);
+  const auto between_m = testing::PlainField(field).distance_m(point_world);
+  if (between_m) return std::abs(*between_m);
   const Vector3d at_voxels = point_world / field.voxel_m();
   const VoxelIndex nearest = at_voxels.array().round().cast<int>();
-  const auto voxel = field.find_voxel(nearest);
+  const auto voxel = testing::find_voxel(field, nearest);
   if (!voxel || voxel->weight <= 0.0F) return std::nullopt;
   return std::abs(static_cast<double>(voxel->distance_m));
 }

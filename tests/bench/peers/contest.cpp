@@ -7,12 +7,12 @@
 #include <memory>
 #include <utility>
 
-#include "core/depth_gates.hpp"
 #include "core/motion_compensation.hpp"
 #include "eval/true_camera.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/our_pipeline.hpp"
 #include "tests/bench/peers/single_thread.hpp"
+#include "tests/support/gated_depth.hpp"
 
 namespace fusebench::peers {
 
@@ -56,7 +56,7 @@ RgbdFrame fusible(const RgbdFrame& frame, const Recording& recording, const Conf
     compensate_motion(frame, rig.camera, rig.timing, velocity, workers, result);
     compensate_color(frame, rig.camera, rig.timing, velocity, result.depth_m, workers, result.color);
   }
-  result.depth_m = gate_depth(result.depth_m, config.depth);
+  result.depth_m = testing::gated_depth(result.depth_m, config.depth);
   return result;
 }
 

@@ -3,14 +3,14 @@
 #include <numeric>
 
 #include "core/marching_cubes.hpp"
-#include "eval/process_meter.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
+#include "tests/bench/peers/wall_stopwatch.hpp"
 #include "tests/support/camera_velocity.hpp"
 
 namespace fusebench::peers {
 
 Result<OurCost> OurPipeline::process(const RgbdFrame& frame) {
-  const Stopwatch wall;
+  const WallStopwatch wall;
   const CpuStopwatch cpu;
   const Result<FrameReport> report = pipeline_.process(frame);
   OurCost cost;

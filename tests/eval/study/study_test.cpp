@@ -52,7 +52,7 @@ class StudyTest : public testing::InTemporaryFolder {
     run.folder = folder_ / folder;
   }
 
-  [[nodiscard]] Study study() { return gather_study(runs_); }
+  [[nodiscard]] Study study() { return gather_study(runs_, variants_); }
 
   [[nodiscard]] BarMeasurement check(Bar bar) {
     bar.title = "t";
@@ -69,6 +69,7 @@ class StudyTest : public testing::InTemporaryFolder {
   }
 
   std::vector<StudyRun> runs_;
+  std::vector<std::string> variants_ = {"full", "dm", "no-imu"};
 };
 
 TEST_F(StudyTest, WorstAgainstALimit) {
@@ -349,6 +350,27 @@ TEST_F(SharedPixelsTest, TheSummaryHasRowsAndCurves) {
   EXPECT_EQ(motion[1].at("colour"), 1);
   EXPECT_EQ(motion[2].at("colour"), 3);
   EXPECT_EQ(page.find("https://"), page.find("https://www.chartjs.org"));  // nothing is loaded from elsewhere
+}
+
+TEST_F(SharedPixelsTest, TheVariantsAreThoseThatTheSuiteNames) {
+  runs_[0].variant = "literal";
+  runs_[1].variant = "planar";
+  variants_ = {"literal", "planar"};
+  const Study all = study();
+  const StudySummary summary = summarise("demo", all, {});
+  ASSERT_FALSE(summary.curves.empty());
+  const auto json = nlohmann::json::parse(summary_json(summary, all));
+  const auto& bin = json.at("motion").at(0).at("bins").at(0);
+  EXPECT_DOUBLE_EQ(bin.at("literal"), 3.0);
+  EXPECT_DOUBLE_EQ(bin.at("planar"), 7.0);
+  const std::vector<std::string> header = motion_tables(summary).front().header;
+  EXPECT_EQ(header[4], "literal");
+  EXPECT_EQ(header[5], "planar");
+  EXPECT_EQ(header[6], "planar / literal");
+  const nlohmann::json charts = charts_of(summary_page(summary, all));
+  EXPECT_EQ(charts.at(0).at("series").at(0).at("label"), "literal");
+  EXPECT_EQ(charts.at(0).at("series").at(1).at("label"), "planar");
+  EXPECT_EQ(charts.at(0).at("series").at(2).at("label"), "planar / literal");
 }
 
 TEST_F(SharedPixelsTest, WhatCannotBeComparedIsANote) {

@@ -1,17 +1,25 @@
-#include "core/residuals.hpp"
-
+// The plain formulas that the kernels are held against, held against numeric derivatives and closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "tests/support/measured_normal.hpp"
 #include "tests/support/numeric_jacobian.hpp"
+#include "tests/support/scalar_residuals.hpp"
+#include "tests/support/scalar_sampling.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
 namespace {
 
+using testing::huber;
 using testing::numeric_jacobian;
+using testing::photometric_residual;
+using testing::point_to_plane_residual;
+using testing::project_with_jacobian;
+using testing::Projection;
 using testing::relative_difference;
+using testing::sample_bicubic;
 
 const SE3 kTImuCamera{so3_exp({0.02, -0.03, 1.5}), {0.09, 0.003, 0.002}};
 const SE3 kTWorldImu{so3_exp({0.1, 0.2, -1.4}), {0.05, -0.1, 0.02}};
@@ -27,15 +35,7 @@ GreyImage smooth_image() {
   return image;
 }
 
-TEST(Residuals, PosedCameraComposesTheTransforms) {
-  const PosedCamera posed(testing::small_camera(), kTWorldImu, kTImuCamera);
-  const Vector3d point_world(0.4, -0.3, 2.0);
-  const Vector3d point_camera = (kTWorldImu * kTImuCamera).inverse() * point_world;
-  EXPECT_LT((posed.to_camera(point_world) - point_camera).norm(), 1e-14);
-  EXPECT_LT((posed.to_imu(point_camera) - kTWorldImu.inverse() * point_world).norm(), 1e-14);
-}
-
-TEST(Residuals, ProjectionJacobianEqualsNumericOne) {
+TEST(ScalarReferences, ProjectionJacobianEqualsNumericOne) {
   const PinholeCamera camera = camera_at_level(testing::small_camera(), 1);
   const Vector3d point_world(0.4, -0.3, 2.0);
   const PosedCamera posed(camera, kTWorldImu, kTImuCamera);
@@ -48,7 +48,7 @@ TEST(Residuals, ProjectionJacobianEqualsNumericOne) {
             1e-8);
 }
 
-TEST(Residuals, PhotometricJacobianEqualsNumericOneAtAllLevels) {
+TEST(ScalarReferences, PhotometricJacobianEqualsNumericOneAtAllLevels) {
   const std::vector<GreyImage> pyramid = build_pyramid(smooth_image(), 3);
   for (int level = 0; level < 3; ++level) {
     const PinholeCamera camera = camera_at_level(testing::small_camera(), level);
@@ -71,7 +71,7 @@ TEST(Residuals, PhotometricJacobianEqualsNumericOneAtAllLevels) {
   }
 }
 
-TEST(Residuals, PlaneJacobianEqualsNumericOne) {
+TEST(ScalarReferences, PlaneJacobianEqualsNumericOne) {
   const Vector3d point_imu(0.2, 0.5, 1.8);
   const Vector3d plane_point(0.3, 0.1, 2.0);
   const Vector3d normal = Vector3d(0.3, -0.5, -0.8).normalized();
@@ -85,7 +85,7 @@ TEST(Residuals, PlaneJacobianEqualsNumericOne) {
   EXPECT_LT(relative_difference(residual(kTWorldImu).jacobian, numeric_jacobian(f, 6)), 1e-8);
 }
 
-TEST(Residuals, BilinearSampleIsExactOnAPlaneAndAtTheBorder) {
+TEST(ScalarReferences, BilinearSampleIsExactOnAPlaneAndAtTheBorder) {
   GreyImage image(8, 6);
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 8; ++x) image(x, y) = static_cast<std::uint8_t>(10 + 5 * x + 7 * y);
@@ -110,7 +110,7 @@ GreyImage wave(double shift_px) {
   return image;
 }
 
-TEST(Residuals, BicubicSampleIsExactOnAParabolaAndSmooth) {
+TEST(ScalarReferences, BicubicSampleIsExactOnAParabolaAndSmooth) {
   GreyImage image(9, 8);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 9; ++x) image(x, y) = static_cast<std::uint8_t>(3 * x * x + y * y - 2 * x * y + 20);
@@ -149,7 +149,7 @@ double aligned_shift(const GreyImage& reference, const GreyImage& shifted, Sampl
   return shift;
 }
 
-TEST(Residuals, BicubicSamplesAreDrawnLessTowardsWholePixels) {
+TEST(ScalarReferences, BicubicSamplesAreDrawnLessTowardsWholePixels) {
   for (const double shift : {0.1, 0.2, 0.3, 0.4}) {
     const double linear = aligned_shift(wave(0), wave(shift), sample_bilinear);
     const double cubic = aligned_shift(wave(0), wave(shift), sample_bicubic);
@@ -158,7 +158,7 @@ TEST(Residuals, BicubicSamplesAreDrawnLessTowardsWholePixels) {
   }
 }
 
-TEST(Residuals, HuberIsSmoothAtItsKneeAndItsWeightIsTheDerivative) {
+TEST(ScalarReferences, HuberIsSmoothAtItsKneeAndItsWeightIsTheDerivative) {
   const double k = 1.345;
   EXPECT_NEAR(huber(k - 1e-9, k).cost, huber(k + 1e-9, k).cost, 1e-8);
   for (const double r : {-5.0, -1.0, 0.3, 1.3, 2.0, 40.0}) {
@@ -167,17 +167,19 @@ TEST(Residuals, HuberIsSmoothAtItsKneeAndItsWeightIsTheDerivative) {
   }
 }
 
-TEST(Residuals, LevelsShareTheirPixelGrid) {
-  // Pixel (x, y) of level l is (x, y) * 2^l of level 0, for odd sizes as well.
-  PinholeCamera camera = testing::small_camera();
-  camera.width_px = 321;
-  const PinholeCamera level2 = camera_at_level(camera, 2);
-  const Vector3d point(0.3, -0.2, 1.7);
-  EXPECT_LT((4.0 * level2.project(point) - camera.project(point)).norm(), 1e-12);
-  const auto pyramid = build_pyramid(GreyImage(321, 240, 9), 3);
-  EXPECT_EQ(pyramid[2].width, level2.width_px);
-  EXPECT_EQ(pyramid[2].height, level2.height_px);
-  EXPECT_EQ(pyramid[2](40, 30), 9);
+TEST(ScalarReferences, NormalOfASlantedPlaneFacesTheCamera) {
+  const PinholeCamera camera = testing::small_camera();
+  const Vector3d normal = Vector3d(0.4, -0.2, -1.0).normalized();
+  DepthImage depth(320, 240);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      depth(x, y) = static_cast<float>(normal.z() * 2.0 / normal.dot(camera.back_project(x, y, 1.0)));
+    }
+  }
+  EXPECT_LT((testing::measured_normal(depth, camera, 200, 90) - normal).norm(), 1e-4);
+  EXPECT_EQ(testing::measured_normal(depth, camera, 2, 90).norm(), 0.0) << "no neighbours at the border";
+  depth(204, 90) = 0;
+  EXPECT_EQ(testing::measured_normal(depth, camera, 200, 90).norm(), 0.0) << "a missing neighbour";
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+// Gated depth as a value.
+#pragma once
+
+#include "core/depth_gates.hpp"
+
+namespace fusebench::testing {
+
+[[nodiscard]] inline DepthImage gated_depth(const DepthImage& depth_m, const DepthConfig& config) {
+  DepthImage gated_m;
+  gate_depth(depth_m, config, gated_m);
+  return gated_m;
+}
+
+}  // namespace fusebench::testing
