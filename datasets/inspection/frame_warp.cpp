@@ -89,7 +89,7 @@ std::optional<WarpResidual> warp(const WarpPair& pair, const PinholeCamera& give
   camera.fx_px *= reading.focal_scale;
   camera.fy_px *= reading.focal_scale;
   std::vector<double> depth_m, depth_share, intensity;
-  for (const WarpPoint& point : pair.points) {
+  for (const MeasuredPoint& point : pair.points) {
     const Vector3d point1 = camera.back_project(point.x_px, point.y_px, reading.depth_scale * point.depth_m);
     const Vector3d point2 = poses->T_depth2_depth1 * point1;
     const auto pixel = pixel_of(camera, point2);

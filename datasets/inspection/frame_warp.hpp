@@ -20,7 +20,7 @@ struct Reading {
 };
 
 /// A measured point of a frame.
-struct WarpPoint {
+struct MeasuredPoint {
   double x_px = 0;
   double y_px = 0;
   double depth_m = 0;
@@ -31,7 +31,7 @@ struct WarpPair {
   std::size_t from = 0;
   std::size_t to = 0;
   std::int64_t from_color_ns = 0, from_depth_ns = 0, to_color_ns = 0, to_depth_ns = 0;
-  std::vector<WarpPoint> points;  ///< of the first frame, where depth is smooth
+  std::vector<MeasuredPoint> points;  ///< of the first frame, where depth is smooth
   GreyImage from_grey;
   GreyImage to_grey;
   DepthImage to_depth_m;
