@@ -59,6 +59,8 @@ std::string_view to_string(FrameHealth health) {
       return "short-of-patches";
     case FrameHealth::blurred:
       return "blurred";
+    case FrameHealth::diverged:
+      return "diverged";
     case FrameHealth::good:
       break;
   }

@@ -19,6 +19,7 @@ enum class FrameHealth {
   inconsistent,      ///< most patches contradict the pose
   short_of_patches,  ///< too few in view for another reason
   blurred,           ///< the predicted blur is longer than a patch
+  diverged,          ///< the images were not asked: the state is not finite (state_validity.hpp)
   good,
 };
 [[nodiscard]] std::string_view to_string(FrameHealth health);

@@ -18,6 +18,7 @@
 #include "core/patches.hpp"
 #include "core/pose_anchors.hpp"
 #include "core/resumption.hpp"
+#include "core/state_validity.hpp"
 
 namespace fusebench {
 
@@ -93,6 +94,8 @@ struct Pipeline::State {
   bool relocalise(const GaussianState& prediction, FrameReport& report);
   Result<void> fuse(FrameReport& report);
   void refresh(FrameReport& report);
+  void leave_out(const RgbdFrame& frame, FrameReport& report);
+  void describe_state(FrameReport& report) const;
   void keep_place(FrameReport& report);
   [[nodiscard]] SE3 T_world_camera() const { return estimate->mean.T_world_imu * rig.T_imu_camera; }
 
@@ -161,6 +164,10 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   const bool first = !estimate.has_value();
   const Result<GaussianState> predicted = predict(frame.capture_ns(), report);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
+  if (!is_valid(*predicted)) {
+    leave_out(frame, report);
+    return report;
+  }
   prepare(frame, predicted->mean, report);
 
   const FrameStatus status = locate(*predicted, report);
@@ -183,12 +190,31 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
     refresh(report);  // Sec. 2.3: patch update
     keep_place(report);
   }
+  describe_state(report);
+  return report;
+}
+
+/// The prediction is not of this world: the frame is lost, and the next one starts from what the velocity
+/// before says.
+void Pipeline::State::leave_out(const RgbdFrame& frame, FrameReport& report) {
+  report.health = FrameHealth::diverged;
+  report.reason = fmt::format("{}: the prediction from the inertial samples since the last frame is not finite",
+                              to_string(report.health));
+  if (!estimate) return;
+  const double since_s = seconds_between(timestamp_ns, frame.capture_ns());
+  estimate = predict_by_constant_velocity(*estimate, since_s, config.motion).state;
+  ++lost_frames;
+  occluded_frames = 0;
+  timestamp_ns = frame.capture_ns();
+  describe_state(report);
+}
+
+void Pipeline::State::describe_state(FrameReport& report) const {
   report.T_world_camera = T_world_camera();
   report.estimate = in_first_camera_world(*estimate);
   report.velocity_world_mps = estimate->mean.velocity_world_mps;
   report.angular_velocity_radps = estimate->mean.angular_velocity_imu_radps;
   report.model_blocks = model.block_count();
-  return report;
 }
 
 FrameStatus Pipeline::State::locate(const GaussianState& predicted, FrameReport& report) {
@@ -288,6 +314,11 @@ bool Pipeline::State::track(const GaussianState& prior, bool after_gap, FrameRep
   const ObservedFrame observed{prepared.pyramid, prepared.frame.depth_m};
   measurement.observe(observed, patches, residual_scale);
   const IekfResult result = iekf_update(prior, measurement, config.iekf);
+  if (!is_valid(result.posterior)) {
+    report.health = FrameHealth::diverged;
+    report.reason = fmt::format("{}: the update is not finite", to_string(report.health));
+    return false;
+  }
   describe_update(measurement, result, patches, report);
   report.blur_px = predicted_blur_px(prior.mean);
   report.health = judge_health(observed, measurement.outcomes(), report.blur_px, config);
@@ -340,7 +371,7 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, FrameReport& r
   // Repeating texture looks like another place: what the motion so far rules out is none. The longer the
   // tracker is lost, the less it rules out.
   constexpr double kMostContradiction = 25;  // five standard deviations, root mean square of six axes
-  if (contradiction(prediction, place) > kMostContradiction) return false;
+  if (!(contradiction(prediction, place) <= kMostContradiction)) return false;
 
   const std::vector<GreyImage> pyramid = build_pyramid(keyframe.grey, config.patches.levels);
   const DepthImage depth_m = keyframe.depth.unpacked_m();
@@ -358,7 +389,8 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, FrameReport& r
   again.timestamp_ns = report.timestamp_ns;
   again.capture_ns = report.capture_ns;
   again.stages = report.stages;
-  if (!track(resumed(prediction, place, unknown), true, again)) {
+  const GaussianState prior = resumed(prediction, place, unknown);
+  if (!is_valid(prior) || !track(prior, true, again)) {
     patches = std::move(patches_before);
     reference_ns = reference_before_ns;
     report.stages = again.stages;
