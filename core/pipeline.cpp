@@ -180,7 +180,7 @@ Result<FrameReport> Pipeline::State::process_once(const RgbdFrame& frame) {
   constexpr int kMostOccludedFrames = 30;
   occluded_frames = report.health == FrameHealth::occluded ? occluded_frames + 1 : 0;
   const bool trusted = !lost && (occluded_frames == 0 || occluded_frames > kMostOccludedFrames);
-  if (trusted && moved_otherwise(*predicted)) prepare(frame, estimate->mean, report);
+  if (trusted && compensates(frame) && moved_otherwise(*predicted)) prepare(frame, estimate->mean, report);
   report.status = status;
 
   if (trusted) {

@@ -126,6 +126,21 @@ TEST(Pipeline, StretchesOfStagesAreInOrderAndAddUp) {
   EXPECT_EQ(predictions(2), 1);
 }
 
+TEST(Pipeline, AFrameIsPreparedAgainOnlyIfThereIsMotionToCompensate) {
+  // Without an IMU the first velocity is a surprise.
+  const auto more_often_than_predicted = [](int times) {
+    return [=](const FrameReport& report) {
+      const auto spans = report.stages.spans();
+      return std::ranges::count(spans, Stage::preprocess, &StageSpan::stage) >
+             times * std::ranges::count(spans, Stage::predict, &StageSpan::stage);
+    };
+  };
+  EXPECT_TRUE(std::ranges::none_of(track(shared_run(), config_of("no-imu")), more_often_than_predicted(1)));
+  // Grey and depth, then colour, count by themselves: beyond twice a frame was compensated again.
+  const SimulatedRun rolling = simulate(3, {.color_readout_s = 0.02, .depth_readout_s = 0.02});
+  EXPECT_TRUE(std::ranges::any_of(track(rolling, config_of("no-imu")), more_often_than_predicted(2)));
+}
+
 TEST(Pipeline, ThreadCountDoesNotShow) {
   const auto one = track(shared_run(), config_of("full"), 1);
   for (const int threads : {2, 8}) {
