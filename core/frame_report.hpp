@@ -68,6 +68,12 @@ struct FrameReport {
   StageTimes stages;           ///< wall time; the only part that is not reproducible
 };
 
+/// The report of a frame of which nothing is known yet.
+[[nodiscard]] FrameReport report_of(const RgbdFrame& frame);
+
+/// Fills in the state after the frame: of the IMU that the camera is mounted to.
+void describe_state(const GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report);
+
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
 void describe_update(const PatchMeasurement& measurement, const IekfResult& result,
                      std::span<const Patch> patches, FrameReport& report);

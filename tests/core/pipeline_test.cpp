@@ -202,9 +202,9 @@ TEST(Pipeline, AnAbsurdInertialSampleLosesAFrameAndPoisonsNothing) {
         EXPECT_EQ(reports[6].health, FrameHealth::diverged);
         EXPECT_NE(reports[6].reason.find("not finite"), std::string::npos) << reports[6].reason;
         EXPECT_NE(reports.back().status, FrameStatus::lost) << reports.back().reason;
-        EXPECT_LT((reports.back().T_world_camera.translation - disturbed.T_first_camera.back().translation)
-                      .norm(),
-                  0.02);
+        EXPECT_LT(
+            (reports.back().T_world_camera.translation - disturbed.T_first_camera.back().translation).norm(),
+            0.02);
       }
     }
   }
