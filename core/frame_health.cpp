@@ -86,4 +86,11 @@ FrameHealth judge_health(const ObservedFrame& frame, std::span<const PatchOutcom
   return FrameHealth::good;
 }
 
+FrameHealth judge_start(const ObservedFrame& frame, std::size_t patches, const Config& config) {
+  const FrameHealth images = judge_health(frame, {}, 0.0, config);
+  if (images == FrameHealth::dark) return images;
+  if (patches >= static_cast<std::size_t>(config.iekf.min_patches)) return FrameHealth::good;
+  return images == FrameHealth::good ? FrameHealth::short_of_patches : images;
+}
+
 }  // namespace fusebench

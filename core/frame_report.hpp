@@ -19,11 +19,11 @@
 namespace fusebench {
 
 enum class FrameStatus {
-  initialised,  ///< the first frame
+  initialised,  ///< the first frame that could be used
   tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
   relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
-  lost,         ///< too few honest patches, or after a gap ones that do not fit, and no place was
-                ///< found again: the prediction was kept, the frame not fused
+  lost,         ///< too few usable patches, or after a gap ones that do not fit, and no keyframe was
+                ///< recognised: the prediction was kept, the frame not fused. Or no start yet
 };
 [[nodiscard]] std::string_view to_string(FrameStatus status);
 

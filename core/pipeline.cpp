@@ -13,7 +13,7 @@
 #include "core/motion_prior.hpp"
 #include "core/patch_measurement.hpp"
 #include "core/pose_anchors.hpp"
-#include "core/start_in_motion.hpp"
+#include "core/recording_start.hpp"
 #include "core/state_validity.hpp"
 #include "core/tracking_state.hpp"
 
@@ -35,7 +35,7 @@ struct Pipeline::State final : RestartableEstimator {
 
   Result<FrameReport> process_frame(const RgbdFrame& frame) override;
   const std::optional<GaussianState>& estimate() const override { return tracking->estimate; }
-  void restart(const FilterState& motion) override;
+  void restart(const std::optional<FilterState>& motion) override;
 
   Result<GaussianState> predict(std::int64_t now_ns, StageTimes& stages) const;
   void prepare(const RgbdFrame& frame, const FilterState& motion, StageTimes& stages);
@@ -57,7 +57,7 @@ struct Pipeline::State final : RestartableEstimator {
   PatchWorkspace patch_workspace;
   std::optional<Tracking> tracking;           ///< always there
   std::optional<FilterState> initial_motion;  ///< after a restart
-  StartInMotion start;
+  RecordingStart start;
 };
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
@@ -90,12 +90,14 @@ Result<FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
     if (!fused) return tl::unexpected(fused.error());
     refresh(report.stages);  // Sec. 2.3: patch update
   }
+  if (report.status == FrameStatus::initialised)
+    report.health = judge_start(preparation.observed(), now.patches.size(), config);
   describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
   return report;
 }
 
-void Pipeline::State::restart(const FilterState& motion) {
+void Pipeline::State::restart(const std::optional<FilterState>& motion) {
   initial_motion = motion;
   tracking.emplace(config, rig);
 }

@@ -99,6 +99,8 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
     if (report.status == FrameStatus::relocalised)
       progress.log +=
           fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
+    if (report.status == FrameStatus::initialised && frame > 0)
+      progress.log += fmt::format("frame {}: started here: no frame before could be used\n", frame);
     progress.lost_in_a_row = 0;
     ++progress.frames.tracked;
     progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
@@ -177,6 +179,8 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }
+  if (progress.status == RunStatus::ok && progress.frames.tracked == 0)
+    progress.end(RunStatus::lost, "no frame could be used as the first one (see log.txt)");
   if (intensity) {
     if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
   }

@@ -181,6 +181,50 @@ TEST(Pipeline, ALostFrameKeepsThePredictionAndTrackingResumes) {
   EXPECT_LT(worst_error_m(interrupted, reports), 0.02);
 }
 
+/// The grey levels of a camera that sees this share of the light.
+GreyImage darkened(GreyImage grey, double share) {
+  for (std::uint8_t& level : grey.data) level = static_cast<std::uint8_t>(std::lround(share * level));
+  return grey;
+}
+
+TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
+  for (const char* const variant : {"full", "no-imu"}) {
+    SCOPED_TRACE(variant);
+    // What the recording gives without its first two frames.
+    SimulatedRun later = shared_run();
+    later.frames.erase(later.frames.begin(), later.frames.begin() + 2);
+    const auto expected = track(later, config_of(variant));
+    for (const double light : {0.0, 0.03}) {
+      SimulatedRun dark_start = shared_run();
+      for (const std::size_t k : {0U, 1U})
+        dark_start.frames[k].grey = darkened(dark_start.frames[k].grey, light);
+      auto reports = track(dark_start, config_of(variant));
+      ASSERT_EQ(reports.size(), static_cast<std::size_t>(kFrames));
+      for (const std::size_t k : {0U, 1U}) {
+        EXPECT_EQ(reports[k].status, FrameStatus::lost);
+        EXPECT_EQ(reports[k].reason, "waiting for a usable first frame: dark");
+        EXPECT_EQ(reports[k].timestamp_ns, dark_start.frames[k].timestamp_ns);
+      }
+      EXPECT_EQ(reports[2].status, FrameStatus::initialised);
+      EXPECT_EQ(tracked(reports), kFrames - 3);
+      reports.erase(reports.begin(), reports.begin() + 2);
+      EXPECT_TRUE(same_poses(reports, expected));
+      EXPECT_EQ(reports.back().model_blocks, expected.back().model_blocks);
+    }
+  }
+}
+
+TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
+  SimulatedRun run = shared_run();
+  std::fill(run.frames[0].depth_m.data.begin(), run.frames[0].depth_m.data.end(), 0.0F);
+  std::fill(run.frames[1].grey.data.begin(), run.frames[1].grey.data.end(), std::uint8_t{128});
+  const auto reports = track(run, config_of("full"));
+  EXPECT_EQ(reports[0].reason, "waiting for a usable first frame: short-of-depth");
+  EXPECT_EQ(reports[1].reason, "waiting for a usable first frame: short-of-texture");
+  EXPECT_EQ(reports[2].status, FrameStatus::initialised);
+  EXPECT_EQ(tracked(reports), kFrames - 3);
+}
+
 TEST(Pipeline, AnAbsurdInertialSampleLosesAFrameAndPoisonsNothing) {
   for (const double absurd : {4e9, 1e20, -3e38, 1e308}) {
     for (const auto member : {&ImuSample::angular_velocity_radps, &ImuSample::specific_force_mps2}) {

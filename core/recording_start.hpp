@@ -1,6 +1,11 @@
+// Where and how a recording starts. Not in the paper.
+//
+// The first frames may be of no use: an automatic exposure begins in the dark. The estimator starts at the
+// first frame that the next one can be tracked from; those before are lost.
+//
 // A recording that starts in motion starts with a velocity that nobody knows. The first two frames tell it,
 // so they are processed again with it: the first one is then compensated properly, and the second one
-// predicted well. Not in the paper.
+// predicted well.
 #pragma once
 
 #include <optional>
@@ -20,17 +25,18 @@ class RestartableEstimator {
   RestartableEstimator& operator=(const RestartableEstimator&) = delete;
   virtual ~RestartableEstimator() = default;
 
+  /// The first frame (status initialised) has the health of judge_start().
   [[nodiscard]] virtual Result<FrameReport> process_frame(const RgbdFrame& frame) = 0;
-  /// The state after the last frame; nothing before the first one that could be used.
+  /// The state after the last frame; nothing before the first one.
   [[nodiscard]] virtual const std::optional<GaussianState>& estimate() const = 0;
-  /// Forgets all frames, to begin with the velocities of this state.
-  virtual void restart(const FilterState& motion) = 0;
+  /// Forgets all frames, to begin with the velocities of this state if there is one.
+  virtual void restart(const std::optional<FilterState>& motion) = 0;
 };
 
-class StartInMotion {
+class RecordingStart {
  public:
-  /// Processes the next frame; the second one that can be used together with the first one again. Its report
-  /// has the time of all of that.
+  /// Processes the next frame. One that cannot be the first is lost, and its reason says so. The second one
+  /// is processed together with the first one again; its report has the time of all of that.
   [[nodiscard]] Result<FrameReport> process(const RgbdFrame& frame, RestartableEstimator& estimator);
 
  private:

@@ -1,4 +1,6 @@
-#include "core/start_in_motion.hpp"
+#include "core/recording_start.hpp"
+
+#include <fmt/format.h>
 
 namespace fusebench {
 
@@ -18,12 +20,21 @@ Result<FrameReport> process_again(const RgbdFrame& first_frame, const RgbdFrame&
   return second;
 }
 
+void wait(FrameReport& report, RestartableEstimator& estimator) {
+  report.status = FrameStatus::lost;
+  report.reason = fmt::format("waiting for a usable first frame: {}", to_string(report.health));
+  report.model_blocks = 0;
+  estimator.restart(std::nullopt);
+}
+
 }  // namespace
 
-Result<FrameReport> StartInMotion::process(const RgbdFrame& frame, RestartableEstimator& estimator) {
+Result<FrameReport> RecordingStart::process(const RgbdFrame& frame, RestartableEstimator& estimator) {
   const bool first = !estimator.estimate();
   Result<FrameReport> report = estimator.process_frame(frame);
   if (first) {
+    if (report && report->status == FrameStatus::initialised && report->health != FrameHealth::good)
+      wait(*report, estimator);
     first_frame_ = frame;
     return report;
   }
