@@ -1,7 +1,8 @@
 // Where and how a recording starts. Not in the paper.
 //
-// The first frames may be of no use: an automatic exposure begins in the dark. The estimator starts at the
-// first frame that the next one can be tracked from; those before are lost.
+// The first frames may be of no use: an automatic exposure begins in the dark. Frames that nothing could be
+// tracked from are lost, until there is one that can be the first. If then nothing is tracked from it either
+// (it was only dim), the estimator starts again at a later frame.
 //
 // A recording that starts in motion starts with a velocity that nobody knows. The first two frames tell it,
 // so they are processed again with it: the first one is then compensated properly, and the second one
@@ -36,11 +37,17 @@ class RestartableEstimator {
 class RecordingStart {
  public:
   /// Processes the next frame. One that cannot be the first is lost, and its reason says so. The second one
-  /// is processed together with the first one again; its report has the time of all of that.
+  /// is processed together with the first one again; its report has the time of all of that. A later start
+  /// has the status initialised and a reason: the frames before do not count any more.
   [[nodiscard]] Result<FrameReport> process(const RgbdFrame& frame, RestartableEstimator& estimator);
 
  private:
+  [[nodiscard]] Result<FrameReport> process_first(const RgbdFrame& frame, RestartableEstimator& estimator);
+  [[nodiscard]] bool is_false_start(const FrameReport& report);
+
   std::optional<RgbdFrame> first_frame_;  ///< until the second one was processed
+  bool confirmed_ = false;                ///< a frame was tracked after the first one
+  int lost_frames_ = 0;                   ///< since the first one
 };
 
 }  // namespace fusebench

@@ -214,6 +214,21 @@ TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
   }
 }
 
+TEST(Pipeline, ADimFirstFrameIsGivenUpForALaterStart) {
+  // Enough patches can be cut from it, but the next frame is several times as bright.
+  SimulatedRun dim_start = shared_run();
+  dim_start.frames[0].grey = darkened(dim_start.frames[0].grey, 0.2);
+  auto reports = track(dim_start, config_of("full"));
+  const auto start = std::ranges::find_if(reports.begin() + 1, reports.end(), [](const FrameReport& report) {
+    return report.status == FrameStatus::initialised;
+  });
+  ASSERT_NE(start, reports.end());
+  EXPECT_NE(start->reason.find("started again"), std::string::npos);
+  EXPECT_LE(start - reports.begin(), 5);
+  EXPECT_TRUE(std::all_of(start + 1, reports.end(),
+                          [](const FrameReport& report) { return report.status == FrameStatus::tracked; }));
+}
+
 TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
   SimulatedRun run = shared_run();
   std::fill(run.frames[0].depth_m.data.begin(), run.frames[0].depth_m.data.end(), 0.0F);
