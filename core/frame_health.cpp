@@ -59,6 +59,8 @@ std::string_view to_string(FrameHealth health) {
       return "short-of-patches";
     case FrameHealth::blurred:
       return "blurred";
+    case FrameHealth::diverged:
+      return "diverged";
     case FrameHealth::good:
       break;
   }
@@ -82,6 +84,13 @@ FrameHealth judge_health(const ObservedFrame& frame, std::span<const PatchOutcom
   if (accepted < config.iekf.min_patches && !outcomes.empty()) return FrameHealth::short_of_patches;
   if (blur_px > config.patches.size_px) return FrameHealth::blurred;
   return FrameHealth::good;
+}
+
+FrameHealth judge_start(const ObservedFrame& frame, std::size_t patches, const Config& config) {
+  const FrameHealth images = judge_health(frame, {}, 0.0, config);
+  if (images == FrameHealth::dark) return images;
+  if (patches >= static_cast<std::size_t>(config.iekf.min_patches)) return FrameHealth::good;
+  return images == FrameHealth::good ? FrameHealth::short_of_patches : images;
 }
 
 }  // namespace fusebench

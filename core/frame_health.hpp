@@ -2,6 +2,7 @@
 // a frame was lost or is weak. The paper leaves failures open.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string_view>
 
@@ -19,6 +20,7 @@ enum class FrameHealth {
   inconsistent,      ///< most patches contradict the pose
   short_of_patches,  ///< too few in view for another reason
   blurred,           ///< the predicted blur is longer than a patch
+  diverged,          ///< the images were not asked: the state is not finite (state_validity.hpp)
   good,
 };
 [[nodiscard]] std::string_view to_string(FrameHealth health);
@@ -27,5 +29,9 @@ enum class FrameHealth {
 /// and the predicted length of its motion blur.
 [[nodiscard]] FrameHealth judge_health(const ObservedFrame& frame, std::span<const PatchOutcome> outcomes,
                                        double blur_px, const Config& config);
+
+/// Judges a frame as the first one, from which `patches` usable ones were cut: good if the next frame can be
+/// tracked from it. Without light, or with fewer patches than iekf.min_patches, it cannot.
+[[nodiscard]] FrameHealth judge_start(const ObservedFrame& frame, std::size_t patches, const Config& config);
 
 }  // namespace fusebench

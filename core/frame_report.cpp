@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/pose_anchors.hpp"
+
 namespace fusebench {
 
 std::string_view to_string(FrameStatus status) {
@@ -16,6 +18,20 @@ std::string_view to_string(FrameStatus status) {
       break;
   }
   return "lost";
+}
+
+FrameReport report_of(const RgbdFrame& frame) {
+  FrameReport report;
+  report.timestamp_ns = frame.timestamp_ns;
+  report.capture_ns = frame.capture_ns();
+  return report;
+}
+
+void describe_state(const GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report) {
+  report.T_world_camera = estimate.mean.T_world_imu * T_imu_camera;
+  report.estimate = in_first_camera_world(estimate);
+  report.velocity_world_mps = estimate.mean.velocity_world_mps;
+  report.angular_velocity_radps = estimate.mean.angular_velocity_imu_radps;
 }
 
 void describe_update(const PatchMeasurement& measurement, const IekfResult& result,

@@ -19,11 +19,11 @@
 namespace fusebench {
 
 enum class FrameStatus {
-  initialised,  ///< the first frame
+  initialised,  ///< the first frame that could be used
   tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
   relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
-  lost,         ///< too few honest patches, or after a gap ones that do not fit, and no place was
-                ///< found again: the prediction was kept, the frame not fused
+  lost,         ///< too few usable patches, or after a gap ones that do not fit, and no keyframe was
+                ///< recognised: the prediction was kept, the frame not fused. Or no start yet
 };
 [[nodiscard]] std::string_view to_string(FrameStatus status);
 
@@ -40,7 +40,7 @@ struct PoseEvidence {
 struct FrameReport {
   std::int64_t timestamp_ns = 0;
   FrameStatus status = FrameStatus::lost;
-  std::string reason;  ///< why it is lost; empty otherwise
+  std::string reason;  ///< why it is lost, or a later start; empty otherwise
   FrameHealth health = FrameHealth::good;
   std::int64_t capture_ns = 0;  ///< the instant that the pose is of
   SE3 T_world_camera;
@@ -67,6 +67,12 @@ struct FrameReport {
   TrackedPixels pixels;        ///< of all tracked patches, by patch, then pixel
   StageTimes stages;           ///< wall time; the only part that is not reproducible
 };
+
+/// The report of a frame of which nothing is known yet.
+[[nodiscard]] FrameReport report_of(const RgbdFrame& frame);
+
+/// Fills in the state after the frame: of the IMU that the camera is mounted to.
+void describe_state(const GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report);
 
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
 void describe_update(const PatchMeasurement& measurement, const IekfResult& result,

@@ -107,4 +107,18 @@ GaussianState initialise_without_imu(const InitialisationConfig& config) {
   return state;
 }
 
+Result<GaussianState> initial_state(std::span<const ImuSample> samples, std::int64_t first_frame_ns,
+                                    const SensorRig& rig, const Config& config,
+                                    const std::optional<FilterState>& motion) {
+  const bool inertial = config.terms.prior == Prior::imu;
+  Result<GaussianState> initial =
+      inertial ? initialise_with_imu(samples, first_frame_ns, rig, config.initialisation)
+               : initialise_without_imu(config.initialisation);
+  if (initial && motion) {
+    initial->mean.velocity_world_mps = motion->velocity_world_mps;
+    if (!inertial) initial->mean.angular_velocity_imu_radps = motion->angular_velocity_imu_radps;
+  }
+  return initial;
+}
+
 }  // namespace fusebench

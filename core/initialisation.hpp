@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/config.hpp"
@@ -23,5 +24,12 @@ namespace fusebench {
 
 /// Initial state without an IMU: at rest with wide velocity covariances. The "IMU" frame is the camera's.
 [[nodiscard]] GaussianState initialise_without_imu(const InitialisationConfig& config);
+
+/// The one of these two that the prior needs. `motion`, if known, gives the velocities; only the means, since
+/// the frames that told them are about to be used as measurements.
+[[nodiscard]] Result<GaussianState> initial_state(std::span<const ImuSample> samples,
+                                                  std::int64_t first_frame_ns, const SensorRig& rig,
+                                                  const Config& config,
+                                                  const std::optional<FilterState>& motion);
 
 }  // namespace fusebench

@@ -50,14 +50,15 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
   return Int8{value, value, value, value, value, value, value, value};
 }
 
-/// As std::min and std::max.
+/// As std::min and std::max: if one is not a number the result is `a`.
 [[nodiscard]] inline Float8 min(Float8 a, Float8 b) { return b < a ? b : a; }
 [[nodiscard]] inline Float8 max(Float8 a, Float8 b) { return a < b ? b : a; }
 [[nodiscard]] inline Int8 min(Int8 a, Int8 b) { return b < a ? b : a; }
 [[nodiscard]] inline Int8 max(Int8 a, Int8 b) { return a < b ? b : a; }
-/// As std::clamp.
+/// As std::clamp, but what is not a number becomes `low` (the order of operands sees to that), so that an
+/// index made of the result is always one of the image.
 [[nodiscard]] inline Float8 clamp(Float8 values, float low, float high) {
-  return min(max(values, all_lanes(low)), all_lanes(high));
+  return min(max(all_lanes(low), values), all_lanes(high));
 }
 [[nodiscard]] inline Float8 abs(Float8 values) {
   return std::bit_cast<Float8>(std::bit_cast<Int8>(values) & 0x7FFFFFFF);

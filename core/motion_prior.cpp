@@ -1,5 +1,7 @@
 #include "core/motion_prior.hpp"
 
+#include <cmath>
+
 namespace fusebench {
 
 namespace {
@@ -97,6 +99,22 @@ Prediction predict_by_constant_velocity(const GaussianState& state, double durat
 
   result.state.covariance = symmetrised(F * state.covariance * F.transpose() + Q);
   return result;
+}
+
+Result<GaussianState> predict_state(const GaussianState& state, const FrameInterval& interval,
+                                    std::span<const ImuSample> samples, const ImuNoise& noise,
+                                    const Config& config) {
+  if (config.terms.prior == Prior::constant_velocity) {
+    const double duration_s = seconds_between(interval.begin_ns, interval.end_ns);
+    return predict_by_constant_velocity(state, duration_s, config.motion).state;
+  }
+  const FilterState& x = state.mean;
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
+  const Result<PreintegratedImu> increments =  // Eqs. 11-13
+      preintegrate(samples, interval.begin_ns + offset_ns, interval.end_ns + offset_ns,
+                   x.gyroscope_bias_radps, x.accelerometer_bias_mps2, noise);
+  if (!increments) return tl::unexpected(increments.error());
+  return predict_by_imu(state, *increments, noise, config.motion).state;  // Eqs. 8-10, 14
 }
 
 }  // namespace fusebench

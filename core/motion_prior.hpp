@@ -1,7 +1,11 @@
 // Prediction between frames (Eqs. 8-10 and 14 of the paper): by the IMU, or by constant velocity.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "core/config.hpp"
+#include "core/error.hpp"
 #include "core/filter_state.hpp"
 #include "core/imu_preintegration.hpp"
 
@@ -22,5 +26,17 @@ struct Prediction {
 /// white accelerations. Biases and gravity stay as they are.
 [[nodiscard]] Prediction predict_by_constant_velocity(const GaussianState& state, double duration_s,
                                                       const MotionConfig& config);
+
+/// Capture instants of the last frame and the one that is predicted.
+struct FrameInterval {
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+};
+
+/// Sec. 2.2.1: predicts by the prior of the configuration. The samples are of the whole recording, sorted;
+/// error data_corrupt if they do not cover the interval.
+[[nodiscard]] Result<GaussianState> predict_state(const GaussianState& state, const FrameInterval& interval,
+                                                  std::span<const ImuSample> samples, const ImuNoise& noise,
+                                                  const Config& config);
 
 }  // namespace fusebench

@@ -42,7 +42,7 @@ Eigen::Matrix<double, 2 * kPoseSize, kStateSize> measured_combinations(const Fil
   return rows;
 }
 
-GaussianState anchored(const GaussianState& state, const ModelDrift& drift) {
+GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift) {
   StateMatrix to_model = StateMatrix::Identity();
   to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
   to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * Matrix6d::Identity();

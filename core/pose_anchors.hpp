@@ -28,7 +28,7 @@ struct ModelDrift {
 
 /// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its
 /// pose.
-[[nodiscard]] GaussianState anchored(const GaussianState& state, const ModelDrift& drift);
+[[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift);
 
 /// The estimate in the world of the first camera: the uncertainty of the model's place is added to that of
 /// the pose, the velocity and the direction of gravity.

@@ -62,4 +62,19 @@ class StageTimes {
   std::array<double, kStageNames.size()> sums_ms_{};
 };
 
+/// Adds the time since its construction to one stage.
+class StageClock {
+ public:
+  StageClock(StageTimes& times, Stage stage)
+      : times_(times), stage_(stage), begin_(std::chrono::steady_clock::now()) {}
+  ~StageClock() { times_.add({stage_, {begin_, std::chrono::steady_clock::now()}}); }
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+
+ private:
+  StageTimes& times_;
+  Stage stage_;
+  std::chrono::steady_clock::time_point begin_;
+};
+
 }  // namespace fusebench

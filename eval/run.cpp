@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <utility>
 
 #include "core/fingerprint.hpp"
 #include "core/marching_cubes.hpp"
@@ -83,6 +84,16 @@ FrameResiduals residuals_of(const FrameReport& report) {
   return residuals;
 }
 
+/// The run begins at this frame: those before are lost, also one that it began at before.
+void forget_earlier_start(Progress& progress, std::size_t frame, const FrameReport& report) {
+  progress.log +=
+      fmt::format("frame {}: {}\n", frame,
+                  report.reason.empty() ? "started: no frame before could be used" : report.reason);
+  progress.frames.lost += std::exchange(progress.frames.tracked, 0);
+  progress.output.trajectory.clear();
+  progress.output.states.clear();
+}
+
 /// Takes one frame's report into the progress; ends the run when too many frames are lost in a row.
 void take_report(Progress& progress, std::size_t frame, const FrameReport& report, const PreparedRun& run,
                  double decode_ms) {
@@ -98,6 +109,7 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
     if (report.status == FrameStatus::relocalised)
       progress.log +=
           fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
+    if (report.status == FrameStatus::initialised && frame > 0) forget_earlier_start(progress, frame, report);
     progress.lost_in_a_row = 0;
     ++progress.frames.tracked;
     progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
@@ -176,6 +188,8 @@ Result<Progress> process_frames(const PreparedRun& run, Pipeline& pipeline, cons
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }
+  if (progress.status == RunStatus::ok && progress.frames.tracked == 0)
+    progress.end(RunStatus::lost, "no frame could be used as the first one (see log.txt)");
   if (intensity) {
     if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
   }

@@ -126,6 +126,21 @@ TEST(Pipeline, StretchesOfStagesAreInOrderAndAddUp) {
   EXPECT_EQ(predictions(2), 1);
 }
 
+TEST(Pipeline, AFrameIsPreparedAgainOnlyIfThereIsMotionToCompensate) {
+  // Without an IMU the first velocity is a surprise.
+  const auto more_often_than_predicted = [](int times) {
+    return [=](const FrameReport& report) {
+      const auto spans = report.stages.spans();
+      return std::ranges::count(spans, Stage::preprocess, &StageSpan::stage) >
+             times * std::ranges::count(spans, Stage::predict, &StageSpan::stage);
+    };
+  };
+  EXPECT_TRUE(std::ranges::none_of(track(shared_run(), config_of("no-imu")), more_often_than_predicted(1)));
+  // Grey and depth, then colour, count by themselves: beyond twice a frame was compensated again.
+  const SimulatedRun rolling = simulate(3, {.color_readout_s = 0.02, .depth_readout_s = 0.02});
+  EXPECT_TRUE(std::ranges::any_of(track(rolling, config_of("no-imu")), more_often_than_predicted(2)));
+}
+
 TEST(Pipeline, ThreadCountDoesNotShow) {
   const auto one = track(shared_run(), config_of("full"), 1);
   for (const int threads : {2, 8}) {
@@ -164,6 +179,94 @@ TEST(Pipeline, ALostFrameKeepsThePredictionAndTrackingResumes) {
   }
   for (std::size_t k = 7; k < reports.size(); ++k) EXPECT_EQ(reports[k].status, FrameStatus::tracked);
   EXPECT_LT(worst_error_m(interrupted, reports), 0.02);
+}
+
+/// The grey levels of a camera that sees this share of the light.
+GreyImage darkened(GreyImage grey, double share) {
+  for (std::uint8_t& level : grey.data) level = static_cast<std::uint8_t>(std::lround(share * level));
+  return grey;
+}
+
+TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
+  for (const char* const variant : {"full", "no-imu"}) {
+    SCOPED_TRACE(variant);
+    // What the recording gives without its first two frames.
+    SimulatedRun later = shared_run();
+    later.frames.erase(later.frames.begin(), later.frames.begin() + 2);
+    const auto expected = track(later, config_of(variant));
+    for (const double light : {0.0, 0.03}) {
+      SimulatedRun dark_start = shared_run();
+      for (const std::size_t k : {0U, 1U})
+        dark_start.frames[k].grey = darkened(dark_start.frames[k].grey, light);
+      auto reports = track(dark_start, config_of(variant));
+      ASSERT_EQ(reports.size(), static_cast<std::size_t>(kFrames));
+      for (const std::size_t k : {0U, 1U}) {
+        EXPECT_EQ(reports[k].status, FrameStatus::lost);
+        EXPECT_EQ(reports[k].reason, "waiting for a usable first frame: dark");
+        EXPECT_EQ(reports[k].timestamp_ns, dark_start.frames[k].timestamp_ns);
+      }
+      EXPECT_EQ(reports[2].status, FrameStatus::initialised);
+      EXPECT_EQ(tracked(reports), kFrames - 3);
+      reports.erase(reports.begin(), reports.begin() + 2);
+      EXPECT_TRUE(same_poses(reports, expected));
+      EXPECT_EQ(reports.back().model_blocks, expected.back().model_blocks);
+    }
+  }
+}
+
+TEST(Pipeline, ADimFirstFrameIsGivenUpForALaterStart) {
+  // Enough patches can be cut from it, but the next frame is several times as bright.
+  SimulatedRun dim_start = shared_run();
+  dim_start.frames[0].grey = darkened(dim_start.frames[0].grey, 0.2);
+  auto reports = track(dim_start, config_of("full"));
+  const auto start = std::ranges::find_if(reports.begin() + 1, reports.end(), [](const FrameReport& report) {
+    return report.status == FrameStatus::initialised;
+  });
+  ASSERT_NE(start, reports.end());
+  EXPECT_NE(start->reason.find("started again"), std::string::npos);
+  EXPECT_LE(start - reports.begin(), 5);
+  EXPECT_TRUE(std::all_of(start + 1, reports.end(),
+                          [](const FrameReport& report) { return report.status == FrameStatus::tracked; }));
+}
+
+TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
+  SimulatedRun run = shared_run();
+  std::fill(run.frames[0].depth_m.data.begin(), run.frames[0].depth_m.data.end(), 0.0F);
+  std::fill(run.frames[1].grey.data.begin(), run.frames[1].grey.data.end(), std::uint8_t{128});
+  const auto reports = track(run, config_of("full"));
+  EXPECT_EQ(reports[0].reason, "waiting for a usable first frame: short-of-depth");
+  EXPECT_EQ(reports[1].reason, "waiting for a usable first frame: short-of-texture");
+  EXPECT_EQ(reports[2].status, FrameStatus::initialised);
+  EXPECT_EQ(tracked(reports), kFrames - 3);
+}
+
+TEST(Pipeline, AnAbsurdInertialSampleLosesAFrameAndPoisonsNothing) {
+  for (const double absurd : {4e9, 1e20, -3e38, 1e308}) {
+    for (const auto member : {&ImuSample::angular_velocity_radps, &ImuSample::specific_force_mps2}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        SCOPED_TRACE(::testing::Message() << absurd << " on axis " << axis);
+        SimulatedRun disturbed = shared_run();
+        const std::int64_t at_ns = disturbed.frames[5].timestamp_ns + 10'000'000;
+        const auto sample = std::ranges::lower_bound(disturbed.imu, at_ns, {}, &ImuSample::timestamp_ns);
+        ((*sample).*member)[axis] = absurd;
+        const auto reports = track(disturbed, config_of("full"));
+        ASSERT_EQ(reports.size(), static_cast<std::size_t>(kFrames));
+        for (const FrameReport& report : reports) {
+          EXPECT_TRUE(report.estimate.covariance.allFinite());
+          EXPECT_TRUE(report.T_world_camera.translation.allFinite());
+          EXPECT_TRUE(report.T_world_camera.rotation.coeffs().allFinite());
+          if (report.status == FrameStatus::lost) EXPECT_FALSE(report.reason.empty());
+        }
+        EXPECT_EQ(reports[6].status, FrameStatus::lost);
+        EXPECT_EQ(reports[6].health, FrameHealth::diverged);
+        EXPECT_NE(reports[6].reason.find("not finite"), std::string::npos) << reports[6].reason;
+        EXPECT_NE(reports.back().status, FrameStatus::lost) << reports.back().reason;
+        EXPECT_LT(
+            (reports.back().T_world_camera.translation - disturbed.T_first_camera.back().translation).norm(),
+            0.02);
+      }
+    }
+  }
 }
 
 TEST(Pipeline, MissingImuIsAnErrorThatSaysWhichTimes) {

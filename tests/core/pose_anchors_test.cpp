@@ -39,7 +39,7 @@ GaussianState uncertain_at(const SE3& T, double variance) {
 TEST(PoseAnchors, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   for (const double share : {0.0, 0.3, 1.0}) {
-    const GaussianState after = anchored(before, {.share = share});
+    const GaussianState after = cloned_after_fusion(before, {.share = share});
     const Matrix6d against_model = after.covariance.topLeftCorner<kPoseSize, kPoseSize>();
     EXPECT_LT((against_model - (1 - share) * (1 - share) * 1e-4 * Matrix6d::Identity()).norm(), 1e-15);
     const Matrix6d in_world = in_first_camera_world(after).covariance.topLeftCorner<kPoseSize, kPoseSize>();
@@ -48,7 +48,7 @@ TEST(PoseAnchors, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
 }
 
 TEST(PoseAnchors, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
-  const GaussianState state = anchored(uncertain_at(kTo, 1e-4), {});
+  const GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-4), {});
   const auto combinations = measured_combinations(state.mean);
   const MeasuredMatrix measured = combinations * state.covariance * combinations.transpose();
   EXPECT_LT((measured.topLeftCorner<kPoseSize, kPoseSize>()).norm(), 1e-15);
@@ -92,7 +92,7 @@ TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal(0.0, kSigma);
     for (int run = 0; run < kRuns; ++run) {
-      GaussianState state = anchored(known_at(SE3{}), {});
+      GaussianState state = cloned_after_fusion(known_at(SE3{}), {});
       SE3 reference_truth;  // where the reference frame truly is
       for (int step = 0; step < kSteps; ++step) {
         state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += Matrix6d::Identity();  // it may have moved
@@ -102,7 +102,7 @@ TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
         const SE3 seen = pose_plus(state.mean.T_world_imu_reference * reference_truth.inverse(), noise);
         KnownMeasurement measurement(seen, pose_plus(SE3{}, noise), by_model ? 0.0 : kSigma,
                                      by_model ? kSigma : 0.0);
-        state = anchored(iekf_update(state, measurement, IekfConfig{}).posterior, {});
+        state = cloned_after_fusion(iekf_update(state, measurement, IekfConfig{}).posterior, {});
       }
       squared += state.mean.T_world_imu.translation.squaredNorm() / kRuns;
       claimed = in_first_camera_world(state).covariance.block<3, 3>(kPosition, kPosition).trace();
@@ -117,7 +117,7 @@ TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
 TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
   // Without an anchor in between (an occluded frame is tracked, but nothing is cut from it) the next frame is
   // compared with the same patches: what was learnt of the reference pose must not count as motion.
-  GaussianState state = anchored(uncertain_at(kTo, 1e-6), {});
+  GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
   state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
   Vector6d off;
   off << 2e-4, -1e-4, 3e-4, 1e-3, -2e-3, 1e-3;
@@ -129,7 +129,7 @@ TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
   // It stands still, and the second image says exactly what the first one said.
   KnownMeasurement second(kTo, by_model, 1e-3, 1e-3);
   GaussianState again = iekf_update(state, second, IekfConfig{}).posterior;
-  GaussianState once = anchored(uncertain_at(kTo, 1e-6), {});
+  GaussianState once = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
   once.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
   KnownMeasurement both(kTo, by_model, 1e-3 / std::sqrt(2.0), 1e-3 / std::sqrt(2.0));
   once = iekf_update(once, both, IekfConfig{}).posterior;
@@ -139,7 +139,7 @@ TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
 
 TEST(PoseAnchors, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
-  const GaussianState after = anchored(before, {.share = 0.1, .factor = 5});
+  const GaussianState after = cloned_after_fusion(before, {.share = 0.1, .factor = 5});
   EXPECT_NEAR(after.covariance(kPosition, kPosition), 0.81e-4, 1e-12);
   EXPECT_NEAR(after.covariance(kModelPose, kModelPose), 0.01e-4 * 25, 1e-12);
   EXPECT_NEAR(after.covariance(kModelPose + 3, kModelPose + 3), 0.01e-4 * 25, 1e-12);

@@ -1,4 +1,4 @@
-#include "core/resumption.hpp"
+#include "core/relocalisation_update.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -21,30 +21,29 @@ StateMatrix motion_inflated(const StateMatrix& covariance, double factor) {
   return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
 
-/// What was known of three components is forgotten.
-void forget(StateMatrix& covariance, int offset, double sigma) {
+/// Three components get a prior of their own, uncorrelated with the rest.
+void reset_covariance(StateMatrix& covariance, int offset, double sigma) {
   covariance.middleRows<3>(offset).setZero();
   covariance.middleCols<3>(offset).setZero();
   covariance.block<3, 3>(offset, offset).diagonal().setConstant(sigma * sigma);
 }
 
-/// The prediction as it may be trusted, now that it is contradicted.
-GaussianState distrusted(const GaussianState& prediction, double contradiction,
-                         const UnknownMotion& unknown) {
+/// The prediction with its covariance inflated by the innovation.
+GaussianState inflated(const GaussianState& prediction, double innovation, const UnknownMotion& unknown) {
   GaussianState state{prediction.mean,
-                      motion_inflated(prediction.covariance, std::sqrt(std::max(1.0, contradiction)))};
-  if (contradiction <= kSurprise) return state;
+                      motion_inflated(prediction.covariance, std::sqrt(std::max(1.0, innovation)))};
+  if (innovation <= kInconsistentInnovation) return state;
   state.mean.velocity_world_mps.setZero();
-  forget(state.covariance, kVelocity, unknown.velocity_sigma_mps);
+  reset_covariance(state.covariance, kVelocity, unknown.velocity_sigma_mps);
   if (unknown.angular_velocity_sigma_radps > 0) {
     state.mean.angular_velocity_imu_radps.setZero();
-    forget(state.covariance, kAngularVelocity, unknown.angular_velocity_sigma_radps);
+    reset_covariance(state.covariance, kAngularVelocity, unknown.angular_velocity_sigma_radps);
   }
   return state;
 }
 
-/// The patches are of another frame from now on, whose error nothing else in the state tells.
-GaussianState referred(const GaussianState& state, const RecognisedPlace& place) {
+/// The keyframe becomes the reference pose; its error is not correlated with the rest of the state.
+GaussianState with_reference_pose(const GaussianState& state, const RelocalisedPose& place) {
   const Matrix6d carried = pose_transport(place.T_world_imu_reference, state.mean.T_world_imu_reference);
   StateMatrix refer = StateMatrix::Identity();
   refer.middleRows<kPoseSize>(kReferencePose).setZero();
@@ -59,7 +58,7 @@ GaussianState referred(const GaussianState& state, const RecognisedPlace& place)
 
 }  // namespace
 
-double contradiction(const GaussianState& prediction, const RecognisedPlace& place) {
+double normalised_innovation(const GaussianState& prediction, const RelocalisedPose& place) {
   const Matrix6d carried = pose_transport(place.T_world_imu, place.T_world_imu_reference);
   const Matrix6d expected = prediction.covariance.topLeftCorner<kPoseSize, kPoseSize>() + place.covariance +
                             carried * place.reference_covariance * carried.transpose();
@@ -67,10 +66,10 @@ double contradiction(const GaussianState& prediction, const RecognisedPlace& pla
   return innovation.dot(expected.ldlt().solve(innovation)) / kPoseSize;
 }
 
-GaussianState resumed(const GaussianState& prediction, const RecognisedPlace& place,
-                      const UnknownMotion& unknown) {
+GaussianState relocalisation_update(const GaussianState& prediction, const RelocalisedPose& place,
+                                    const UnknownMotion& unknown) {
   const GaussianState prior =
-      referred(distrusted(prediction, contradiction(prediction, place), unknown), place);
+      with_reference_pose(inflated(prediction, normalised_innovation(prediction, place), unknown), place);
   // The match tells the pose against that frame, wherever the frame is.
   Eigen::Matrix<double, kPoseSize, kStateSize> matched = Eigen::Matrix<double, kPoseSize, kStateSize>::Zero();
   matched.leftCols<kPoseSize>().setIdentity();

@@ -1,4 +1,4 @@
-#include "core/resumption.hpp"
+#include "core/relocalisation_update.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,8 +31,8 @@ GaussianState lost_at(const SE3& T_world_imu, double velocity_sigma_mps, double 
   return state;
 }
 
-RecognisedPlace place_at(const SE3& T_world_imu, double sigma) {
-  RecognisedPlace place{T_world_imu, kReference};
+RelocalisedPose place_at(const SE3& T_world_imu, double sigma) {
+  RelocalisedPose place{T_world_imu, kReference};
   place.covariance = sigma * sigma * Matrix6d::Identity();
   place.reference_covariance = 1e-6 * Matrix6d::Identity();
   return place;
@@ -42,7 +42,7 @@ TEST(Resumption, AnExactPlaceIsTakenAndTellsTheVelocity) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.10, -0.05, 0.02;
   const SE3 found = pose_plus(kPredicted, off);
-  const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place_at(found, 1e-6), {});
+  const GaussianState state = relocalisation_update(lost_at(kPredicted, 0.2, 0.5), place_at(found, 1e-6), {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 2e-3);  // the reference may be off by that
   // The position was wrong because the velocity was, for half a second.
   EXPECT_LT((state.mean.velocity_world_mps - Vector3d(0.5, -0.2, 0.1) - off.tail<3>() / 0.5).norm(), 1e-4);
@@ -53,9 +53,9 @@ TEST(Resumption, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.02, -0.05, 0.02;  // well within the prediction's uncertainty
   const GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
-  RecognisedPlace place = place_at(pose_plus(kPredicted, off), 0.01);
+  RelocalisedPose place = place_at(pose_plus(kPredicted, off), 0.01);
   place.reference_covariance.setZero();
-  const GaussianState state = resumed(prediction, place, {});
+  const GaussianState state = relocalisation_update(prediction, place, {});
 
   const Matrix6d P = prediction.covariance.topLeftCorner<kPoseSize, kPoseSize>();
   const Matrix6d expected = P * (P + place.covariance).inverse();
@@ -68,20 +68,21 @@ TEST(Resumption, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
 
 TEST(Resumption, ContradictionIsTheInnovationInStandardDeviations) {
   GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
-  RecognisedPlace place = place_at(kPredicted, 0.01);
+  RelocalisedPose place = place_at(kPredicted, 0.01);
   place.reference_covariance.setZero();
-  EXPECT_NEAR(contradiction(prediction, place), 0.0, 1e-20);
+  EXPECT_NEAR(normalised_innovation(prediction, place), 0.0, 1e-20);
   Vector6d off = Vector6d::Zero();
   off[4] = 0.3;  // of sigma 0.1 and 0.01
   place.T_world_imu = pose_plus(kPredicted, off);
-  EXPECT_NEAR(contradiction(prediction, place), 0.09 / (0.01 + 0.0001) / 6, 1e-9);
+  EXPECT_NEAR(normalised_innovation(prediction, place), 0.09 / (0.01 + 0.0001) / 6, 1e-9);
 }
 
 TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
   Vector6d off;
   off << 0.3, -0.2, 0.4, 2.0, -1.0, 0.5;  // tens of standard deviations
   const SE3 found = pose_plus(kPredicted, off);
-  const GaussianState state = resumed(lost_at(kPredicted, 0.01, 0.5), place_at(found, 0.01), {});
+  const GaussianState state =
+      relocalisation_update(lost_at(kPredicted, 0.01, 0.5), place_at(found, 0.01), {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 0.1);
   EXPECT_EQ(state.covariance(kGyroscopeBias, kGyroscopeBias), 1e-6);  // not contradicted by a place
   // Nothing moves like that: how fast it was tells nothing of how fast it is.
@@ -90,8 +91,8 @@ TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
 }
 
 TEST(Resumption, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
-  const RecognisedPlace place = place_at(kPredicted, 0.001);
-  const GaussianState state = resumed(lost_at(kPredicted, 0.2, 0.5), place, {});
+  const RelocalisedPose place = place_at(kPredicted, 0.001);
+  const GaussianState state = relocalisation_update(lost_at(kPredicted, 0.2, 0.5), place, {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu_reference, kReference).norm(), 1e-15);
   EXPECT_EQ(state.mean.reference_offset.norm(), 0);  // the place was where the filter thought
   // Against that frame the pose is as certain as the match, whatever the frame's own error.

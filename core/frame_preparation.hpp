@@ -1,0 +1,47 @@
+// What is derived from a frame before it is used: one instant for all rows, an image pyramid, depth gates.
+// Not in the paper.
+#pragma once
+
+#include <vector>
+
+#include "core/camera_motion.hpp"
+#include "core/config.hpp"
+#include "core/parallel.hpp"
+#include "core/patch_measurement.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// The current frame, prepared. Its memory serves one frame after the other.
+class FramePreparation {
+ public:
+  /// All references must outlive it.
+  FramePreparation(const Config& config, const SensorRig& rig, const Workers& workers)
+      : config_(config), rig_(rig), workers_(workers) {}
+
+  /// True if rows or depth of the frame are of other instants than the frame, and the variant undoes that.
+  [[nodiscard]] bool compensates(const RgbdFrame& frame) const;
+
+  /// Grey and depth, compensated for the motion (if there is anything to compensate) and gated. Colour has to
+  /// wait for prepare_color().
+  void prepare(const RgbdFrame& frame, const FilterState& motion);
+
+  /// Colour of the frame that was prepared last, if it was compensated. Apart, since only frames that are
+  /// fused need it.
+  void prepare_color(const RgbdFrame& frame);
+
+  [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
+  [[nodiscard]] const std::vector<GreyImage>& pyramid() const { return pyramid_; }
+  [[nodiscard]] ObservedFrame observed() const { return {pyramid_, frame_.depth_m}; }
+
+ private:
+  const Config& config_;
+  const SensorRig& rig_;
+  const Workers& workers_;
+  std::vector<GreyImage> pyramid_;
+  RgbdFrame frame_;             ///< compensated ones have the colour of an earlier one until prepare_color()
+  DepthImage ungated_depth_m_;  ///< before the gates
+  CameraVelocity velocity_;     ///< that it was compensated for, if at all
+};
+
+}  // namespace fusebench

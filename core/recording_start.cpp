@@ -1,0 +1,72 @@
+#include "core/recording_start.hpp"
+
+#include <fmt/format.h>
+
+namespace fusebench {
+
+namespace {
+
+Result<FrameReport> process_again(const RgbdFrame& first_frame, const RgbdFrame& second_frame,
+                                  StageTimes so_far, RestartableEstimator& estimator) {
+  const FilterState motion = estimator.estimate()->mean;
+  estimator.restart(motion);
+  const Result<FrameReport> first = estimator.process_frame(first_frame);
+  if (!first) return first;
+  Result<FrameReport> second = estimator.process_frame(second_frame);
+  if (!second) return second;
+  so_far.add(first->stages);
+  so_far.add(second->stages);
+  second->stages = so_far;
+  return second;
+}
+
+void wait(FrameReport& report, RestartableEstimator& estimator) {
+  report.status = FrameStatus::lost;
+  report.reason = fmt::format("waiting for a usable first frame: {}", to_string(report.health));
+  report.model_blocks = 0;
+  estimator.restart(std::nullopt);
+}
+
+}  // namespace
+
+Result<FrameReport> RecordingStart::process(const RgbdFrame& frame, RestartableEstimator& estimator) {
+  if (!estimator.estimate()) return process_first(frame, estimator);
+  Result<FrameReport> report = estimator.process_frame(frame);
+  if (!report || confirmed_) return report;
+  if (is_false_start(*report)) {
+    StageTimes so_far = report->stages;
+    estimator.restart(std::nullopt);
+    report = process_first(frame, estimator);
+    if (!report) return report;
+    so_far.add(report->stages);
+    report->stages = so_far;
+    if (report->status == FrameStatus::initialised)
+      report->reason = "started again: no frame could be tracked from the first start";
+    return report;
+  }
+  confirmed_ = report->status != FrameStatus::lost;
+  if (confirmed_ && first_frame_) report = process_again(*first_frame_, frame, report->stages, estimator);
+  first_frame_.reset();
+  return report;
+}
+
+Result<FrameReport> RecordingStart::process_first(const RgbdFrame& frame, RestartableEstimator& estimator) {
+  Result<FrameReport> report = estimator.process_frame(frame);
+  if (report && report->status == FrameStatus::initialised && report->health != FrameHealth::good)
+    wait(*report, estimator);
+  first_frame_ = frame;
+  lost_frames_ = 0;
+  return report;
+}
+
+/// A frame that is lost although its images are sound does not show what the first one showed.
+bool RecordingStart::is_false_start(const FrameReport& report) {
+  constexpr int kMostLostFrames = 5;  // relocalisation has had its chances
+  if (report.status != FrameStatus::lost) return false;
+  const bool sound = report.health != FrameHealth::dark && report.health != FrameHealth::diverged &&
+                     report.health != FrameHealth::short_of_depth &&
+                     report.health != FrameHealth::short_of_texture;
+  return ++lost_frames_ >= kMostLostFrames && sound;
+}
+
+}  // namespace fusebench

@@ -1,0 +1,53 @@
+// Where and how a recording starts. Not in the paper.
+//
+// The first frames may be of no use: an automatic exposure begins in the dark. Frames that nothing could be
+// tracked from are lost, until there is one that can be the first. If then nothing is tracked from it either
+// (it was only dim), the estimator starts again at a later frame.
+//
+// A recording that starts in motion starts with a velocity that nobody knows. The first two frames tell it,
+// so they are processed again with it: the first one is then compensated properly, and the second one
+// predicted well.
+#pragma once
+
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/filter_state.hpp"
+#include "core/frame_report.hpp"
+#include "core/types.hpp"
+
+namespace fusebench {
+
+/// An estimator that can begin again.
+class RestartableEstimator {
+ public:
+  RestartableEstimator() = default;
+  RestartableEstimator(const RestartableEstimator&) = delete;
+  RestartableEstimator& operator=(const RestartableEstimator&) = delete;
+  virtual ~RestartableEstimator() = default;
+
+  /// The first frame (status initialised) has the health of judge_start().
+  [[nodiscard]] virtual Result<FrameReport> process_frame(const RgbdFrame& frame) = 0;
+  /// The state after the last frame; nothing before the first one.
+  [[nodiscard]] virtual const std::optional<GaussianState>& estimate() const = 0;
+  /// Forgets all frames, to begin with the velocities of this state if there is one.
+  virtual void restart(const std::optional<FilterState>& motion) = 0;
+};
+
+class RecordingStart {
+ public:
+  /// Processes the next frame. One that cannot be the first is lost, and its reason says so. The second one
+  /// is processed together with the first one again; its report has the time of all of that. A later start
+  /// has the status initialised and a reason: the frames before do not count any more.
+  [[nodiscard]] Result<FrameReport> process(const RgbdFrame& frame, RestartableEstimator& estimator);
+
+ private:
+  [[nodiscard]] Result<FrameReport> process_first(const RgbdFrame& frame, RestartableEstimator& estimator);
+  [[nodiscard]] bool is_false_start(const FrameReport& report);
+
+  std::optional<RgbdFrame> first_frame_;  ///< until the second one was processed
+  bool confirmed_ = false;                ///< a frame was tracked after the first one
+  int lost_frames_ = 0;                   ///< since the first one
+};
+
+}  // namespace fusebench
