@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/pipeline.hpp"
+#include "core/frame_report.hpp"
 #include "core/types.hpp"
 
 namespace fusebench {

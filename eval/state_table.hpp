@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/pipeline.hpp"
+#include "core/frame_report.hpp"
 
 namespace fusebench {
 

@@ -12,7 +12,7 @@
 #include <cstddef>
 
 #include "core/geometry.hpp"
-#include "core/pipeline.hpp"
+#include "core/frame_report.hpp"
 
 namespace fusebench {
 

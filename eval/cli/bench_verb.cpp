@@ -12,7 +12,7 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/engine_console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/run_verbs.hpp"
 #include "eval/engine/invocation.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/engine/plan_preview.hpp"

@@ -7,7 +7,7 @@
 #include "eval/aggregate/best.hpp"
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/run_verbs.hpp"
 
 namespace fusebench {
 

@@ -9,7 +9,7 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/run_request.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/recording_verbs.hpp"
 #include "eval/run.hpp"
 #include "eval/text_file.hpp"
 

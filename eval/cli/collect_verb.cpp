@@ -9,7 +9,7 @@
 #include "eval/aggregate/long_table.hpp"
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/run_verbs.hpp"
 #include "eval/text_file.hpp"
 
 namespace fusebench {

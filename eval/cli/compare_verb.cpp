@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eval/cli/console.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/result_verbs.hpp"
 #include "eval/compare/comparison.hpp"
 #include "eval/compare/comparison_formats.hpp"
 #include "eval/compare/gates.hpp"

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "eval/cli/eval_verbs.hpp"
-#include "eval/cli/verbs.hpp"
 
 namespace fusebench {
 

@@ -8,7 +8,7 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/reading_options.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/run_verbs.hpp"
 #include "eval/imported_run.hpp"
 #include "eval/suites/experiment.hpp"
 

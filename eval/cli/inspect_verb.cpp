@@ -12,7 +12,7 @@
 #include "eval/cli/console.hpp"
 #include "eval/cli/reading_options.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/recording_verbs.hpp"
 #include "eval/report/inspection_json.hpp"
 #include "eval/report/inspection_page.hpp"
 #include "eval/report/inspection_text.hpp"

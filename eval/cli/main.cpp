@@ -12,6 +12,10 @@
 #include "core/nearest_name.hpp"
 #include "eval/build_info.hpp"
 #include "eval/cli/console.hpp"
+#include "eval/cli/eval_verbs.hpp"
+#include "eval/cli/recording_verbs.hpp"
+#include "eval/cli/result_verbs.hpp"
+#include "eval/cli/run_verbs.hpp"
 #include "eval/cli/verbs.hpp"
 
 namespace fusebench {

@@ -8,7 +8,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/result_verbs.hpp"
 #include "eval/found_runs.hpp"
 #include "eval/report/figures.hpp"
 #include "eval/report/results/results_page.hpp"

@@ -9,7 +9,7 @@
 
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/run_verbs.hpp"
 #include "eval/engine/run_folders.hpp"
 #include "eval/json_text.hpp"
 

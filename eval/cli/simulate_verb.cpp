@@ -8,7 +8,7 @@
 #include "datasets/simulator/simulation.hpp"
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/recording_verbs.hpp"
 #include "eval/json_text.hpp"
 #include "eval/suites/simulation_request.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "eval/cli/console.hpp"
 #include "eval/cli/shared_options.hpp"
-#include "eval/cli/verbs.hpp"
+#include "eval/cli/result_verbs.hpp"
 #include "eval/report/paper_table.hpp"
 #include "eval/report/table.hpp"
 

@@ -39,15 +39,15 @@ expect_accepted() {
   fi
 }
 
-both='#include "datasets/recording.hpp"\n#include "core/pipeline.hpp"'
+both='#include "datasets/recording.hpp"\n#include "core/frame_report.hpp"'
 
 expect_refused core/iekf.cpp '#include "datasets/recording.hpp"' 'core never includes'
 expect_refused core/iekf.hpp '  #  include "eval/statistics.hpp"' 'core never includes'
 expect_refused core/iekf.cpp '#include <fusebench/eval/run.hpp>' 'core never includes'
 expect_refused datasets/tum_rgbd.cpp '#include "eval/run.hpp"' 'datasets never includes eval'
-expect_refused eval/mesh/mesh_metrics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
+expect_refused eval/mesh/mesh_metrics.cpp '#include "core/frame_report.hpp"' 'metrics never include'
 expect_refused eval/trajectory_metrics.hpp '#include "datasets/recording.hpp"' 'metrics never include'
-expect_refused eval/statistics.cpp '#include "core/pipeline.hpp"' 'metrics never include'
+expect_refused eval/statistics.cpp '#include "core/frame_report.hpp"' 'metrics never include'
 expect_refused eval/trajectory/alignment.cpp '#include "datasets/recording.hpp"' 'metrics never include'
 expect_refused eval/record.cpp "$both" 'know both'
 expect_refused eval/run.hpp "$both" 'know both'
