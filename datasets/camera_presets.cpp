@@ -50,6 +50,8 @@ std::vector<std::string_view> preset_names() {
   return names;
 }
 
+constexpr double kMostOfCamera = 1e6;  // pixels, or of a coefficient of distortion
+
 Result<CalibratedCamera> camera_from_numbers(std::string_view text,
                                              const std::vector<std::string_view>& fields) {
   std::array<double, 9> value{};
@@ -57,6 +59,10 @@ Result<CalibratedCamera> camera_from_numbers(std::string_view text,
     const Result<double> number = parse_number(fields[i]);
     if (!number)
       return fail(ErrorCode::configuration, fmt::format("camera = {}: {}", text, number.error().message));
+    if (std::abs(*number) > kMostOfCamera) {
+      return fail(ErrorCode::configuration, fmt::format("camera = {}: {} (allowed {:g} .. {:g})", text,
+                                                        fields[i], -kMostOfCamera, kMostOfCamera));
+    }
     value[i] = *number;
   }
   if (value[0] <= 0 || value[1] <= 0) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <system_error>
 #include <utility>
@@ -18,6 +19,7 @@ namespace fusebench {
 namespace {
 
 constexpr double kUnitsPerMetre = 5000;
+constexpr double kMost_px = 1e6;
 
 /// One row of intrinsics; a second one is an error.
 Result<RigCalibration> read_intrinsics(const std::filesystem::path& file) {
@@ -31,8 +33,9 @@ Result<RigCalibration> read_intrinsics(const std::filesystem::path& file) {
     if (!*got) break;
     if (++rows > 1) return table->fail_here("a second row; expected one row: fx fy cx cy");
     if (const auto read = table->numbers(0, k); !read) return tl::unexpected(read.error());
-    if (!(k[0] > 0 && k[1] > 0 && k[2] > 0 && k[3] > 0))
-      return table->fail_here("fx, fy, cx and cy must be above 0");
+    if (!std::ranges::all_of(k, [](double value) { return value > 0 && value <= kMost_px; }))
+      return table->fail_here(
+          fmt::format("fx, fy, cx and cy must be above 0 and at most {:g} pixels", kMost_px));
   }
   if (rows == 0)
     return fail(ErrorCode::data_corrupt, fmt::format("{}: has no row (expected fx fy cx cy)", file.string()));

@@ -113,11 +113,12 @@ Result<void> read_truth(const SceneFiles& files, const RigCalibration& calibrati
 }
 
 DepthReader ray_depth(PinholeCamera camera, double units_per_metre) {
-  return [camera, units_per_metre](const std::filesystem::path& file, const ImageSize& expected) {
+  return [camera, units_per_metre](const std::filesystem::path& file, const ImageSize& expected,
+                                   const std::optional<ContentHash>& opened) {
     PinholeCamera sized = camera;
     sized.width_px = expected.width_px;
     sized.height_px = expected.height_px;
-    return read_povray_depth(file, sized, units_per_metre);
+    return read_povray_depth(file, sized, units_per_metre, opened);
   };
 }
 

@@ -15,6 +15,7 @@
 
 #include "core/printable.hpp"
 #include "core/text_table.hpp"
+#include "datasets/file_content.hpp"
 
 namespace fusebench {
 
@@ -175,11 +176,12 @@ SE3 pose_of(const PovrayCamera& camera, double units_per_metre) {
 }
 
 Result<DepthImage> read_povray_depth(const std::filesystem::path& file, const PinholeCamera& camera,
-                                     double units_per_metre) {
+                                     double units_per_metre, const std::optional<ContentHash>& opened) {
   const std::size_t count =
       static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
   const auto text = read_text(file, kLongestNumber * (count + 1));
   if (!text) return tl::unexpected(text.error());
+  if (const auto same = check_unchanged(file, *text, opened); !same) return tl::unexpected(same.error());
   const auto lengths = parse_lengths(file, *text, count);
   if (!lengths) return tl::unexpected(lengths.error());
   DepthImage depth_m(camera.width_px, camera.height_px);

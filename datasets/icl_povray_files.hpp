@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/fingerprint.hpp"
 #include "core/geometry.hpp"
 #include "core/image.hpp"
 #include "core/types.hpp"
@@ -31,9 +33,10 @@ struct PovrayCamera {
 
 /// A .depth file: one decimal number a pixel, row by row: the length of the ray from the camera's centre.
 /// Returns z-depth in metres: length / sqrt(((u - cx) / fx)^2 + ((v - cy) / fy)^2 + 1). A ray of more than
-/// 1000 m has hit nothing: 0. camera must have its size. Errors: data_missing, data_corrupt (a number that is
-/// negative or none, too few or too many numbers).
+/// 1000 m has hit nothing: 0. camera must have its size; opened: the bytes that the file must have. Errors:
+/// data_missing, data_corrupt (changed, a number that is negative or none, too few or too many numbers).
 [[nodiscard]] Result<DepthImage> read_povray_depth(const std::filesystem::path& file,
-                                                   const PinholeCamera& camera, double units_per_metre);
+                                                   const PinholeCamera& camera, double units_per_metre,
+                                                   const std::optional<ContentHash>& opened = std::nullopt);
 
 }  // namespace fusebench

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "datasets/file_content.hpp"
 #include "datasets/image_library_loader.hpp"
 #include "datasets/plain_png.hpp"
 #include "datasets/png_check.hpp"
@@ -89,9 +90,17 @@ Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout&
 
 /// What the recordings at hand consist of takes the short way; whatever is not as it should be is left to the
 /// library, which knows why.
-template <class Pixel>
-Result<Image<Pixel>> plain_or_any(std::optional<Image<Pixel>> plain, const std::filesystem::path& file,
-                                  const Layout& layout, std::optional<ImageSize> expected) {
+template <class Pixel, class Decode>
+Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
+                                  const Layout& layout, std::optional<ImageSize> expected,
+                                  const std::optional<ContentHash>& opened) {
+  ByteBuffer content = content_of(file);
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) {  // else its absence is what is wrong
+    if (const auto same = check_unchanged(file, content.text(), opened); !same)
+      return tl::unexpected(same.error());
+  }
+  std::optional<Image<Pixel>> plain = decode_plain(std::move(content));
   const bool good = plain && (!expected || *expected == ImageSize{plain->width, plain->height});
   return good ? Result<Image<Pixel>>(std::move(*plain)) : read_image<Pixel>(file, layout, expected);
 }
@@ -118,9 +127,10 @@ Result<ImageSize> read_image_size(const std::filesystem::path& file) {
   return ImageSize{opened->header.width_px, opened->header.height_px};
 }
 
-Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<ImageSize> expected) {
-  return plain_or_any(read_plain_png_color(file), file,
-                      {3, SampleType::uint8, "an RGB image with 8 bits a channel"}, expected);
+Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<ImageSize> expected,
+                              const std::optional<ContentHash>& opened) {
+  return plain_or_any<Rgb>(decode_plain_png_color, file,
+                           {3, SampleType::uint8, "an RGB image with 8 bits a channel"}, expected, opened);
 }
 
 Result<GreyImage> read_grey(const std::filesystem::path& file, std::optional<ImageSize> expected) {
@@ -128,9 +138,10 @@ Result<GreyImage> read_grey(const std::filesystem::path& file, std::optional<Ima
 }
 
 Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
-                                          std::optional<ImageSize> expected) {
-  return plain_or_any(read_plain_png_grey16(file), file, {1, SampleType::uint16, "a grey image with 16 bits"},
-                      expected);
+                                          std::optional<ImageSize> expected,
+                                          const std::optional<ContentHash>& opened) {
+  return plain_or_any<std::uint16_t>(decode_plain_png_grey16, file,
+                                     {1, SampleType::uint16, "a grey image with 16 bits"}, expected, opened);
 }
 
 Result<void> write_png(const std::filesystem::path& file, const ColorImage& image) {

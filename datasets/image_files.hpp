@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/fingerprint.hpp"
 #include "core/image.hpp"
 
 namespace fusebench {
@@ -22,19 +23,22 @@ struct ImageSize {
 /// Size as the header says. Errors as below.
 [[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
 
-/// Reads an image with three channels of 8 bits. expected: the size that it must have.
-/// Errors: data_missing (no such file); data_corrupt (unreadable, truncated, other channels, bit depth or
-/// size); io (there is no image library, and this image needs it).
+/// Reads an image with three channels of 8 bits. expected: the size that it must have; opened: the bytes that
+/// the file must have, those which it had when its recording was opened.
+/// Errors: data_missing (no such file); data_corrupt (changed, unreadable, truncated, other channels, bit
+/// depth or size); io (there is no image library, and this image needs it).
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
-                                            std::optional<ImageSize> expected = std::nullopt);
+                                            std::optional<ImageSize> expected = std::nullopt,
+                                            const std::optional<ContentHash>& opened = std::nullopt);
 
 /// Reads an image with one channel of 8 bits. Errors as read_color().
 [[nodiscard]] Result<GreyImage> read_grey(const std::filesystem::path& file,
                                           std::optional<ImageSize> expected = std::nullopt);
 
 /// Reads an image with one channel of 16 bits, raw values. Errors as read_color().
-[[nodiscard]] Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
-                                                        std::optional<ImageSize> expected = std::nullopt);
+[[nodiscard]] Result<Image<std::uint16_t>> read_depth16(
+    const std::filesystem::path& file, std::optional<ImageSize> expected = std::nullopt,
+    const std::optional<ContentHash>& opened = std::nullopt);
 
 /// A JPEG file in memory. quality: 1 to 100. Errors: io.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality);

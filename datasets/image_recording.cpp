@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/fingerprint.hpp"
 #include "core/trajectory_file.hpp"
 #include "datasets/depth_registration.hpp"
 
@@ -16,16 +15,23 @@ namespace fusebench {
 
 namespace {
 
+/// Of a frame's two files.
+struct ImageHashes {
+  ContentHash color;
+  ContentHash depth;
+};
+
 /// Everything that a frame needs after opening; shared by all copies of the recording.
 struct FrameLoader {
   std::vector<FrameEntry> frames;
+  std::vector<ImageHashes> opened;  ///< of each frame's images, as the fingerprint has them
   Undistortion undistortion;
   std::optional<DepthRegistration> registration;
   DepthReader read_depth;
 
-  [[nodiscard]] Result<DepthImage> load_depth(const FrameEntry& entry) const {
+  [[nodiscard]] Result<DepthImage> load_depth(std::size_t index) const {
     const PinholeCamera& own = registration ? registration->depth_camera() : undistortion.camera();
-    auto depth = read_depth(entry.depth_file, {own.width_px, own.height_px});
+    auto depth = read_depth(frames[index].depth_file, {own.width_px, own.height_px}, opened[index].depth);
     if (!depth) return depth;
     return registration ? registration->register_depth(*depth) : undistortion.undistort_depth(*depth);
   }
@@ -34,9 +40,10 @@ struct FrameLoader {
     check(index < frames.size(), "the frame exists");
     const FrameEntry& entry = frames[index];
     const PinholeCamera& camera = undistortion.camera();
-    const auto color = read_color(entry.color_file, ImageSize{camera.width_px, camera.height_px});
+    const auto color =
+        read_color(entry.color_file, ImageSize{camera.width_px, camera.height_px}, opened[index].color);
     if (!color) return tl::unexpected(color.error());
-    auto depth = load_depth(entry);
+    auto depth = load_depth(index);
     if (!depth) return tl::unexpected(depth.error());
     RgbdFrame frame;
     frame.timestamp_ns = entry.timestamp_ns;
@@ -111,22 +118,32 @@ void add_samples(Fingerprint& fingerprint, const Recording& recording) {
   }
 }
 
+/// What was read to identify the recording.
+struct Identity {
+  std::string fingerprint;
+  std::vector<ImageHashes> images;  ///< of each frame
+};
+
 /// The values that are used, not the text around them: a comment or a line ending does not make another
 /// recording.
-Result<std::string> fingerprint_of(const Recording& recording, const ImageDecoding& decoding,
-                                   const CalibratedCamera& camera) {
+Result<Identity> identity_of(const Recording& recording, const ImageDecoding& decoding,
+                             const CalibratedCamera& camera) {
   Fingerprint fingerprint;
+  Identity identity;
+  identity.images.reserve(recording.frames.size());
   add_sensors(fingerprint, recording, decoding, camera);
   add_samples(fingerprint, recording);
   for (const FrameEntry& frame : recording.frames) {
     fingerprint.add(fmt::format("frame {} {} {} {}", frame.timestamp_ns, frame.depth_timestamp_ns,
                                 frame.capture_ns, frame.depth_capture_ns));
-    for (const auto& file : {frame.color_file, frame.depth_file}) {
-      const Result<void> added = fingerprint.add_file(file);
-      if (!added) return tl::unexpected(added.error());
-    }
+    const auto color = fingerprint.add_file(frame.color_file);
+    if (!color) return tl::unexpected(color.error());
+    const auto depth = fingerprint.add_file(frame.depth_file);
+    if (!depth) return tl::unexpected(depth.error());
+    identity.images.push_back({*color, *depth});
   }
-  return fingerprint.hex();
+  identity.fingerprint = fingerprint.hex();
+  return identity;
 }
 
 /// The images decide what is used: an IMU of another time is an error, one that begins late or ends early a
@@ -198,12 +215,12 @@ DepthImage in_metres(const Image<std::uint16_t>& values, double units_per_metre)
 }  // namespace
 
 DepthReader png_depth(double units_per_metre) {
-  return
-      [units_per_metre](const std::filesystem::path& file, const ImageSize& expected) -> Result<DepthImage> {
-        const auto values = read_depth16(file, expected);
-        if (!values) return tl::unexpected(values.error());
-        return in_metres(*values, units_per_metre);
-      };
+  return [units_per_metre](const std::filesystem::path& file, const ImageSize& expected,
+                           const std::optional<ContentHash>& opened) -> Result<DepthImage> {
+    const auto values = read_depth16(file, expected, opened);
+    if (!values) return tl::unexpected(values.error());
+    return in_metres(*values, units_per_metre);
+  };
 }
 
 Result<void> attach_images(Recording& recording, const ImageDecoding& decoding) {
@@ -218,15 +235,16 @@ Result<void> attach_images(Recording& recording, const ImageDecoding& decoding) 
   recording.calibration->color = *camera;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
-  auto fingerprint = fingerprint_of(recording, decoding, *camera);
-  if (!fingerprint) return tl::unexpected(fingerprint.error());
-  recording.fingerprint = std::move(*fingerprint);
+  auto identity = identity_of(recording, decoding, *camera);
+  if (!identity) return tl::unexpected(identity.error());
+  recording.fingerprint = std::move(identity->fingerprint);
   std::optional<DepthRegistration> registration;
   if (calibration.depth) {
     registration.emplace(calibration.depth->pinhole, camera->pinhole, calibration.depth->T_color_depth);
   }
   const auto loader = std::make_shared<const FrameLoader>(
-      FrameLoader{recording.frames, Undistortion(*camera), std::move(registration), decoding.read_depth});
+      FrameLoader{recording.frames, std::move(identity->images), Undistortion(*camera),
+                  std::move(registration), decoding.read_depth});
   recording.load_frame = [loader](std::size_t frame) { return loader->load(frame); };
   return {};
 }

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/error.hpp"
+#include "core/fingerprint.hpp"
 #include "datasets/image_files.hpp"
 #include "datasets/recording.hpp"
 #include "datasets/rig_calibration.hpp"
@@ -13,9 +15,9 @@
 namespace fusebench {
 
 /// Reads one depth image of the given size: z-depth in metres, 0 = no measurement, not yet undistorted or
-/// registered. Called from several threads.
-using DepthReader =
-    std::function<Result<DepthImage>(const std::filesystem::path& file, const ImageSize& expected)>;
+/// registered. opened: the bytes that the file must have. Called from several threads.
+using DepthReader = std::function<Result<DepthImage>(
+    const std::filesystem::path& file, const ImageSize& expected, const std::optional<ContentHash>& opened)>;
 
 /// 16-bit grey PNGs; units_per_metre: the value of one metre.
 [[nodiscard]] DepthReader png_depth(double units_per_metre);
@@ -31,8 +33,9 @@ struct ImageDecoding {
 
 /// Completes a recording whose frames, truth and inertial samples are in place: checks the size of the first
 /// image against the calibration, sets rig (camera, timing, IMU), applies the delay of depth and the offset
-/// of the IMU's clock, takes the fingerprint (every used image is read once), and provides load_frame.
-/// Errors: data_missing, data_corrupt.
+/// of the IMU's clock, takes the fingerprint (every used image is read once), and provides load_frame,
+/// which refuses an image whose bytes are no longer those of the fingerprint. Errors: data_missing,
+/// data_corrupt.
 [[nodiscard]] Result<void> attach_images(Recording& recording, const ImageDecoding& decoding);
 
 /// The same for colour and depth in PNGs. published_units_per_metre: of the format, where the calibration

@@ -71,6 +71,13 @@ class Blocks {
     return 1;
   }
 
+  double within(std::string_view what, double most) {
+    const double value = number(what);
+    if (std::abs(value) <= most) return value;
+    complain(fmt::format("{} = {} (allowed: {} to {})", what, value, -most, most));
+    return 0;
+  }
+
   int pixels(std::string_view what) {
     const double value = positive(what, 100'000);
     if (value == std::floor(value)) return static_cast<int>(value);
@@ -84,8 +91,8 @@ class Blocks {
     camera.height_px = pixels(fmt::format("{} height", name));
     camera.fx_px = positive(fmt::format("{} fx", name), 1e6);
     camera.fy_px = positive(fmt::format("{} fy", name), 1e6);
-    camera.cx_px = number(fmt::format("{} cx", name));
-    camera.cy_px = number(fmt::format("{} cy", name));
+    camera.cx_px = within(fmt::format("{} cx", name), 1e6);
+    camera.cy_px = within(fmt::format("{} cy", name), 1e6);
     return camera;
   }
 
@@ -94,6 +101,9 @@ class Blocks {
     for (double& value : rows) value = number(name);
     const auto T = rigid_transform(rows);
     if (!T) complain(fmt::format("{} is no rigid transform ({})", name, kRigidTransformRule));
+    if (T && T->translation.cwiseAbs().maxCoeff() > 1000)
+      complain(fmt::format("{} has a translation of {:g} m (allowed up to 1000 m)", name,
+                           T->translation.cwiseAbs().maxCoeff()));
     return T.value_or(SE3{});
   }
 

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -28,28 +26,6 @@ std::uint32_t big_endian(std::string_view bytes) {
   std::uint32_t value = 0;
   for (const char c : bytes.substr(0, 4)) value = value << 8 | static_cast<std::uint8_t>(c);
   return value;
-}
-
-/// Bytes that nobody has to set before they are written, unlike those of a vector.
-struct Buffer {
-  std::size_t size = 0;
-  std::unique_ptr<std::uint8_t[]> bytes;
-
-  explicit Buffer(std::size_t count)
-      : size(count), bytes(std::make_unique_for_overwrite<std::uint8_t[]>(count)) {}
-  [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.get()), size}; }
-};
-
-/// Empty if it cannot be read; folders and devices have no content of a known size.
-Buffer content_of(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return Buffer(0);
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) return Buffer(0);
-  Buffer content(size);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(content.bytes.get()), static_cast<std::streamsize>(size));
-  return stream ? std::move(content) : Buffer(0);
 }
 
 /// As PNG and gzip define it.
@@ -82,7 +58,7 @@ struct Chunks {
 };
 
 /// Moves a chunk's data behind what is joined already; it lies behind that in the same content.
-void join(std::string_view data, Buffer& content, std::span<std::uint8_t>& joined) {
+void join(std::string_view data, ByteBuffer& content, std::span<std::uint8_t>& joined) {
   const auto at = static_cast<std::size_t>(data.data() - content.text().data());
   std::uint8_t* const begin = joined.empty() ? &content.bytes[at] : joined.data();
   std::memmove(begin + joined.size(), data.data(), data.size());
@@ -90,7 +66,7 @@ void join(std::string_view data, Buffer& content, std::span<std::uint8_t>& joine
 }
 
 /// Joins the pixels of all chunks: then the content holds nothing else of use but the header.
-std::optional<Chunks> join_chunks(Buffer& content) {
+std::optional<Chunks> join_chunks(ByteBuffer& content) {
   std::string_view rest = content.text();
   if (!rest.starts_with(kSignature)) return std::nullopt;
   rest.remove_prefix(kSignature.size());
@@ -114,13 +90,13 @@ std::optional<Chunks> join_chunks(Buffer& content) {
 }
 
 /// None if the compressed stream is damaged, which its checksum tells, or does not hold exactly this much.
-std::optional<Buffer> inflate(std::span<std::uint8_t> compressed, std::size_t size) {
+std::optional<ByteBuffer> inflate(std::span<std::uint8_t> compressed, std::size_t size) {
   // A header may claim any size, but one byte makes at most 1032.
   constexpr std::size_t kMostPerByte = 1032;
   constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  // the library counts so far
   if (size / kMostPerByte > compressed.size() || std::max(size, compressed.size()) > kMostBytes)
     return std::nullopt;
-  Buffer inflated(size);
+  ByteBuffer inflated(size);
   const auto state = std::make_unique_for_overwrite<inflate_state>();
   isal_inflate_init(state.get());
   state->crc_flag = ISAL_ZLIB;
@@ -134,7 +110,7 @@ std::optional<Buffer> inflate(std::span<std::uint8_t> compressed, std::size_t si
 
 /// rows: each behind the number of its filter. False if there is no such filter.
 template <std::size_t kPixelBytes>
-bool undo_filters(const Buffer& rows, std::span<std::uint8_t> samples, std::size_t row_bytes) {
+bool undo_filters(const ByteBuffer& rows, std::span<std::uint8_t> samples, std::size_t row_bytes) {
   const std::vector<std::uint8_t> nothing(row_bytes, 0);
   std::span<const std::uint8_t> above = nothing;
   const std::uint8_t* filtered = rows.bytes.get();
@@ -159,8 +135,7 @@ void from_big_endian(std::vector<std::uint16_t>& values) {
 
 /// layout: bits a sample, kind of colour, compression, filtering, interlacing, as in the header.
 template <class Pixel>
-std::optional<Image<Pixel>> read_plain_png(const std::filesystem::path& file, std::string_view layout) {
-  Buffer content = content_of(file);
+std::optional<Image<Pixel>> decode_plain_png(ByteBuffer content, std::string_view layout) {
   const std::optional<Chunks> chunks = join_chunks(content);
   if (!chunks || chunks->header.substr(8) != layout) return std::nullopt;
   const std::uint32_t width = big_endian(chunks->header);
@@ -168,7 +143,7 @@ std::optional<Image<Pixel>> read_plain_png(const std::filesystem::path& file, st
   constexpr std::uint32_t kMostSide = 1U << 20;
   if (width == 0 || height == 0 || width > kMostSide || height > kMostSide) return std::nullopt;
   const std::size_t row_bytes = width * sizeof(Pixel);
-  const std::optional<Buffer> rows = inflate(chunks->pixels, height * (1 + row_bytes));
+  const std::optional<ByteBuffer> rows = inflate(chunks->pixels, height * (1 + row_bytes));
   if (!rows) return std::nullopt;
   Image<Pixel> image(static_cast<int>(width), static_cast<int>(height));
   const std::span samples(reinterpret_cast<std::uint8_t*>(image.data.data()), height * row_bytes);
@@ -179,12 +154,20 @@ std::optional<Image<Pixel>> read_plain_png(const std::filesystem::path& file, st
 
 }  // namespace
 
+std::optional<ColorImage> decode_plain_png_color(ByteBuffer content) {
+  return decode_plain_png<Rgb>(std::move(content), {"\x08\x02\x00\x00\x00", 5});
+}
+
+std::optional<Image<std::uint16_t>> decode_plain_png_grey16(ByteBuffer content) {
+  return decode_plain_png<std::uint16_t>(std::move(content), {"\x10\x00\x00\x00\x00", 5});
+}
+
 std::optional<ColorImage> read_plain_png_color(const std::filesystem::path& file) {
-  return read_plain_png<Rgb>(file, {"\x08\x02\x00\x00\x00", 5});
+  return decode_plain_png_color(content_of(file));
 }
 
 std::optional<Image<std::uint16_t>> read_plain_png_grey16(const std::filesystem::path& file) {
-  return read_plain_png<std::uint16_t>(file, {"\x10\x00\x00\x00\x00", 5});
+  return decode_plain_png_grey16(content_of(file));
 }
 
 }  // namespace fusebench

@@ -11,6 +11,7 @@
 #include "core/stamped_rows.hpp"
 #include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
+#include "datasets/sensor_columns.hpp"
 #include "datasets/state_truth.hpp"
 
 namespace fusebench {
@@ -21,6 +22,21 @@ namespace {
 // between.
 constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
 
+/// Positions of the truth are used in double precision only, but they must leave room for squares.
+Result<void> check_positions(const Trajectory& truth, const std::filesystem::path& source) {
+  for (const StampedPose& pose : truth) {
+    const Vector3d& position_m = pose.T_world_camera.translation;
+    if (position_m.cwiseAbs().maxCoeff() <= kMostPosition_m) continue;
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}: the pose at time {} has position ({:g}, {:g}, {:g}) m (allowed {:g} .. {:g})",
+                    source.string(), stamp_text(pose.timestamp_ns), position_m.x(), position_m.y(),
+                    position_m.z(), -kMostPosition_m, kMostPosition_m),
+        "remove its row, or subtract an origin from all positions");
+  }
+  return {};
+}
+
 bool is_there(const std::filesystem::path& file) {
   std::error_code ignored;
   return std::filesystem::exists(file, ignored);
@@ -30,6 +46,7 @@ bool is_there(const std::filesystem::path& file) {
 
 Result<void> set_ground_truth(Recording& recording, Trajectory truth, const std::filesystem::path& source,
                               std::size_t published_without) {
+  if (auto sane = check_positions(truth, source); !sane) return sane;
   const std::int64_t first_ns = recording.frames.front().timestamp_ns;
   const std::int64_t last_ns = recording.frames.back().timestamp_ns;
   if (truth.front().timestamp_ns > last_ns || truth.back().timestamp_ns < first_ns) {
@@ -71,11 +88,11 @@ Result<void> read_ground_truth_beside(const std::filesystem::path& folder, Recor
 Result<std::vector<ImuSample>> read_imu_table(const std::filesystem::path& file, TimeUnit unit) {
   std::vector<ImuSample> samples;
   const auto row = [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
-    ImuSample sample;
-    sample.timestamp_ns = time_ns;
-    if (auto read = table.numbers(1, {sample.angular_velocity_radps.data(), 3}); !read) return read;
-    if (auto read = table.numbers(4, {sample.specific_force_mps2.data(), 3}); !read) return read;
-    samples.push_back(sample);
+    const auto rate_radps = read_angular_velocity(table, 1, "w");
+    if (!rate_radps) return tl::unexpected(rate_radps.error());
+    const auto force_mps2 = read_specific_force(table, 4, "a");
+    if (!force_mps2) return tl::unexpected(force_mps2.error());
+    samples.push_back({time_ns, *rate_radps, *force_mps2});
     return {};
   };
   const Result<void> done =

@@ -12,7 +12,8 @@ namespace fusebench {
 
 /// groundtruth.txt: TUM columns, seconds on the images' clock, T_groundtruth_camera of the colour camera.
 /// Fills recording.ground_truth; warns about frames that it does not cover. Leaves a recording without that
-/// file alone. Errors: data_corrupt (a row, the order in time, no overlap with the images in time).
+/// file alone. Errors: data_corrupt (a row, the order in time, a position beyond 1e7 m, no overlap with the
+/// images in time).
 [[nodiscard]] Result<void> read_ground_truth_beside(const std::filesystem::path& folder,
                                                     Recording& recording);
 
@@ -24,7 +25,7 @@ namespace fusebench {
                                             std::size_t published_without = 0);
 
 /// Inertial samples as text: "timestamp wx wy wz ax ay az", rad/s and m/s^2, on the IMU's clock. Errors:
-/// data_missing, data_corrupt (a row, the order in time).
+/// data_missing, data_corrupt (a row, the order in time, a value beyond the limits of sensor_columns.hpp).
 [[nodiscard]] Result<std::vector<ImuSample>> read_imu_table(const std::filesystem::path& file, TimeUnit unit);
 
 /// imu.csv: EuRoC columns, "timestamp [ns], wx, wy, wz [rad/s], ax, ay, az [m/s^2]", on the IMU's clock.

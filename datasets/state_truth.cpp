@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/stamped_rows.hpp"
+#include "datasets/sensor_columns.hpp"
 
 namespace fusebench {
 
@@ -18,19 +19,27 @@ constexpr double kMostOffUnit = 0.01;
 Result<std::vector<StampedState>> read_state_truth(const std::filesystem::path& file) {
   std::vector<StampedState> states;
   const auto row = [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
-    std::array<double, 16> v{};
-    if (auto read = table.numbers(1, v); !read) return read;
-    const Quaterniond rotation(v[3], v[4], v[5], v[6]);
+    const auto position_m = read_position(table, 1, "p");
+    if (!position_m) return tl::unexpected(position_m.error());
+    std::array<double, 4> q{};
+    if (auto read = table.numbers(4, q); !read) return read;
+    const auto velocity_mps = read_velocity(table, 8, "v");
+    if (!velocity_mps) return tl::unexpected(velocity_mps.error());
+    const auto gyroscope_bias_radps = read_angular_velocity(table, 11, "bw");
+    if (!gyroscope_bias_radps) return tl::unexpected(gyroscope_bias_radps.error());
+    const auto accelerometer_bias_mps2 = read_specific_force(table, 14, "ba");
+    if (!accelerometer_bias_mps2) return tl::unexpected(accelerometer_bias_mps2.error());
+    const Quaterniond rotation(q[0], q[1], q[2], q[3]);
     if (!(std::abs(rotation.norm() - 1) <= kMostOffUnit)) {
       return table.fail_here(
           fmt::format("the quaternion has length {} (allowed 1 within {})", rotation.norm(), kMostOffUnit));
     }
     StampedState state;
     state.timestamp_ns = time_ns;
-    state.state.T_world_imu = {rotation.normalized(), {v[0], v[1], v[2]}};
-    state.state.velocity_world_mps = {v[7], v[8], v[9]};
-    state.state.gyroscope_bias_radps = {v[10], v[11], v[12]};
-    state.state.accelerometer_bias_mps2 = {v[13], v[14], v[15]};
+    state.state.T_world_imu = {rotation.normalized(), *position_m};
+    state.state.velocity_world_mps = *velocity_mps;
+    state.state.gyroscope_bias_radps = *gyroscope_bias_radps;
+    state.state.accelerometer_bias_mps2 = *accelerometer_bias_mps2;
     states.push_back(state);
     return {};
   };

@@ -6,6 +6,7 @@
 
 #include "core/printable.hpp"
 #include "core/stamped_rows.hpp"
+#include "datasets/sensor_columns.hpp"
 
 namespace fusebench {
 
@@ -31,9 +32,9 @@ Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& li
 Result<std::vector<AccelerometerSample>> read_tum_accelerometer(const std::filesystem::path& file) {
   std::vector<AccelerometerSample> samples;
   const auto row = [&](const TextTable& table, std::int64_t time_ns) -> Result<void> {
-    Vector3d force_mps2;
-    if (auto read = table.numbers(1, {force_mps2.data(), 3}); !read) return read;
-    samples.push_back({time_ns, force_mps2});
+    const auto force_mps2 = read_specific_force(table, 1, "a");
+    if (!force_mps2) return tl::unexpected(force_mps2.error());
+    samples.push_back({time_ns, *force_mps2});
     return {};
   };
   const Result<void> done = for_each_stamped_row(file, "timestamp ax ay az", TimeOrder::increasing, row);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/stamped_rows.hpp"
+#include "datasets/sensor_columns.hpp"
 #include "datasets/time_unit.hpp"
 
 namespace fusebench {
@@ -151,18 +152,16 @@ Result<void> set_imu(const fs::path& file, std::span<const GyroscopeSample> gyro
 }
 
 Result<GyroscopeSample> gyroscope_sample(const TextTable& table, std::int64_t time_ns) {
-  GyroscopeSample sample{time_ns, {}};
-  if (auto read = table.numbers(1, {sample.angular_velocity_radps.data(), 3}); !read)
-    return tl::unexpected(read.error());
-  return sample;
+  const auto rate_radps = read_angular_velocity(table, 1, "g");
+  if (!rate_radps) return tl::unexpected(rate_radps.error());
+  return GyroscopeSample{time_ns, *rate_radps};
 }
 
 Result<AccelerometerSample> accelerometer_sample(const TextTable& table, std::int64_t time_ns,
                                                  std::size_t column) {
-  AccelerometerSample sample{time_ns, {}};
-  if (auto read = table.numbers(column, {sample.specific_force_mps2.data(), 3}); !read)
-    return tl::unexpected(read.error());
-  return sample;
+  const auto force_mps2 = read_specific_force(table, column, "a");
+  if (!force_mps2) return tl::unexpected(force_mps2.error());
+  return AccelerometerSample{time_ns, *force_mps2};
 }
 
 }  // namespace

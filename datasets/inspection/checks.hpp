@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,10 @@ void check_registration(const Recording& recording, const Workers& workers, Insp
 
 /// Speeds and predicted blur. Needs the median depth of images.
 void check_motion(const Recording& recording, Inspection& out);
+
+/// Spikes of the IMU and values beyond its range. Returns the recording without these samples if there are
+/// any: checks of values and fits must not see them. Needs the stamps of the IMU.
+[[nodiscard]] std::optional<Recording> leave_out_imu_faults(const Recording& recording, Inspection& out);
 
 /// Saturation, repeated values and units of the IMU; gravity and biases at rest.
 void check_imu_values(const Recording& recording, Inspection& out);

@@ -71,6 +71,8 @@ constexpr auto kCodes = std::to_array<FindingCode>({
     {"imu-rate-low", "the IMU is too slow to integrate"},
     {"imu-coverage", "frames have no IMU samples around them"},
     {"imu-stuck", "the IMU repeats one value"},
+    {"imu-spike",
+     "samples of the IMU jump away from their neighbours and back, or are beyond what a sensor measures"},
     {"gyroscope-saturated", "the gyroscope reached the end of its range"},
     {"gyroscope-unit", "angular velocities are in degrees"},
     {"gyroscope-scale", "the gyroscope turns further, or less, than the camera"},

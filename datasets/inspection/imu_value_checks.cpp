@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/geometry.hpp"
 #include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/imu_faults.hpp"
 #include "datasets/inspection/order_statistics.hpp"
 
 namespace fusebench {
@@ -143,6 +145,23 @@ void check_accelerometer_unit(ImuMeasurement& imu, Inspection& out) {
 }
 
 }  // namespace
+
+std::optional<Recording> leave_out_imu_faults(const Recording& recording, Inspection& out) {
+  if (!out.imu || out.has("imu-out-of-order")) return std::nullopt;
+  const std::vector<ImuFault> faults = find_imu_faults(recording.imu);
+  if (faults.empty()) return std::nullopt;
+  constexpr std::size_t kMostTold = 3;
+  std::string told;
+  for (std::size_t i = 0; i < std::min(kMostTold, faults.size()); ++i)
+    told += (i == 0 ? "" : ", ") + describe(faults[i], recording.imu);
+  if (faults.size() > kMostTold) told += fmt::format(", and {} more", faults.size() - kMostTold);
+  out.add("imu-spike", Severity::warning,
+          fmt::format("{} of {} samples are no measurement: {}", faults.size(), recording.imu.size(), told),
+          "remove their rows from the IMU's file; what is said of the IMU here leaves them out");
+  Recording sound = recording;
+  sound.imu = without_faults(recording.imu, faults);
+  return sound;
+}
 
 void check_imu_values(const Recording& recording, Inspection& out) {
   if (!out.imu) return;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "datasets/inspection/checks.hpp"
@@ -50,14 +51,16 @@ Inspection inspect(const Recording& recording, const Workers& workers, const Ins
   check_frame_stamps(recording, out);
   check_truth_stamps(recording, out);
   check_imu_stamps(recording, out);
-  check_imu_values(recording, out);
-  check_images(recording, workers, options, out);
-  check_reprojection(recording, workers, options, out);
-  check_imu_alignment(recording, workers, options, out);
-  check_accelerometer(recording, out);
-  check_motion(recording, out);
-  check_repeated_images(recording, out);
-  check_registration(recording, workers, out);
+  const std::optional<Recording> repaired = leave_out_imu_faults(recording, out);
+  const Recording& sound = repaired ? *repaired : recording;
+  check_imu_values(sound, out);
+  check_images(sound, workers, options, out);
+  check_reprojection(sound, workers, options, out);
+  check_imu_alignment(sound, workers, options, out);
+  check_accelerometer(sound, out);
+  check_motion(sound, out);
+  check_repeated_images(sound, out);
+  check_registration(sound, workers, out);
   std::ranges::stable_sort(out.findings, {}, &Finding::severity);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "datasets/inspection/order_statistics.hpp"
@@ -19,6 +20,7 @@ constexpr std::size_t kMinIntervals = 8;
 constexpr double kMinRate_radps = radians(3);
 // A mirrored rotation must leave this share of the squared residual of a proper one: noise does not do that.
 constexpr double kMirroredGain = 0.5;
+constexpr double kGross = 10;  // residuals beyond this many limits of Huber's weights: twenty medians
 
 struct Interval {
   double begin_s;
@@ -46,18 +48,32 @@ struct Sums {
   double gyroscope = 0, camera = 0, dt = 0, weights = 0;
 };
 
-Sums sums_at(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, double offset_s) {
+/// Rates beyond which turns are shortened: a single wrong one must not outweigh all others.
+struct RateLimits {
+  double gyroscope_radps = std::numeric_limits<double>::infinity();
+  double camera_radps = std::numeric_limits<double>::infinity();
+};
+
+Vector3d shortened(const Vector3d& turn_rad, double most_rad) {
+  const double angle_rad = turn_rad.norm();
+  return angle_rad > most_rad ? Vector3d(most_rad / angle_rad * turn_rad) : turn_rad;
+}
+
+Sums sums_at(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, double offset_s,
+             const RateLimits& limits = {}) {
   Sums s;
   for (const Interval& interval : intervals) {
-    const auto turn = gyroscope.turn_rad(interval.begin_s + offset_s, interval.end_s + offset_s);
-    if (!turn) continue;
+    const auto whole = gyroscope.turn_rad(interval.begin_s + offset_s, interval.end_s + offset_s);
+    if (!whole) continue;
     const double dt_s = interval.end_s - interval.begin_s;
+    const Vector3d turn = shortened(*whole, dt_s * limits.gyroscope_radps);
+    const Vector3d camera = shortened(interval.camera_rad, dt_s * limits.camera_radps);
     const double w = interval.weight;
-    s.cross += w * *turn * interval.camera_rad.transpose();
-    s.gyroscope_dt += w * dt_s * *turn;
-    s.camera_dt += w * dt_s * interval.camera_rad;
-    s.gyroscope += w * turn->squaredNorm();
-    s.camera += w * interval.camera_rad.squaredNorm();
+    s.cross += w * turn * camera.transpose();
+    s.gyroscope_dt += w * dt_s * turn;
+    s.camera_dt += w * dt_s * camera;
+    s.gyroscope += w * turn.squaredNorm();
+    s.camera += w * camera.squaredNorm();
     s.dt += w * dt_s * dt_s;
     s.weights += w;
   }
@@ -109,13 +125,14 @@ struct OffsetSearch {
 
 /// Offsets at steps around a centre; cost: unexplained() or mean_cost().
 OffsetSearch search(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, bool mirrored,
-                    double centre_s, double radius_s, double step_s,
-                    double (*cost)(const Fit&, std::size_t)) {
+                    double centre_s, double radius_s, double step_s, double (*cost)(const Fit&, std::size_t),
+                    const RateLimits& limits = {}) {
   OffsetSearch best{centre_s};
   const int steps = static_cast<int>(std::lround(radius_s / step_s));
   for (int i = -steps; i <= steps; ++i) {
     const double offset_s = centre_s + i * step_s;
-    const double here = cost(fit_at(sums_at(intervals, gyroscope, offset_s), mirrored), intervals.size());
+    const double here =
+        cost(fit_at(sums_at(intervals, gyroscope, offset_s, limits), mirrored), intervals.size());
     if (here < best.cost) best = {offset_s, here};
   }
   return best;
@@ -133,6 +150,23 @@ double parabola(const std::vector<Interval>& intervals, const GyroscopeIntegral&
   return centre_s + std::clamp((left - right) / (2 * step_s * second), -step_s, step_s);
 }
 
+/// Takes the weight of turns that are grossly wrong, and of those that such a one would reach at another of
+/// the offsets that are tried next: a fit would shift the clock to share it between two turns.
+void drop_gross(std::vector<Interval>& intervals, const std::vector<double>& residuals, double limit_rad) {
+  constexpr double kReach_s = 0.04;
+  constexpr double kMostShare = 0.1;  // more are no faults of single turns
+  const auto is_gross = [&](double residual) { return residual > kGross * limit_rad; };
+  const auto count = static_cast<double>(std::ranges::count_if(residuals, is_gross));
+  if (count > kMostShare * static_cast<double>(residuals.size())) return;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    if (!is_gross(residuals[i])) continue;
+    const double begin_s = intervals[i].begin_s - kReach_s, end_s = intervals[i].end_s + kReach_s;
+    for (Interval& interval : intervals) {
+      if (interval.end_s > begin_s && interval.begin_s < end_s) interval.weight = 0;
+    }
+  }
+}
+
 /// Huber weights of the residuals at a fit, with the scale from their median.
 void reweight(std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope, const Fit& fit,
               double offset_s) {
@@ -146,6 +180,7 @@ void reweight(std::vector<Interval>& intervals, const GyroscopeIntegral& gyrosco
   const double limit = std::max(1e-6, 2.0 * median(residuals));
   for (std::size_t i = 0; i < intervals.size(); ++i)
     intervals[i].weight = residuals[i] <= limit ? 1.0 : limit / residuals[i];
+  drop_gross(intervals, residuals, limit);
 }
 
 std::vector<Interval> intervals_of(const CameraTurns& turns, const GyroscopeIntegral& gyroscope) {
@@ -158,6 +193,21 @@ std::vector<Interval> intervals_of(const CameraTurns& turns, const GyroscopeInte
     if (gyroscope.turn_rad(begin_s, end_s)) result.push_back({begin_s, end_s, turn.turn_rad, 1.0});
   }
   return result;
+}
+
+/// Three times the rates that a twentieth exceeds, of either side. Only for the search over all offsets: what
+/// follows weighs each turn by its residual.
+RateLimits rate_limits(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope) {
+  constexpr double kShare = 0.95;
+  constexpr double kFactor = 3;
+  std::vector<double> gyroscope_radps, camera_radps;
+  for (const Interval& interval : intervals) {
+    const double dt_s = interval.end_s - interval.begin_s;
+    camera_radps.push_back(interval.camera_rad.norm() / dt_s);
+    gyroscope_radps.push_back(gyroscope.turn_rad(interval.begin_s, interval.end_s)->norm() / dt_s);
+  }
+  return {kFactor * quantile(std::move(gyroscope_radps), kShare),
+          kFactor * quantile(std::move(camera_radps), kShare)};
 }
 
 double camera_rms(const std::vector<Interval>& intervals) {
@@ -211,13 +261,16 @@ std::optional<TurnAlignment> align_turns(const CameraTurns& turns, const Gyrosco
   TurnAlignment result;
   result.camera_rms_radps = camera_rms(intervals);
   if (intervals.size() < kMinIntervals || result.camera_rms_radps < kMinRate_radps) return std::nullopt;
+  const RateLimits limits = rate_limits(intervals, gyroscope);
   const OffsetSearch proper =
-      search(intervals, gyroscope, false, 0, kMaxOffset_s, kOffsetStep_s, unexplained);
-  const OffsetSearch mirror = search(intervals, gyroscope, true, 0, kMaxOffset_s, kOffsetStep_s, unexplained);
+      search(intervals, gyroscope, false, 0, kMaxOffset_s, kOffsetStep_s, unexplained, limits);
+  const OffsetSearch mirror =
+      search(intervals, gyroscope, true, 0, kMaxOffset_s, kOffsetStep_s, unexplained, limits);
   const bool mirrored = mirror.cost < kMirroredGain * proper.cost;
   double offset_s = (mirrored ? mirror : proper).offset_s;
   for (int round = 0; round < 3; ++round) {
-    reweight(intervals, gyroscope, fit_at(sums_at(intervals, gyroscope, offset_s), mirrored), offset_s);
+    const Sums sums = sums_at(intervals, gyroscope, offset_s, round == 0 ? limits : RateLimits{});
+    reweight(intervals, gyroscope, fit_at(sums, mirrored), offset_s);
     offset_s = search(intervals, gyroscope, mirrored, offset_s, 0.03, 0.002, mean_cost).offset_s;
     offset_s = parabola(intervals, gyroscope, mirrored, offset_s, 0.004);
   }

@@ -8,7 +8,8 @@
 
 namespace fusebench {
 
-/// turn_imu(t + offset) = rotation * turn_camera(t) + bias * duration, by least squares.
+/// turn_imu(t + offset) = rotation * turn_camera(t) + bias * duration, by robust least
+/// squares: single wrong turns of either side do not decide.
 struct TurnAlignment {
   std::size_t intervals = 0;
   bool offset_found = false;  ///< the optimum lies within the offsets that are searched, not at their end

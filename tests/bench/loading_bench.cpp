@@ -107,7 +107,7 @@ void read_images(benchmark::State& state, std::string_view folder, std::string_v
   double bytes = 0;
   std::size_t pixels = 0;
   for (const std::filesystem::path& file : files) {
-    const auto image = read(file, std::nullopt);
+    const auto image = read(file, std::nullopt, std::nullopt);
     if (!image) return state.SkipWithError(image.error().message.c_str());
     const auto& data = image->data;
     pixels_read.add({reinterpret_cast<const char*>(data.data()), data.size() * sizeof(data.front())});
@@ -116,7 +116,8 @@ void read_images(benchmark::State& state, std::string_view folder, std::string_v
   }
   if (pixels_read.hex() != pixels_hash) return state.SkipWithError("not the pixels of these files");
   std::size_t reads = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(read(files[reads++ % files.size()], std::nullopt));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(read(files[reads++ % files.size()], std::nullopt, std::nullopt));
   // The file in, the pixels out; the mean of the files.
   testing::report_rates(state, {"pixels", pixels, bytes / static_cast<double>(files.size())});
 }

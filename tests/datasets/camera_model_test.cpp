@@ -121,8 +121,8 @@ TEST(CameraPresets, NamesAndNumbers) {
 }
 
 TEST(CameraPresets, RefusesWhatIsNoCamera) {
-  for (const char* text :
-       {"freiburg4", "", "1,2,3", "500,501,320,x", "481.2,-480,319.5,239.5", "500,nan,1,1"}) {
+  for (const char* text : {"freiburg4", "", "1,2,3", "500,501,320,x", "481.2,-480,319.5,239.5", "500,nan,1,1",
+                           "500,501,1e300,240", "500,501,320,240,0,0,-1e200,0,0"}) {
     const auto camera = parse_camera(text);
     ASSERT_FALSE(camera) << text;
     EXPECT_EQ(camera.error().code, ErrorCode::configuration) << text;

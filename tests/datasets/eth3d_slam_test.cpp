@@ -116,6 +116,7 @@ TEST(Eth3dSlam, RefusesBadFiles) {
   };
   expect_part(after_writing("calibration.txt", "10 11 3.5\n"), "calibration.txt:1: expected 4 columns");
   expect_part(after_writing("calibration.txt", "10 -11 3.5 2.5\n"), "must be above 0");
+  expect_part(after_writing("calibration.txt", "10 11 1e300 2.5\n"), "at most 1e+06 pixels");
   expect_part(after_writing("calibration.txt", "1 1 1 1\n1 1 1 1\n"), "calibration.txt:2: a second row");
   expect_part(after_writing("calibration.txt", "# none\n"), "has no row");
   expect_part(after_writing("associated.txt", Eth3dFolder::rows({"61.082306", "61.045406"})),

@@ -22,7 +22,7 @@ TEST(PngDepth, IsTheQuotientInDoublePrecisionRounded) {
   const Image<std::uint16_t> values = all_values();
   ASSERT_TRUE(write_png(folder.path() / "depth.png", values));
   for (const double units_per_metre : {1.0, 256.0, 1000.0, 4999.0, 5000.0, 6553.5, 8e-4, 5000.1, 1e6 / 3}) {
-    const auto depth_m = png_depth(units_per_metre)(folder.path() / "depth.png", {256, 256});
+    const auto depth_m = png_depth(units_per_metre)(folder.path() / "depth.png", {256, 256}, {});
     ASSERT_TRUE(depth_m);
     ASSERT_EQ(depth_m->width, 256);
     for (std::size_t i = 0; i < values.data.size(); ++i)
@@ -33,7 +33,7 @@ TEST(PngDepth, IsTheQuotientInDoublePrecisionRounded) {
 TEST(PngDepth, HasTheExpectedSize) {
   const testing::TemporaryFolder folder;
   ASSERT_TRUE(write_png(folder.path() / "depth.png", all_values()));
-  const auto depth_m = png_depth(5000)(folder.path() / "depth.png", {640, 480});
+  const auto depth_m = png_depth(5000)(folder.path() / "depth.png", {640, 480}, {});
   ASSERT_FALSE(depth_m);
   EXPECT_EQ(depth_m.error().code, ErrorCode::data_corrupt);
 }

@@ -149,6 +149,8 @@ TEST(MalformedCalibTxt, IsReadOrNamed) {
       {"600 601", std::string(400, '9') + " 601", 2, "colour fx"},
       {"600 601", std::string("6\0 601", 6), 2, "colour fx"},
       {"600 601", "\xFF\xFE 601", 2, "colour fx: expected a finite number, got '\\xFF\\xFE'"},
+      {"320 240", "1e300 240", 3, "colour cx = 1e+300 (allowed: -1000000 to 1000000)"},
+      {"1 0 0 -0.05", "1 0 0 -5000", 11, "T_color_depth has a translation of 5000 m (allowed up to 1000 m)"},
       {"1 0 0 -0.05", "2 0 0 -0.05", 11, "T_color_depth is no rigid transform"},
       {"affine", "disparity", 13, "depth scale"},
       {"0.001 0.0", "0 0.0", 13, "depth scale = 0"},

@@ -136,6 +136,8 @@ TEST(RigCalibration, RefusesWhatIsNoRigidTransform) {
   EXPECT_EQ(with_matrix("[1000, 0, 0, 0, 0, 1000, 0, 0, 0, 0, 1000, 0]"), rule) << "a scale";
   EXPECT_EQ(with_matrix("[1, 0, 0, 0, 1, 0, 0, 0, 1, 0.1, 0.2, 0.3]"), rule) << "column by column";
   EXPECT_EQ(with_matrix("[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]"), rule);
+  EXPECT_EQ(with_matrix("[1, 0, 0, 0, 0, 1, 0, -1e300, 0, 0, 1, 0]"),
+            "c.toml:11: imu.T_imu_color has a translation of 1e+300 m (allowed up to 1000 m)");
   const std::string count = "c.toml:11: imu.T_imu_color must be a list of 12 finite numbers";
   EXPECT_EQ(with_matrix("[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"), count);
   EXPECT_EQ(with_matrix("[1, 0, 0, nan, 0, 1, 0, 0, 0, 0, 1, 0]"), count);

@@ -100,6 +100,34 @@ TEST_F(LocalEngineTest, ARunWithoutMemoryIsARowAndTheOthersGoOn) {
   for (const BatchOutcome& outcome : *fed) EXPECT_EQ(outcome.status, RunStatus::ok) << outcome.reason;
 }
 
+TEST_F(LocalEngineTest, ImagesThatChangeDuringASweepEndRunsAsFailedAndAreRunAgain) {
+  const BatchPlan three = plan(kThree);
+  const fs::path image = folder_ / "data" / "freiburg1_walk" / "rgb";
+  EngineControl control;
+  control.finished = [&](std::size_t index, const BatchOutcome&) {
+    if (index != 0) return;  // the recording has been opened, and other runs are to follow
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(image)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    fs::copy_file(files[2], files[1], fs::copy_options::overwrite_existing);
+  };
+  const auto during = run_locally(three.jobs, {.at_once = 1}, control);
+  ASSERT_TRUE(during.has_value()) << during.error().message;
+  EXPECT_EQ((*during)[0].status, RunStatus::ok) << (*during)[0].reason;
+  for (std::size_t i = 1; i < 3; ++i) {
+    EXPECT_EQ((*during)[i].status, RunStatus::failed);
+    EXPECT_NE((*during)[i].reason.find(".png: has changed since the recording was opened"), std::string::npos)
+        << (*during)[i].reason;
+  }
+  const auto after = run_locally(three.jobs, {});
+  ASSERT_TRUE(after.has_value()) << after.error().message;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ((*after)[i].status, RunStatus::ok) << (*after)[i].reason;
+    EXPECT_FALSE((*after)[i].resumed) << "of other images, so another run";
+    EXPECT_NE((*after)[i].folder, (*during)[i].folder);
+  }
+}
+
 TEST_F(LocalEngineTest, OnlyFailedRunsLeavesTheRestAlone) {
   const BatchPlan three = plan(kThree);
   const std::vector<BatchJob> first(three.jobs.begin(), three.jobs.begin() + 1);
