@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kDarkGrey = 6.0;         // mean of the image; noise and black level of a covered camera
 constexpr double kLeastDepthShare = 0.1;  // of the image; patches need half of their pixels anyway
-// Of the patches in view. Less than half is enough: near surfaces have the strongest corners, so a thing of
-// this size outvotes the rest of the scene once patches are cut from it (a hand before 40 % of the image
+// Of the patches in view. Less than half is enough: near surfaces have the strongest corners, so that an
+// object of this size dominates the update once patches are cut from it (a hand before 40 % of the image
 // does).
 constexpr double kCoveredShare = 0.25;
 constexpr int kGradientGrey = 4;  // between neighbours of the coarsest level; above its noise

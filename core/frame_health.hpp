@@ -1,5 +1,5 @@
-// What troubles a frame: judged by its images and by what became of the patches, so that a report can say why
-// a frame was lost or is weak. The paper leaves failures open.
+// The health of a frame: judged by its images and by the outcomes of the patches, so that a report can say
+// why a frame was lost or is poorly constrained. The paper leaves failures open.
 #pragma once
 
 #include <cstddef>

@@ -40,7 +40,7 @@ struct PoseEvidence {
 struct FrameReport {
   std::int64_t timestamp_ns = 0;
   FrameStatus status = FrameStatus::lost;
-  std::string reason;  ///< why it is lost, or a later start; empty otherwise
+  std::string reason;  ///< why it is lost, or started from again; empty otherwise
   FrameHealth health = FrameHealth::good;
   std::int64_t capture_ns = 0;  ///< the instant that the pose is of
   SE3 T_world_camera;

@@ -16,20 +16,20 @@ namespace fusebench {
 namespace {
 
 constexpr int kFeatures = 800;
-// Twice what a place needs to be found, so that a keyframe that shows half of an image can still tell.
+// Twice kMinPlaceInliers, so that a keyframe that overlaps with half of an image still suffices.
 constexpr std::size_t kMinFeatures = 60;
 // With so many corners of full resolution a frame has enough features but in odd cases (all depth in one
 // corner of a richly textured image), so that they need not be looked for.
 constexpr std::size_t kPlentyOfCorners = 2 * kMinFeatures;
 // Keyframes that are tried, most matches first: the right one is not behind this many wrong ones.
 constexpr std::size_t kTried = 8;
-// Corners move and soften when an image is blurred by more; half the blur is worth the work.
+// Corners move and soften when an image is blurred by more; half the blur is worth a replacement.
 constexpr double kBlurred_px = 2;
 constexpr double kSharper = 0.5;
-// As a share of the spacing: what may take the place of another shows nearly the same.
+// As a share of the spacing: a keyframe within this may replace another.
 constexpr double kSamePlace = 0.5;
-// As a share of the spacing: where one barren frame was, the next one is not worth a look.
-constexpr double kBarrenReach = 0.3;
+// As a share of the spacing: near a frame without enough features the next one is not tried.
+constexpr double kFeaturelessReach = 0.3;
 
 double angle_between_axes_rad(const SE3& a, const SE3& b) {
   const Vector3d axis_a = a.rotation * Vector3d::UnitZ();
@@ -124,20 +124,21 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
       std::min_element(kept_.begin(), kept_.end(),
                        [&](const Keyframe& a, const Keyframe& b) { return distance(a) < distance(b); });
   const bool near = nearest != kept_.end() && distance(*nearest) < 1;
-  const bool takes_over = near && distance(*nearest) < kSamePlace && nearest->blur_px > kBlurred_px &&
-                          blur_px < kSharper * nearest->blur_px;
-  if (near && !takes_over) return false;
-  if (T_world_barren_ && separation(*T_world_barren_, T_world_camera) < kBarrenReach) return false;
+  const bool replaces_nearest = near && distance(*nearest) < kSamePlace && nearest->blur_px > kBlurred_px &&
+                                blur_px < kSharper * nearest->blur_px;
+  if (near && !replaces_nearest) return false;
+  if (T_world_featureless_ && separation(*T_world_featureless_, T_world_camera) < kFeaturelessReach)
+    return false;
 
   std::optional<Landmarks> landmarks;
   if (!has_plenty_of_corners(grey, depth_m)) {
     landmarks = landmarks_of(grey, depth_m, camera_);
     if (landmarks->features.size() < kMinFeatures) {
-      T_world_barren_ = T_world_camera;
+      T_world_featureless_ = T_world_camera;
       return false;
     }
   }
-  if (takes_over) kept_.erase(nearest);
+  if (replaces_nearest) kept_.erase(nearest);
   kept_.push_back({timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), std::move(landmarks)});
   if (kept_.size() > spacing_.max_count) drop_most_crowded();
   return true;

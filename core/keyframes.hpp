@@ -88,8 +88,8 @@ class Keyframes {
 
   PinholeCamera camera_;
   KeyframeSpacing spacing_;
-  std::vector<Keyframe> kept_;         ///< in the order of their offers
-  std::optional<SE3> T_world_barren_;  ///< where the last frame with too few features was
+  std::vector<Keyframe> kept_;              ///< in the order of their offers
+  std::optional<SE3> T_world_featureless_;  ///< where the last frame with too few features was
 };
 
 }  // namespace fusebench

@@ -214,9 +214,8 @@ void Pipeline::State::refresh(StageTimes& stages) {
 void Pipeline::State::keep_moving(std::int64_t now_ns, FrameReport& report) {
   Tracking& now = *tracking;
   report.health = FrameHealth::diverged;
-  report.reason =
-      fmt::format("{}: the prediction from the inertial samples since the last frame is not finite",
-                  to_string(report.health));
+  report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
+                              to_string(report.health));
   std::ignore = now.occlusion_gate.admits(report);
   if (!now.estimate) return;
   now.estimate =

@@ -23,8 +23,8 @@ class Pipeline {
   ~Pipeline();
 
   /// Processes the next frame (time must increase). The first frame that can be used is the first one;
-  /// those before are lost ("waiting for a usable first frame"). A lost frame is a report, not an error; errors are IMU
-  /// samples that do not cover the frame (data_corrupt) and a full model (run_failed).
+  /// those before are lost ("waiting for a usable first frame"). A lost frame is a report, not an error;
+  /// errors are IMU samples that do not cover the frame (data_corrupt) and a full model (run_failed).
   [[nodiscard]] Result<FrameReport> process(const RgbdFrame& frame);
 
   [[nodiscard]] const TsdfVolume& model() const;

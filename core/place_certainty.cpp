@@ -11,7 +11,7 @@ namespace {
 constexpr double kMinInlierShare = 0.3;
 constexpr int kMinCells = 5;
 // Standard deviation of the position as a share of the distance of what is seen.
-constexpr double kMaxVagueness = 0.015;
+constexpr double kMaxRelativeSigma = 0.015;
 constexpr int kSpreadCells = 4;  // a side
 
 /// Cells of a grid over the image in which inliers are.
@@ -45,7 +45,7 @@ bool is_certain_place(std::span<const SeenPoint> seen, const PoseFromPoints& pos
   return pose.inliers.size() >= kMinPlaceInliers &&
          inliers >= kMinInlierShare * static_cast<double>(seen.size()) &&
          occupied_cells(seen, pose.inliers, camera) >= kMinCells &&
-         position_sigma_m <= kMaxVagueness * mean_distance_m(seen, pose);
+         position_sigma_m <= kMaxRelativeSigma * mean_distance_m(seen, pose);
 }
 
 }  // namespace fusebench

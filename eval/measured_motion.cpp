@@ -78,7 +78,7 @@ Result<MeasuredMotion> measure_motion(const Recording& recording, const Config& 
       return fail(report.error().code, fmt::format("frame {}: {}", frame, report.error().message),
                   report.error().hint);
     }
-    lost_in_a_row = report->status == FrameStatus::lost ? lost_in_a_row + 1 : 0;
+    lost_in_a_row = report->reason.empty() ? 0 : lost_in_a_row + 1;  // also a start that failed before
     if (lost_in_a_row > config.iekf.max_lost_frames) {
       return fail(ErrorCode::run_failed,
                   fmt::format("lost at frame {}: {} (iekf.max_lost_frames = {})",

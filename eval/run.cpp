@@ -110,7 +110,8 @@ void take_report(Progress& progress, std::size_t frame, const FrameReport& repor
       progress.log +=
           fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
     if (report.status == FrameStatus::initialised && frame > 0) forget_earlier_start(progress, frame, report);
-    progress.lost_in_a_row = 0;
+    // A start that is not the first one is none until a frame is tracked from it.
+    progress.lost_in_a_row = report.reason.empty() ? 0 : progress.lost_in_a_row + 1;
     ++progress.frames.tracked;
     progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
     progress.output.states.push_back({report.capture_ns, report.estimate});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <string>
@@ -240,31 +241,32 @@ TEST(Pipeline, AFirstFrameWithoutDepthOrTextureIsNone) {
   EXPECT_EQ(tracked(reports), kFrames - 3);
 }
 
-TEST(Pipeline, AnAbsurdInertialSampleLosesAFrameAndPoisonsNothing) {
+TEST(Pipeline, AnAbsurdInertialSampleLosesFramesAndPoisonsNothing) {
+  const SimulatedRun run = simulate(24);
   for (const double absurd : {4e9, 1e20, -3e38, 1e308}) {
     for (const auto member : {&ImuSample::angular_velocity_radps, &ImuSample::specific_force_mps2}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        SCOPED_TRACE(::testing::Message() << absurd << " on axis " << axis);
-        SimulatedRun disturbed = shared_run();
-        const std::int64_t at_ns = disturbed.frames[5].timestamp_ns + 10'000'000;
-        const auto sample = std::ranges::lower_bound(disturbed.imu, at_ns, {}, &ImuSample::timestamp_ns);
-        ((*sample).*member)[axis] = absurd;
-        const auto reports = track(disturbed, config_of("full"));
-        ASSERT_EQ(reports.size(), static_cast<std::size_t>(kFrames));
-        for (const FrameReport& report : reports) {
-          EXPECT_TRUE(report.estimate.covariance.allFinite());
-          EXPECT_TRUE(report.T_world_camera.translation.allFinite());
-          EXPECT_TRUE(report.T_world_camera.rotation.coeffs().allFinite());
-          if (report.status == FrameStatus::lost) EXPECT_FALSE(report.reason.empty());
-        }
-        EXPECT_EQ(reports[6].status, FrameStatus::lost);
-        EXPECT_EQ(reports[6].health, FrameHealth::diverged);
-        EXPECT_NE(reports[6].reason.find("not finite"), std::string::npos) << reports[6].reason;
-        EXPECT_NE(reports.back().status, FrameStatus::lost) << reports.back().reason;
-        EXPECT_LT(
-            (reports.back().T_world_camera.translation - disturbed.T_first_camera.back().translation).norm(),
-            0.02);
+      SCOPED_TRACE(::testing::Message() << absurd);
+      SimulatedRun disturbed = run;
+      // After the window that gravity is taken from.
+      const std::int64_t at_ns = disturbed.frames[9].timestamp_ns + 10'000'000;
+      const auto sample = std::ranges::lower_bound(disturbed.imu, at_ns, {}, &ImuSample::timestamp_ns);
+      ((*sample).*member).x() = absurd;
+      const auto reports = track(disturbed, config_of("full"));
+      ASSERT_EQ(reports.size(), disturbed.frames.size());
+      for (const FrameReport& report : reports) {
+        EXPECT_TRUE(report.estimate.covariance.allFinite());
+        EXPECT_TRUE(report.T_world_camera.translation.allFinite());
+        EXPECT_TRUE(report.T_world_camera.rotation.coeffs().allFinite());
+        EXPECT_EQ(report.reason.empty(), report.status != FrameStatus::lost);
       }
+      EXPECT_EQ(reports[10].status, FrameStatus::lost);
+      if (std::abs(absurd) > 1e10) {  // a smaller one may leave numbers that can be computed with
+        EXPECT_EQ(reports[10].health, FrameHealth::diverged);
+        EXPECT_NE(reports[10].reason.find("not finite"), std::string::npos) << reports[10].reason;
+      }
+      EXPECT_NE(reports.back().status, FrameStatus::lost) << reports.back().reason;
+      const SE3& truth = disturbed.T_first_camera.back();
+      EXPECT_LT((reports.back().T_world_camera.translation - truth.translation).norm(), 0.02);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <fstream>
 #include <sstream>
 
 #include "core/ply_file.hpp"
@@ -392,6 +393,44 @@ TEST_F(RunTest, BlackFramesAreLost) {
   EXPECT_EQ(read_tum_trajectory(prepared->folder / "trajectory.tum", warnings)->size(),
             record->frames.tracked);
   EXPECT_LT(record->frames.tracked, 5U);
+}
+
+/// The recording in the dark before a frame.
+void darken_before(Recording& recording, std::size_t first_seen) {
+  recording.load_frame = [load = recording.load_frame, first_seen](std::size_t frame) -> Result<RgbdFrame> {
+    auto loaded = load(frame);
+    if (loaded && frame < first_seen)
+      std::fill(loaded->grey.data.begin(), loaded->grey.data.end(), std::uint8_t{0});
+    return loaded;
+  };
+}
+
+TEST_F(RunTest, StartsAtTheFirstUsableFrameAndSaysSo) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  darken_before(prepared->recording, 2);
+  const auto record = execute_run(*prepared);
+  ASSERT_TRUE(record.has_value());
+  EXPECT_EQ(record->status, RunStatus::ok) << record->reason;
+  EXPECT_EQ(record->frames.tracked, 3U);
+  EXPECT_EQ(record->frames.lost, 2U);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(read_tum_trajectory(prepared->folder / "trajectory.tum", warnings)->size(), 3U);
+  std::ostringstream log;
+  log << std::ifstream(prepared->folder / "log.txt").rdbuf();
+  EXPECT_NE(log.str().find("frame 1: lost: waiting for a usable first frame: dark"), std::string::npos);
+  EXPECT_NE(log.str().find("frame 2: started"), std::string::npos) << log.str();
+}
+
+TEST_F(RunTest, ARecordingWithoutAUsableFrameIsLost) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  darken_before(prepared->recording, 5);
+  const auto record = execute_run(*prepared);
+  ASSERT_TRUE(record.has_value());
+  EXPECT_EQ(record->status, RunStatus::lost);
+  EXPECT_EQ(record->frames.tracked, 0U);
+  EXPECT_EQ(record->frames.lost, 5U);
 }
 
 /// While it lives, no file can grow beyond 8 kB.
