@@ -164,6 +164,8 @@ Result<TrajectoryRequest> request_of(const EvalOptions& options, TrajectoryMetri
   request->plane = named(kPlanes, options.plane);
   request->downsample = options.downsample;
   request->listing.needed = !options.errors.empty();
+  constexpr std::size_t kMostInJson = std::size_t{1} << 20;  // 240 bytes each while the document is made
+  if (options.json && options.errors.empty()) request->listing.most = kMostInJson;
   if (!options.motion_filter.empty())
     request->motion_filter = MotionFilter{options.motion_filter[0], radians(options.motion_filter[1])};
   for (const auto& set :

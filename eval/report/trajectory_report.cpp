@@ -208,8 +208,8 @@ std::string to_json(const TrajectoryEvaluation& evaluation, const ComparedFiles&
                        {"matrix", json_of(evaluation.alignment)}};
   json["plane"] = to_string(request.plane);
   if (request.metric == TrajectoryMetric::rpe) json["motions"] = motions_json(request);
-  const Json series = json_of(first);
-  for (const char* key : {"errors", "timestamps_ns", "stats"}) json[key] = series[key];
+  Json series = json_of(first);
+  for (const char* key : {"errors", "timestamps_ns", "stats"}) json[key] = std::move(series[key]);
   if (evaluation.series.size() > 1) {
     Json also = Json::array();
     for (std::size_t i = 1; i < evaluation.series.size(); ++i) also.push_back(json_of(evaluation.series[i]));

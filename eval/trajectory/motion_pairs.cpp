@@ -147,7 +147,7 @@ Result<DeltaUnit> parse_delta_unit(std::string_view text) {
 
 Result<void> check_listing(const MotionListing& listing, std::size_t motions) {
   if (!listing.needed || motions <= listing.most) return {};
-  constexpr double kBytesEach = 64;
+  constexpr double kBytesEach = 75;
   return fail(
       ErrorCode::usage,
       fmt::format("{} motions are too many to list each error, which would take {:.1f} GB (allowed: up "

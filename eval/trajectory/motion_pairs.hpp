@@ -29,7 +29,7 @@ struct Delta {
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 using MotionVisitor = std::function<void(std::size_t i, std::size_t j)>;
 
-/// Up to how many motions are held as a list, which takes about 64 bytes each while they are compared. Of
+/// Up to how many motions are held as a list, which takes about 75 bytes each until they are written. Of
 /// more, errors are computed again for each pass over them (see streamed_statistics()).
 struct MotionListing {
   std::size_t most = std::size_t{1} << 22;

@@ -143,7 +143,7 @@ TEST(ManyMotions, AreRefusedWhereAListIsNeeded) {
   const auto sentence = check_listing({.needed = true}, 100'000'000);
   ASSERT_FALSE(sentence.has_value());
   EXPECT_NE(sentence.error().message.find("100000000 motions"), std::string::npos);
-  EXPECT_NE(sentence.error().message.find("6.4 GB"), std::string::npos) << sentence.error().message;
+  EXPECT_NE(sentence.error().message.find("7.5 GB"), std::string::npos) << sentence.error().message;
 }
 
 TEST(ManyMotions, TakeLittleMemory) {
