@@ -83,11 +83,6 @@ bool is_finished(const PreparedRun& run, const RecordHead& head) {
   return run.spec.kept == KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
 }
 
-bool is_unreadable(const fs::path& folder) {
-  const auto head = record_head(folder);
-  return head && head->state != RunState::whole;
-}
-
 void forget_not_started(const BatchJob& job) {
   std::error_code ignored;
   fs::remove_all(not_started_folder(job), ignored);

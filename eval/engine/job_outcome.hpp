@@ -37,7 +37,6 @@ void forget_not_started(const BatchJob& job);
 /// Whether the run is there, ok or lost and whole, with the files that are to be kept of it, and with its
 /// profile if one is asked for.
 [[nodiscard]] bool is_finished(const PreparedRun& run, const RecordHead& head);
-[[nodiscard]] bool is_unreadable(const std::filesystem::path& folder);  ///< its record or a file is damaged
 
 /// A run whose process left no results: a record in the run's place that says why, with what the process
 /// cost, and a log that ends with what it printed. A finished run of an earlier time that is there stays.

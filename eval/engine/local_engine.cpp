@@ -159,8 +159,9 @@ class Engine {
   bool ended_already(std::size_t index, const PreparedRun& run) {
     const auto head = record_head(run.folder);
     const bool is_ours = head && head->run_id == run.run_id;
-    const bool has_failed = (is_ours && head->status == RunStatus::failed) || is_unreadable(run.folder) ||
-                            was_not_started(jobs_[index]);
+    const bool is_damaged = head && head->state != RunState::whole;
+    const bool has_failed =
+        (is_ours && head->status == RunStatus::failed) || is_damaged || was_not_started(jobs_[index]);
     if (options_.only_failed && !has_failed) {
       const auto outcome = outcome_without_results(jobs_[index], "not among the failed runs");
       end_resumed(index, outcome, true);
