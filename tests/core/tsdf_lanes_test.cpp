@@ -22,10 +22,10 @@ TEST(TsdfLanes, SamplesByTrilinearInterpolation) {
     Points at{};
     std::array<std::optional<double>, kLanes> expected_m;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      // Points on a spiral through the band and beyond; lattice coordinates of both signs.
+      // Points on a spiral through the band and beyond on either side; lattice coordinates of both signs.
       const int n = static_cast<int>(kLanes) * i + static_cast<int>(lane);
       const double angle = 0.37 * n, height = -0.9 + 1.8 * n / 2000.0;
-      const double radius_m = 0.26 + 0.08 * ((n * 7) % 10) / 10.0;
+      const double radius_m = 0.22 + 0.02 * ((n * 7) % 8);
       const double ring = std::sqrt(1.0 - height * height);
       const Vector3d point = radius_m * Vector3d(ring * std::cos(angle), ring * std::sin(angle), height);
       expected_m[lane] = field.distance_m(point);
@@ -42,7 +42,7 @@ TEST(TsdfLanes, SamplesByTrilinearInterpolation) {
       EXPECT_NEAR(static_cast<double>(distance_m[lane]), expected_m[lane].value_or(0.0), 1e-6);
     }
   }
-  EXPECT_GT(valid, 1000);
+  EXPECT_GT(valid, 500);
   EXPECT_GT(unknown, 50);
 }
 
