@@ -4,19 +4,19 @@
 
 #include <vector>
 
-#include "core/camera_motion.hpp"
-#include "core/config.hpp"
-#include "core/parallel.hpp"
-#include "core/patch_measurement.hpp"
-#include "core/types.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/measurement/patch_measurement.hpp"
+#include "core/preprocessing/camera_motion.hpp"
 
-namespace fusebench {
+namespace fusebench::core {
 
 /// The current frame, prepared. Its memory serves one frame after the other.
 class FramePreparation {
  public:
   /// All references must outlive it.
-  FramePreparation(const Config& config, const SensorRig& rig, const Workers& workers)
+  FramePreparation(const config::Config& config, const SensorRig& rig, const Workers& workers)
       : config_(config), rig_(rig), workers_(workers) {}
 
   /// True if rows or depth of the frame are of other instants than the frame, and the variant undoes that.
@@ -24,7 +24,7 @@ class FramePreparation {
 
   /// Grey and depth, compensated for the motion (if there is anything to compensate) and gated. Colour has to
   /// wait for prepare_color().
-  void prepare(const RgbdFrame& frame, const FilterState& motion);
+  void prepare(const RgbdFrame& frame, const filter::FilterState& motion);
 
   /// Colour of the frame that was prepared last, if it was compensated. Apart, since only frames that are
   /// fused need it.
@@ -32,16 +32,16 @@ class FramePreparation {
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
   [[nodiscard]] const std::vector<GreyImage>& pyramid() const { return pyramid_; }
-  [[nodiscard]] ObservedFrame observed() const { return {pyramid_, frame_.depth_m}; }
+  [[nodiscard]] measurement::ObservedFrame observed() const { return {pyramid_, frame_.depth_m}; }
 
  private:
-  const Config& config_;
+  const config::Config& config_;
   const SensorRig& rig_;
   const Workers& workers_;
   std::vector<GreyImage> pyramid_;
   RgbdFrame frame_;             ///< compensated ones have the colour of an earlier one until prepare_color()
   DepthImage ungated_depth_m_;  ///< before the gates
-  CameraVelocity velocity_;     ///< that it was compensated for, if at all
+  preprocessing::CameraVelocity velocity_;  ///< that it was compensated for, if at all
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::core

@@ -7,20 +7,20 @@
 #include <tuple>
 #include <utility>
 
+#include "core/filter/iekf.hpp"
+#include "core/filter/pose_anchors.hpp"
+#include "core/filter/state_validity.hpp"
 #include "core/frame_preparation.hpp"
-#include "core/iekf.hpp"
-#include "core/initialisation.hpp"
-#include "core/motion_prior.hpp"
-#include "core/patch_measurement.hpp"
-#include "core/pose_anchors.hpp"
+#include "core/measurement/patch_measurement.hpp"
+#include "core/prediction/initialisation.hpp"
+#include "core/prediction/motion_prior.hpp"
 #include "core/recording_start.hpp"
-#include "core/state_validity.hpp"
 #include "core/tracking_state.hpp"
 
-namespace fusebench {
+namespace fusebench::core {
 
 struct Pipeline::State final : RestartableEstimator {
-  State(const Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
+  State(const config::Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
         const Workers& workers_in)
       : config(config_in),
         rig(rig_in),
@@ -30,150 +30,156 @@ struct Pipeline::State final : RestartableEstimator {
         measurement(config, rig, workers),
         tracking(std::in_place, config, rig) {
     // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
-    if (config.terms.prior == Prior::constant_velocity) rig.T_imu_camera = SE3{};
+    if (config.terms.prior == config::Prior::constant_velocity) rig.T_imu_camera = SE3{};
   }
 
-  Result<FrameReport> process_frame(const RgbdFrame& frame) override;
-  const std::optional<GaussianState>& estimate() const override { return tracking->estimate; }
-  void restart(const std::optional<FilterState>& motion) override;
+  Result<health::FrameReport> process_frame(const RgbdFrame& frame) override;
+  const std::optional<filter::GaussianState>& estimate() const override { return tracking->estimate; }
+  void restart(const std::optional<filter::FilterState>& motion) override;
 
-  Result<GaussianState> predict(std::int64_t now_ns, StageTimes& stages) const;
-  void prepare(const RgbdFrame& frame, const FilterState& motion, StageTimes& stages);
-  FrameStatus locate(const GaussianState& predicted, FrameReport& report);
-  bool track(const GaussianState& prior, bool after_gap, FrameReport& report);
-  PoseMeasurement& deform();
-  bool relocalise(const GaussianState& prediction, FrameReport& report);
-  Result<void> fuse(const RgbdFrame& frame, StageTimes& stages);
-  void refresh(StageTimes& stages);
-  void keep_moving(std::int64_t now_ns, FrameReport& report);
+  Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
+  void prepare(const RgbdFrame& frame, const filter::FilterState& motion, health::StageTimes& stages);
+  health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
+  bool track(const filter::GaussianState& prior, bool after_gap, health::FrameReport& report);
+  filter::PoseMeasurement& deform();
+  bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
+  Result<void> fuse(const RgbdFrame& frame, health::StageTimes& stages);
+  void refresh(health::StageTimes& stages);
+  void keep_moving(std::int64_t now_ns, health::FrameReport& report);
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
-  Config config;
+  config::Config config;
   SensorRig rig;
   std::span<const ImuSample> imu;
   const Workers& workers;
-  FramePreparation preparation;  ///< of the current frame
-  PatchMeasurement measurement;  ///< of the patches in the current frame
-  PatchWorkspace patch_workspace;
-  std::optional<Tracking> tracking;           ///< always there
-  std::optional<FilterState> initial_motion;  ///< after a restart
+  FramePreparation preparation;               ///< of the current frame
+  measurement::PatchMeasurement measurement;  ///< of the patches in the current frame
+  patches::PatchWorkspace patch_workspace;
+  std::optional<Tracking> tracking;                   ///< always there
+  std::optional<filter::FilterState> initial_motion;  ///< after a restart
   RecordingStart start;
 };
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
 /// (fusion and new patches).
-Result<FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
+Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
   Tracking& now = *tracking;
-  FrameReport report = report_of(frame);
+  health::FrameReport report = health::report_of(frame);
   check(!now.estimate || frame.capture_ns() > now.timestamp_ns, "frames come in the order of time");
 
-  const Result<GaussianState> predicted = predict(frame.capture_ns(), report.stages);  // Eqs. 8-14
+  const Result<filter::GaussianState> predicted = predict(frame.capture_ns(), report.stages);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
-  if (!is_valid(*predicted)) {
+  if (!filter::is_valid(*predicted)) {
     keep_moving(frame.capture_ns(), report);
     return report;
   }
   prepare(frame, predicted->mean, report.stages);
 
   report.status = locate(*predicted, report);  // Eqs. 1-5, 15-23
-  const bool updated = report.status == FrameStatus::tracked || report.status == FrameStatus::relocalised;
+  const bool updated =
+      report.status == health::FrameStatus::tracked || report.status == health::FrameStatus::relocalised;
   if (!updated) now.estimate = *predicted;
-  now.lost_frames = report.status == FrameStatus::lost ? now.lost_frames + 1 : 0;
+  now.lost_frames = report.status == health::FrameStatus::lost ? now.lost_frames + 1 : 0;
   now.timestamp_ns = frame.capture_ns();
   ++now.frames;
 
   if (now.occlusion_gate.admits(report)) {
-    const FilterState& state = now.estimate->mean;
-    if (preparation.compensates(frame) && velocity_changed_much(predicted->mean, state))
+    const filter::FilterState& state = now.estimate->mean;
+    if (preparation.compensates(frame) && preprocessing::velocity_changed_much(predicted->mean, state))
       prepare(frame, state, report.stages);
     const Result<void> fused = fuse(frame, report.stages);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(report.stages);  // Sec. 2.3: patch update
   }
-  if (report.status == FrameStatus::initialised)
-    report.health = judge_start(preparation.observed(), now.patches.size(), config);
-  describe_state(*now.estimate, rig.T_imu_camera, report);
+  if (report.status == health::FrameStatus::initialised)
+    report.health = health::judge_start(preparation.observed(), now.patches.size(), config);
+  health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
   return report;
 }
 
-void Pipeline::State::restart(const std::optional<FilterState>& motion) {
+void Pipeline::State::restart(const std::optional<filter::FilterState>& motion) {
   initial_motion = motion;
   tracking.emplace(config, rig);
 }
 
 /// Sec. 2.2.1: IMU samples carry the state to the frame; without an IMU, constant velocity does.
-Result<GaussianState> Pipeline::State::predict(std::int64_t now_ns, StageTimes& stages) const {
-  const StageClock clock(stages, Stage::predict);
-  if (!tracking->estimate) return initial_state(imu, now_ns, rig, config, initial_motion);
-  return predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig.imu_noise, config);
+Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
+                                                       health::StageTimes& stages) const {
+  const health::StageClock clock(stages, health::Stage::predict);
+  if (!tracking->estimate) return prediction::initial_state(imu, now_ns, rig, config, initial_motion);
+  return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig.imu_noise,
+                                   config);
 }
 
-void Pipeline::State::prepare(const RgbdFrame& frame, const FilterState& motion, StageTimes& stages) {
-  const StageClock clock(stages, Stage::preprocess);
+void Pipeline::State::prepare(const RgbdFrame& frame, const filter::FilterState& motion,
+                              health::StageTimes& stages) {
+  const health::StageClock clock(stages, health::Stage::preprocess);
   preparation.prepare(frame, motion);
 }
 
-FrameStatus Pipeline::State::locate(const GaussianState& predicted, FrameReport& report) {
-  if (!tracking->estimate) return FrameStatus::initialised;
+health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
+                                            health::FrameReport& report) {
+  if (!tracking->estimate) return health::FrameStatus::initialised;
   // As after a gap, nobody knows how fast a recording begins.
   const bool after_gap = tracking->lost_frames > 0 || tracking->frames == 1;
-  if (track(predicted, after_gap, report)) return FrameStatus::tracked;
-  return relocalise(predicted, report) ? FrameStatus::relocalised : FrameStatus::lost;
+  if (track(predicted, after_gap, report)) return health::FrameStatus::tracked;
+  return relocalise(predicted, report) ? health::FrameStatus::relocalised : health::FrameStatus::lost;
 }
 
 /// Secs. 2.1 and 2.2.2: the patches are deformed into the frame by each iterate of the update, which
 /// minimises what is left between them and the images. False if the result is not to be believed.
-bool Pipeline::State::track(const GaussianState& prior, bool after_gap, FrameReport& report) {
-  const StageClock clock(report.stages, Stage::update);
+bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, health::FrameReport& report) {
+  const health::StageClock clock(report.stages, health::Stage::update);
   Tracking& now = *tracking;
-  PoseMeasurement& deformed = deform();                                 // Eqs. 1-5
-  const IekfResult update = iekf_update(prior, deformed, config.iekf);  // Eqs. 15-23
-  report.blur_px = predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
-  if (!is_valid(update.posterior)) {
-    report.health = FrameHealth::diverged;
-    report.reason = fmt::format("{}: the update is not finite", to_string(report.health));
+  filter::PoseMeasurement& deformed = deform();                                         // Eqs. 1-5
+  const filter::IekfResult update = filter::iekf_update(prior, deformed, config.iekf);  // Eqs. 15-23
+  report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
+  if (!filter::is_valid(update.posterior)) {
+    report.health = health::FrameHealth::diverged;
+    report.reason = fmt::format("{}: the update is not finite", health::to_string(report.health));
     return false;
   }
-  describe_update(measurement, update, now.patches, report);
-  report.health = judge_health(preparation.observed(), measurement.outcomes(), report.blur_px, config);
-  report.reason = rejection_reason(report, after_gap, config);
+  health::describe_update(measurement, update, now.patches, report);
+  report.health =
+      health::judge_health(preparation.observed(), measurement.outcomes(), report.blur_px, config);
+  report.reason = health::rejection_reason(report, after_gap, config);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     now.residual_scale = {std::max(1.0, now.residual_scale.photometric),
                           std::max(1.0, now.residual_scale.geometric)};
     return false;
   }
-  report.evidence = PoseEvidence{now.reference_ns, prior.mean.T_world_imu_reference,
-                                 update.posterior.mean.T_world_imu, update.measurement};
+  report.evidence = health::PoseEvidence{now.reference_ns, prior.mean.T_world_imu_reference,
+                                         update.posterior.mean.T_world_imu, update.measurement};
   now.estimate = update.posterior;
-  if (report.health != FrameHealth::occluded)
-    now.residual_scale = followed_scale(now.residual_scale, measurement.outcomes(), config);
-  find_survivors(now.patches, measurement.outcomes(), config.patches, now.survivors);
+  if (report.health != health::FrameHealth::occluded)
+    now.residual_scale = measurement::followed_scale(now.residual_scale, measurement.outcomes(), config);
+  health::find_survivors(now.patches, measurement.outcomes(), config.patches, now.survivors);
   return true;
 }
 
 /// Sec. 2.1: the patches in the current frame, at whatever pose the update asks for. Deformation (Eqs. 1-2,
 /// shrink and extend effects) and errors (Eqs. 3-5) are evaluated in PatchMeasurement::linearise(), again at
 /// each iterate (Eq. 18).
-PoseMeasurement& Pipeline::State::deform() {
+filter::PoseMeasurement& Pipeline::State::deform() {
   measurement.observe(preparation.observed(), tracking->patches, tracking->residual_scale);
   return measurement;
 }
 
 /// Looks for the frame among the keyframes, and tracks it from there with their patches.
-bool Pipeline::State::relocalise(const GaussianState& prediction, FrameReport& report) {
-  if (!config.terms.relocalisation || report.health == FrameHealth::dark) return false;
+bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health::FrameReport& report) {
+  if (!config.terms.relocalisation || report.health == health::FrameHealth::dark) return false;
   Tracking& now = *tracking;
-  std::optional<RelocalisedReference> found;
+  std::optional<relocalisation::RelocalisedReference> found;
   {
-    const StageClock clock(report.stages, Stage::update);
+    const health::StageClock clock(report.stages, health::Stage::update);
     found = now.relocalisation.find(preparation.frame().grey, prediction, now.model, workers);
   }
   if (!found) return false;
   std::swap(now.patches, found->patches);
   std::swap(now.reference_ns, found->reference_ns);
-  FrameReport again = report_of(preparation.frame());
+  health::FrameReport again = health::report_of(preparation.frame());
   again.stages = report.stages;
   if (!track(found->prior, true, again)) {
     std::swap(now.patches, found->patches);
@@ -187,61 +193,63 @@ bool Pipeline::State::relocalise(const GaussianState& prediction, FrameReport& r
 }
 
 /// Sec. 2.3: the depth image goes into the model at the updated pose.
-Result<void> Pipeline::State::fuse(const RgbdFrame& frame, StageTimes& stages) {
+Result<void> Pipeline::State::fuse(const RgbdFrame& frame, health::StageTimes& stages) {
   if (preparation.compensates(frame)) {
-    const StageClock clock(stages, Stage::preprocess);
+    const health::StageClock clock(stages, health::Stage::preprocess);
     preparation.prepare_color(frame);
   }
-  const StageClock clock(stages, Stage::fuse);
+  const health::StageClock clock(stages, health::Stage::fuse);
   return tracking->model.integrate(preparation.frame(), rig.camera, T_world_camera(), config.depth, workers);
 }
 
 /// Sec. 2.3: surviving patches are cut again as squares, new corners join them, depth comes from the model.
-void Pipeline::State::refresh(StageTimes& stages) {
-  const StageClock clock(stages, Stage::refresh);
+void Pipeline::State::refresh(health::StageTimes& stages) {
+  const health::StageClock clock(stages, health::Stage::refresh);
   Tracking& now = *tracking;
   const RgbdFrame& frame = preparation.frame();
-  const ReferenceFrame reference{preparation.pyramid(), frame.depth_m, rig.camera, T_world_camera()};
-  refresh_patches(reference, now.model, now.survivors, config, workers, patch_workspace, now.patches);
+  const patches::ReferenceFrame reference{preparation.pyramid(), frame.depth_m, rig.camera, T_world_camera()};
+  patches::refresh_patches(reference, now.model, now.survivors, config, workers, patch_workspace,
+                           now.patches);
   now.reference_ns = now.timestamp_ns;
-  const double share = fused_share(now.model, now.patches, reference, config.depth);
-  now.estimate = cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor});
-  now.relocalisation.add_keyframe(frame, T_world_camera(), now.timestamp_ns,
-                                  predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));
+  const double share = patches::fused_share(now.model, now.patches, reference, config.depth);
+  now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor});
+  now.relocalisation.add_keyframe(
+      frame, T_world_camera(), now.timestamp_ns,
+      preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));
 }
 
 /// The prediction is not finite: the frame is lost, and the velocity before carries the state to it.
-void Pipeline::State::keep_moving(std::int64_t now_ns, FrameReport& report) {
+void Pipeline::State::keep_moving(std::int64_t now_ns, health::FrameReport& report) {
   Tracking& now = *tracking;
-  report.health = FrameHealth::diverged;
+  report.health = health::FrameHealth::diverged;
   report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
-                              to_string(report.health));
+                              health::to_string(report.health));
   std::ignore = now.occlusion_gate.admits(report);
   if (!now.estimate) return;
-  now.estimate =
-      predict_by_constant_velocity(*now.estimate, seconds_between(now.timestamp_ns, now_ns), config.motion)
-          .state;
+  now.estimate = prediction::predict_by_constant_velocity(
+                     *now.estimate, seconds_between(now.timestamp_ns, now_ns), config.motion)
+                     .state;
   ++now.frames;
   ++now.lost_frames;
   now.timestamp_ns = now_ns;
-  describe_state(*now.estimate, rig.T_imu_camera, report);
+  health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
 }
 
-Pipeline::Pipeline(const Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
+Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
                    const Workers& workers)
     : state_(std::make_unique<State>(config, rig, imu, workers)) {}
 Pipeline::~Pipeline() = default;
 
-Result<FrameReport> Pipeline::process(const RgbdFrame& frame) {
+Result<health::FrameReport> Pipeline::process(const RgbdFrame& frame) {
   return state_->start.process(frame, *state_);
 }
 
-const TsdfVolume& Pipeline::model() const { return state_->tracking->model; }
+const tsdf::TsdfVolume& Pipeline::model() const { return state_->tracking->model; }
 
-TsdfVolume Pipeline::take_model() && {
+tsdf::TsdfVolume Pipeline::take_model() && {
   const std::unique_ptr<State> last = std::move(state_);
   return std::move(last->tracking->model);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::core

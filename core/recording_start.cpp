@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
-namespace fusebench {
+namespace fusebench::core {
 
 namespace {
 
-Result<FrameReport> process_again(const RgbdFrame& first_frame, const RgbdFrame& second_frame,
-                                  StageTimes so_far, RestartableEstimator& estimator) {
-  const FilterState motion = estimator.estimate()->mean;
+Result<health::FrameReport> process_again(const RgbdFrame& first_frame, const RgbdFrame& second_frame,
+                                          health::StageTimes so_far, RestartableEstimator& estimator) {
+  const filter::FilterState motion = estimator.estimate()->mean;
   estimator.restart(motion);
-  const Result<FrameReport> first = estimator.process_frame(first_frame);
+  const Result<health::FrameReport> first = estimator.process_frame(first_frame);
   if (!first) return first;
-  Result<FrameReport> second = estimator.process_frame(second_frame);
+  Result<health::FrameReport> second = estimator.process_frame(second_frame);
   if (!second) return second;
   so_far.add(first->stages);
   so_far.add(second->stages);
@@ -20,39 +20,41 @@ Result<FrameReport> process_again(const RgbdFrame& first_frame, const RgbdFrame&
   return second;
 }
 
-void wait(FrameReport& report, RestartableEstimator& estimator) {
-  report.status = FrameStatus::lost;
-  report.reason = fmt::format("waiting for a usable first frame: {}", to_string(report.health));
+void wait(health::FrameReport& report, RestartableEstimator& estimator) {
+  report.status = health::FrameStatus::lost;
+  report.reason = fmt::format("waiting for a usable first frame: {}", health::to_string(report.health));
   report.model_blocks = 0;
   estimator.restart(std::nullopt);
 }
 
 }  // namespace
 
-Result<FrameReport> RecordingStart::process(const RgbdFrame& frame, RestartableEstimator& estimator) {
+Result<health::FrameReport> RecordingStart::process(const RgbdFrame& frame, RestartableEstimator& estimator) {
   if (!estimator.estimate()) return process_first(frame, estimator);
-  Result<FrameReport> report = estimator.process_frame(frame);
+  Result<health::FrameReport> report = estimator.process_frame(frame);
   if (!report || confirmed_) return report;
   if (is_false_start(*report)) {
-    StageTimes so_far = report->stages;
+    health::StageTimes so_far = report->stages;
     estimator.restart(std::nullopt);
     report = process_first(frame, estimator);
     if (!report) return report;
     so_far.add(report->stages);
     report->stages = so_far;
-    if (report->status == FrameStatus::initialised)
+    if (report->status == health::FrameStatus::initialised)
       report->reason = "started again: no frame could be tracked from the first start";
     return report;
   }
-  confirmed_ = report->status != FrameStatus::lost;
+  confirmed_ = report->status != health::FrameStatus::lost;
   if (confirmed_ && first_frame_) report = process_again(*first_frame_, frame, report->stages, estimator);
   first_frame_.reset();
   return report;
 }
 
-Result<FrameReport> RecordingStart::process_first(const RgbdFrame& frame, RestartableEstimator& estimator) {
-  Result<FrameReport> report = estimator.process_frame(frame);
-  if (report && report->status == FrameStatus::initialised && report->health != FrameHealth::good)
+Result<health::FrameReport> RecordingStart::process_first(const RgbdFrame& frame,
+                                                          RestartableEstimator& estimator) {
+  Result<health::FrameReport> report = estimator.process_frame(frame);
+  if (report && report->status == health::FrameStatus::initialised &&
+      report->health != health::FrameHealth::good)
     wait(*report, estimator);
   first_frame_ = frame;
   lost_frames_ = 0;
@@ -60,13 +62,14 @@ Result<FrameReport> RecordingStart::process_first(const RgbdFrame& frame, Restar
 }
 
 /// A frame that is lost although its images are sound does not show what the first one showed.
-bool RecordingStart::is_false_start(const FrameReport& report) {
+bool RecordingStart::is_false_start(const health::FrameReport& report) {
   constexpr int kMostLostFrames = 5;  // relocalisation has had its chances
-  if (report.status != FrameStatus::lost) return false;
-  const bool sound = report.health != FrameHealth::dark && report.health != FrameHealth::diverged &&
-                     report.health != FrameHealth::short_of_depth &&
-                     report.health != FrameHealth::short_of_texture;
+  if (report.status != health::FrameStatus::lost) return false;
+  const bool sound = report.health != health::FrameHealth::dark &&
+                     report.health != health::FrameHealth::diverged &&
+                     report.health != health::FrameHealth::short_of_depth &&
+                     report.health != health::FrameHealth::short_of_texture;
   return ++lost_frames_ >= kMostLostFrames && sound;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::core

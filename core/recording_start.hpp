@@ -11,12 +11,12 @@
 
 #include <optional>
 
-#include "core/error.hpp"
-#include "core/filter_state.hpp"
-#include "core/frame_report.hpp"
-#include "core/types.hpp"
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "core/filter/filter_state.hpp"
+#include "core/health/frame_report.hpp"
 
-namespace fusebench {
+namespace fusebench::core {
 
 /// An estimator that can begin again.
 class RestartableEstimator {
@@ -27,11 +27,11 @@ class RestartableEstimator {
   virtual ~RestartableEstimator() = default;
 
   /// The first frame (status initialised) has the health of judge_start().
-  [[nodiscard]] virtual Result<FrameReport> process_frame(const RgbdFrame& frame) = 0;
+  [[nodiscard]] virtual Result<health::FrameReport> process_frame(const RgbdFrame& frame) = 0;
   /// The state after the last frame; nothing before the first one.
-  [[nodiscard]] virtual const std::optional<GaussianState>& estimate() const = 0;
+  [[nodiscard]] virtual const std::optional<filter::GaussianState>& estimate() const = 0;
   /// Forgets all frames, to begin with the velocities of this state if there is one.
-  virtual void restart(const std::optional<FilterState>& motion) = 0;
+  virtual void restart(const std::optional<filter::FilterState>& motion) = 0;
 };
 
 class RecordingStart {
@@ -39,15 +39,16 @@ class RecordingStart {
   /// Processes the next frame. One that cannot be the first is lost, and its reason says so. The second one
   /// is processed together with the first one again; its report has the time of all of that. A later start
   /// has the status initialised and a reason: the frames before do not count any more.
-  [[nodiscard]] Result<FrameReport> process(const RgbdFrame& frame, RestartableEstimator& estimator);
+  [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame, RestartableEstimator& estimator);
 
  private:
-  [[nodiscard]] Result<FrameReport> process_first(const RgbdFrame& frame, RestartableEstimator& estimator);
-  [[nodiscard]] bool is_false_start(const FrameReport& report);
+  [[nodiscard]] Result<health::FrameReport> process_first(const RgbdFrame& frame,
+                                                          RestartableEstimator& estimator);
+  [[nodiscard]] bool is_false_start(const health::FrameReport& report);
 
   std::optional<RgbdFrame> first_frame_;  ///< until the second one was processed
   bool confirmed_ = false;                ///< a frame was tracked after the first one
   int lost_frames_ = 0;                   ///< since the first one
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::core

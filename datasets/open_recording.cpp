@@ -8,14 +8,14 @@
 #include <system_error>
 #include <vector>
 
-#include "core/nearest_name.hpp"
-#include "datasets/eth3d_slam.hpp"
-#include "datasets/icl_nuim.hpp"
-#include "datasets/side_files.hpp"
-#include "datasets/tum_rgbd.hpp"
-#include "datasets/zr300.hpp"
+#include "core/base/nearest_name.hpp"
+#include "datasets/formats/eth3d/eth3d_slam.hpp"
+#include "datasets/formats/icl/icl_nuim.hpp"
+#include "datasets/formats/tum/tum_rgbd.hpp"
+#include "datasets/formats/zr300/zr300.hpp"
+#include "datasets/reading/side_files.hpp"
 
-namespace fusebench {
+namespace fusebench::datasets {
 
 namespace {
 
@@ -24,18 +24,19 @@ namespace {
 struct RecordingFormat {
   std::string_view name;
   std::vector<std::string_view> files;  ///< that a folder of this format must hold
-  Result<Recording> (*open)(const std::filesystem::path& folder, const ReadOptions& options);
+  Result<recording::Recording> (*open)(const std::filesystem::path& folder,
+                                       const recording::ReadOptions& options);
   /// Replaces the list of files where names alone do not tell; the files are then for messages.
   bool (*recognise)(const std::filesystem::path& folder) = nullptr;
 };
 
 const std::vector<RecordingFormat>& formats() {
   static const std::vector<RecordingFormat> kFormats = {
-      {"eth3d", {"associated.txt", "calibration.txt"}, open_eth3d_slam},
-      {"icl", {"associations.txt or scene_*.depth"}, open_icl_nuim, is_icl_nuim},
-      {"tum", {"rgb.txt", "depth.txt"}, open_tum_rgbd},
-      {"zr300", {"TIMESTAMP.txt"}, open_zr300},
-      {"zr300_raw", {"COLOR.txt", "DEPTH.txt"}, open_zr300_raw},
+      {"eth3d", {"associated.txt", "calibration.txt"}, formats::eth3d::open_eth3d_slam},
+      {"icl", {"associations.txt or scene_*.depth"}, formats::icl::open_icl_nuim, formats::icl::is_icl_nuim},
+      {"tum", {"rgb.txt", "depth.txt"}, formats::tum::open_tum_rgbd},
+      {"zr300", {"TIMESTAMP.txt"}, formats::zr300::open_zr300},
+      {"zr300_raw", {"COLOR.txt", "DEPTH.txt"}, formats::zr300::open_zr300_raw},
   };
   return kFormats;
 }
@@ -75,7 +76,7 @@ std::optional<std::string_view> recognise_format(const std::filesystem::path& fo
   return std::nullopt;
 }
 
-Result<Recording> open_recording(const std::filesystem::path& folder, const OpenOptions& options) {
+Result<recording::Recording> open_recording(const std::filesystem::path& folder, const OpenOptions& options) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such folder", folder.string()));
@@ -84,8 +85,8 @@ Result<Recording> open_recording(const std::filesystem::path& folder, const Open
     if (options.format.empty() ? fits(format, folder) : format.name == options.format) {
       auto recording = format.open(folder, options.read);
       if (!recording) return recording;
-      note_simulation(folder, *recording);
-      if (const auto read = read_exact_truth_beside(folder, *recording); !read) {
+      reading::note_simulation(folder, *recording);
+      if (const auto read = reading::read_exact_truth_beside(folder, *recording); !read) {
         return tl::unexpected(read.error());
       }
       return recording;
@@ -94,4 +95,4 @@ Result<Recording> open_recording(const std::filesystem::path& folder, const Open
   return options.format.empty() ? unrecognised(folder) : unknown_format(options.format);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::datasets

@@ -6,15 +6,15 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.hpp"
-#include "datasets/read_options.hpp"
-#include "datasets/recording.hpp"
+#include "core/base/error.hpp"
+#include "datasets/recording/read_options.hpp"
+#include "datasets/recording/recording.hpp"
 
-namespace fusebench {
+namespace fusebench::datasets {
 
 struct OpenOptions {
   std::string format;  ///< "tum", "icl", ...; empty: recognised by the files in the folder
-  ReadOptions read;
+  recording::ReadOptions read;
 };
 
 /// The format whose files the folder holds; nothing if there is none.
@@ -22,7 +22,7 @@ struct OpenOptions {
 
 /// Errors: data_missing (no such folder, or no format fits its files), configuration (unknown format), and
 /// those of the format's reader.
-[[nodiscard]] Result<Recording> open_recording(const std::filesystem::path& folder,
-                                               const OpenOptions& options = {});
+[[nodiscard]] Result<recording::Recording> open_recording(const std::filesystem::path& folder,
+                                                          const OpenOptions& options = {});
 
-}  // namespace fusebench
+}  // namespace fusebench::datasets

@@ -7,7 +7,7 @@ usage() {
 Usage: scripts/check_references.sh [ROOT]
 
 Reads the text files below ROOT (default: this repository) and checks that there is
-  - every path that begins with core/, datasets/, eval/, tests/, scripts/, docs/, configs/, cmake/ or .ci/ and ends in a
+  - every path that begins with core/, datasets/, eval/, tests/, scripts/, docs/, configs/ or .ci/ and ends in a
     file's extension: from ROOT on, or from the folder of the file that names it
   - every target of a relative link of a Markdown file
 NAME in a path stands for any name. Not read: CMakeLists.txt (the build does that), results, golden files, inputs of the
@@ -35,7 +35,7 @@ texts() {
 
 # Prints FILE:LINE:PATH of what could be a reference.
 references() {
-  local rooms='core|datasets|eval|tests|scripts|docs|configs|cmake|\.ci'
+  local rooms='core|datasets|eval|tests|scripts|docs|configs|\.ci'
   local extensions='hpp|cpp|in|md|sh|py|js|css|cmake|toml|txt|json|csv|ply|yml|html'
   local path="(?<![A-Za-z0-9_./\${}<>*~-])(?:\./)?\K(?:$rooms)/[A-Za-z0-9_./-]*\.(?:$extensions)(?![A-Za-z0-9_*{-])"
   local status=0

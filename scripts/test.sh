@@ -99,7 +99,7 @@ step set-up ./scripts/setup.sh
 if ((failures > 0)); then finish; fi
 step scripts check_scripts
 step formatting check_format
-step includes ./scripts/check_includes.sh
+step includes ./scripts/check_includes.py
 step references ./scripts/check_references.sh
 step type-names ./scripts/check_type_names.sh
 step build ./scripts/build.sh ci

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string_view>
 
-#include "core/imu_preintegration.hpp"
+#include "core/prediction/imu_preintegration.hpp"
 #include "core/smoother/batch_problem.hpp"
 #include "core/smoother/selected_inverse.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 namespace {
 
@@ -63,7 +63,7 @@ Result<void> check_input(const BatchInput& input, const BatchOptions& options) {
 
 BatchUnknowns initial_unknowns(const BatchInput& input) {
   BatchUnknowns x;
-  for (const FilterState& state : input.initial) {
+  for (const filter::FilterState& state : input.initial) {
     x.rotation_world_imu.push_back(state.T_world_imu.rotation);
     x.position_world_m.push_back(state.T_world_imu.translation);
     x.velocity_world_mps.push_back(state.velocity_world_mps);
@@ -77,12 +77,13 @@ BatchUnknowns initial_unknowns(const BatchInput& input) {
   return x;
 }
 
-Result<std::vector<PreintegratedImu>> integrate(const BatchInput& input, const BatchUnknowns& x) {
+Result<std::vector<prediction::PreintegratedImu>> integrate(const BatchInput& input, const BatchUnknowns& x) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.time_offset_s));
-  std::vector<PreintegratedImu> increments;
+  std::vector<prediction::PreintegratedImu> increments;
   for (std::size_t k = 0; k + 1 < input.instants_ns.size(); ++k) {
-    auto imu = preintegrate(input.imu, input.instants_ns[k] + offset_ns, input.instants_ns[k + 1] + offset_ns,
-                            x.bias[k].head<3>(), x.bias[k].tail<3>(), input.imu_noise);
+    auto imu = prediction::preintegrate(input.imu, input.instants_ns[k] + offset_ns,
+                                        input.instants_ns[k + 1] + offset_ns, x.bias[k].head<3>(),
+                                        x.bias[k].tail<3>(), input.imu_noise);
     if (!imu) return tl::unexpected(imu.error());
     increments.push_back(*imu);
   }
@@ -170,7 +171,7 @@ class BatchSearch {
   const BatchOptions& options_;
   BatchUnknowns unknowns_;
   VisualScale scale_;
-  std::vector<PreintegratedImu> increments_;
+  std::vector<prediction::PreintegratedImu> increments_;
   BatchEstimate estimate_;
 };
 
@@ -242,7 +243,7 @@ void BatchSearch::describe_frames(const BatchLinearisation& at, const SelectedIn
     // Pose, velocity and biases of a frame are neighbours among the columns; the first frame has no pose.
     const bool fixed = at.columns.rotation[k] < 0;
     const int begin = fixed ? at.columns.velocity[k] : at.columns.rotation[k];
-    const int size = fixed ? kBatchStateSize - kPoseSize : kBatchStateSize;
+    const int size = fixed ? kBatchStateSize - filter::kPoseSize : kBatchStateSize;
     frame.covariance.bottomRightCorner(size, size) = inverse.block(begin, begin, size, size);
   }
 }
@@ -295,4 +296,4 @@ Result<BatchEstimate> estimate_batch(const BatchInput& input, const BatchOptions
   return BatchSearch(input, options).run();
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

@@ -22,12 +22,12 @@
 #include <span>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/filter_state.hpp"
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "core/filter/filter_state.hpp"
 #include "core/smoother/relative_motion.hpp"
-#include "core/types.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 inline constexpr int kBatchStateSize = 15;    ///< the error state's first five parts (StateOffset)
 inline constexpr int kBatchCommonSize = 9;    ///< and of the common unknowns:
@@ -40,7 +40,7 @@ using BatchCommonMatrix = Eigen::Matrix<double, kBatchCommonSize, kBatchCommonSi
 
 struct BatchInput {
   std::vector<std::int64_t> instants_ns;     ///< of the frames, on the camera's clock, increasing
-  std::vector<FilterState> initial;          ///< one a frame: where the search begins
+  std::vector<filter::FilterState> initial;  ///< one a frame: where the search begins
   std::vector<RelativeCameraMotion> visual;  ///< in any order; lost frames have none
   std::span<const ImuSample> imu;            ///< sorted; must outlive the call only
   ImuNoise imu_noise;
@@ -63,7 +63,7 @@ struct BatchOptions {
 };
 
 struct BatchFrame {
-  FilterState state;  ///< with gravity and the clock's offset, which are common
+  filter::FilterState state;  ///< with gravity and the clock's offset, which are common
   /// Rotation, position, velocity and biases, in the tangent at the state.
   BatchStateMatrix covariance = BatchStateMatrix::Zero();
   double visual_residual = -1;  ///< rms of the normalised residuals of its image; negative without one
@@ -88,4 +88,4 @@ struct BatchEstimate {
 /// failed).
 [[nodiscard]] Result<BatchEstimate> estimate_batch(const BatchInput& input, const BatchOptions& options);
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

@@ -13,22 +13,22 @@
 #include "core/smoother/manifolds.hpp"
 #include "core/smoother/residuals.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 namespace {
 
 /// The root of the inverse of an increment's covariance. Floors far below any sensor's noise keep it regular
 /// where an interval holds one or two samples only.
-Matrix9d whitening_of(const Matrix9d& covariance) {
+prediction::Matrix9d whitening_of(const prediction::Matrix9d& covariance) {
   constexpr double kRotationFloorRad = 1e-5;
   constexpr double kVelocityFloorMps = 1e-4;
   constexpr double kPositionFloorM = 1e-5;
-  Matrix9d regular = covariance;
+  prediction::Matrix9d regular = covariance;
   regular.diagonal().segment<3>(0).array() += kRotationFloorRad * kRotationFloorRad;
   regular.diagonal().segment<3>(3).array() += kVelocityFloorMps * kVelocityFloorMps;
   regular.diagonal().segment<3>(6).array() += kPositionFloorM * kPositionFloorM;
-  const Eigen::LLT<Matrix9d> root(regular);
-  return root.matrixL().solve(Matrix9d::Identity());
+  const Eigen::LLT<prediction::Matrix9d> root(regular);
+  return root.matrixL().solve(prediction::Matrix9d::Identity());
 }
 
 double step_sigma(double density, double duration_s) {
@@ -45,7 +45,7 @@ ceres::CostFunction* vector_prior(const Eigen::Matrix<double, Size, 1>& expected
 }  // namespace
 
 BatchProblem::BatchProblem(const BatchInput& input, const BatchOptions& options,
-                           const std::vector<PreintegratedImu>& increments, double visual_scale,
+                           const std::vector<prediction::PreintegratedImu>& increments, double visual_scale,
                            double outlier_sigmas, BatchUnknowns& unknowns)
     : input_(input), options_(options), increments_(increments), unknowns_(unknowns) {
   add_unknowns();
@@ -79,7 +79,7 @@ void BatchProblem::add_unknowns() {
 void BatchProblem::add_inertial() {
   BatchUnknowns& x = unknowns_;
   for (std::size_t k = 0; k < increments_.size(); ++k) {
-    const PreintegratedImu& imu = increments_[k];
+    const prediction::PreintegratedImu& imu = increments_[k];
     auto* residual = new InertialResidual{imu, x.bias[k].head<3>(), x.bias[k].tail<3>(), x.time_offset_s,
                                           whitening_of(imu.covariance)};
     inertial_.push_back(problem_.AddResidualBlock(
@@ -195,4 +195,4 @@ Vector6d BatchProblem::visual_residual(std::size_t motion) const {
   return residual;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

@@ -5,11 +5,11 @@
 
 #include <vector>
 
-#include "core/imu_preintegration.hpp"
+#include "core/prediction/imu_preintegration.hpp"
 #include "core/smoother/batch_estimate.hpp"
 #include "core/smoother/selected_inverse.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 struct BatchUnknowns {
   std::vector<Quaterniond> rotation_world_imu;
@@ -47,8 +47,8 @@ class BatchProblem {
   /// All arguments must outlive the problem, which moves the unknowns. increments: one an interval.
   /// visual_scale: what the visual information is divided by; outlier_sigmas: in these units.
   BatchProblem(const BatchInput& input, const BatchOptions& options,
-               const std::vector<PreintegratedImu>& increments, double visual_scale, double outlier_sigmas,
-               BatchUnknowns& unknowns);
+               const std::vector<prediction::PreintegratedImu>& increments, double visual_scale,
+               double outlier_sigmas, BatchUnknowns& unknowns);
 
   /// False if Ceres gave up.
   [[nodiscard]] bool solve();
@@ -64,7 +64,7 @@ class BatchProblem {
 
   const BatchInput& input_;
   const BatchOptions& options_;
-  const std::vector<PreintegratedImu>& increments_;
+  const std::vector<prediction::PreintegratedImu>& increments_;
   BatchUnknowns& unknowns_;
   ceres::Problem problem_;
   std::vector<ceres::ResidualBlockId> visual_;
@@ -72,4 +72,4 @@ class BatchProblem {
   std::vector<ceres::ResidualBlockId> rest_;
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

@@ -1,8 +1,8 @@
 #include "core/smoother/manifolds.hpp"
 
-#include "core/geometry.hpp"
+#include "core/base/geometry.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 namespace {
 
@@ -75,4 +75,4 @@ bool DirectionManifold::MinusJacobian(const double* x, double* jacobian) const {
   return true;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

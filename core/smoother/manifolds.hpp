@@ -1,10 +1,10 @@
-// Tangent spaces for Ceres, with the perturbations of core/filter_state.hpp: rotations move on the right,
-// R * Exp(d), and unit directions by s2_plus. Quaternions are stored as Eigen does: x, y, z, w.
+// Tangent spaces for Ceres, with the perturbations of core/filter/filter_state.hpp: rotations move on the
+// right, R * Exp(d), and unit directions by s2_plus. Quaternions are stored as Eigen does: x, y, z, w.
 #pragma once
 
 #include <ceres/manifold.h>
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 /// Unit quaternions; tangent in rad, in the frame on the right.
 class RotationManifold final : public ceres::Manifold {
@@ -28,4 +28,4 @@ class DirectionManifold final : public ceres::Manifold {
   bool MinusJacobian(const double* x, double* jacobian) const override;
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fusebench {
+namespace fusebench::smoother {
 
-SeenPose seen_pose(const PoseEvidence& evidence, const SE3& T_imu_camera) {
+SeenPose seen_pose(const health::PoseEvidence& evidence, const SE3& T_imu_camera) {
   constexpr double kLeastInformation = 1.0;  // 1 rad, 1 m
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(evidence.quadratic.information);
   Vector6d step = Vector6d::Zero();
@@ -47,4 +47,4 @@ Matrix6d whitening(const RelativeCameraMotion& motion) {
   return eigen.operatorInverseSqrt();
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

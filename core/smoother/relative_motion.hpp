@@ -11,10 +11,10 @@
 
 #include <cstddef>
 
-#include "core/geometry.hpp"
-#include "core/frame_report.hpp"
+#include "core/base/geometry.hpp"
+#include "core/health/frame_report.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 /// Where the images alone put the camera. Covariance of (rotation: right, rad; position: world, m).
 struct SeenPose {
@@ -25,7 +25,7 @@ struct SeenPose {
 /// The optimum of the evidence, which is of the IMU's pose, as a pose of the camera. T_imu_camera: the
 /// extrinsic that the pipeline used, however wrong (identity without an IMU): images only ever saw the
 /// camera. Directions that are known worse than 1 rad or 1 m stay where they are, with that uncertainty.
-[[nodiscard]] SeenPose seen_pose(const PoseEvidence& evidence, const SE3& T_imu_camera);
+[[nodiscard]] SeenPose seen_pose(const health::PoseEvidence& evidence, const SE3& T_imu_camera);
 
 /// The pose of one camera in the frame of another one. The error of T is (Log(R_measured^T R) in rad, t -
 /// t_measured in m, axes of the reference camera).
@@ -42,4 +42,4 @@ struct RelativeCameraMotion {
 /// The symmetric root of the information, so that residuals of neighbouring frames have the same axes.
 [[nodiscard]] Matrix6d whitening(const RelativeCameraMotion& motion);
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

@@ -5,12 +5,12 @@
 
 #include <ceres/rotation.h>
 
-#include "core/geometry.hpp"
-#include "core/imu_preintegration.hpp"
+#include "core/base/geometry.hpp"
+#include "core/base/types.hpp"
+#include "core/prediction/imu_preintegration.hpp"
 #include "core/smoother/relative_motion.hpp"
-#include "core/types.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 template <class T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
@@ -42,11 +42,11 @@ Eigen::Map<const Vector3<T>> as_vector(const T* x) {
 /// Increments that were integrated with some biases and some offset of the clock, and their first order
 /// dependence on both.
 struct InertialResidual {
-  PreintegratedImu imu;
-  Vector3d gyroscope_bias;      ///< that it was integrated with
-  Vector3d accelerometer_bias;  ///< the same
-  double time_offset_s;         ///< the same
-  Matrix9d whitening;           ///< of (rotation, velocity, position)
+  prediction::PreintegratedImu imu;
+  Vector3d gyroscope_bias;         ///< that it was integrated with
+  Vector3d accelerometer_bias;     ///< the same
+  double time_offset_s;            ///< the same
+  prediction::Matrix9d whitening;  ///< of (rotation, velocity, position)
 
   template <class T>
   bool operator()(const T* rotation_i, const T* position_i, const T* velocity_i, const T* bias_i,
@@ -150,4 +150,4 @@ struct VectorPrior {
   }
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

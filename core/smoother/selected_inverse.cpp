@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 std::optional<SelectedInverse> SelectedInverse::of(const SparseMatrixd& matrix) {
   auto factor = std::make_shared<Factor>(matrix);
@@ -76,4 +76,4 @@ Eigen::MatrixXd SelectedInverse::columns(const Eigen::MatrixXd& unit_columns) co
   return factor_->solve(unit_columns);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

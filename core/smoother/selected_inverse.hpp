@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-namespace fusebench {
+namespace fusebench::smoother {
 
 /// Indices of 64 bits, unlike those in Ceres: Debian builds that library (a static one) without AVX, the
 /// linker keeps one copy of every function that both use, and memory of one alignment must not be freed as
@@ -43,4 +43,4 @@ class SelectedInverse {
   SparseMatrixd inverse_;  ///< lower triangle in the order of the factor
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::smoother

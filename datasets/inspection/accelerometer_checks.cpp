@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/trajectory.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -28,7 +28,7 @@ struct Window {
 /// Poses of the IMU in the truth's world, with the rotation and the time offset that the gyroscope gave.
 class ImuPath {
  public:
-  ImuPath(const Recording& recording, const ImuAlignment& alignment)
+  ImuPath(const recording::Recording& recording, const ImuAlignment& alignment)
       : recording_(recording),
         gap_ns_(truth_gap_ns(recording)),
         offset_ns_(std::llround(1e9 * alignment.time_offset_s)),
@@ -41,7 +41,7 @@ class ImuPath {
   };
   /// At a stamp of the IMU.
   [[nodiscard]] std::optional<Pose> at(std::int64_t imu_ns) const {
-    const auto pose = interpolate_pose(recording_.ground_truth, imu_ns - offset_ns_, gap_ns_);
+    const auto pose = trajectory::interpolate_pose(recording_.ground_truth, imu_ns - offset_ns_, gap_ns_);
     if (!pose) return std::nullopt;
     return Pose{pose->rotation_matrix() * rotation_camera_imu_, *pose * imu_in_camera_m_};
   }
@@ -53,14 +53,14 @@ class ImuPath {
   }
 
  private:
-  const Recording& recording_;
+  const recording::Recording& recording_;
   std::int64_t gap_ns_;
   std::int64_t offset_ns_;
   Matrix3d rotation_camera_imu_;
   Vector3d imu_in_camera_m_;
 };
 
-std::vector<Window> windows_of(const Recording& recording, const ImuPath& path) {
+std::vector<Window> windows_of(const recording::Recording& recording, const ImuPath& path) {
   std::vector<Window> windows;
   const auto& samples = recording.imu;
   std::size_t i = 0;
@@ -122,7 +122,7 @@ std::optional<AccelerometerFit> fit_windows(const std::vector<Window>& windows) 
   return fit;
 }
 
-void fit_to_truth(const Recording& recording, Inspection& out) {
+void fit_to_truth(const recording::Recording& recording, Inspection& out) {
   const auto fit = fit_windows(windows_of(recording, ImuPath(recording, *out.imu_alignment)));
   if (!fit || !fit->gravity_mps2.allFinite() || !fit->bias_mps2.allFinite()) return;
   ImuMeasurement& imu = *out.imu;
@@ -145,7 +145,7 @@ void fit_to_truth(const Recording& recording, Inspection& out) {
 
 }  // namespace
 
-void check_accelerometer(const Recording& recording, Inspection& out) {
+void check_accelerometer(const recording::Recording& recording, Inspection& out) {
   if (!out.imu || out.has("imu-time-unit") || out.has("imu-out-of-order") || out.has("accelerometer-unit") ||
       out.has("accelerometer-without-gravity"))
     return;
@@ -167,4 +167,4 @@ void check_accelerometer(const Recording& recording, Inspection& out) {
           "the accelerometer has a scale error or a bias; see its calibration");
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

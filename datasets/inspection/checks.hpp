@@ -9,52 +9,53 @@
 
 #include "datasets/inspection/inspection.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 /// Rates, gaps, duplicates, order and units of the frames' stamps, and how depth belongs to colour.
-void check_frame_stamps(const Recording& recording, Inspection& out);
+void check_frame_stamps(const recording::Recording& recording, Inspection& out);
 /// The same of the ground truth, and how it covers the frames.
-void check_truth_stamps(const Recording& recording, Inspection& out);
+void check_truth_stamps(const recording::Recording& recording, Inspection& out);
 /// The same of the IMU.
-void check_imu_stamps(const Recording& recording, Inspection& out);
+void check_imu_stamps(const recording::Recording& recording, Inspection& out);
 
 /// Frames whose files have the bytes of the frame before. Needs motion.
-void check_repeated_images(const Recording& recording, Inspection& out);
+void check_repeated_images(const recording::Recording& recording, Inspection& out);
 
 /// Loads sampled frames: exposure, sharpness, depth.
-void check_images(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                  Inspection& out);
+void check_images(const recording::Recording& recording, const Workers& workers,
+                  const InspectOptions& options, Inspection& out);
 /// Whether edges of depth lie on edges of colour. Needs images.
-void check_registration(const Recording& recording, const Workers& workers, Inspection& out);
+void check_registration(const recording::Recording& recording, const Workers& workers, Inspection& out);
 
 /// Speeds and predicted blur. Needs the median depth of images.
-void check_motion(const Recording& recording, Inspection& out);
+void check_motion(const recording::Recording& recording, Inspection& out);
 
 /// Spikes of the IMU and values beyond its range. Returns the recording without these samples if there are
 /// any: checks of values and fits must not see them. Needs the stamps of the IMU.
-[[nodiscard]] std::optional<Recording> leave_out_imu_faults(const Recording& recording, Inspection& out);
+[[nodiscard]] std::optional<recording::Recording> leave_out_imu_faults(const recording::Recording& recording,
+                                                                       Inspection& out);
 
 /// Saturation, repeated values and units of the IMU; gravity and biases at rest.
-void check_imu_values(const Recording& recording, Inspection& out);
+void check_imu_values(const recording::Recording& recording, Inspection& out);
 /// Time offset, axes, scale and gyroscope bias against the camera's turns: those of the truth, if what was
 /// found so far lets it be trusted, else those of the images. Needs the checks of the truth and its warping.
-void check_imu_alignment(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                         Inspection& out);
+void check_imu_alignment(const recording::Recording& recording, const Workers& workers,
+                         const InspectOptions& options, Inspection& out);
 /// Gravity and accelerometer bias against ground truth. Needs the alignment.
-void check_accelerometer(const Recording& recording, Inspection& out);
+void check_accelerometer(const recording::Recording& recording, Inspection& out);
 
 /// Frames warped by ground truth, and what would make them fit better. Needs images.
-void check_reprojection(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                        Inspection& out);
+void check_reprojection(const recording::Recording& recording, const Workers& workers,
+                        const InspectOptions& options, Inspection& out);
 
 /// Measures one list of stamps.
 [[nodiscard]] StampMeasurement measure_stamps(std::span<const std::int64_t> stamps_ns);
 
 /// The longest interval between two poses of the ground truth that is still interpolated: 0.1 s, or two and a
 /// half median intervals of a sparser truth.
-[[nodiscard]] std::int64_t truth_gap_ns(const Recording& recording);
+[[nodiscard]] std::int64_t truth_gap_ns(const recording::Recording& recording);
 
 /// Whether the frames' stamps are in seconds, and so speeds mean something.
 [[nodiscard]] bool times_are_plausible(const Inspection& out);
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

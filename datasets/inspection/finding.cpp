@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 std::string_view to_string(Severity severity) {
   switch (severity) {
@@ -94,4 +94,4 @@ constexpr auto kCodes = std::to_array<FindingCode>({
 
 std::span<const FindingCode> finding_codes() { return kCodes; }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 enum class Severity {
   error,    ///< results on this recording cannot be trusted until it is repaired
@@ -28,4 +28,4 @@ struct FindingCode {
 };
 [[nodiscard]] std::span<const FindingCode> finding_codes();
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

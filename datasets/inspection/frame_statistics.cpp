@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "datasets/inspection/order_statistics.hpp"
+#include "datasets/inspection/measures/order_statistics.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -59,9 +59,9 @@ void measure_depth(const DepthImage& depth_m, MeasuredFrame& out) {
   }
   const auto pixels = static_cast<double>(std::max<std::size_t>(1, depth_m.data.size()));
   out.statistics.depth_coverage = static_cast<double>(out.measured) / pixels;
-  out.statistics.depth_p05_m = quantile(sample, 0.05);
-  out.statistics.depth_median_m = quantile(sample, 0.5);
-  out.statistics.depth_p95_m = quantile(std::move(sample), 0.95);
+  out.statistics.depth_p05_m = measures::quantile(sample, 0.05);
+  out.statistics.depth_median_m = measures::quantile(sample, 0.5);
+  out.statistics.depth_p95_m = measures::quantile(std::move(sample), 0.95);
 }
 
 }  // namespace
@@ -74,4 +74,4 @@ MeasuredFrame measure_frame(const RgbdFrame& frame) {
   return result;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 #include "datasets/inspection/inspection.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 struct MeasuredFrame {
   FrameStatistics statistics;  ///< frame and time_s are left to the caller
@@ -20,4 +20,4 @@ struct MeasuredFrame {
 
 [[nodiscard]] MeasuredFrame measure_frame(const RgbdFrame& frame);
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

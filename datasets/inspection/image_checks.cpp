@@ -7,9 +7,9 @@
 
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/frame_statistics.hpp"
-#include "datasets/inspection/order_statistics.hpp"
+#include "datasets/inspection/measures/order_statistics.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -29,7 +29,7 @@ template <class Value>
 double median_of(const std::vector<FrameStatistics>& frames, Value FrameStatistics::*member) {
   std::vector<double> values;
   for (const FrameStatistics& frame : frames) values.push_back(frame.*member);
-  return median(std::move(values));
+  return measures::median(std::move(values));
 }
 
 /// Range of the mean brightness after a running median over a second, which blinking lights do not move.
@@ -40,7 +40,7 @@ double brightness_drift(const std::vector<FrameStatistics>& frames) {
     for (const FrameStatistics& frame : frames) {
       if (std::abs(frame.time_s - centre.time_s) <= 0.5) around.push_back(frame.mean_grey);
     }
-    const double level = median(std::move(around));
+    const double level = measures::median(std::move(around));
     low = std::min(low, level);
     high = std::max(high, level);
   }
@@ -55,8 +55,8 @@ void check_exposure(Inspection& out) {
   e.drift_grey = brightness_drift(out.images);
   std::vector<double> sharpness;
   for (const FrameStatistics& frame : out.images) sharpness.push_back(frame.sharpness);
-  e.sharpness_median = median(sharpness);
-  e.sharpness_p05 = quantile(std::move(sharpness), 0.05);
+  e.sharpness_median = measures::median(sharpness);
+  e.sharpness_p05 = measures::quantile(std::move(sharpness), 0.05);
   if (e.mean_grey < 30) {
     out.add("underexposed", Severity::warning,
             fmt::format("the images are dark: mean {:.0f} of 255, {:.0f} % of pixels at 5 and below",
@@ -130,8 +130,8 @@ void gather_depth(const std::vector<LoadedStatistics>& loaded, Inspection& out) 
     for (std::size_t bin = 0; bin < kDepthBins; ++bin) depth.histogram[bin] += m.histogram[bin];
   }
   if (!coverage.empty()) depth.coverage_min = *std::ranges::min_element(coverage);
-  depth.coverage_median = median(std::move(coverage));
-  depth.median_m = median(std::move(medians));
+  depth.coverage_median = measures::median(std::move(coverage));
+  depth.median_m = measures::median(std::move(medians));
   if (measured == 0) return;
   depth.beyond_10m_share = static_cast<double>(beyond) / static_cast<double>(measured);
   depth.below_quarter_metre_share = static_cast<double>(below) / static_cast<double>(measured);
@@ -154,8 +154,8 @@ void report_unreadable(const std::vector<LoadedStatistics>& loaded, Inspection& 
 
 }  // namespace
 
-void check_images(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                  Inspection& out) {
+void check_images(const recording::Recording& recording, const Workers& workers,
+                  const InspectOptions& options, Inspection& out) {
   const std::vector<std::size_t> frames = sampled_frames(recording.frames.size(), options.image_samples);
   const auto loaded = workers.map_chunks<LoadedStatistics>(frames.size(), 1, [&](std::size_t i, std::size_t) {
     LoadedStatistics result;
@@ -182,4 +182,4 @@ void check_images(const Recording& recording, const Workers& workers, const Insp
   check_depth_values(out);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry.hpp"
+#include "core/base/geometry.hpp"
 #include "datasets/inspection/checks.hpp"
-#include "datasets/inspection/turn_alignment.hpp"
+#include "datasets/inspection/measures/turn_alignment.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -162,7 +162,8 @@ void report_bias(const ImuAlignment& a, Inspection& out) {
           "start from rest, or widen the prior of the bias");
 }
 
-ImuAlignment measured_alignment(const TurnAlignment& fit, const CameraTurns& turns, const SensorRig& rig) {
+ImuAlignment measured_alignment(const measures::TurnAlignment& fit, const measures::CameraTurns& turns,
+                                const SensorRig& rig) {
   ImuAlignment a;
   a.source = turns.source;
   a.intervals = fit.intervals;
@@ -180,9 +181,9 @@ ImuAlignment measured_alignment(const TurnAlignment& fit, const CameraTurns& tur
   return a;
 }
 
-std::vector<TurnRate> rates_of(const CameraTurns& turns, std::int64_t origin_ns) {
+std::vector<TurnRate> rates_of(const measures::CameraTurns& turns, std::int64_t origin_ns) {
   std::vector<TurnRate> rates;
-  for (const CameraTurn& turn : turns.turns) {
+  for (const measures::CameraTurn& turn : turns.turns) {
     rates.push_back(
         {0.5 * (seconds_between(origin_ns, turn.begin_ns) + seconds_between(origin_ns, turn.end_ns)),
          turn.turn_rad.norm() / seconds_between(turn.begin_ns, turn.end_ns)});
@@ -200,25 +201,25 @@ bool truth_is_trusted(const Inspection& out) {
 
 /// Turns of the camera, and how those of the gyroscope fit them.
 struct ComparedTurns {
-  CameraTurns turns;
-  std::optional<TurnAlignment> fit;
+  measures::CameraTurns turns;
+  std::optional<measures::TurnAlignment> fit;
 
-  ComparedTurns(CameraTurns camera, const GyroscopeIntegral& gyroscope)
-      : turns(std::move(camera)), fit(align_turns(turns, gyroscope)) {}
+  ComparedTurns(measures::CameraTurns camera, const measures::GyroscopeIntegral& gyroscope)
+      : turns(std::move(camera)), fit(measures::align_turns(turns, gyroscope)) {}
 
   [[nodiscard]] bool related() const { return fit && fit->offset_found && fit->explained >= kMinExplained; }
 };
 
 /// With the truth, if there is one that can be trusted. If the IMU does not turn as the truth does, the
 /// images tell which of the two is wrong.
-ComparedTurns compare_turns(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                            Inspection& out) {
-  const GyroscopeIntegral gyroscope(recording.imu);
+ComparedTurns compare_turns(const recording::Recording& recording, const Workers& workers,
+                            const InspectOptions& options, Inspection& out) {
+  const measures::GyroscopeIntegral gyroscope(recording.imu);
   const auto by_images = [&] {
-    return ComparedTurns(turns_from_images(recording, workers, options.turn_samples), gyroscope);
+    return ComparedTurns(measures::turns_from_images(recording, workers, options.turn_samples), gyroscope);
   };
   if (!truth_is_trusted(out)) return by_images();
-  ComparedTurns by_truth(turns_from_truth(recording), gyroscope);
+  ComparedTurns by_truth(measures::turns_from_truth(recording), gyroscope);
   if (!by_truth.fit || by_truth.related()) return by_truth;
   ComparedTurns other = by_images();
   if (!other.related()) return by_truth;
@@ -242,8 +243,8 @@ void report_unrelated(const ComparedTurns& compared, Inspection& out) {
 
 }  // namespace
 
-void check_imu_alignment(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                         Inspection& out) {
+void check_imu_alignment(const recording::Recording& recording, const Workers& workers,
+                         const InspectOptions& options, Inspection& out) {
   if (!out.imu || out.has("imu-out-of-order") || out.has("imu-duplicate-stamp") || !times_are_plausible(out))
     return;
   const ComparedTurns compared = compare_turns(recording, workers, options, out);
@@ -271,4 +272,4 @@ void check_imu_alignment(const Recording& recording, const Workers& workers, con
   report_bias(a, out);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

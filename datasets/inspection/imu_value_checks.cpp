@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry.hpp"
+#include "core/base/geometry.hpp"
 #include "datasets/inspection/checks.hpp"
-#include "datasets/inspection/imu_faults.hpp"
-#include "datasets/inspection/order_statistics.hpp"
+#include "datasets/inspection/measures/imu_faults.hpp"
+#include "datasets/inspection/measures/order_statistics.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -146,24 +146,25 @@ void check_accelerometer_unit(ImuMeasurement& imu, Inspection& out) {
 
 }  // namespace
 
-std::optional<Recording> leave_out_imu_faults(const Recording& recording, Inspection& out) {
+std::optional<recording::Recording> leave_out_imu_faults(const recording::Recording& recording,
+                                                         Inspection& out) {
   if (!out.imu || out.has("imu-out-of-order")) return std::nullopt;
-  const std::vector<ImuFault> faults = find_imu_faults(recording.imu);
+  const std::vector<measures::ImuFault> faults = measures::find_imu_faults(recording.imu);
   if (faults.empty()) return std::nullopt;
   constexpr std::size_t kMostTold = 3;
   std::string told;
   for (std::size_t i = 0; i < std::min(kMostTold, faults.size()); ++i)
-    told += (i == 0 ? "" : ", ") + describe(faults[i], recording.imu);
+    told += (i == 0 ? "" : ", ") + measures::describe(faults[i], recording.imu);
   if (faults.size() > kMostTold) told += fmt::format(", and {} more", faults.size() - kMostTold);
   out.add("imu-spike", Severity::warning,
           fmt::format("{} of {} samples are no measurement: {}", faults.size(), recording.imu.size(), told),
           "remove their rows from the IMU's file; what is said of the IMU here leaves them out");
-  Recording sound = recording;
-  sound.imu = without_faults(recording.imu, faults);
+  recording::Recording sound = recording;
+  sound.imu = measures::without_faults(recording.imu, faults);
   return sound;
 }
 
-void check_imu_values(const Recording& recording, Inspection& out) {
+void check_imu_values(const recording::Recording& recording, Inspection& out) {
   if (!out.imu) return;
   ImuMeasurement& imu = *out.imu;
   const auto& samples = recording.imu;
@@ -175,7 +176,7 @@ void check_imu_values(const Recording& recording, Inspection& out) {
         std::max(imu.accelerometer_max_mps2, sample.specific_force_mps2.cwiseAbs().maxCoeff());
     forces.push_back(sample.specific_force_mps2.norm());
   }
-  imu.specific_force_median_mps2 = median(std::move(forces));
+  imu.specific_force_median_mps2 = measures::median(std::move(forces));
   imu.longest_repeat = longest_repeat(samples);
   check_accelerometer_unit(imu, out);
   check_range(samples, &ImuSample::angular_velocity_radps, kMinGyroscopeRange_radps, "gyroscope-saturated",
@@ -198,4 +199,4 @@ void check_imu_values(const Recording& recording, Inspection& out) {
   imu.bias_source = "at rest";
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

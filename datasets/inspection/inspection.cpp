@@ -8,7 +8,7 @@
 
 #include "datasets/inspection/checks.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 void Inspection::add(std::string_view code, Severity severity, std::string message, std::string hint) {
   check(std::ranges::any_of(finding_codes(), [&](const FindingCode& known) { return known.code == code; }),
@@ -32,7 +32,8 @@ Inspection refused_inspection(const std::string& recording, const std::string& f
   return out;
 }
 
-Inspection inspect(const Recording& recording, const Workers& workers, const InspectOptions& options) {
+Inspection inspect(const recording::Recording& recording, const Workers& workers,
+                   const InspectOptions& options) {
   check(!recording.frames.empty(), "a recording that was opened has frames");
   Inspection out;
   out.recording = recording.name;
@@ -51,8 +52,8 @@ Inspection inspect(const Recording& recording, const Workers& workers, const Ins
   check_frame_stamps(recording, out);
   check_truth_stamps(recording, out);
   check_imu_stamps(recording, out);
-  const std::optional<Recording> repaired = leave_out_imu_faults(recording, out);
-  const Recording& sound = repaired ? *repaired : recording;
+  const std::optional<recording::Recording> repaired = leave_out_imu_faults(recording, out);
+  const recording::Recording& sound = repaired ? *repaired : recording;
   check_imu_values(sound, out);
   check_images(sound, workers, options, out);
   check_reprojection(sound, workers, options, out);
@@ -65,4 +66,4 @@ Inspection inspect(const Recording& recording, const Workers& workers, const Ins
   return out;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 #include "datasets/inspection/finding.hpp"
-#include "datasets/recording.hpp"
+#include "datasets/recording/recording.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 /// Times of one list.
 struct StampMeasurement {
@@ -196,7 +196,7 @@ struct Inspection {
   std::string format;
   std::string fingerprint;
   std::size_t frames = 0;
-  ImuSource imu_source = ImuSource::none;
+  recording::ImuSource imu_source = recording::ImuSource::none;
   std::vector<Finding> findings;
   StampMeasurement color_stamps;
   StampMeasurement depth_stamps;
@@ -225,11 +225,11 @@ struct InspectOptions {
 };
 
 /// Never fails: what cannot be read is a finding. The same result for any number of threads.
-[[nodiscard]] Inspection inspect(const Recording& recording, const Workers& workers,
+[[nodiscard]] Inspection inspect(const recording::Recording& recording, const Workers& workers,
                                  const InspectOptions& options = {});
 
 /// The inspection of a recording that its reader refused.
 [[nodiscard]] Inspection refused_inspection(const std::string& recording, const std::string& format,
                                             const Error& error);
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

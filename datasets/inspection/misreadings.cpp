@@ -7,7 +7,7 @@
 
 #include "datasets/inspection/checks.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -33,10 +33,10 @@ SE3 scalar_first(const SE3& pose) {
   return {Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
 }
 
-using ReadingOf = std::function<Reading(double)>;
+using ReadingOf = std::function<measures::Reading(double)>;
 
 /// The best of a row of values, then a golden-section search between its neighbours.
-FittedParameter fit(const WarpTest& test, const Reading& base, const std::vector<double>& values,
+FittedParameter fit(const WarpTest& test, const measures::Reading& base, const std::vector<double>& values,
                     const ReadingOf& reading_of) {
   const auto residuals = test.residuals(base);
   const auto factor = [&](double value) { return test.compare(residuals, reading_of(value)).factor; };
@@ -82,17 +82,20 @@ std::vector<double> geometric_row(double low, double high, int count) {
 
 }  // namespace
 
-WarpTest::WarpTest(const Recording& recording, std::vector<WarpPair> pairs, const Workers& workers)
+WarpTest::WarpTest(const recording::Recording& recording, std::vector<measures::WarpPair> pairs,
+                   const Workers& workers)
     : recording_(recording), pairs_(std::move(pairs)), gap_ns_(truth_gap_ns(recording)), workers_(workers) {}
 
-std::vector<std::optional<WarpResidual>> WarpTest::residuals(const Reading& reading) const {
-  return workers_.map_chunks<std::optional<WarpResidual>>(pairs_.size(), 1, [&](std::size_t i, std::size_t) {
-    return warp(pairs_[i], recording_.rig.camera, recording_.ground_truth, gap_ns_, reading);
-  });
+std::vector<std::optional<measures::WarpResidual>> WarpTest::residuals(
+    const measures::Reading& reading) const {
+  return workers_.map_chunks<std::optional<measures::WarpResidual>>(
+      pairs_.size(), 1, [&](std::size_t i, std::size_t) {
+        return measures::warp(pairs_[i], recording_.rig.camera, recording_.ground_truth, gap_ns_, reading);
+      });
 }
 
-Comparison WarpTest::compare(const std::vector<std::optional<WarpResidual>>& base,
-                             const Reading& reading) const {
+Comparison WarpTest::compare(const std::vector<std::optional<measures::WarpResidual>>& base,
+                             const measures::Reading& reading) const {
   const auto other = residuals(reading);
   double sum = 0, wins = 0, count = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -122,30 +125,30 @@ const std::vector<Misreading>& pose_misreadings() {
   return kAll;
 }
 
-FittedParameter fit_depth_scale(const WarpTest& test, const Reading& base) {
+FittedParameter fit_depth_scale(const WarpTest& test, const measures::Reading& base) {
   return fit(test, base, geometric_row(0.125, 8, 37), [&](double value) {
-    Reading reading = base;
+    measures::Reading reading = base;
     reading.depth_scale *= value;
     return reading;
   });
 }
 
-FittedParameter fit_focal_scale(const WarpTest& test, const Reading& base) {
+FittedParameter fit_focal_scale(const WarpTest& test, const measures::Reading& base) {
   return fit(test, base, geometric_row(0.7, 1.0 / 0.7, 17), [&](double value) {
-    Reading reading = base;
+    measures::Reading reading = base;
     reading.focal_scale *= value;
     return reading;
   });
 }
 
-FittedParameter fit_truth_shift(const WarpTest& test, const Reading& base) {
+FittedParameter fit_truth_shift(const WarpTest& test, const measures::Reading& base) {
   std::vector<double> shifts_s;
   for (int i = -12; i <= 12; ++i) shifts_s.push_back(0.02 * i);
   return fit(test, base, shifts_s, [&](double value) {
-    Reading reading = base;
+    measures::Reading reading = base;
     reading.truth_shift_ns += std::llround(1e9 * value);
     return reading;
   });
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/parallel.hpp"
-#include "datasets/inspection/frame_warp.hpp"
-#include "datasets/recording.hpp"
+#include "core/base/parallel.hpp"
+#include "datasets/inspection/measures/frame_warp.hpp"
+#include "datasets/recording/recording.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 /// How the pairs fit under one reading, compared with another.
 struct Comparison {
@@ -20,16 +20,18 @@ struct Comparison {
 /// Loaded pairs of a recording with what is needed to warp them.
 class WarpTest {
  public:
-  WarpTest(const Recording& recording, std::vector<WarpPair> pairs, const Workers& workers);
+  WarpTest(const recording::Recording& recording, std::vector<measures::WarpPair> pairs,
+           const Workers& workers);
 
-  [[nodiscard]] const std::vector<WarpPair>& pairs() const { return pairs_; }
-  [[nodiscard]] std::vector<std::optional<WarpResidual>> residuals(const Reading& reading) const;
-  [[nodiscard]] Comparison compare(const std::vector<std::optional<WarpResidual>>& base,
-                                   const Reading& reading) const;
+  [[nodiscard]] const std::vector<measures::WarpPair>& pairs() const { return pairs_; }
+  [[nodiscard]] std::vector<std::optional<measures::WarpResidual>> residuals(
+      const measures::Reading& reading) const;
+  [[nodiscard]] Comparison compare(const std::vector<std::optional<measures::WarpResidual>>& base,
+                                   const measures::Reading& reading) const;
 
  private:
-  const Recording& recording_;
-  std::vector<WarpPair> pairs_;
+  const recording::Recording& recording_;
+  std::vector<measures::WarpPair> pairs_;
   std::int64_t gap_ns_;
   const Workers& workers_;
 };
@@ -48,9 +50,10 @@ struct FittedParameter {
   Comparison comparison;
 };
 [[nodiscard]] FittedParameter fit_depth_scale(const WarpTest& test,
-                                              const Reading& base);  ///< factor, 1/8 to 8
+                                              const measures::Reading& base);  ///< factor, 1/8 to 8
 [[nodiscard]] FittedParameter fit_focal_scale(const WarpTest& test,
-                                              const Reading& base);  ///< factor, 0.7 to 1.4
-[[nodiscard]] FittedParameter fit_truth_shift(const WarpTest& test, const Reading& base);  ///< s, up to 0.24
+                                              const measures::Reading& base);  ///< factor, 0.7 to 1.4
+[[nodiscard]] FittedParameter fit_truth_shift(const WarpTest& test,
+                                              const measures::Reading& base);  ///< s, up to 0.24
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -5,21 +5,21 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry.hpp"
-#include "core/trajectory.hpp"
+#include "core/base/geometry.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
-#include "datasets/inspection/order_statistics.hpp"
+#include "datasets/inspection/measures/order_statistics.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
 /// From the frame before to the one after: over one interval the jitter of a motion-capture system shows.
-std::vector<SpeedSample> speeds_from_truth(const Recording& recording) {
+std::vector<SpeedSample> speeds_from_truth(const recording::Recording& recording) {
   const std::int64_t gap_ns = truth_gap_ns(recording);
   std::vector<std::optional<SE3>> poses;
-  for (const FrameEntry& frame : recording.frames)
-    poses.push_back(interpolate_pose(recording.ground_truth, frame.capture_ns, gap_ns));
+  for (const recording::FrameEntry& frame : recording.frames)
+    poses.push_back(trajectory::interpolate_pose(recording.ground_truth, frame.capture_ns, gap_ns));
   std::vector<SpeedSample> result;
   const std::size_t count = poses.size();
   for (std::size_t k = 0; k < count; ++k) {
@@ -38,7 +38,8 @@ std::vector<SpeedSample> speeds_from_truth(const Recording& recording) {
 }
 
 /// Mean of the gyroscope from the frame before to the one after, its bias at rest taken away.
-std::vector<SpeedSample> speeds_from_gyroscope(const Recording& recording, const Vector3d& bias_radps) {
+std::vector<SpeedSample> speeds_from_gyroscope(const recording::Recording& recording,
+                                               const Vector3d& bias_radps) {
   std::vector<SpeedSample> result;
   const auto& frames = recording.frames;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -81,25 +82,25 @@ void summarise(Inspection& out) {
     motion.severe_share +=
         (sample.blur_px >= kSevereBlur_px ? 1.0 : 0.0) / static_cast<double>(motion.speeds.size());
   }
-  motion.angular_p95_radps = quantile(angular, 0.95);
+  motion.angular_p95_radps = measures::quantile(angular, 0.95);
   motion.angular_max_radps = *std::ranges::max_element(angular);
-  motion.blur_median_px = median(blur);
-  motion.blur_p95_px = quantile(std::move(blur), 0.95);
+  motion.blur_median_px = measures::median(blur);
+  motion.blur_p95_px = measures::quantile(std::move(blur), 0.95);
   motion.fast = motion.severe_share >= kFastShare;
   if (linear.empty()) return;
   double sum_mps = 0;
   for (const double speed : linear) sum_mps += speed;
   motion.linear_mean_mps = sum_mps / static_cast<double>(linear.size());
   motion.linear_max_mps = *std::ranges::max_element(linear);
-  motion.linear_p95_mps = quantile(std::move(linear), 0.95);
+  motion.linear_p95_mps = measures::quantile(std::move(linear), 0.95);
 }
 
-double path_length_m(const Recording& recording) {
+double path_length_m(const recording::Recording& recording) {
   const std::int64_t gap_ns = truth_gap_ns(recording);
   double path_m = 0;
   std::optional<SE3> last;
-  for (const FrameEntry& frame : recording.frames) {
-    const auto pose = interpolate_pose(recording.ground_truth, frame.capture_ns, gap_ns);
+  for (const recording::FrameEntry& frame : recording.frames) {
+    const auto pose = trajectory::interpolate_pose(recording.ground_truth, frame.capture_ns, gap_ns);
     if (!pose) continue;
     if (last) path_m += (pose->translation - last->translation).norm();
     last = pose;
@@ -109,7 +110,7 @@ double path_length_m(const Recording& recording) {
 
 }  // namespace
 
-void check_motion(const Recording& recording, Inspection& out) {
+void check_motion(const recording::Recording& recording, Inspection& out) {
   if (!times_are_plausible(out) || recording.frames.size() < 3) return;
   MotionMeasurement& motion = out.motion;
   if (out.truth && !out.has("truth-out-of-order")) {
@@ -144,4 +145,4 @@ void check_motion(const Recording& recording, Inspection& out) {
   if (motion.linear_max_mps) report_jumps(motion, out);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

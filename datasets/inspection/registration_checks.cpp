@@ -10,7 +10,7 @@
 
 #include "datasets/inspection/checks.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -83,7 +83,7 @@ FrameScores score_frame(const RgbdFrame& frame) {
   return result;
 }
 
-FrameScores score_frames(const Recording& recording, const Workers& workers) {
+FrameScores score_frames(const recording::Recording& recording, const Workers& workers) {
   const std::size_t frames = recording.frames.size();
   const std::size_t count = std::min(frames, kFrames);
   const auto scored = workers.map_chunks<FrameScores>(count, 1, [&](std::size_t i, std::size_t) {
@@ -121,7 +121,7 @@ double peak_at_rest(const Scores& scores) {
 
 }  // namespace
 
-void check_registration(const Recording& recording, const Workers& workers, Inspection& out) {
+void check_registration(const recording::Recording& recording, const Workers& workers, Inspection& out) {
   // Depth at a wrong scale is registered wrongly, too, and that has been said.
   if (out.images.empty() || out.has("depth-range") || out.has("depth-scale")) return;
   const FrameScores scores = score_frames(recording, workers);
@@ -153,4 +153,4 @@ void check_registration(const Recording& recording, const Workers& workers, Insp
       "registered");
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -9,7 +9,7 @@
 
 #include "datasets/inspection/checks.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -42,7 +42,7 @@ bool same_depth(const FrameStatistics& a, const FrameStatistics& b) {
 }
 
 /// Whether the camera, as far as is known, moved visibly since the frame before.
-std::vector<bool> visible_motion(const Recording& recording, const Inspection& inspection) {
+std::vector<bool> visible_motion(const recording::Recording& recording, const Inspection& inspection) {
   std::vector<bool> moves(recording.frames.size(), true);
   for (const SpeedSample& speed : inspection.motion.speeds) {
     moves[speed.frame] =
@@ -56,15 +56,15 @@ struct Repeats {
   std::vector<std::size_t> depth;
 };
 
-Repeats find_repeats(const Recording& recording, const Inspection& inspection) {
+Repeats find_repeats(const recording::Recording& recording, const Inspection& inspection) {
   std::map<std::size_t, const FrameStatistics*> sampled;
   for (const FrameStatistics& frame : inspection.images) sampled[frame.frame] = &frame;
   const std::vector<bool> moves = visible_motion(recording, inspection);
   Repeats repeats;
   for (std::size_t k = 1; k < recording.frames.size(); ++k) {
     if (!moves[k]) continue;
-    const FrameEntry& now = recording.frames[k];
-    const FrameEntry& before = recording.frames[k - 1];
+    const recording::FrameEntry& now = recording.frames[k];
+    const recording::FrameEntry& before = recording.frames[k - 1];
     const bool files = !now.color_file.empty() && !before.color_file.empty();
     const bool both = sampled.contains(k) && sampled.contains(k - 1);
     if (files ? same_file(before.color_file, now.color_file)
@@ -79,7 +79,7 @@ Repeats find_repeats(const Recording& recording, const Inspection& inspection) {
 
 }  // namespace
 
-void check_repeated_images(const Recording& recording, Inspection& out) {
+void check_repeated_images(const recording::Recording& recording, Inspection& out) {
   const Repeats repeats = find_repeats(recording, out);
   out.association.repeats = repeats.color.size();
   out.association.frozen = repeats.depth.size();
@@ -97,4 +97,4 @@ void check_repeated_images(const Recording& recording, Inspection& out) {
   }
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

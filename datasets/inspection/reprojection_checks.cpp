@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "core/trajectory.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
+#include "datasets/inspection/measures/order_statistics.hpp"
 #include "datasets/inspection/misreadings.hpp"
-#include "datasets/inspection/order_statistics.hpp"
 #include "datasets/inspection/warp_pairs.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -31,15 +31,16 @@ constexpr double kMinMotion_rad = radians(3);
 
 bool clear(const Comparison& c, double factor) { return c.factor < factor && c.wins >= kClearWins; }
 
-void measure_pairs(const Recording& recording, const WarpTest& test, ReprojectionMeasurement& out) {
+void measure_pairs(const recording::Recording& recording, const WarpTest& test,
+                   ReprojectionMeasurement& out) {
   const auto residuals = test.residuals({});
   const std::int64_t gap_ns = truth_gap_ns(recording);
   std::vector<double> depth_m, depth_share, intensity;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (!residuals[i]) continue;
-    const WarpPair& pair = test.pairs()[i];
-    const auto from = interpolate_pose(recording.ground_truth, pair.from_color_ns, gap_ns);
-    const auto to = interpolate_pose(recording.ground_truth, pair.to_color_ns, gap_ns);
+    const measures::WarpPair& pair = test.pairs()[i];
+    const auto from = trajectory::interpolate_pose(recording.ground_truth, pair.from_color_ns, gap_ns);
+    const auto to = trajectory::interpolate_pose(recording.ground_truth, pair.to_color_ns, gap_ns);
     const SE3 motion = from->inverse() * *to;
     out.pairs.push_back({pair.from, pair.to, rotation_angle_rad(motion.rotation, Quaterniond::Identity()),
                          motion.translation.norm(), residuals[i]->depth_m, residuals[i]->depth_share,
@@ -48,9 +49,9 @@ void measure_pairs(const Recording& recording, const WarpTest& test, Reprojectio
     depth_share.push_back(residuals[i]->depth_share);
     intensity.push_back(residuals[i]->intensity_grey);
   }
-  out.depth_residual_m = median(std::move(depth_m));
-  out.depth_residual_share = median(std::move(depth_share));
-  out.intensity_residual_grey = median(std::move(intensity));
+  out.depth_residual_m = measures::median(std::move(depth_m));
+  out.depth_residual_share = measures::median(std::move(depth_share));
+  out.intensity_residual_grey = measures::median(std::move(intensity));
 }
 
 std::string better_text(const Comparison& c) {
@@ -62,20 +63,20 @@ std::string better_text(const Comparison& c) {
 struct Improvement {
   HypothesisResult result;
   Comparison comparison;
-  Reading reading;
+  measures::Reading reading;
 };
 
 Improvement improvement(std::string code, std::string name, double value, const Comparison& c,
-                        Reading reading) {
+                        measures::Reading reading) {
   return {{std::move(code), std::move(name), value, c.factor, c.wins}, c, std::move(reading)};
 }
 
 /// The misreadings of poses and the fitted parameters, each from the reading `base`.
-std::vector<Improvement> try_all(const WarpTest& test, const Reading& base) {
+std::vector<Improvement> try_all(const WarpTest& test, const measures::Reading& base) {
   std::vector<Improvement> result;
   const auto residuals = test.residuals(base);
   for (const Misreading& misreading : pose_misreadings()) {
-    Reading reading = base;
+    measures::Reading reading = base;
     reading.pose = [before = base.pose, misreading](const SE3& pose) {
       return misreading.pose(before ? before(pose) : pose);
     };
@@ -83,7 +84,7 @@ std::vector<Improvement> try_all(const WarpTest& test, const Reading& base) {
     result.push_back(improvement(misreading.code, misreading.name, 0, c, std::move(reading)));
   }
   const FittedParameter depth = fit_depth_scale(test, base);
-  Reading reading = base;
+  measures::Reading reading = base;
   reading.depth_scale *= depth.value;
   result.push_back(improvement("depth-scale", "depth scaled", depth.value, depth.comparison, reading));
   const FittedParameter focal = fit_focal_scale(test, base);
@@ -99,7 +100,7 @@ std::vector<Improvement> try_all(const WarpTest& test, const Reading& base) {
   return result;
 }
 
-Finding finding_of(const Improvement& found, const Recording& recording, double frame_s) {
+Finding finding_of(const Improvement& found, const recording::Recording& recording, double frame_s) {
   const double value = found.result.value;
   const std::string better = better_text(found.comparison);
   Finding f{found.result.code, Severity::error, "", ""};
@@ -165,10 +166,10 @@ std::optional<Severity> severity_of(const Improvement& found, double frame_s) {
 }
 
 /// The best explanation first; then, with it, the next one: several faults may be there at once.
-void search_misreadings(const Recording& recording, const WarpTest& test, ReprojectionMeasurement& measured,
-                        Inspection& out) {
+void search_misreadings(const recording::Recording& recording, const WarpTest& test,
+                        ReprojectionMeasurement& measured, Inspection& out) {
   const double frame_s = std::max(1e-3, out.color_stamps.median_interval_s);
-  Reading reading;
+  measures::Reading reading;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<Improvement> tried = try_all(test, reading);
     if (round == 0) {
@@ -199,7 +200,7 @@ double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m
   std::vector<double> motion_rad;
   for (const ReprojectionPair& pair : measured.pairs)
     motion_rad.push_back(pair.rotation_rad + pair.translation_m / depth_m);
-  return median(std::move(motion_rad));
+  return measures::median(std::move(motion_rad));
 }
 
 void report_inconsistency(const ReprojectionMeasurement& measured, Inspection& out) {
@@ -215,8 +216,8 @@ void report_inconsistency(const ReprojectionMeasurement& measured, Inspection& o
 
 }  // namespace
 
-void check_reprojection(const Recording& recording, const Workers& workers, const InspectOptions& options,
-                        Inspection& out) {
+void check_reprojection(const recording::Recording& recording, const Workers& workers,
+                        const InspectOptions& options, Inspection& out) {
   if (recording.rig.camera.fx_px <= 0 || recording.rig.camera.fy_px <= 0) {
     out.add("focal-length", Severity::error,
             fmt::format("fx = {}, fy = {} (allowed: above 0)", recording.rig.camera.fx_px,
@@ -237,7 +238,7 @@ void check_reprojection(const Recording& recording, const Workers& workers, cons
         "no pair of frames with ground truth sees the same place from two: the calibration is not tested");
     return;
   }
-  Reading still;
+  measures::Reading still;
   still.pose = [](const SE3&) { return SE3{}; };
   measured.static_factor = test.compare(test.residuals({}), still).factor;
   search_misreadings(recording, test, measured, out);
@@ -245,4 +246,4 @@ void check_reprojection(const Recording& recording, const Workers& workers, cons
   out.reprojection = std::move(measured);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

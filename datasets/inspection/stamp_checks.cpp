@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "core/trajectory.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
-#include "datasets/inspection/order_statistics.hpp"
+#include "datasets/inspection/measures/order_statistics.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -108,16 +108,16 @@ void report_frame_gaps(std::span<const std::int64_t> stamps_ns, Inspection& out)
                       stamps.rate_hz));
 }
 
-void check_association(const Recording& recording, Inspection& out) {
+void check_association(const recording::Recording& recording, Inspection& out) {
   AssociationMeasurement& association = out.association;
   std::vector<double> differences_s;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
-    const FrameEntry& frame = recording.frames[i];
+    const recording::FrameEntry& frame = recording.frames[i];
     differences_s.push_back(std::abs(seconds_between(frame.timestamp_ns, frame.depth_timestamp_ns)));
     association.max_s = std::max(association.max_s, differences_s.back());
     if (i > 0 && frame.depth_timestamp_ns == recording.frames[i - 1].depth_timestamp_ns) ++association.reused;
   }
-  association.median_s = median(differences_s);
+  association.median_s = measures::median(differences_s);
   if (association.reused > 0) {
     out.add("depth-reused", Severity::warning,
             fmt::format("{} frames have the depth image of the frame before", association.reused),
@@ -146,7 +146,7 @@ StampMeasurement measure_stamps(std::span<const std::int64_t> stamps_ns) {
   }
   const auto [min, max] = std::ranges::minmax(intervals_s);
   result.duration_s = seconds_between(stamps_ns.front(), stamps_ns.back());
-  result.median_interval_s = median(intervals_s);
+  result.median_interval_s = measures::median(intervals_s);
   result.min_interval_s = min;
   result.max_interval_s = max;
   if (result.median_interval_s <= 0) return result;
@@ -168,7 +168,7 @@ StampMeasurement measure_stamps(std::span<const std::int64_t> stamps_ns) {
   return result;
 }
 
-std::int64_t truth_gap_ns(const Recording& recording) {
+std::int64_t truth_gap_ns(const recording::Recording& recording) {
   const auto stamps = stamps_of(recording.ground_truth, &StampedPose::timestamp_ns);
   return std::llround(1e9 * std::max(0.1, 2.5 * measure_stamps(stamps).median_interval_s));
 }
@@ -177,10 +177,10 @@ bool times_are_plausible(const Inspection& out) {
   return !out.has("frames-time-unit") && !out.has("truth-time-unit") && !out.has("imu-time-unit");
 }
 
-void check_frame_stamps(const Recording& recording, Inspection& out) {
-  const auto color_ns = stamps_of(recording.frames, &FrameEntry::timestamp_ns);
+void check_frame_stamps(const recording::Recording& recording, Inspection& out) {
+  const auto color_ns = stamps_of(recording.frames, &recording::FrameEntry::timestamp_ns);
   out.color_stamps = measure_stamps(color_ns);
-  out.depth_stamps = measure_stamps(stamps_of(recording.frames, &FrameEntry::depth_timestamp_ns));
+  out.depth_stamps = measure_stamps(stamps_of(recording.frames, &recording::FrameEntry::depth_timestamp_ns));
   const StampMeasurement& stamps = out.color_stamps;
   if (stamps.duplicates > 0) {
     const std::size_t frame = first_disorder(color_ns, true);
@@ -200,7 +200,7 @@ void check_frame_stamps(const Recording& recording, Inspection& out) {
   check_association(recording, out);
 }
 
-void check_truth_stamps(const Recording& recording, Inspection& out) {
+void check_truth_stamps(const recording::Recording& recording, Inspection& out) {
   const Trajectory& truth = recording.ground_truth;
   if (truth.empty()) {
     out.add("truth-none", Severity::note,
@@ -219,8 +219,8 @@ void check_truth_stamps(const Recording& recording, Inspection& out) {
   }
   const std::int64_t gap_ns = truth_gap_ns(recording);
   std::size_t covered = 0;
-  for (const FrameEntry& frame : recording.frames) {
-    if (interpolate_pose(truth, frame.capture_ns, gap_ns)) ++covered;
+  for (const recording::FrameEntry& frame : recording.frames) {
+    if (trajectory::interpolate_pose(truth, frame.capture_ns, gap_ns)) ++covered;
   }
   // The first or last image may be taken a moment outside of what has truth.
   measured.coverage =
@@ -240,7 +240,7 @@ void check_truth_stamps(const Recording& recording, Inspection& out) {
   }
 }
 
-void check_imu_stamps(const Recording& recording, Inspection& out) {
+void check_imu_stamps(const recording::Recording& recording, Inspection& out) {
   const auto& samples = recording.imu;
   if (samples.empty()) {
     out.add("imu-none", Severity::note,
@@ -281,7 +281,7 @@ void check_imu_stamps(const Recording& recording, Inspection& out) {
     out.add("imu-rate-low", Severity::warning,
             fmt::format("the IMU has {:.1f} Hz: fast motion between samples is lost", stamps.rate_hz));
   }
-  const auto covered = std::ranges::count_if(recording.frames, [&](const FrameEntry& frame) {
+  const auto covered = std::ranges::count_if(recording.frames, [&](const recording::FrameEntry& frame) {
     return frame.capture_ns >= stamps_ns.front() && frame.capture_ns <= stamps_ns.back();
   });
   measured.coverage = static_cast<double>(covered) / static_cast<double>(recording.frames.size());
@@ -297,4 +297,4 @@ void check_imu_stamps(const Recording& recording, Inspection& out) {
   }
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "core/trajectory.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 namespace {
 
@@ -27,11 +27,12 @@ struct FramePose {
   double angular_radps = 0;
 };
 
-std::vector<FramePose> poses_of_frames(const Recording& recording) {
+std::vector<FramePose> poses_of_frames(const recording::Recording& recording) {
   const std::int64_t gap_ns = truth_gap_ns(recording);
   std::vector<FramePose> result(recording.frames.size());
   for (std::size_t k = 0; k < result.size(); ++k)
-    result[k].pose = interpolate_pose(recording.ground_truth, recording.frames[k].capture_ns, gap_ns);
+    result[k].pose =
+        trajectory::interpolate_pose(recording.ground_truth, recording.frames[k].capture_ns, gap_ns);
   for (std::size_t k = 0; k < result.size(); ++k) {
     const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, result.size() - 1);
     const double dt_s =
@@ -69,7 +70,8 @@ ScoredPair best_from(const std::vector<FramePose>& poses, std::size_t from, doub
 
 }  // namespace
 
-std::vector<FramePair> choose_pairs(const Recording& recording, double depth_m, std::size_t count) {
+std::vector<FramePair> choose_pairs(const recording::Recording& recording, double depth_m,
+                                    std::size_t count) {
   const std::vector<FramePose> poses = poses_of_frames(recording);
   const std::size_t stride = std::max<std::size_t>(1, poses.size() / kCandidates);
   std::vector<ScoredPair> best(std::max<std::size_t>(1, std::min(count, poses.size())));
@@ -85,20 +87,20 @@ std::vector<FramePair> choose_pairs(const Recording& recording, double depth_m, 
   return result;
 }
 
-std::vector<WarpPair> load_pairs(const Recording& recording, const std::vector<FramePair>& pairs,
-                                 const Workers& workers) {
-  auto loaded = workers.map_chunks<std::optional<WarpPair>>(
-      pairs.size(), 1, [&](std::size_t i, std::size_t) -> std::optional<WarpPair> {
+std::vector<measures::WarpPair> load_pairs(const recording::Recording& recording,
+                                           const std::vector<FramePair>& pairs, const Workers& workers) {
+  auto loaded = workers.map_chunks<std::optional<measures::WarpPair>>(
+      pairs.size(), 1, [&](std::size_t i, std::size_t) -> std::optional<measures::WarpPair> {
         const auto from = recording.load_frame(pairs[i].from);
         auto to = recording.load_frame(pairs[i].to);
         if (!from || !to) return std::nullopt;
-        return make_warp_pair(pairs[i].from, pairs[i].to, *from, std::move(*to));
+        return measures::make_warp_pair(pairs[i].from, pairs[i].to, *from, std::move(*to));
       });
-  std::vector<WarpPair> result;
+  std::vector<measures::WarpPair> result;
   for (auto& pair : loaded) {
     if (pair && pair->points.size() >= kMinPoints) result.push_back(std::move(*pair));
   }
   return result;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

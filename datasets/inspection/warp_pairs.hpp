@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/parallel.hpp"
-#include "datasets/inspection/frame_warp.hpp"
+#include "core/base/parallel.hpp"
 #include "datasets/inspection/inspection.hpp"
+#include "datasets/inspection/measures/frame_warp.hpp"
 
-namespace fusebench {
+namespace fusebench::inspection {
 
 struct FramePair {
   std::size_t from = 0;
@@ -18,11 +18,12 @@ struct FramePair {
 /// Up to `count` pairs spread over the recording, of frames that see the same place from different ones (a
 /// baseline of about a tenth of the depth, a turn of about 10 deg), and that turn slowly themselves, since
 /// rolling shutters and jitter of stamps would show otherwise.
-[[nodiscard]] std::vector<FramePair> choose_pairs(const Recording& recording, double depth_m,
+[[nodiscard]] std::vector<FramePair> choose_pairs(const recording::Recording& recording, double depth_m,
                                                   std::size_t count);
 
 /// Loads them. Pairs that cannot be loaded, or have fewer than 100 points, are left out.
-[[nodiscard]] std::vector<WarpPair> load_pairs(const Recording& recording,
-                                               const std::vector<FramePair>& pairs, const Workers& workers);
+[[nodiscard]] std::vector<measures::WarpPair> load_pairs(const recording::Recording& recording,
+                                                         const std::vector<FramePair>& pairs,
+                                                         const Workers& workers);
 
-}  // namespace fusebench
+}  // namespace fusebench::inspection

@@ -10,15 +10,15 @@
 #include <utility>
 #include <variant>
 
-#include "core/staged_folder.hpp"
-#include "core/toml_document.hpp"
+#include "core/config/toml_document.hpp"
+#include "core/io/staged_folder.hpp"
 #include "datasets/open_recording.hpp"
-#include "datasets/simulator/room.hpp"
-#include "datasets/simulator/storage_room.hpp"
+#include "datasets/simulator/layouts/write_lists.hpp"
+#include "datasets/simulator/scene/room.hpp"
+#include "datasets/simulator/scene/storage_room.hpp"
 #include "datasets/simulator/write_images.hpp"
-#include "datasets/simulator/write_lists.hpp"
 
-namespace fusebench {
+namespace fusebench::simulator {
 
 namespace fs = std::filesystem;
 
@@ -36,7 +36,7 @@ constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate ne
 
 /// Readers of some formats refuse other rates (zr300) or count frames (icl).
 Result<void> check_rate(const SimulationOptions& o) {
-  const LayoutDescription& layout = describe(o.layout);
+  const layouts::LayoutDescription& layout = layouts::describe(o.layout);
   if (o.rate_hz >= layout.lowest_rate_hz && o.rate_hz <= layout.highest_rate_hz) return {};
   return fail(ErrorCode::configuration,
               fmt::format("rate_hz = {} (allowed in the {} layout: {} .. {})", o.rate_hz, layout.name,
@@ -66,37 +66,38 @@ Result<void> check_options(const SimulationOptions& o) {
   if (!o.rig.imu)
     return fail(ErrorCode::configuration, "the calibration has no IMU", "start from the defaults");
   if (auto valid = check_rate(o); !valid) return valid;
-  if (auto valid = check_calibration_error(o.calibration_error); !valid) return valid;
-  return check_file_motion(o.file_motion);
+  if (auto valid = faults::check_calibration_error(o.calibration_error); !valid) return valid;
+  return motion::check_file_motion(o.file_motion);
 }
 
 /// The motion that was chosen, before its body is known.
 struct Drive {
-  PoseSpline camera;
+  synthetic_imu::PoseSpline camera;
   double shrunk = 1;
   double turned_rad = 0;
 };
 
-Result<SimulatedScene> make_scene(const SimulationOptions& options) {
-  if (!options.scene_file.empty()) return read_scene(options.scene_file, options.scene);
-  return options.room == RoomKind::storage ? make_storage_room(options.seed) : make_room(options.seed);
+Result<scene::SimulatedScene> make_scene(const SimulationOptions& options) {
+  if (!options.scene_file.empty()) return scene::read_scene(options.scene_file, options.scene);
+  return options.room == RoomKind::storage ? scene::make_storage_room(options.seed)
+                                           : scene::make_room(options.seed);
 }
 
-Result<std::optional<FilePath>> read_path(const SimulationOptions& options) {
-  if (options.trajectory_file.empty()) return std::optional<FilePath>{};
-  auto path = read_file_path(options.trajectory_file);
+Result<std::optional<motion::FilePath>> read_path(const SimulationOptions& options) {
+  if (options.trajectory_file.empty()) return std::optional<motion::FilePath>{};
+  auto path = motion::read_file_path(options.trajectory_file);
   if (!path) return tl::unexpected(path.error());
-  return std::optional<FilePath>(std::move(*path));
+  return std::optional<motion::FilePath>(std::move(*path));
 }
 
 /// Stamps of the frames.
 Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
-                                               const std::optional<FilePath>& path) {
-  const LayoutDescription& layout = describe(options.layout);
+                                               const std::optional<motion::FilePath>& path) {
+  const layouts::LayoutDescription& layout = layouts::describe(options.layout);
   double duration_s = options.duration_s;
   if (duration_s == 0 && path) {
     const double lead_s = seconds_between(0, layout.imu_lead_ns);
-    duration_s = longest_duration_s(*path, options.file_motion, lead_s);
+    duration_s = motion::longest_duration_s(*path, options.file_motion, lead_s);
     if (!(duration_s <= kLongest_s)) {
       return fail(
           ErrorCode::configuration,
@@ -117,15 +118,15 @@ Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
   return frame_ns;
 }
 
-Result<Drive> choose_motion(const SimulationOptions& options, const std::optional<FilePath>& path,
-                            const MotionSpan& span, const Eigen::AlignedBox3d& box,
-                            const HeadingTexture& texture) {
+Result<Drive> choose_motion(const SimulationOptions& options, const std::optional<motion::FilePath>& path,
+                            const motion::MotionSpan& span, const Eigen::AlignedBox3d& box,
+                            const motion::HeadingTexture& texture) {
   if (path) {
-    auto motion = file_motion(*path, options.file_motion, span, box, texture);
+    auto motion = motion::file_motion(*path, options.file_motion, span, box, texture);
     if (!motion) return tl::unexpected(motion.error());
     return Drive{std::move(motion->camera), motion->shrunk, motion->heading_rad};
   }
-  auto camera = hand_held_motion(options.motion, span, box, options.seed, texture);
+  auto camera = motion::hand_held_motion(options.motion, span, box, options.seed, texture);
   if (!camera) return tl::unexpected(camera.error());
   return Drive{std::move(*camera)};
 }
@@ -149,27 +150,28 @@ Trajectory true_poses(const Shooting& shooting) {
 }
 
 /// Everything but the images.
-Result<void> write_rest(const SimulationOptions& options, const Shooting& shooting, const MotionSpan& span,
-                        Mesh scene, const fs::path& folder, SimulationReport& report) {
-  SimulatedData data;
+Result<void> write_rest(const SimulationOptions& options, const Shooting& shooting,
+                        const motion::MotionSpan& span, Mesh scene, const fs::path& folder,
+                        SimulationReport& report) {
+  layouts::SimulatedData data;
   data.rig = options.rig;
   data.rig.imu->time_offset_s = options.imu.time_offset_s;
   data.rig.imu->T_imu_camera =
-      miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
+      faults::miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
   data.frame_ns = shooting.frame_ns;
-  data.dropped = dropped_frames(options.faults, shooting.frame_ns);
+  data.dropped = faults::dropped_frames(options.faults, shooting.frame_ns);
   data.truth = true_poses(shooting);
-  ImuErrors errors = options.imu;
+  sensors::ImuErrors errors = options.imu;
   errors.time_offset_s += options.untold_time_offset_s;
   const std::int64_t late_ns = std::llround(1e9 * std::max(0.0, -options.untold_time_offset_s));
-  data.imu = simulate_imu(shooting.body, span.begin_ns, span.last_frame_ns + kImuTail_ns + late_ns,
-                          options.imu_rate_hz, errors, options.seed);
+  data.imu = sensors::simulate_imu(shooting.body, span.begin_ns, span.last_frame_ns + kImuTail_ns + late_ns,
+                                   options.imu_rate_hz, errors, options.seed);
   data.scene = std::move(scene);
   report.imu_samples = data.imu.samples.size();
-  if (auto written = write_layout(options.layout, folder, data); !written) return written;
+  if (auto written = layouts::write_layout(options.layout, folder, data); !written) return written;
   const Vector3d gravity =
-      describe(options.layout).T_file_scene(data).rotation * Vector3d(0, 0, -kGravity_mps2);
-  return write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
+      layouts::describe(options.layout).T_file_scene(data).rotation * Vector3d(0, 0, -kGravity_mps2);
+  return layouts::write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
 }
 
 /// Whether the folder holds this very recording already, as whole as its reader can tell. Error usage if it
@@ -177,13 +179,13 @@ Result<void> write_rest(const SimulationOptions& options, const Shooting& shooti
 Result<bool> is_there(const fs::path& folder, const std::string& identity) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return false;
-  const auto document = read_toml(folder / "simulation.toml");
+  const auto document = config::read_toml(folder / "simulation.toml");
   if (document) {
-    for (const TomlEntry& entry : document->entries) {
-      const auto* value = std::get_if<OptionValue>(&entry.value);
+    for (const config::TomlEntry& entry : document->entries) {
+      const auto* value = std::get_if<config::OptionValue>(&entry.value);
       const auto* text = value != nullptr ? std::get_if<std::string>(value) : nullptr;
       if (entry.key != "identity" || text == nullptr || *text != identity) continue;
-      const auto recording = open_recording(folder);
+      const auto recording = datasets::open_recording(folder);
       if (recording) return true;
       return fail(
           ErrorCode::usage,
@@ -203,18 +205,18 @@ fs::path without_slash(const fs::path& folder) {
 
 }  // namespace
 
-Result<SimulationOptions> simulation_defaults(RecordingLayout layout, MotionPreset preset,
-                                              const ImageSize& size) {
-  auto rig = layout_rig(layout, size);
+Result<SimulationOptions> simulation_defaults(layouts::RecordingLayout layout, motion::MotionPreset preset,
+                                              const images::ImageSize& size) {
+  auto rig = layouts::layout_rig(layout, size);
   if (!rig) return tl::unexpected(rig.error());
   SimulationOptions options;
   options.layout = layout;
   options.preset = preset;
-  options.motion = motion_preset(preset);
+  options.motion = motion::motion_preset(preset);
   // What is near enough to be swept over, with room for it before.
-  if (preset == MotionPreset::sweep) options.room = RoomKind::storage;
+  if (preset == motion::MotionPreset::sweep) options.room = RoomKind::storage;
   options.rig = std::move(*rig);
-  options.depth_noise = describe(layout).depth_noise;
+  options.depth_noise = layouts::describe(layout).depth_noise;
   options.imu.sensor.noise = options.rig.imu->noise;
   return options;
 }
@@ -224,8 +226,8 @@ void remove_noise(SimulationOptions& options) {
   options.vignetting = 0;
   options.read_noise_grey = 0;
   options.shot_noise = 0;
-  options.depth_noise = DepthNoise::none;
-  options.imu.sensor = ImuSensor{"ideal", {}, 0, 0};
+  options.depth_noise = sensors::DepthNoise::none;
+  options.imu.sensor = synthetic_imu::ImuSensor{"ideal", {}, 0, 0};
 }
 
 Result<SimulationReport> simulate(const SimulationOptions& options, const fs::path& out,
@@ -245,27 +247,28 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   if (!path) return tl::unexpected(path.error());
   auto frame_ns = choose_times(options, *path);
   if (!frame_ns) return tl::unexpected(frame_ns.error());
-  if (const auto valid = check_faults(options.faults, *frame_ns); !valid)
+  if (const auto valid = faults::check_faults(options.faults, *frame_ns); !valid)
     return tl::unexpected(valid.error());
   auto scene = make_scene(options);
   if (!scene) return tl::unexpected(scene.error());
-  const MotionSpan span{frame_ns->front() - describe(options.layout).imu_lead_ns, frame_ns->front(),
-                        frame_ns->back()};
-  const Scenery scenery(*scene, options.rig.color.pinhole, options.faults, options.seed);
-  HeadingTexture texture = look_around(scenery.scene, scene->free_space, workers);
+  const motion::MotionSpan span{frame_ns->front() - layouts::describe(options.layout).imu_lead_ns,
+                                frame_ns->front(), frame_ns->back()};
+  const faults::Scenery scenery(*scene, options.rig.color.pinhole, options.faults, options.seed);
+  motion::HeadingTexture texture = motion::look_around(scenery.scene, scene->free_space, workers);
   texture.only_rad = scene->heading_rad;
   const auto drive = choose_motion(options, *path, span, scene->free_space, texture);
   if (!drive) return tl::unexpected(drive.error());
   const SE3& T_body_color = options.rig.imu->T_imu_camera;
-  const Shooting shooting{body_motion(drive->camera, T_body_color), T_body_color, std::move(*frame_ns)};
-  report.frames =
-      static_cast<std::size_t>(std::ranges::count(dropped_frames(options.faults, shooting.frame_ns), false));
+  const Shooting shooting{motion::body_motion(drive->camera, T_body_color), T_body_color,
+                          std::move(*frame_ns)};
+  report.frames = static_cast<std::size_t>(
+      std::ranges::count(faults::dropped_frames(options.faults, shooting.frame_ns), false));
   report.trajectory_shrunk = drive->shrunk;
   report.trajectory_turned_rad = drive->turned_rad;
   if (*path) report.warnings = (*path)->warnings;
-  report.peaks = peak_speeds(shooting.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
+  report.peaks = motion::peak_speeds(shooting.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
 
-  auto staged = StagedFolder::create(folder);
+  auto staged = io::StagedFolder::create(folder);
   if (!staged) return tl::unexpected(staged.error());
   if (auto written = write_images(options, shooting, scenery, staged->path(), workers, control); !written)
     return tl::unexpected(written.error());
@@ -276,4 +279,4 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   return report;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::simulator

@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/parallel.hpp"
-#include "datasets/rig_calibration.hpp"
-#include "datasets/simulator/calibration_error.hpp"
-#include "datasets/simulator/fault.hpp"
-#include "datasets/simulator/image_sensors.hpp"
-#include "datasets/simulator/imu_sensor.hpp"
-#include "datasets/simulator/layout.hpp"
-#include "datasets/simulator/motion.hpp"
-#include "datasets/simulator/motion_file.hpp"
-#include "datasets/simulator/scene_file.hpp"
+#include "core/base/error.hpp"
+#include "core/base/parallel.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
+#include "datasets/simulator/faults/calibration_error.hpp"
+#include "datasets/simulator/faults/fault.hpp"
+#include "datasets/simulator/layouts/layout.hpp"
+#include "datasets/simulator/motion/motion.hpp"
+#include "datasets/simulator/motion/motion_file.hpp"
+#include "datasets/simulator/scene/scene_file.hpp"
+#include "datasets/simulator/sensors/image_sensors.hpp"
+#include "datasets/simulator/sensors/imu_sensor.hpp"
 
-namespace fusebench {
+namespace fusebench::simulator {
 
 enum class RoomKind {
   furnished,  ///< room.hpp
@@ -29,41 +29,43 @@ enum class RoomKind {
 
 /// Everything that decides the bytes of a recording; simulation_defaults() fills it in.
 struct SimulationOptions {
-  RecordingLayout layout = RecordingLayout::zr300;
+  layouts::RecordingLayout layout = layouts::RecordingLayout::zr300;
   std::uint64_t seed = 1;  ///< of the motion and of all noise
   double duration_s = 10;  ///< 0: the whole trajectory file
   double rate_hz = 30;     ///< of the images
 
   std::filesystem::path scene_file;  ///< PLY or OBJ; empty: the room of the seed
   RoomKind room = RoomKind::furnished;
-  SceneFileOptions scene;  ///< its axes and unit
+  scene::SceneFileOptions scene;  ///< its axes and unit
 
-  MotionPreset preset = MotionPreset::slow;  ///< what `motion` started from
-  MotionOptions motion;
+  motion::MotionPreset preset = motion::MotionPreset::slow;  ///< what `motion` started from
+  motion::MotionOptions motion;
   std::filesystem::path trajectory_file;  ///< drives the camera instead of `motion`; empty: none
-  FileMotionOptions file_motion;
+  motion::FileMotionOptions file_motion;
 
-  RigCalibration rig;  ///< the true one: cameras with their read-out times, extrinsics, IMU densities
+  calibration::RigCalibration
+      rig;  ///< the true one: cameras with their read-out times, extrinsics, IMU densities
   double exposure_s = 0.008;
   int blur_samples = 8;
   double gain_drift = 0.03;  ///< these four: see ColorSensor
   double vignetting = 0.15;
   double read_noise_grey = 1.0;
   double shot_noise = 0.01;  ///< that of a pixel which holds 10000 electrons
-  DepthNoise depth_noise = DepthNoise::zr300;
+  sensors::DepthNoise depth_noise = sensors::DepthNoise::zr300;
   double imu_rate_hz = 200;
-  ImuErrors imu;
+  sensors::ImuErrors imu;
 
-  std::vector<SimulatedFault> faults;  ///< of the images
-  CalibrationError calibration_error;  ///< what calibration.toml is wrong about
-  double untold_time_offset_s = 0;     ///< added to imu.time_offset_s, and calibration.toml does not say so
+  std::vector<faults::SimulatedFault> faults;  ///< of the images
+  faults::CalibrationError calibration_error;  ///< what calibration.toml is wrong about
+  double untold_time_offset_s = 0;  ///< added to imu.time_offset_s, and calibration.toml does not say so
 };
 
 /// The sensors and effects of a layout with the motion of a preset: motion blur, image noise, the depth noise
 /// of the layout's sensor, IMU noise and biases are on; rolling shutters, IMU scale errors and time offsets
 /// are not. Errors: configuration (an image size out of range).
-[[nodiscard]] Result<SimulationOptions> simulation_defaults(RecordingLayout layout, MotionPreset preset,
-                                                            const ImageSize& size = {640, 480});
+[[nodiscard]] Result<SimulationOptions> simulation_defaults(layouts::RecordingLayout layout,
+                                                            motion::MotionPreset preset,
+                                                            const images::ImageSize& size = {640, 480});
 
 /// Switches off the noise of images, depth and IMU, its biases, gain drift and vignetting; motion blur stays.
 void remove_noise(SimulationOptions& options);
@@ -81,7 +83,7 @@ struct SimulationReport {
   bool reused = false;  ///< the folder was there already; nothing was written, and the rest is empty
   std::size_t frames = 0;
   std::size_t imu_samples = 0;
-  PeakSpeeds peaks;              ///< of the colour camera, first to last frame
+  motion::PeakSpeeds peaks;      ///< of the colour camera, first to last frame
   double trajectory_shrunk = 1;  ///< these two: see FileMotion
   double trajectory_turned_rad = 0;
   std::vector<std::string> warnings;
@@ -102,4 +104,4 @@ struct SimulationControl {
                                                 const std::filesystem::path& folder, const Workers& workers,
                                                 const SimulationControl& control = {});
 
-}  // namespace fusebench
+}  // namespace fusebench::simulator

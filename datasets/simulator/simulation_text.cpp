@@ -1,30 +1,32 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/fingerprint.hpp"
-#include "core/toml_document.hpp"
+#include "core/config/toml_document.hpp"
+#include "core/io/fingerprint.hpp"
 #include "datasets/simulator/simulation.hpp"
 
-namespace fusebench {
+namespace fusebench::simulator {
 
 namespace {
 
 // To be raised when the same options come to mean other bytes.
 constexpr int kSimulatorVersion = 1;
 
-std::string_view name_of(DepthNoise noise) {
+std::string_view name_of(sensors::DepthNoise noise) {
   switch (noise) {
-    case DepthNoise::none:
+    case sensors::DepthNoise::none:
       return "none";
-    case DepthNoise::handa:
+    case sensors::DepthNoise::handa:
       return "handa";
-    case DepthNoise::zr300:
+    case sensors::DepthNoise::zr300:
       break;
   }
   return "zr300";
 }
 
-std::string toml_text(std::string_view text) { return to_toml(OptionValue(std::string(text))); }
+std::string toml_text(std::string_view text) {
+  return config::to_toml(config::OptionValue(std::string(text)));
+}
 
 std::string matrix_text(const Matrix3d& m) {
   return fmt::format("[{}, {}, {}, {}, {}, {}, {}, {}, {}]", m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1),
@@ -33,18 +35,18 @@ std::string matrix_text(const Matrix3d& m) {
 
 std::string motion_text(const SimulationOptions& o) {
   if (!o.trajectory_file.empty()) {
-    const FileMotionOptions& f = o.file_motion;
+    const motion::FileMotionOptions& f = o.file_motion;
     return fmt::format(
         "[trajectory]\nfile = {}\nspeed = {}\nfrom_rest = {}\nrest_s = {}\nstart_s = {}\nin_place = {}\n",
         toml_text(o.trajectory_file.filename().string()), f.speed, f.from_rest, f.rest_s, f.start_s,
         f.in_place);
   }
-  const MotionOptions& m = o.motion;
+  const motion::MotionOptions& m = o.motion;
   return fmt::format(
       "[motion]\npreset = {}\npeak_speed_mps = {}\npeak_rate_radps = {}\nposition_hz = [{}, {}]\n"
       "rotation_hz = [{}, {}]\npan_share = {}\nshake_share = {}\nshake_hz = [{}, {}]\ntremor_m = {}\n"
       "from_rest = {}\nrest_s = {}\nstart_s = {}\n{}",
-      toml_text(to_string(o.preset)), m.peak_speed_mps, m.peak_rate_radps, m.position_hz.low_hz,
+      toml_text(motion::to_string(o.preset)), m.peak_speed_mps, m.peak_rate_radps, m.position_hz.low_hz,
       m.position_hz.high_hz, m.rotation_hz.low_hz, m.rotation_hz.high_hz, m.pan_share, m.shake_share,
       m.shake_hz.low_hz, m.shake_hz.high_hz, m.tremor_m, m.from_rest, m.rest_s, m.start_s,
       m.sideways ? "sideways = true\n" : "");  // only then, so that other recordings keep their identity
@@ -84,7 +86,7 @@ std::string faults_text(const SimulationOptions& o) {
   std::string text;
   if (!o.faults.empty()) {
     std::vector<std::string> list;
-    for (const SimulatedFault& fault : o.faults) list.push_back(toml_text(to_string(fault)));
+    for (const faults::SimulatedFault& fault : o.faults) list.push_back(toml_text(faults::to_string(fault)));
     text += fmt::format("\n[faults]  # seconds from the first frame\nlist = [{}]\n", fmt::join(list, ", "));
   }
   if (!o.calibration_error.is_zero() || o.untold_time_offset_s != 0) {
@@ -99,16 +101,16 @@ std::string faults_text(const SimulationOptions& o) {
 /// All options but the calibration, which has a file of its own.
 std::string options_text(const SimulationOptions& o) {
   return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}{}",
-                     kSimulatorVersion, toml_text(to_string(o.layout)), o.seed, o.duration_s, scene_text(o),
-                     motion_text(o), sensors_text(o), faults_text(o));
+                     kSimulatorVersion, toml_text(layouts::to_string(o.layout)), o.seed, o.duration_s,
+                     scene_text(o), motion_text(o), sensors_text(o), faults_text(o));
 }
 
 }  // namespace
 
 Result<std::string> simulation_identity(const SimulationOptions& options) {
-  Fingerprint fingerprint;
+  io::Fingerprint fingerprint;
   fingerprint.add(options_text(options));
-  fingerprint.add(to_toml(options.rig));
+  fingerprint.add(calibration::to_toml(options.rig));
   for (const auto& file : {options.scene_file, options.trajectory_file}) {
     if (file.empty()) continue;
     if (const auto added = fingerprint.add_file(file); !added) return tl::unexpected(added.error());
@@ -120,7 +122,7 @@ std::string simulation_text(const SimulationOptions& options, const std::string&
                             const Vector3d& gravity_world_mps2) {
   const Vector3d& g = gravity_world_mps2;
   const std::string_view reflected =
-      options.layout == RecordingLayout::icl
+      options.layout == layouts::RecordingLayout::icl
           ? "# livingRoom0.gt.freiburg is reflected as ICL-NUIM publishes it (left-handed, y up); the other "
             "two "
             "are in\n# the right-handed world with y down that the reader makes of it.\n"
@@ -134,4 +136,4 @@ std::string simulation_text(const SimulationOptions& options, const std::string&
       reflected, toml_text(identity), g.x(), g.y(), g.z(), options_text(options));
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::simulator

@@ -9,11 +9,11 @@
 #include <optional>
 #include <system_error>
 
-#include "datasets/image_files.hpp"
-#include "datasets/simulator/depth_distortion.hpp"
-#include "datasets/simulator/image_sensors.hpp"
+#include "datasets/images/image_files.hpp"
+#include "datasets/simulator/sensors/depth_distortion.hpp"
+#include "datasets/simulator/sensors/image_sensors.hpp"
 
-namespace fusebench {
+namespace fusebench::simulator {
 
 namespace {
 
@@ -26,8 +26,8 @@ int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
   return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMostFaultSamples})));
 }
 
-ColorSensor color_sensor(const SimulationOptions& options, const FrameFaults& faults) {
-  ColorSensor sensor;
+sensors::ColorSensor color_sensor(const SimulationOptions& options, const faults::FrameFaults& faults) {
+  sensors::ColorSensor sensor;
   sensor.camera = options.rig.color;
   sensor.exposure_s = faults.exposure_s.value_or(options.exposure_s);
   sensor.gain_drift = options.gain_drift;
@@ -40,9 +40,9 @@ ColorSensor color_sensor(const SimulationOptions& options, const FrameFaults& fa
   return sensor;
 }
 
-DepthSensor depth_sensor(const SimulationOptions& options) {
-  const RigCalibration& rig = options.rig;
-  DepthSensor sensor;
+sensors::DepthSensor depth_sensor(const SimulationOptions& options) {
+  const calibration::RigCalibration& rig = options.rig;
+  sensors::DepthSensor sensor;
   sensor.camera = rig.depth ? rig.depth->pinhole : rig.color.pinhole;
   sensor.readout_s = rig.color.timing.depth_readout_s;
   sensor.units_per_metre = rig.depth_units_per_metre.value_or(1000);
@@ -51,60 +51,62 @@ DepthSensor depth_sensor(const SimulationOptions& options) {
 }
 
 /// The hand before a camera that is placed by T_color_camera.
-std::optional<MovingThing> hand_before(const Scenery& scenery, const Shooting& shooting,
-                                       const FrameFaults& faults, const SE3& T_color_camera) {
+std::optional<sensors::MovingThing> hand_before(const faults::Scenery& scenery, const Shooting& shooting,
+                                                const faults::FrameFaults& faults,
+                                                const SE3& T_color_camera) {
   if (!faults.hand) return std::nullopt;
-  const Scenery::MovingHand& moving = *scenery.hands[*faults.hand];
-  return MovingThing{moving.surface, [&, T_color_camera](std::int64_t t_ns) {
-                       const double time_s = seconds_between(shooting.frame_ns.front(), t_ns);
-                       return moving.hand.T_color_hand(time_s).inverse() * T_color_camera;
-                     }};
+  const faults::Scenery::MovingHand& moving = *scenery.hands[*faults.hand];
+  return sensors::MovingThing{moving.surface, [&, T_color_camera](std::int64_t t_ns) {
+                                const double time_s = seconds_between(shooting.frame_ns.front(), t_ns);
+                                return moving.hand.T_color_hand(time_s).inverse() * T_color_camera;
+                              }};
 }
 
 /// What is the same for all frames.
 struct Studio {
   const SimulationOptions& options;
   const Shooting& shooting;
-  const Scenery& scenery;
+  const faults::Scenery& scenery;
   Workers alone{1};  // frames are what runs in parallel
 
-  [[nodiscard]] const Renderer& scene(const FrameFaults& faults) const {
+  [[nodiscard]] const render::Renderer& scene(const faults::FrameFaults& faults) const {
     return faults.no_texture ? *scenery.matt : scenery.scene;
   }
 
-  [[nodiscard]] ColorImage color(std::size_t k, const FrameFaults& faults) const {
+  [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
     const auto hand = hand_before(scenery, shooting, faults, SE3{});
-    return expose_color(scene(faults), color_sensor(options, faults), shooting.body, shooting.T_body_color,
-                        shooting.frame_ns[k], options.seed, k, alone, hand ? &*hand : nullptr);
+    return sensors::expose_color(scene(faults), color_sensor(options, faults), shooting.body,
+                                 shooting.T_body_color, shooting.frame_ns[k], options.seed, k, alone,
+                                 hand ? &*hand : nullptr);
   }
 
-  [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const FrameFaults& faults) const {
-    const RigCalibration& rig = options.rig;
-    const DepthSensor sensor = depth_sensor(options);
+  [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const faults::FrameFaults& faults) const {
+    const calibration::RigCalibration& rig = options.rig;
+    const sensors::DepthSensor sensor = depth_sensor(options);
     if (faults.no_depth) return {sensor.camera.width_px, sensor.camera.height_px, std::uint16_t{0}};
     const SE3 T_color_depth = rig.depth ? rig.depth->T_color_depth : SE3{};
     const auto hand = hand_before(scenery, shooting, faults, T_color_depth);
     const std::int64_t depth_ns = shooting.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
     Image<std::uint16_t> depth =
-        sense_depth(scene(faults), sensor, shooting.body, shooting.T_body_color * T_color_depth, depth_ns,
-                    options.seed, k, alone, hand ? &*hand : nullptr);
+        sensors::sense_depth(scene(faults), sensor, shooting.body, shooting.T_body_color * T_color_depth,
+                             depth_ns, options.seed, k, alone, hand ? &*hand : nullptr);
     // Registered depth has the pixels of the colour image, which are distorted.
-    if (!rig.depth && !rig.color.distortion.is_zero()) depth = distort_depth(depth, rig.color);
+    if (!rig.depth && !rig.color.distortion.is_zero()) depth = sensors::distort_depth(depth, rig.color);
     return depth;
   }
 };
 
 Result<void> write_frame(const Studio& studio, std::size_t k, const std::filesystem::path& folder) {
-  const LayoutDescription& layout = describe(studio.options.layout);
+  const layouts::LayoutDescription& layout = layouts::describe(studio.options.layout);
   const std::vector<std::int64_t>& frame_ns = studio.shooting.frame_ns;
-  const FrameFaults faults = faults_at(studio.options.faults, frame_ns[k] - frame_ns.front());
+  const faults::FrameFaults faults = faults::faults_at(studio.options.faults, frame_ns[k] - frame_ns.front());
   if (faults.dropped) return {};
-  const auto color = write_png(folder / layout.color_name(k, frame_ns[k]), studio.color(k, faults));
+  const auto color = images::write_png(folder / layout.color_name(k, frame_ns[k]), studio.color(k, faults));
   if (!color) return color;
-  return write_png(folder / layout.depth_name(k, frame_ns[k]), studio.depth(k, faults));
+  return images::write_png(folder / layout.depth_name(k, frame_ns[k]), studio.depth(k, faults));
 }
 
-Result<void> create_folders(const LayoutDescription& layout, const std::filesystem::path& folder) {
+Result<void> create_folders(const layouts::LayoutDescription& layout, const std::filesystem::path& folder) {
   for (const std::string& name : {layout.color_name(0, 0), layout.depth_name(0, 0)}) {
     const std::filesystem::path images = (folder / name).parent_path();
     std::error_code error;
@@ -118,10 +120,10 @@ Result<void> create_folders(const LayoutDescription& layout, const std::filesyst
 
 }  // namespace
 
-Result<void> write_images(const SimulationOptions& options, const Shooting& shooting, const Scenery& scenery,
-                          const std::filesystem::path& folder, const Workers& workers,
-                          const SimulationControl& control) {
-  if (auto created = create_folders(describe(options.layout), folder); !created) return created;
+Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
+                          const faults::Scenery& scenery, const std::filesystem::path& folder,
+                          const Workers& workers, const SimulationControl& control) {
+  if (auto created = create_folders(layouts::describe(options.layout), folder); !created) return created;
   const Studio studio{options, shooting, scenery};
   const std::size_t count = shooting.frame_ns.size();
   std::vector<std::optional<Error>> errors(count);
@@ -146,4 +148,4 @@ Result<void> write_images(const SimulationOptions& options, const Shooting& shoo
   return {};
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::simulator

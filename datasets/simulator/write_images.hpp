@@ -5,18 +5,18 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/parallel.hpp"
-#include "datasets/pose_spline.hpp"
-#include "datasets/simulator/layout.hpp"
-#include "datasets/simulator/scenery.hpp"
+#include "core/base/error.hpp"
+#include "core/base/parallel.hpp"
+#include "datasets/simulator/faults/scenery.hpp"
+#include "datasets/simulator/layouts/layout.hpp"
 #include "datasets/simulator/simulation.hpp"
+#include "datasets/synthetic_imu/pose_spline.hpp"
 
-namespace fusebench {
+namespace fusebench::simulator {
 
 /// What moves, and when it is looked at.
 struct Shooting {
-  PoseSpline body;  ///< the IMU body in the scene's world
+  synthetic_imu::PoseSpline body;  ///< the IMU body in the scene's world
   SE3 T_body_color;
   std::vector<std::int64_t> frame_ns;  ///< stamps, and middles of the exposures (depth: its delay later)
 };
@@ -25,7 +25,7 @@ struct Shooting {
 /// the options. Errors: io;
 /// run_failed (stopped). The error is that of the first frame that has one, whatever the threads.
 [[nodiscard]] Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
-                                        const Scenery& scenery, const std::filesystem::path& folder,
+                                        const faults::Scenery& scenery, const std::filesystem::path& folder,
                                         const Workers& workers, const SimulationControl& control);
 
-}  // namespace fusebench
+}  // namespace fusebench::simulator

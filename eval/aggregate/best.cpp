@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "eval/aggregate/option_order.hpp"
-#include "eval/found_runs.hpp"
-#include "eval/report/data_labels.hpp"
+#include "eval/record/data_labels.hpp"
+#include "eval/run_files/found_runs.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -33,7 +33,7 @@ struct GroupKey {
 GroupKey key_of(const RunRow& row, const std::string& group, const std::string& kind) {
   if (group == "none") return {kind, 0, "all"};
   if (group == "recording") return {kind, 0, row.recording};
-  if (group == "variant") return {kind, variant_rank(row.variant), row.variant};
+  if (group == "variant") return {kind, run_files::variant_rank(row.variant), row.variant};
   return {kind, 0, std::string(option_of(row, group))};
 }
 
@@ -82,9 +82,9 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric&
       "Configurations that lost, failed or did not run some of them come after those that did all; "
       "their means are of fewer recordings and do not compare.",
       metric.key));
-  std::vector<DataWords> words;
+  std::vector<record::DataWords> words;
   for (const RunRow& row : rows) words.push_back({row.data, row.imu, row.truth});
-  for (std::string& footnote : data_footnotes(words)) notes.push_back(std::move(footnote));
+  for (std::string& footnote : record::data_footnotes(words)) notes.push_back(std::move(footnote));
   return notes;
 }
 
@@ -128,4 +128,4 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
   return table;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

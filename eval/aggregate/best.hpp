@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/aggregate/configurations.hpp"
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 struct BestRequest {
   const RunMetric* metric = nullptr;  ///< of find_run_metric()
@@ -57,4 +57,4 @@ enum class BestFormat { markdown, csv, json };
 /// Markdown shows the units of headings; CSV (RFC 4180) and JSON are SI.
 [[nodiscard]] std::string render_best(const BestTable& table, BestFormat format);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

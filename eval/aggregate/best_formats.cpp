@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "eval/aggregate/best.hpp"
-#include "eval/json_text.hpp"
-#include "eval/report/plain_table.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/plain_table.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -22,20 +22,20 @@ std::string option_cell(const RunOptions& options, const std::string& key) {
 }
 
 std::string markdown(const BestTable& table) {
-  TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant"};
+  text::TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant"};
   header.insert(header.end(), table.options.begin(), table.options.end());
   const std::size_t text_columns = header.size();
   header.insert(header.end(), {"rank", std::string(table.metric->heading), "ok", "incomplete"});
-  std::vector<TableCells> lines = {header};
+  std::vector<text::TableCells> lines = {header};
   std::string more;
   for (const BestGroup& group : table.groups) {
     for (const BestRow& row : group.rows) {
-      TableCells cells = {group.label, group.kind, row.configuration.variant};
+      text::TableCells cells = {group.label, group.kind, row.configuration.variant};
       for (const std::string& key : table.options)
         cells.push_back(option_cell(row.configuration.options, key));
       cells.push_back(row.rank ? fmt::format("{}", *row.rank) : "-");
       cells.push_back(
-          number_cell(row.configuration.mean, table.metric->shown_factor, table.metric->decimals));
+          text::number_cell(row.configuration.mean, table.metric->shown_factor, table.metric->decimals));
       cells.push_back(fmt::format("{}/{}", row.configuration.n_ok, row.configuration.n_total));
       cells.push_back(incomplete_note(row.configuration));
       lines.push_back(std::move(cells));
@@ -45,26 +45,27 @@ std::string markdown(const BestTable& table) {
                           group.rows.size(), group.configurations);
     }
   }
-  std::string text = markdown_table(lines, text_columns) + "\n" + more;
+  std::string text = text::markdown_table(lines, text_columns) + "\n" + more;
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   return text;
 }
 
 std::string csv(const BestTable& table) {
   std::string text = "group,data,rank,variant";
-  for (const std::string& key : table.options) text += fmt::format(",{}", csv_cell(key));
+  for (const std::string& key : table.options) text += fmt::format(",{}", text::csv_cell(key));
   text += ",metric,unit,mean,n_ok,n_total,recordings,note\n";
   for (const BestGroup& group : table.groups) {
     for (const BestRow& row : group.rows) {
       const ConfigurationSummary& configuration = row.configuration;
-      text += fmt::format("{},{},{},{}", csv_cell(group.label), csv_cell(group.kind),
-                          row.rank ? fmt::format("{}", *row.rank) : "", csv_cell(configuration.variant));
+      text +=
+          fmt::format("{},{},{},{}", text::csv_cell(group.label), text::csv_cell(group.kind),
+                      row.rank ? fmt::format("{}", *row.rank) : "", text::csv_cell(configuration.variant));
       for (const std::string& key : table.options)
-        text += fmt::format(",{}", csv_cell(option_cell(configuration.options, key)));
+        text += fmt::format(",{}", text::csv_cell(option_cell(configuration.options, key)));
       text += fmt::format(",{},{},{},{},{},{},{}\n", table.metric->key, table.metric->unit,
                           configuration.mean ? fmt::format("{}", *configuration.mean) : "",
                           configuration.n_ok, configuration.n_total, group.recordings.size(),
-                          csv_cell(incomplete_note(configuration)));
+                          text::csv_cell(incomplete_note(configuration)));
     }
   }
   return text;
@@ -98,7 +99,7 @@ std::string json(const BestTable& table) {
   const Json document = {{"metric", table.metric->key}, {"unit", table.metric->unit},
                          {"group_by", table.group},     {"options", table.options},
                          {"groups", std::move(groups)}, {"notes", table.notes}};
-  return json_text(document) + "\n";
+  return text::json_text(document) + "\n";
 }
 
 }  // namespace
@@ -124,4 +125,4 @@ std::string render_best(const BestTable& table, BestFormat format) {
   return {};
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

@@ -5,10 +5,10 @@
 #include <tuple>
 
 #include "eval/aggregate/option_order.hpp"
-#include "eval/found_runs.hpp"
-#include "eval/report/data_labels.hpp"
+#include "eval/record/data_labels.hpp"
+#include "eval/run_files/found_runs.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -72,11 +72,11 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
   for (const RunRow* run : runs) {
     if (!run->attributable()) continue;
     const auto [rank, is_new] = ranks.try_emplace(run->variant, 0);
-    if (is_new) rank->second = variant_rank(run->variant);
+    if (is_new) rank->second = run_files::variant_rank(run->variant);
     Tally& tally = tallies[Key{rank->second, run->variant, run->options}][run->recording];
     Recording& recording = recordings[run->recording];
     ++tally.runs;
-    if (run->status != RunStatus::ok) continue;
+    if (run->status != record::RunStatus::ok) continue;
     recording.any_ok = true;
     if (!(run->*metric.value)) continue;
     recording.any_value = true;
@@ -105,17 +105,17 @@ std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows)
   for (const RunRow& row : rows) {
     Words& recording = words[row.recording];
     recording.simulated |= row.data == "simulated";
-    recording.pseudo_truth |= row.truth == kPseudoTruthWord;
+    recording.pseudo_truth |= row.truth == record::kPseudoTruthWord;
     recording.synthetic_imu |= row.imu == "synthetic IMU";
   }
   std::map<std::string, std::string> kinds;
   for (const auto& [name, recording] : words) {
     std::string& kind = kinds[name];
-    kind = data_cell({recording.simulated ? "simulated" : "recorded", "",
-                      recording.pseudo_truth ? kPseudoTruthWord : std::string_view()});
+    kind = record::data_cell({recording.simulated ? "simulated" : "recorded", "",
+                              recording.pseudo_truth ? record::kPseudoTruthWord : std::string_view()});
     if (recording.synthetic_imu) kind += ", synthetic IMU";
   }
   return kinds;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

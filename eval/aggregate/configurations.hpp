@@ -10,7 +10,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 struct ConfigurationSummary {
   std::string variant;
@@ -44,4 +44,4 @@ struct ConfigurationSummaries {
 /// Added in the order of size, so that the sum does not depend on the order of the values. Not of none.
 [[nodiscard]] double ordered_mean(std::vector<double> values);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

@@ -9,7 +9,7 @@
 #include "eval/aggregate/configurations.hpp"
 #include "eval/aggregate/option_order.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -26,7 +26,7 @@ struct SweptRun {
 };
 
 std::optional<double> value_of(const RunRow& row, const RunMetric& metric) {
-  return row.status == RunStatus::ok ? row.*metric.value : std::nullopt;
+  return row.status == record::RunStatus::ok ? row.*metric.value : std::nullopt;
 }
 
 EffectMean mean_for(std::span<const RunRow> rows, const RunMetric& metric) {
@@ -69,8 +69,8 @@ OptionEffect effect_of(const std::string& option, const std::vector<SweptRun>& r
     if (at == tallies.end()) at = tallies.emplace(std::string(value), Tally{}).first;
     Tally& tally = at->second;
     ++tally.counts.n_total;
-    tally.counts.n_lost += run.row->status == RunStatus::lost ? 1 : 0;
-    tally.counts.n_failed += run.row->status == RunStatus::failed ? 1 : 0;
+    tally.counts.n_lost += run.row->status == record::RunStatus::lost ? 1 : 0;
+    tally.counts.n_failed += run.row->status == record::RunStatus::failed ? 1 : 0;
     if (run.ratio) tally.ratios.push_back(*run.ratio);
   }
   OptionEffect effect{option, {}};
@@ -149,4 +149,4 @@ SweepEffects sweep_effects(std::span<const RunRow> rows, const RunMetric& metric
   return effects;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

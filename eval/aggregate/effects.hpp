@@ -10,7 +10,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 enum class EffectMean {
   geometric,   ///< where all values are positive: effects are factors
@@ -64,4 +64,4 @@ struct SweepEffects {
 /// their share. Does not depend on the order of the runs.
 [[nodiscard]] SweepEffects sweep_effects(std::span<const RunRow> rows, const RunMetric& metric);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

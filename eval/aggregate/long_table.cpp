@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "eval/json_text.hpp"
-#include "eval/report/plain_table.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/plain_table.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -19,9 +19,14 @@ constexpr std::array<const char*, 8> kIdentity = {"recording", "data", "imu",   
                                                   "variant",   "run",  "status", "reason"};
 
 std::array<std::string, kIdentity.size()> identity_of(const RunRow& row) {
-  return {
-      row.recording, row.data, row.imu, row.truth, row.variant, row.run, std::string(to_string(row.status)),
-      row.reason};
+  return {row.recording,
+          row.data,
+          row.imu,
+          row.truth,
+          row.variant,
+          row.run,
+          std::string(record::to_string(row.status)),
+          row.reason};
 }
 
 /// Calls add(metric, unit, value) for each number of the run; returns how many there were.
@@ -47,10 +52,10 @@ std::size_t for_numbers(const RunRow& row, bool without_timing, const Add& add) 
 void add_csv(const RunRow& row, const std::vector<std::string>& options, bool without_timing,
              std::string& text) {
   std::string prefix;
-  for (const std::string& cell : identity_of(row)) prefix += csv_cell(cell) + ",";
+  for (const std::string& cell : identity_of(row)) prefix += text::csv_cell(cell) + ",";
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
-    prefix += (value == kUnsetOption ? std::string() : csv_cell(std::string(value))) + ",";
+    prefix += (value == kUnsetOption ? std::string() : text::csv_cell(std::string(value))) + ",";
   }
   const std::size_t numbers =
       for_numbers(row, without_timing, [&](std::string_view metric, std::string_view unit, double value) {
@@ -59,7 +64,7 @@ void add_csv(const RunRow& row, const std::vector<std::string>& options, bool wi
   if (numbers == 0) text += prefix + ",,\n";
 }
 
-std::string json_string(std::string_view text) { return json_text(std::string(text), -1); }
+std::string json_string(std::string_view text) { return text::json_text(std::string(text), -1); }
 
 void add_json_lines(const RunRow& row, const std::vector<std::string>& options, bool without_timing,
                     std::string& text) {
@@ -96,10 +101,10 @@ std::string long_table(std::span<const RunRow> rows, const LongTableRequest& req
     return text;
   }
   for (const char* column : kIdentity) text += fmt::format("{},", column);
-  for (const std::string& key : options) text += csv_cell(key) + ",";
+  for (const std::string& key : options) text += text::csv_cell(key) + ",";
   text += "metric,unit,value\n";
   for (const RunRow& row : rows) add_csv(row, options, request.without_timing, text);
   return text;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

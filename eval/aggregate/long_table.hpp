@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 enum class LongFormat { csv, json_lines };
 /// "csv" or "jsonl". Error usage.
@@ -26,4 +26,4 @@ struct LongTableRequest {
 /// "\n".
 [[nodiscard]] std::string long_table(std::span<const RunRow> rows, const LongTableRequest& request);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

@@ -10,7 +10,7 @@
 
 #include "eval/aggregate/option_order.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<RunRow> with_binned_options(std::span<const RunRow> rows, std::size_
   return binned;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

@@ -8,7 +8,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 /// The rows, with each number of an option that has more than `most` different ones replaced by the mean of
 /// its bin: `bins` bins of neighbouring values with equally many different values each. Options with values
@@ -16,4 +16,4 @@ namespace fusebench {
 [[nodiscard]] std::vector<RunRow> with_binned_options(std::span<const RunRow> rows, std::size_t most = 12,
                                                       std::size_t bins = 6);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

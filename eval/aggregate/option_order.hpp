@@ -8,7 +8,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 /// The number that the whole text is.
 [[nodiscard]] inline std::optional<double> option_number(std::string_view text) {
@@ -42,4 +42,4 @@ struct RunOptionsLess {
   }
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

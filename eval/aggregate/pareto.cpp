@@ -7,11 +7,11 @@
 #include <tuple>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/aggregate/configurations.hpp"
 #include "eval/aggregate/option_order.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -72,4 +72,4 @@ ParetoFront pareto_front(std::span<const RunRow> rows, const RunMetric& metric) 
   return front;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

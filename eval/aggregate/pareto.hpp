@@ -8,7 +8,7 @@
 
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 struct ParetoPoint {
   std::string variant;
@@ -34,4 +34,4 @@ struct ParetoFront {
 /// recording_kinds() says, and of one machine, whose times compare. Does not depend on the order of the runs.
 [[nodiscard]] ParetoFront pareto_front(std::span<const RunRow> rows, const RunMetric& metric);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

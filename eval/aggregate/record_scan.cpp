@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "eval/record_files.hpp"
+#include "eval/run_files/record_files.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace {
 
@@ -57,12 +57,12 @@ bool timing(RunRow& row, const Scalar& value) {
 
 bool schema(RunRow&, const Scalar& value) {
   const auto* given = std::get_if<std::int64_t>(&value);
-  return given != nullptr && *given == kRecordSchema;
+  return given != nullptr && *given == record::kRecordSchema;
 }
 
 bool status(RunRow& row, const Scalar& value) {
   const auto* given = std::get_if<std::string_view>(&value);
-  const auto parsed = given == nullptr ? std::nullopt : parse_run_status(*given);
+  const auto parsed = given == nullptr ? std::nullopt : record::parse_run_status(*given);
   if (parsed) row.status = *parsed;
   return parsed.has_value();
 }
@@ -105,7 +105,7 @@ constexpr std::string_view kFiles = "files";
 /// Follows the events of the parser; whatever no field begins with is passed over.
 class RecordHandler {
  public:
-  RecordHandler(std::string_view json, RunRow& row, std::vector<RecordedFile>* files)
+  RecordHandler(std::string_view json, RunRow& row, std::vector<record::RecordedFile>* files)
       : json_(json), row_(row), files_(files) {}
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
@@ -186,7 +186,7 @@ class RecordHandler {
   }
 
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::json::exception&) {
-    problem_ = no_json(json_, byte);
+    problem_ = record::no_json(json_, byte);
     return false;
   }
 
@@ -282,7 +282,7 @@ class RecordHandler {
 
   std::string_view json_;
   RunRow& row_;
-  std::vector<RecordedFile>* files_;
+  std::vector<record::RecordedFile>* files_;
   std::vector<Level> levels_;
   Level next_;
   std::string option_key_;
@@ -296,14 +296,15 @@ class RecordHandler {
 
 /// A record of another version of this program is not damaged.
 std::string reason_of(const std::string& problem) {
-  return problem.starts_with("schema ") ? "record.json: " + problem : damage_text("record.json", problem);
+  return problem.starts_with("schema ") ? "record.json: " + problem
+                                        : run_files::damage_text("record.json", problem);
 }
 
 }  // namespace
 
 RunRow damaged_row(RunRow row, std::string reason) {
   static_cast<RunNumbers&>(row) = {};
-  row.status = RunStatus::failed;
+  row.status = record::RunStatus::failed;
   row.readable = false;
   row.reason = std::move(reason);
   row.options.clear();
@@ -311,7 +312,7 @@ RunRow damaged_row(RunRow row, std::string reason) {
   return row;
 }
 
-RunRow scan_record(std::string_view json, std::vector<RecordedFile>* files) {
+RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* files) {
   RunRow row;
   RecordHandler handler(json, row, files);
   if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler))
@@ -320,10 +321,10 @@ RunRow scan_record(std::string_view json, std::vector<RecordedFile>* files) {
     return damaged_row(std::move(row), reason_of(fmt::format("{} is missing", missing)));
   std::ranges::sort(row.options);
   // A run that was never started says nothing of its options; one of another program has none.
-  row.options_known = handler.has_config() || row.status != RunStatus::failed;
+  row.options_known = handler.has_config() || row.status != record::RunStatus::failed;
   const std::size_t processed = row.tracked + row.lost;
   if (row.cpu_s && processed > 0) row.cpu_ms_per_frame = 1e3 * *row.cpu_s / static_cast<double>(processed);
   return row;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

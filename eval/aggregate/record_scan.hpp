@@ -7,14 +7,14 @@
 
 #include "eval/aggregate/run_rows.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 /// A row without `run` and `folder`. Text that is no record gives a row that is not readable, failed, with
 /// the reason and with what was read of recording and variant before the damage. The names and sizes of the
 /// files that stand in the record (without hashes) are added to `files`, if there is one.
-[[nodiscard]] RunRow scan_record(std::string_view json, std::vector<RecordedFile>* files = nullptr);
+[[nodiscard]] RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* files = nullptr);
 
 /// The row of a run that is not whole: failed, without numbers and options.
 [[nodiscard]] RunRow damaged_row(RunRow row, std::string reason);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

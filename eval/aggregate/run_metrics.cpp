@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "core/geometry.hpp"
+#include "core/base/geometry.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 std::span<const RunMetric> run_metrics() {
   static constexpr auto kMetrics = std::to_array<RunMetric>({
@@ -41,4 +41,4 @@ Result<const RunMetric*> find_run_metric(std::string_view name) {
   return fail(ErrorCode::usage, fmt::format("{} is no metric to rank by (allowed: {})", name, allowed));
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

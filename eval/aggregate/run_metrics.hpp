@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 /// Numbers that do not exist are absent, never 0 or NaN.
 struct RunNumbers {
@@ -45,4 +45,4 @@ struct RunMetric {
 /// By word or key, of those that can be ranked; valid for ever. Error usage, with the allowed words.
 [[nodiscard]] Result<const RunMetric*> find_run_metric(std::string_view name);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

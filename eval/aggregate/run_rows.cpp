@@ -14,10 +14,10 @@
 
 #include "eval/aggregate/option_order.hpp"
 #include "eval/aggregate/record_scan.hpp"
-#include "eval/found_runs.hpp"
-#include "eval/record_files.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/record_files.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 namespace fs = std::filesystem;
 
@@ -31,16 +31,16 @@ RunRow read_row(const fs::path& root, const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(error ? 0 : bytes, '\0');
   if (!error && stream.read(text.data(), static_cast<std::streamsize>(text.size()))) {
-    std::vector<RecordedFile> files;
+    std::vector<record::RecordedFile> files;
     row = scan_record(text, &files);
-    if (std::string damage = row.readable ? changed_size(folder, files) : ""; !damage.empty())
+    if (std::string damage = row.readable ? run_files::changed_size(folder, files) : ""; !damage.empty())
       row = damaged_row(std::move(row), std::move(damage));
   } else {
     row.readable = false;
     row.reason = "record.json: cannot be read";
   }
   if (!row.readable) {
-    const PlaceOfRun place = place_of_run(folder);
+    const run_files::PlaceOfRun place = run_files::place_of_run(folder);
     row.recording = place.recording;
     row.variant = place.variant;
   }
@@ -70,7 +70,7 @@ void recover_options(std::vector<RunRow>& rows) {
 
 void sort_rows(std::vector<RunRow>& rows) {
   std::map<std::string, std::size_t> ranks;
-  for (const RunRow& row : rows) ranks.try_emplace(row.variant, variant_rank(row.variant));
+  for (const RunRow& row : rows) ranks.try_emplace(row.variant, run_files::variant_rank(row.variant));
   std::ranges::sort(rows, [&](const RunRow& a, const RunRow& b) {
     if (a.recording != b.recording) return a.recording < b.recording;
     if (a.variant != b.variant)
@@ -104,9 +104,9 @@ std::size_t unreadable_count(std::span<const RunRow> rows) {
 
 Result<std::vector<RunRow>> read_run_rows(const fs::path& root, const Workers& workers) {
   constexpr std::size_t kRecordsPerChunk = 32;
-  const auto files = record_files(root);
+  const auto files = run_files::record_files(root);
   if (!files) return tl::unexpected(files.error());
-  if (files->empty()) return holds_no_runs(root);
+  if (files->empty()) return run_files::holds_no_runs(root);
   auto chunks = workers.map_chunks<std::vector<RunRow>>(files->size(), kRecordsPerChunk,
                                                         [&](std::size_t begin, std::size_t end) {
                                                           std::vector<RunRow> rows;
@@ -122,4 +122,4 @@ Result<std::vector<RunRow>> read_run_rows(const fs::path& root, const Workers& w
   return rows;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/parallel.hpp"
+#include "core/base/error.hpp"
+#include "core/base/parallel.hpp"
 #include "eval/aggregate/run_metrics.hpp"
-#include "eval/record.hpp"
+#include "eval/record/record.hpp"
 
-namespace fusebench {
+namespace fusebench::aggregate {
 
 /// Key and value text of the options that somebody edited, beyond what the variant says; by key.
 using RunOptions = std::vector<std::pair<std::string, std::string>>;
@@ -31,7 +31,7 @@ struct RunRow : RunNumbers {
   std::string variant;
   std::string run;     ///< name of its folder
   std::string folder;  ///< relative to the root, with "/"
-  RunStatus status = RunStatus::failed;
+  record::RunStatus status = record::RunStatus::failed;
   std::string reason;  ///< empty if ok
   std::size_t total = 0;
   std::size_t tracked = 0;
@@ -61,4 +61,4 @@ struct RunRow : RunNumbers {
 [[nodiscard]] Result<std::vector<RunRow>> read_run_rows(const std::filesystem::path& root,
                                                         const Workers& workers);
 
-}  // namespace fusebench
+}  // namespace fusebench::aggregate

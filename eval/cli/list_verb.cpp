@@ -6,19 +6,19 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "core/config_access.hpp"
-#include "core/variants.hpp"
+#include "core/config/config_access.hpp"
+#include "core/config/variants.hpp"
+#include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/open_recording.hpp"
-#include "datasets/recording_catalogue.hpp"
-#include "eval/cli/console.hpp"
-#include "eval/cli/shared_options.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/engine/run_folders.hpp"
-#include "eval/json_text.hpp"
-#include "eval/report/text_layout.hpp"
 #include "eval/suites/experiment.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/text_layout.hpp"
 
-namespace fusebench {
+namespace fusebench::cli {
 
 namespace {
 
@@ -41,7 +41,7 @@ struct ListOptions {
 
 Listing list_variants() {
   Listing listing{{"variant", "paper", "edits", "meaning"}, {}};
-  for (const Variant& variant : all_variants()) {
+  for (const config::Variant& variant : config::all_variants()) {
     listing.rows.push_back({std::string(variant.name), std::string(variant.paper_label),
                             std::string(variant.edits), std::string(variant.sentence)});
   }
@@ -63,7 +63,7 @@ Listing list_metrics() {
 
 Listing list_options() {
   Listing listing{{"option", "type", "default", "range", "meaning"}, {}};
-  for (const OptionRow& row : describe_options(Config{})) {
+  for (const config::OptionRow& row : config::describe_options(config::Config{})) {
     listing.rows.push_back({row.key, row.type, row.value, row.range, row.sentence});
   }
   return listing;
@@ -75,29 +75,30 @@ Result<Listing> list_recordings(const std::filesystem::path& data) {
   std::vector<std::filesystem::path> others;
   if (std::error_code error; std::filesystem::exists(data, error)) {
     // An empty folder is no error here: the catalogue is worth printing.
-    if (auto found = recordings_under(data)) others = std::move(*found);
+    if (auto found = suites::recordings_under(data)) others = std::move(*found);
   } else if (!data.empty()) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such folder", data.string()),
                 "--data or FUSEBENCH_DATA names the folder of recordings");
   }
-  for (const CatalogueEntry& entry : recording_catalogue()) {
-    const auto folder = catalogue_folder(entry, data);
+  for (const calibration::CatalogueEntry& entry : calibration::recording_catalogue()) {
+    const auto folder = calibration::catalogue_folder(entry, data);
     if (folder) std::erase(others, *folder);
     const auto frames = entry.frames ? entry.frames : entry.color_images;
     listing.rows.push_back({entry.name, entry.format, frames ? std::to_string(*frames) : "?", entry.licence,
                             folder ? folder->string() : "-", entry.title});
   }
   for (const auto& folder : others) {
-    listing.rows.push_back({folder.filename().string(), std::string(recognise_format(folder).value_or("")),
-                            "?", "?", folder.string(), ""});
+    listing.rows.push_back({folder.filename().string(),
+                            std::string(datasets::recognise_format(folder).value_or("")), "?", "?",
+                            folder.string(), ""});
   }
   return listing;
 }
 
 /// The names, or how many there are where simulations are multiplied out.
-std::string recordings_of(const Suite& suite) {
+std::string recordings_of(const suites::Suite& suite) {
   std::string text = suite.all ? "all" : "";
-  for (const SuiteRecording& recording : suite.recordings)
+  for (const suites::SuiteRecording& recording : suite.recordings)
     text += fmt::format("{}{}", text.empty() ? "" : " ", recording.name);
   if (suite.simulations.empty()) return text;
   return fmt::format("{}{}{} simulated", text, text.empty() ? "" : " ", suite.simulations.size());
@@ -119,7 +120,7 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
   std::sort(files.begin(), files.end());
   Listing listing{{"suite", "file", "variants", "recordings"}, {}};
   for (const auto& file : files) {
-    const auto suite = read_suite(file);
+    const auto suite = suites::read_suite(file);
     if (!suite) return tl::unexpected(suite.error());
     listing.rows.push_back({suite->name, file.string(), fmt::format("{}", fmt::join(suite->variants, " ")),
                             recordings_of(*suite)});
@@ -128,11 +129,11 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
 }
 
 Result<Listing> list_runs_of(const ListOptions& options) {
-  const auto runs = list_runs(options.runs, options.verify);
+  const auto runs = engine::list_runs(options.runs, options.verify);
   if (!runs) return tl::unexpected(runs.error());
   Listing listing{{"run", "status", "reason"}, {}};
-  for (const ListedRun& run : *runs) {
-    const std::string_view status = to_string(run.head.status);
+  for (const engine::ListedRun& run : *runs) {
+    const std::string_view status = record::to_string(run.head.status);
     if (!options.status.empty() && options.status != status) continue;
     listing.rows.push_back({(options.runs / run.folder).string(), std::string(status), run.head.reason});
   }
@@ -160,7 +161,7 @@ std::string markdown_of(const std::string& what, const Listing& listing) {
   text += "\n";
   for (const auto& row : listing.rows) {
     text += "|";
-    for (const std::string& cell : row) text += fmt::format(" {} |", markdown_cell(cell));
+    for (const std::string& cell : row) text += fmt::format(" {} |", text::markdown_cell(cell));
     text += "\n";
   }
   return text;
@@ -174,27 +175,27 @@ std::string json_of(const std::string& what, const Listing& listing) {
     for (std::size_t i = 0; i < row.size(); ++i) entry[listing.columns[i]] = row[i];
     rows.push_back(entry);
   }
-  return json_text(Json{{what, rows}}) + "\n";
+  return text::json_text(Json{{what, rows}}) + "\n";
 }
 
 Result<int> list(const ListOptions& options) {
   const auto listing = listing_of(options);
   if (!listing) return tl::unexpected(listing.error());
   if (options.json) {
-    print_output(json_of(options.what, *listing));
+    console::print_output(json_of(options.what, *listing));
   } else if (options.markdown) {
-    print_output(markdown_of(options.what, *listing));
+    console::print_output(markdown_of(options.what, *listing));
   } else {
     std::vector<std::vector<std::string>> lines = {listing->columns};
     lines.insert(lines.end(), listing->rows.begin(), listing->rows.end());
-    print_output(aligned_columns(lines));
+    console::print_output(text::aligned_columns(lines));
   }
   return 0;
 }
 
 }  // namespace
 
-Verb add_list_verb(CLI::App& app) {
+console::Verb add_list_verb(CLI::App& app) {
   auto options = std::make_shared<ListOptions>();
   CLI::App* verb = app.add_subcommand("list", "Lists variants, metrics, recordings, suites, options or runs");
   verb->add_option("WHAT", options->what, "variants, metrics, recordings, suites, options or runs")
@@ -206,13 +207,13 @@ Verb add_list_verb(CLI::App& app) {
       ->type_name("STATUS");
   verb->add_flag("--verify", options->verify,
                  "Of runs: reads every file and compares it with what the run wrote; otherwise only sizes");
-  add_data_option(*verb, options->data);
+  console::add_data_option(*verb, options->data);
   verb->add_option("--configs", options->configs, "Folder that holds suites/")
       ->type_name("DIR")
       ->capture_default_str();
   verb->add_flag("--markdown", options->markdown, "As a page of the documentation");
-  add_json_flag(*verb, options->json);
+  console::add_json_flag(*verb, options->json);
   return {verb, [options] { return list(*options); }};
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::cli

@@ -8,26 +8,26 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/nearest_name.hpp"
-#include "eval/build_info.hpp"
-#include "eval/cli/console.hpp"
-#include "eval/cli/eval_verbs.hpp"
-#include "eval/cli/recording_verbs.hpp"
-#include "eval/cli/result_verbs.hpp"
-#include "eval/cli/run_verbs.hpp"
+#include "core/base/error.hpp"
+#include "core/base/nearest_name.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/evaluation/eval_verbs.hpp"
+#include "eval/cli/recordings/recording_verbs.hpp"
+#include "eval/cli/results/result_verbs.hpp"
+#include "eval/cli/running/run_verbs.hpp"
 #include "eval/cli/verbs.hpp"
+#include "eval/record/build_info.hpp"
 
-namespace fusebench {
+namespace fusebench::cli {
 
 namespace {
 
 /// The parser's own message for an unknown verb does not name the nearest one.
-Result<void> check_verb(const std::vector<Verb>& verbs, int argc, const char* const* argv) {
+Result<void> check_verb(const std::vector<console::Verb>& verbs, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   const std::string_view given = argv[1];
   std::vector<std::string> names;
-  for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
+  for (const console::Verb& verb : verbs) names.push_back(verb.app->get_name());
   if (std::find(names.begin(), names.end(), given) != names.end()) return {};
   const std::vector<std::string_view> views(names.begin(), names.end());
   return fail(ErrorCode::usage,
@@ -36,12 +36,12 @@ Result<void> check_verb(const std::vector<Verb>& verbs, int argc, const char* co
 }
 
 int finish(const Error& error) {
-  print_error(error);
-  return stop_requested() ? kExitInterrupted : exit_code(error.code);
+  console::print_error(error);
+  return console::stop_requested() ? console::kExitInterrupted : exit_code(error.code);
 }
 
-int run_verb(const std::vector<Verb>& verbs) {
-  for (const Verb& verb : verbs) {
+int run_verb(const std::vector<console::Verb>& verbs) {
+  for (const console::Verb& verb : verbs) {
     if (!verb.app->parsed()) continue;
     const auto done = verb.run();
     return done ? *done : finish(done.error());
@@ -52,19 +52,33 @@ int run_verb(const std::vector<Verb>& verbs) {
 int command_line(int argc, const char* const* argv) {
   CLI::App app{"FuseBench: offline evaluation and benchmarking of RGB-D-inertial reconstruction",
                "fusebench"};
-  const BuildInfo& build = build_info();
+  const record::BuildInfo& build = record::build_info();
   app.set_version_flag("--version", fmt::format("fusebench {} ({}, {}, estimator {})", build.version,
                                                 build.git, build.compiler, build.estimator));
   app.footer(
       "Exit codes: 0 ok; 1 a regression or a failed gate; 2 usage or configuration; 3 data missing or "
       "corrupt;\n"
       "4 a run failed or was lost, or something cannot be written; 5 internal error; 130 interrupted.");
-  const std::vector<Verb> verbs = {
-      add_run_verb(app),        add_bench_verb(app),   add_sweep_verb(app),     add_rerun_verb(app),
-      add_slurm_task_verb(app), add_best_verb(app),    add_collect_verb(app),   add_compare_verb(app),
-      add_gc_verb(app),         add_merge_verb(app),   add_eval_verb(app),      add_table_verb(app),
-      add_report_verb(app),     add_import_verb(app),  add_list_verb(app),      add_config_verb(app),
-      add_simulate_verb(app),   add_inspect_verb(app), add_calibrate_verb(app), add_smooth_verb(app)};
+  const std::vector<console::Verb> verbs = {running::add_run_verb(app),
+                                            running::add_bench_verb(app),
+                                            running::add_sweep_verb(app),
+                                            running::add_rerun_verb(app),
+                                            running::add_slurm_task_verb(app),
+                                            running::add_best_verb(app),
+                                            running::add_collect_verb(app),
+                                            results::add_compare_verb(app),
+                                            running::add_gc_verb(app),
+                                            running::add_merge_verb(app),
+                                            evaluation::add_eval_verb(app),
+                                            results::add_table_verb(app),
+                                            results::add_report_verb(app),
+                                            running::add_import_verb(app),
+                                            add_list_verb(app),
+                                            add_config_verb(app),
+                                            recordings::add_simulate_verb(app),
+                                            recordings::add_inspect_verb(app),
+                                            recordings::add_calibrate_verb(app),
+                                            recordings::add_smooth_verb(app)};
   if (const auto known = check_verb(verbs, argc, argv); !known) return finish(known.error());
   try {
     app.parse(argc, argv);
@@ -74,21 +88,21 @@ int command_line(int argc, const char* const* argv) {
     return finish({ErrorCode::usage, error.what(),
                    "`fusebench --help` and `fusebench VERB --help` say what is allowed"});
   }
-  install_stop_handler();
+  console::install_stop_handler();
   return run_verb(verbs);
 }
 
 }  // namespace
 
-}  // namespace fusebench
+}  // namespace fusebench::cli
 
 int main(int argc, char** argv) {
-  fusebench::prepare_standard_streams();
+  fusebench::cli::console::prepare_standard_streams();
   try {
-    const int code = fusebench::command_line(argc, argv);
-    return fusebench::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
+    const int code = fusebench::cli::command_line(argc, argv);
+    return fusebench::cli::console::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
   } catch (const std::exception& error) {
-    fusebench::print_error({fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
+    fusebench::cli::console::print_error({fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
     return fusebench::exit_code(fusebench::ErrorCode::internal);
   }
 }

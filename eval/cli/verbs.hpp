@@ -1,11 +1,11 @@
 // Verbs that say what there is.
 #pragma once
 
-#include "eval/cli/verb.hpp"
+#include "eval/cli/console/verb.hpp"
 
-namespace fusebench {
+namespace fusebench::cli {
 
-[[nodiscard]] Verb add_list_verb(CLI::App& app);
-[[nodiscard]] Verb add_config_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_list_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_config_verb(CLI::App& app);
 
-}  // namespace fusebench
+}  // namespace fusebench::cli

@@ -8,10 +8,10 @@
 #include <map>
 #include <utility>
 
-#include "core/toml_document.hpp"
-#include "eval/record_files.hpp"
+#include "core/config/toml_document.hpp"
+#include "eval/run_files/record_files.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -30,17 +30,17 @@ GateResult improvement(std::string gate, const std::string& message, const Gates
           fmt::format("{}; {}", message, kUpdate)};
 }
 
-std::string status_text(const RunRecord& record) {
-  return record.reason.empty() ? std::string(to_string(record.status))
-                               : fmt::format("{} ({})", to_string(record.status), record.reason);
+std::string status_text(const record::RunRecord& record) {
+  return record.reason.empty() ? std::string(record::to_string(record.status))
+                               : fmt::format("{} ({})", record::to_string(record.status), record.reason);
 }
 
-GateResult status_gate(const RunRecord& base, const RunRecord& fresh, const Gates& gates) {
+GateResult status_gate(const record::RunRecord& base, const record::RunRecord& fresh, const Gates& gates) {
   const std::string change = fmt::format("{} -> {}", status_text(base), status_text(fresh));
   if (fresh.status < base.status) return regression("status", change);
   if (fresh.status > base.status) return improvement("status", change, gates);
-  if (fresh.status == RunStatus::ok) return {"status", GateVerdict::unchanged, false, {}};
-  return note("status", fmt::format("both {}: {}", to_string(fresh.status), fresh.reason));
+  if (fresh.status == record::RunStatus::ok) return {"status", GateVerdict::unchanged, false, {}};
+  return note("status", fmt::format("both {}: {}", record::to_string(fresh.status), fresh.reason));
 }
 
 std::string change_text(double base, double fresh, std::string_view unit) {
@@ -69,8 +69,8 @@ GateResult judge(const GatedMetric& metric, const MetricTolerance& tolerance, do
 }
 
 void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateResult>& results) {
-  const RunRecord& base = pair.base.front().record;
-  const RunRecord& fresh = pair.fresh.front().record;
+  const record::RunRecord& base = pair.base.front().record;
+  const record::RunRecord& fresh = pair.fresh.front().record;
   for (std::size_t i = 0; i < gated_metrics().size(); ++i) {
     const GatedMetric& metric = gated_metrics()[i];
     const auto before = metric.of(base);
@@ -97,16 +97,16 @@ void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateR
 }
 
 /// Options that nobody set, by their keys.
-std::map<std::string, std::string> defaults_of(const RunRecord& record) {
+std::map<std::string, std::string> defaults_of(const record::RunRecord& record) {
   std::map<std::string, std::string> defaults;
-  for (const RecordedOption& option : record.config) {
+  for (const record::RecordedOption& option : record.config) {
     if (option.origin == "default" || option.origin.starts_with("variant "))
-      defaults[option.key] = to_toml(option.value);
+      defaults[option.key] = config::to_toml(option.value);
   }
   return defaults;
 }
 
-void add_config_gates(const RunRecord& base, const RunRecord& fresh, const Gates& gates,
+void add_config_gates(const record::RunRecord& base, const record::RunRecord& fresh, const Gates& gates,
                       std::vector<GateResult>& results) {
   const auto before = defaults_of(base);
   const auto after = defaults_of(fresh);
@@ -136,16 +136,17 @@ void add_config_gates(const RunRecord& base, const RunRecord& fresh, const Gates
 }
 
 /// As first_divergence(), of trajectories that are the ones that the runs wrote.
-Result<std::optional<Divergence>> checked_divergence(const FoundRun& base, const FoundRun& fresh) {
-  for (const FoundRun* run : {&base, &fresh}) {
-    if (auto checked = check_file(run->folder, run->record, "trajectory.tum"); !checked)
+Result<std::optional<Divergence>> checked_divergence(const run_files::FoundRun& base,
+                                                     const run_files::FoundRun& fresh) {
+  for (const run_files::FoundRun* run : {&base, &fresh}) {
+    if (auto checked = run_files::check_file(run->folder, run->record, "trajectory.tum"); !checked)
       return fail(checked.error().code, fmt::format("{}: {}", run->folder.string(), checked.error().message));
   }
   return first_divergence(base.folder, fresh.folder);
 }
 
 /// How a repetition differs from the first run of its side; empty if it does not.
-std::string difference(const FoundRun& first, const FoundRun& other) {
+std::string difference(const run_files::FoundRun& first, const run_files::FoundRun& other) {
   if (first.record.status != other.record.status)
     return fmt::format("status {} and {}", status_text(first.record), status_text(other.record));
   if (first.record.recording.fingerprint != other.record.recording.fingerprint)
@@ -183,8 +184,8 @@ void add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results)
 }
 
 void add_divergence(ComparedRun& run, const Gates& gates) {
-  const FoundRun& base = run.runs.base.front();
-  const FoundRun& fresh = run.runs.fresh.front();
+  const run_files::FoundRun& base = run.runs.base.front();
+  const run_files::FoundRun& fresh = run.runs.fresh.front();
   if (!has_trajectory(base.folder)) {
     if (has_trajectory(fresh.folder))
       run.gates.push_back(note("trajectory", "BASE keeps no trajectory to compare"));
@@ -210,15 +211,15 @@ void add_divergence(ComparedRun& run, const Gates& gates) {
 }
 
 /// A run that never opened its recording does not know its content.
-bool other_data(const RunRecord& base, const RunRecord& fresh) {
+bool other_data(const record::RunRecord& base, const record::RunRecord& fresh) {
   const std::string& before = base.recording.fingerprint;
   const std::string& after = fresh.recording.fingerprint;
   return !before.empty() && !after.empty() && before != after;
 }
 
-std::string other_data_text(const RunRecord& base, const RunRecord& fresh) {
-  const RecordedRecording& before = base.recording;
-  const RecordedRecording& after = fresh.recording;
+std::string other_data_text(const record::RunRecord& base, const record::RunRecord& fresh) {
+  const record::RecordedRecording& before = base.recording;
+  const record::RecordedRecording& after = fresh.recording;
   return fmt::format(
       "the data{} changed: not comparable (fingerprint {}, {} frames -> {}, {} frames); get the baseline's "
       "recording back, or {}",
@@ -226,7 +227,8 @@ std::string other_data_text(const RunRecord& base, const RunRecord& fresh) {
       after.fingerprint, after.frames, kUpdate);
 }
 
-ComparedRun compare_pair(RunPair pair, const Gates& gates, const std::vector<FoundRun>& confirming) {
+ComparedRun compare_pair(RunPair pair, const Gates& gates,
+                         const std::vector<run_files::FoundRun>& confirming) {
   ComparedRun run{std::move(pair), {}, std::nullopt, false};
   if (run.runs.fresh.empty()) {
     run.gates.push_back(regression("run", "missing in NEW"));
@@ -238,8 +240,8 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates, const std::vector<Fou
     return run;
   }
   run.gates.push_back({"run", GateVerdict::unchanged, false, {}});
-  const RunRecord& base = run.runs.base.front().record;
-  const RunRecord& fresh = run.runs.fresh.front().record;
+  const record::RunRecord& base = run.runs.base.front().record;
+  const record::RunRecord& fresh = run.runs.fresh.front().record;
   if (other_data(base, fresh)) {
     run.gates.push_back(regression("data", other_data_text(base, fresh)));
     return run;
@@ -249,13 +251,13 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates, const std::vector<Fou
   add_config_gates(base, fresh, gates, run.gates);
   add_repetition_gates(run.runs, run.gates);
   // Where one side failed the other's numbers would only repeat it.
-  if (base.status != RunStatus::failed && fresh.status != RunStatus::failed) {
+  if (base.status != record::RunStatus::failed && fresh.status != record::RunStatus::failed) {
     if (fresh.status == base.status) add_metric_gates(run.runs, gates, run.gates);
     add_divergence(run, gates);
   }
-  if (base.status != RunStatus::ok || fresh.status != RunStatus::ok) return run;
-  std::vector<FoundRun> again;
-  for (const FoundRun& found : confirming) {
+  if (base.status != record::RunStatus::ok || fresh.status != record::RunStatus::ok) return run;
+  std::vector<run_files::FoundRun> again;
+  for (const run_files::FoundRun& found : confirming) {
     if (key_of(found.record) == run.runs.key) again.push_back(found);
   }
   for (GateResult& result : timed_gates(run.runs, gates, again, !confirming.empty()))
@@ -330,8 +332,9 @@ std::vector<const ComparedRun*> RunComparison::diverging() const {
   return result;
 }
 
-RunComparison compare_runs(const std::vector<FoundRun>& base, const std::vector<FoundRun>& fresh,
-                           const Gates& gates, const std::vector<FoundRun>& confirming) {
+RunComparison compare_runs(const std::vector<run_files::FoundRun>& base,
+                           const std::vector<run_files::FoundRun>& fresh, const Gates& gates,
+                           const std::vector<run_files::FoundRun>& confirming) {
   RunComparison comparison;
   for (RunPair& pair : pair_runs(base, fresh)) {
     comparison.runs.push_back(compare_pair(std::move(pair), gates, confirming));
@@ -340,4 +343,4 @@ RunComparison compare_runs(const std::vector<FoundRun>& base, const std::vector<
   return comparison;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/compare/divergence.hpp"
 #include "eval/compare/gates.hpp"
 #include "eval/compare/run_pairs.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 /// In the order in which people read them.
 enum class GateVerdict {
@@ -61,13 +61,13 @@ struct RunComparison {
 /// NEW (empty: none was made): a time or a size that failed is a regression only if it fails there as well,
 /// against the same baseline. A trajectory that is damaged or cannot be read is a regression with that
 /// reason.
-[[nodiscard]] RunComparison compare_runs(const std::vector<FoundRun>& base,
-                                         const std::vector<FoundRun>& fresh, const Gates& gates,
-                                         const std::vector<FoundRun>& confirming = {});
+[[nodiscard]] RunComparison compare_runs(const std::vector<run_files::FoundRun>& base,
+                                         const std::vector<run_files::FoundRun>& fresh, const Gates& gates,
+                                         const std::vector<run_files::FoundRun>& confirming = {});
 
 /// The gates of times and memory of a pair, see timed_gates.cpp. confirming: runs of the same experiment.
 [[nodiscard]] std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
-                                                  std::span<const FoundRun> confirming,
+                                                  std::span<const run_files::FoundRun> confirming,
                                                   bool confirmation_given);
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/compare/comparison.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 enum class ComparisonFormat {
   table,             ///< for terminals
@@ -51,4 +51,4 @@ struct ComparisonLine {
 [[nodiscard]] std::string comparison_github_benchmark(const RunComparison& comparison);
 [[nodiscard]] std::string comparison_openmetrics(const RunComparison& comparison);
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -1,9 +1,9 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/compare/comparison_formats.hpp"
-#include "eval/json_text.hpp"
+#include "eval/text/json_text.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -13,9 +13,9 @@ constexpr int kComparisonSchema = 1;
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-Json json_of(const std::vector<FoundRun>& runs) {
+Json json_of(const std::vector<run_files::FoundRun>& runs) {
   Json json = Json::array();
-  for (const FoundRun& run : runs) json.push_back(run.folder.string());
+  for (const run_files::FoundRun& run : runs) json.push_back(run.folder.string());
   return json;
 }
 
@@ -61,17 +61,17 @@ std::string comparison_json(const RunComparison& comparison) {
   for (const ComparedRun& run : comparison.runs) runs.push_back(json_of(run));
   Json moved_first = Json::array();
   for (const ComparedRun* run : comparison.diverging()) moved_first.push_back(run->runs.label);
-  return json_text(Json{{"schema", kComparisonSchema},
-                        {"passed", comparison.passed()},
-                        {"failures", comparison.failures()},
-                        {"regressions", comparison.count(GateVerdict::regression)},
-                        {"improvements", comparison.count(GateVerdict::improvement)},
-                        {"suspects", comparison.count(GateVerdict::suspect)},
-                        {"notes", comparison.notes},
-                        {"bit_identical", comparison.identical()},
-                        {"diverging", moved_first},
-                        {"runs", runs}}) +
+  return text::json_text(Json{{"schema", kComparisonSchema},
+                              {"passed", comparison.passed()},
+                              {"failures", comparison.failures()},
+                              {"regressions", comparison.count(GateVerdict::regression)},
+                              {"improvements", comparison.count(GateVerdict::improvement)},
+                              {"suspects", comparison.count(GateVerdict::suspect)},
+                              {"notes", comparison.notes},
+                              {"bit_identical", comparison.identical()},
+                              {"diverging", moved_first},
+                              {"runs", runs}}) +
          "\n";
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

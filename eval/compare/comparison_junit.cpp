@@ -4,17 +4,17 @@
 #include <iterator>
 #include <limits>
 
-#include "core/printable.hpp"
+#include "core/base/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
-#include "eval/report/markup_text.hpp"
+#include "eval/text/markup_text.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
 /// As an attribute or text of XML 1.0, which takes no control characters at all.
 std::string escaped(std::string_view text) {
-  return with_entities(printable(text, std::numeric_limits<std::size_t>::max()), "&<>\"'");
+  return text::with_entities(printable(text, std::numeric_limits<std::size_t>::max()), "&<>\"'");
 }
 
 std::string test_case(const ComparedRun& run, const GateResult& gate) {
@@ -71,4 +71,4 @@ std::string comparison_junit(const RunComparison& comparison) {
       counts_text(all), suites);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -2,12 +2,12 @@
 
 #include <limits>
 
-#include "core/printable.hpp"
+#include "core/base/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
-#include "eval/report/markup_text.hpp"
-#include "eval/report/plain_table.hpp"
+#include "eval/text/markup_text.hpp"
+#include "eval/text/plain_table.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -18,7 +18,7 @@ std::string escaped(std::string_view text) {
     if (std::string_view("\\`*[]").find(c) != std::string_view::npos) plain += '\\';
     plain += c;
   }
-  return with_entities(plain, "&<>@");
+  return text::with_entities(plain, "&<>@");
 }
 
 }  // namespace
@@ -26,12 +26,12 @@ std::string escaped(std::string_view text) {
 std::string comparison_markdown(const RunComparison& comparison, bool all) {
   std::string text =
       fmt::format("### fusebench compare\n\n**{}**\n", escaped(comparison_summary(comparison)));
-  std::vector<TableCells> cells = {{"verdict", "run", "gate", "what changed"}};
+  std::vector<text::TableCells> cells = {{"verdict", "run", "gate", "what changed"}};
   for (const ComparisonLine& line : comparison_lines(comparison, all)) {
     cells.push_back(
         {std::string(to_string(line.verdict)), escaped(line.run), escaped(line.gate), escaped(line.message)});
   }
-  if (cells.size() > 1) text += fmt::format("\n{}", markdown_table(cells, cells.front().size()));
+  if (cells.size() > 1) text += fmt::format("\n{}", text::markdown_table(cells, cells.front().size()));
   const std::vector<std::string> remarks = comparison_remarks(comparison);
   if (!remarks.empty()) text += "\n";
   for (const std::string& remark : remarks) text += fmt::format("- {}\n", escaped(remark));
@@ -39,4 +39,4 @@ std::string comparison_markdown(const RunComparison& comparison, bool all) {
   return text;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

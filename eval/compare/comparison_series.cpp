@@ -5,12 +5,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/printable.hpp"
+#include "core/base/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
-#include "eval/json_text.hpp"
-#include "eval/statistics.hpp"
+#include "eval/metrics/statistics.hpp"
+#include "eval/text/json_text.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMillisecondsPerSecond = 1000;
 
-std::vector<double> numbers_of(const std::vector<FoundRun>& runs, const TimedQuantity& quantity) {
+std::vector<double> numbers_of(const std::vector<run_files::FoundRun>& runs, const TimedQuantity& quantity) {
   std::vector<double> numbers;
-  for (const FoundRun& run : runs) {
+  for (const run_files::FoundRun& run : runs) {
     if (const auto value = quantity.of(run.record)) numbers.push_back(*value);
   }
   return numbers;
@@ -33,14 +33,14 @@ struct Middle {
 };
 
 Middle middle_of(const std::vector<double>& numbers) {
-  const Statistics stats = statistics(numbers);
+  const metrics::Statistics stats = metrics::statistics(numbers);
   Middle middle{fmt::format("{:.4g}", stats.median), {}};
   if (stats.count > 1) middle.range = fmt::format("± {:.2g}", (stats.max - stats.min) / 2);
   return middle;
 }
 
 Json gbench_entry(const ComparedRun& run, std::size_t family, std::size_t repetition) {
-  const RunRecord& record = run.runs.fresh[repetition].record;
+  const record::RunRecord& record = run.runs.fresh[repetition].record;
   Json entry = {{"name", run.runs.label},
                 {"family_index", family},
                 {"per_family_instance_index", 0},
@@ -96,7 +96,7 @@ std::string help_of(std::string_view title, std::string_view unit) {
 }
 
 void add_series(const ComparedRun& run, Json& series) {
-  const RunRecord& record = run.runs.fresh.front().record;
+  const record::RunRecord& record = run.runs.fresh.front().record;
   const auto name = [&](std::string_view key) { return fmt::format("{}: {}", run.runs.label, key); };
   const std::string git = fmt::format("git {}", record.provenance.git);
   for (const GatedMetric& metric : gated_metrics()) {
@@ -111,12 +111,13 @@ void add_series(const ComparedRun& run, Json& series) {
                       {"value", record.frames.total - std::min(record.frames.tracked, record.frames.total)},
                       {"extra", git}});
   }
-  if (record.status != RunStatus::ok) return;
+  if (record.status != record::RunStatus::ok) return;
   for (const TimedQuantity& quantity : timed_quantities()) {
     const std::vector<double> numbers = numbers_of(run.runs.fresh, quantity);
     if (numbers.empty()) continue;
-    Json entry = {
-        {"name", name(quantity.key)}, {"unit", quantity.unit}, {"value", statistics(numbers).median}};
+    Json entry = {{"name", name(quantity.key)},
+                  {"unit", quantity.unit},
+                  {"value", metrics::statistics(numbers).median}};
     if (const Middle middle = middle_of(numbers); !middle.range.empty()) entry["range"] = middle.range;
     entry["extra"] = fmt::format("{}, median of {} on {}", git, numbers.size(), record.provenance.cpu);
     series.push_back(std::move(entry));
@@ -132,9 +133,9 @@ std::string comparison_gbench(const RunComparison& comparison) {
   std::size_t families = 0;
   for (const ComparedRun& run : comparison.runs) {
     if (run.runs.fresh.empty()) continue;
-    const RunRecord& first = run.runs.fresh.front().record;
+    const record::RunRecord& first = run.runs.fresh.front().record;
     // A run that ended early is fast for no good reason.
-    if (first.status != RunStatus::ok) {
+    if (first.status != record::RunStatus::ok) {
       ++left_out;
       continue;
     }
@@ -150,7 +151,7 @@ std::string comparison_gbench(const RunComparison& comparison) {
     ++families;
   }
   context["runs_left_out"] = left_out;
-  return json_text(Json{{"context", context}, {"benchmarks", benchmarks}}) + "\n";
+  return text::json_text(Json{{"context", context}, {"benchmarks", benchmarks}}) + "\n";
 }
 
 std::string comparison_github_benchmark(const RunComparison& comparison) {
@@ -158,13 +159,14 @@ std::string comparison_github_benchmark(const RunComparison& comparison) {
   for (const ComparedRun& run : comparison.runs) {
     if (!run.runs.fresh.empty()) add_series(run, series);
   }
-  return json_text(series) + "\n";
+  return text::json_text(series) + "\n";
 }
 
 std::string comparison_openmetrics(const RunComparison& comparison) {
   std::string text =
       family("run_ok", "1 if the run was neither lost nor failed", comparison, [](const ComparedRun& run) {
-        return std::optional<std::string>(run.runs.fresh.front().record.status == RunStatus::ok ? "1" : "0");
+        return std::optional<std::string>(
+            run.runs.fresh.front().record.status == record::RunStatus::ok ? "1" : "0");
       });
   text +=
       family("failed_gates", "gates of the comparison that failed", comparison, [](const ComparedRun& run) {
@@ -186,4 +188,4 @@ std::string comparison_openmetrics(const RunComparison& comparison) {
   return text + "# EOF\n";
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

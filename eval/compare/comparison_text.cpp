@@ -7,11 +7,11 @@
 #include <map>
 #include <utility>
 
-#include "core/printable.hpp"
+#include "core/base/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
-#include "eval/report/text_layout.hpp"
+#include "eval/text/text_layout.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -134,7 +134,7 @@ std::string comparison_text(const RunComparison& comparison, bool all) {
   std::vector<std::vector<std::string>> cells;
   for (const ComparisonLine& line : comparison_lines(comparison, all))
     cells.push_back({std::string(to_string(line.verdict)), line.run, line.gate, line.message});
-  if (!cells.empty()) text += fmt::format("\n{}", aligned_columns(cells));
+  if (!cells.empty()) text += fmt::format("\n{}", text::aligned_columns(cells));
   const std::vector<std::string> remarks = comparison_remarks(comparison);
   if (!remarks.empty()) text += "\n";
   for (const std::string& remark : remarks) text += remark + "\n";
@@ -144,4 +144,4 @@ std::string comparison_text(const RunComparison& comparison, bool all) {
   return text;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

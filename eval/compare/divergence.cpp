@@ -10,10 +10,10 @@
 #include <system_error>
 #include <vector>
 
-#include "core/geometry.hpp"
-#include "core/text_table.hpp"
+#include "core/base/geometry.hpp"
+#include "core/io/text_table.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace fs = std::filesystem;
 
@@ -29,7 +29,7 @@ struct Row {
 };
 
 Result<std::vector<Row>> read_rows(const fs::path& file) {
-  auto table = TextTable::open(file, "timestamp tx ty tz qx qy qz qw");
+  auto table = io::TextTable::open(file, "timestamp tx ty tz qx qy qz qw");
   if (!table) return tl::unexpected(table.error());
   std::vector<Row> rows;
   while (true) {
@@ -61,8 +61,8 @@ std::optional<std::size_t> frame_at(const fs::path& run, std::int64_t timestamp_
     const std::size_t first = line.find(',');
     const std::size_t second = first == std::string::npos ? first : line.find(',', first + 1);
     if (second == std::string::npos) return std::nullopt;
-    const auto time_ns = parse_time_ns(std::string_view(line).substr(first + 1, second - first - 1));
-    const auto frame = parse_number(std::string_view(line).substr(0, first));
+    const auto time_ns = io::parse_time_ns(std::string_view(line).substr(first + 1, second - first - 1));
+    const auto frame = io::parse_number(std::string_view(line).substr(0, first));
     if (!time_ns || !frame || *frame < 0) return std::nullopt;
     if (*time_ns == timestamp_ns) return static_cast<std::size_t>(*frame);
   }
@@ -124,4 +124,4 @@ Result<std::optional<Divergence>> first_divergence(const fs::path& base, const f
   return std::optional<Divergence>();
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

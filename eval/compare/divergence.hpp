@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 /// The first frame whose pose is not the same to the last digit, or that only one side tracked.
 struct Divergence {
@@ -30,4 +30,4 @@ struct Divergence {
 [[nodiscard]] Result<std::optional<Divergence>> first_divergence(const std::filesystem::path& base,
                                                                  const std::filesystem::path& fresh);
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

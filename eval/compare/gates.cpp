@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 
-#include "core/nearest_name.hpp"
-#include "core/toml_document.hpp"
+#include "core/base/nearest_name.hpp"
+#include "core/config/toml_document.hpp"
 #include "eval/compare/rank_test.hpp"
 #include "eval/suites/suite_entries.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -62,11 +62,11 @@ Result<std::size_t> index_of(const std::string& name, const std::vector<std::str
 }
 
 template <class Target>
-Result<void> store_number(const TomlEntry& entry, double least, double most, Target& target) {
-  const auto number = number_entry(entry);
+Result<void> store_number(const config::TomlEntry& entry, double least, double most, Target& target) {
+  const auto number = suites::number_entry(entry);
   if (!number) return tl::unexpected(number.error());
   if (*number < least || *number > most)
-    return wrong_entry(entry, fmt::format("a number in {:g} .. {:g}", least, most));
+    return suites::wrong_entry(entry, fmt::format("a number in {:g} .. {:g}", least, most));
   target = *number;
   return {};
 }
@@ -76,32 +76,32 @@ constexpr double kMostAbsolute = 1e9;
 constexpr double kMostFactor = 100;
 
 template <class Target>
-Result<void> store_limit(const TomlEntry& entry, std::string_view key, Target& target) {
+Result<void> store_limit(const config::TomlEntry& entry, std::string_view key, Target& target) {
   return key == "relative" ? store_number(entry, 0, kMostRelative, target.relative)
                            : store_number(entry, 0, kMostAbsolute, target.absolute);
 }
 
-Result<void> store_fails(const TomlEntry& entry, bool& fails) {
-  const auto text = plain_entry<std::string>(entry).value_or("");
-  if (text != "fail" && text != "report") return wrong_entry(entry, "\"fail\" or \"report\"");
+Result<void> store_fails(const config::TomlEntry& entry, bool& fails) {
+  const auto text = suites::plain_entry<std::string>(entry).value_or("");
+  if (text != "fail" && text != "report") return suites::wrong_entry(entry, "\"fail\" or \"report\"");
   fails = text == "fail";
   return {};
 }
 
-Result<void> read_better(const TomlEntry& entry, BetterValue& better) {
-  const auto text = plain_entry<std::string>(entry).value_or("");
+Result<void> read_better(const config::TomlEntry& entry, BetterValue& better) {
+  const auto text = suites::plain_entry<std::string>(entry).value_or("");
   for (const BetterValue value : {BetterValue::smaller, BetterValue::larger, BetterValue::equal}) {
     if (text != to_string(value)) continue;
     better = value;
     return {};
   }
-  return wrong_entry(entry, "\"smaller\", \"larger\" or \"equal\"");
+  return suites::wrong_entry(entry, "\"smaller\", \"larger\" or \"equal\"");
 }
 
 /// The key after "tolerance.".
-Result<void> read_tolerance(const TomlEntry& entry, const std::string& key, Gates& gates) {
+Result<void> read_tolerance(const config::TomlEntry& entry, const std::string& key, Gates& gates) {
   if (!lists({kToleranceKeys.begin(), kToleranceKeys.end()}, key))
-    return unknown_key(entry.place, entry.key, kToleranceKeys, "[tolerance]");
+    return suites::unknown_key(entry.place, entry.key, kToleranceKeys, "[tolerance]");
   for (std::size_t i = 0; i < gates.tolerances.size(); ++i) {
     if (gated_metrics()[i].is_count) continue;
     if (auto stored = store_limit(entry, key, gates.tolerances[i]); !stored) return stored;
@@ -110,7 +110,7 @@ Result<void> read_tolerance(const TomlEntry& entry, const std::string& key, Gate
 }
 
 /// The key after "metrics.": the metric and what of it.
-Result<void> read_metric(const TomlEntry& entry, const std::string& key, Gates& gates) {
+Result<void> read_metric(const config::TomlEntry& entry, const std::string& key, Gates& gates) {
   const auto dot = key.find('.');
   const auto index = index_of(key.substr(0, dot), metric_keys(), entry.place);
   if (!index) return tl::unexpected(index.error());
@@ -118,11 +118,11 @@ Result<void> read_metric(const TomlEntry& entry, const std::string& key, Gates& 
   MetricTolerance& tolerance = gates.tolerances[*index];
   if (what == "better") return read_better(entry, tolerance.better);
   if (what == "relative" || what == "absolute") return store_limit(entry, what, tolerance);
-  return unknown_key(entry.place, what, kMetricKeys, "a metric");
+  return suites::unknown_key(entry.place, what, kMetricKeys, "a metric");
 }
 
 /// The key after "timing.".
-Result<void> read_timing(const TomlEntry& entry, const std::string& key, Gates& gates) {
+Result<void> read_timing(const config::TomlEntry& entry, const std::string& key, Gates& gates) {
   constexpr std::string_view kFactors = "factors.";
   if (key.starts_with(kFactors)) {
     const auto index = index_of(key.substr(kFactors.size()), timed_keys(), entry.place);
@@ -131,16 +131,16 @@ Result<void> read_timing(const TomlEntry& entry, const std::string& key, Gates& 
   }
   if (key == "alpha") return store_number(entry, 1e-12, 0.5, gates.alpha);
   if (key == "min_repetitions") {
-    const auto count = count_entry(entry);
+    const auto count = suites::count_entry(entry);
     if (!count) return tl::unexpected(count.error());
-    if (*count < 2 || *count > 1000) return wrong_entry(entry, "an integer in 2 .. 1000");
+    if (*count < 2 || *count > 1000) return suites::wrong_entry(entry, "an integer in 2 .. 1000");
     gates.min_repetitions = *count;
     return {};
   }
-  return unknown_key(entry.place, key, kTimingKeys, "[timing]");
+  return suites::unknown_key(entry.place, key, kTimingKeys, "[timing]");
 }
 
-Result<void> read_entry(const TomlEntry& entry, Gates& gates) {
+Result<void> read_entry(const config::TomlEntry& entry, Gates& gates) {
   const std::string& key = entry.key;
   if (key == "improvements") return store_fails(entry, gates.improvements_fail);
   if (key == "changed_defaults") return store_fails(entry, gates.changed_defaults_fail);
@@ -151,22 +151,23 @@ Result<void> read_entry(const TomlEntry& entry, Gates& gates) {
   if (table == "tolerance") return read_tolerance(entry, rest, gates);
   if (table == "metrics") return read_metric(entry, rest, gates);
   if (table == "timing") return read_timing(entry, rest, gates);
-  return unknown_key(entry.place, key, kTopKeys, "gates");
+  return suites::unknown_key(entry.place, key, kTopKeys, "gates");
 }
 
-Result<void> store_names(const TomlEntry& entry, std::vector<std::string>& names) {
-  auto read = names_entry(entry, true);
+Result<void> store_names(const config::TomlEntry& entry, std::vector<std::string>& names) {
+  auto read = suites::names_entry(entry, true);
   if (!read) return tl::unexpected(read.error());
   names = std::move(*read);
   return {};
 }
 
-Result<void> read_override_entry(const TomlEntry& entry, GateOverride& gate) {
+Result<void> read_override_entry(const config::TomlEntry& entry, GateOverride& gate) {
   if (entry.key == "recordings") return store_names(entry, gate.recordings);
   if (entry.key == "variants") return store_names(entry, gate.variants);
   if (entry.key == "relative" || entry.key == "absolute") return store_limit(entry, entry.key, gate);
   if (entry.key == "factor") return store_number(entry, 1, kMostFactor, gate.factor);
-  if (entry.key != "metrics") return unknown_key(entry.place, entry.key, kOverrideKeys, "[[overrides]]");
+  if (entry.key != "metrics")
+    return suites::unknown_key(entry.place, entry.key, kOverrideKeys, "[[overrides]]");
   if (auto stored = store_names(entry, gate.metrics); !stored) return stored;
   std::vector<std::string_view> known = metric_keys();
   for (const std::string_view key : timed_keys()) known.push_back(key);
@@ -176,11 +177,11 @@ Result<void> read_override_entry(const TomlEntry& entry, GateOverride& gate) {
   return {};
 }
 
-Result<void> read_overrides(const TomlDocument& document, Gates& gates) {
-  for (const EntryTable& table : entry_tables(document, "overrides")) {
+Result<void> read_overrides(const config::TomlDocument& document, Gates& gates) {
+  for (const suites::EntryTable& table : suites::entry_tables(document, "overrides")) {
     GateOverride gate;
     gate.place = table.place;
-    for (const TomlEntry& entry : table.entries) {
+    for (const config::TomlEntry& entry : table.entries) {
       if (auto read = read_override_entry(entry, gate); !read) return read;
     }
     if (!gate.relative && !gate.absolute && !gate.factor)
@@ -191,22 +192,23 @@ Result<void> read_overrides(const TomlDocument& document, Gates& gates) {
   return {};
 }
 
-Result<void> check_tables(const TomlDocument& document) {
-  for (const TomlTable& table : document.tables) {
+Result<void> check_tables(const config::TomlDocument& document) {
+  for (const config::TomlTable& table : document.tables) {
     const std::string name = table.key.substr(0, table.key.find_first_of(".["));
     if (!lists({kTopKeys.begin() + 3, kTopKeys.end()}, name))
-      return unknown_key(table.place, name, kTopKeys, "gates");
+      return suites::unknown_key(table.place, name, kTopKeys, "gates");
   }
   return {};
 }
 
-Result<Gates> gates_of(const TomlDocument& document, const std::string& name) {
+Result<Gates> gates_of(const config::TomlDocument& document, const std::string& name) {
   Gates gates;
   if (auto sound = check_tables(document); !sound) return tl::unexpected(sound.error());
   // What holds for all metrics comes first, wherever it stands.
   for (const bool of_all : {true, false}) {
-    for (const TomlEntry& entry : document.entries) {
-      if (list_of_key(entry.key) == "overrides" || entry.key.starts_with("tolerance.") != of_all) continue;
+    for (const config::TomlEntry& entry : document.entries) {
+      if (suites::list_of_key(entry.key) == "overrides" || entry.key.starts_with("tolerance.") != of_all)
+        continue;
       if (auto read = read_entry(entry, gates); !read) return tl::unexpected(read.error());
     }
   }
@@ -256,15 +258,15 @@ double Gates::factor(std::size_t quantity, std::string_view recording, std::stri
 }
 
 Result<Gates> read_gates(const std::filesystem::path& file) {
-  const auto document = read_toml(file);
+  const auto document = config::read_toml(file);
   if (!document) return tl::unexpected(document.error());
   return gates_of(*document, file.string());
 }
 
 Result<Gates> parse_gates(std::string_view text, const std::string& name) {
-  const auto document = parse_toml(text, name);
+  const auto document = config::parse_toml(text, name);
   if (!document) return tl::unexpected(document.error());
   return gates_of(*document, name);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

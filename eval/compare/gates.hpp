@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/compare/metric_values.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 /// A change up to the larger of absolute and relative * |base| is none.
 struct MetricTolerance {
@@ -60,4 +60,4 @@ struct Gates {
 /// The same of a text; `name` stands for the file in messages.
 [[nodiscard]] Result<Gates> parse_gates(std::string_view text, const std::string& name);
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

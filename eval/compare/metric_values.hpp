@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "eval/record.hpp"
+#include "eval/record/record.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 /// Which change of a number is for the better.
 enum class BetterValue {
@@ -25,7 +25,8 @@ struct GatedMetric {
   std::string_view title;  ///< a few words
   BetterValue better = BetterValue::smaller;
   bool is_count = false;  ///< of frames or of parts of the model: exact unless gates name it
-  Outcome<double> (*of)(const RunRecord&) = nullptr;  ///< finite, or the reason why there is none
+  record::Outcome<double> (*of)(const record::RunRecord&) =
+      nullptr;  ///< finite, or the reason why there is none
 };
 [[nodiscard]] std::span<const GatedMetric> gated_metrics();
 
@@ -37,9 +38,9 @@ struct TimedQuantity {
   std::string_view key;
   std::string_view unit;
   std::string_view title;
-  double factor = 1;                                        ///< default of the ratio of medians that fails
-  std::optional<double> (*of)(const RunRecord&) = nullptr;  ///< above 0, or absent
+  double factor = 1;  ///< default of the ratio of medians that fails
+  std::optional<double> (*of)(const record::RunRecord&) = nullptr;  ///< above 0, or absent
 };
 [[nodiscard]] std::span<const TimedQuantity> timed_quantities();
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
@@ -97,4 +97,4 @@ double least_p(std::size_t n) {
   return 1 / ways;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 
-namespace fusebench {
+namespace fusebench::compare {
 
 struct RankTest {
   double u = 0;        ///< pairs in which the later group is larger; a tie counts half
@@ -24,4 +24,4 @@ struct RankTest {
 /// The smallest p that groups of n numbers each can reach: with a smaller alpha a test never fires.
 [[nodiscard]] double least_p(std::size_t n);
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

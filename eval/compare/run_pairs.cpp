@@ -8,37 +8,38 @@
 #include <tuple>
 #include <utility>
 
-#include "core/config_access.hpp"
-#include "core/toml_document.hpp"
-#include "core/variants.hpp"
+#include "core/config/config_access.hpp"
+#include "core/config/toml_document.hpp"
+#include "core/config/variants.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
-bool was_set(const RecordedOption& option) {
+bool was_set(const record::RecordedOption& option) {
   return option.origin != "default" && !option.origin.starts_with("variant ");
 }
 
 /// Of a variant of this program; of another one the plain ones.
-Config defaults_of(const std::string& variant) {
-  const auto found = find_variant(variant);
-  return found ? variant_config(*found).values : Config{};
+config::Config defaults_of(const std::string& variant) {
+  const auto found = config::find_variant(variant);
+  return found ? config::variant_config(*found).values : config::Config{};
 }
 
-bool is_default(const Config& defaults, const RecordedOption& option) {
-  Config set = defaults;
-  return set_option(set, option.key, option.value) && config_hash(set) == config_hash(defaults);
+bool is_default(const config::Config& defaults, const record::RecordedOption& option) {
+  config::Config set = defaults;
+  return config::set_option(set, option.key, option.value) &&
+         config::config_hash(set) == config::config_hash(defaults);
 }
 
 auto order_of(const RunKey& key) {
-  return std::tuple(key.recording, variant_rank(key.variant), key.variant, key.options, key.imu,
+  return std::tuple(key.recording, run_files::variant_rank(key.variant), key.variant, key.options, key.imu,
                     key.first_frame, key.frames);
 }
 
-bool never_opened(const std::vector<FoundRun>& runs) {
-  return !runs.empty() && std::ranges::all_of(runs, [](const FoundRun& run) {
-    return run.record.status == RunStatus::failed && run.record.recording.fingerprint.empty();
+bool never_opened(const std::vector<run_files::FoundRun>& runs) {
+  return !runs.empty() && std::ranges::all_of(runs, [](const run_files::FoundRun& run) {
+    return run.record.status == record::RunStatus::failed && run.record.recording.fingerprint.empty();
   });
 }
 
@@ -60,10 +61,10 @@ bool belongs(const RunPair& lone, const RunPair& pair) {
          lone.key.frames != pair.key.frames && !never_opened(others);
 }
 
-void move_runs(std::vector<FoundRun>& from, std::vector<FoundRun>& to) {
-  for (FoundRun& run : from) to.push_back(std::move(run));
+void move_runs(std::vector<run_files::FoundRun>& from, std::vector<run_files::FoundRun>& to) {
+  for (run_files::FoundRun& run : from) to.push_back(std::move(run));
   from.clear();
-  std::ranges::sort(to, {}, [](const FoundRun& run) { return run.folder.string(); });
+  std::ranges::sort(to, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
 }
 
 /// A run whose record says nothing has no options to be known by, but the name of its folder.
@@ -71,9 +72,9 @@ bool has_same_folder(const RunPair& lone, const RunPair& pair) {
   const auto& own = lone.base.empty() ? lone.fresh : lone.base;
   const auto& others = lone.base.empty() ? pair.base : pair.fresh;
   return lone.key.recording == pair.key.recording && lone.key.variant == pair.key.variant &&
-         std::ranges::all_of(own, [&](const FoundRun& run) {
-           if (run.state == RunState::whole || !run.record.config.empty()) return false;
-           return std::ranges::any_of(others, [&](const FoundRun& other) {
+         std::ranges::all_of(own, [&](const run_files::FoundRun& run) {
+           if (run.state == run_files::RunState::whole || !run.record.config.empty()) return false;
+           return std::ranges::any_of(others, [&](const run_files::FoundRun& other) {
              return other.folder.filename() == run.folder.filename();
            });
          });
@@ -121,23 +122,24 @@ void set_labels(std::vector<RunPair>& pairs) {
 
 }  // namespace
 
-RunKey key_of(const RunRecord& record) {
+RunKey key_of(const record::RunRecord& record) {
   std::vector<std::string> options;
-  const Config defaults = defaults_of(record.variant);
-  for (const RecordedOption& option : record.config) {
+  const config::Config defaults = defaults_of(record.variant);
+  for (const record::RecordedOption& option : record.config) {
     // Whoever sets an option to what it is anyway asks for the same run as who does not.
     if (was_set(option) && !is_default(defaults, option))
-      options.push_back(fmt::format("{}={}", option.key, to_toml(option.value)));
+      options.push_back(fmt::format("{}={}", option.key, config::to_toml(option.value)));
   }
   std::ranges::sort(options);
   return {record.recording.name,   record.variant,       record.recording.first_frame,
           record.recording.frames, record.recording.imu, fmt::format("{}", fmt::join(options, ", "))};
 }
 
-std::vector<RunPair> pair_runs(const std::vector<FoundRun>& base, const std::vector<FoundRun>& fresh) {
+std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
+                               const std::vector<run_files::FoundRun>& fresh) {
   std::map<decltype(order_of(RunKey{})), RunPair> by_key;
   for (const auto& [runs, side] : {std::pair(&base, &RunPair::base), std::pair(&fresh, &RunPair::fresh)}) {
-    for (const FoundRun& run : *runs) {
+    for (const run_files::FoundRun& run : *runs) {
       const RunKey key = key_of(run.record);
       RunPair& pair = by_key[order_of(key)];
       pair.key = key;
@@ -147,7 +149,7 @@ std::vector<RunPair> pair_runs(const std::vector<FoundRun>& base, const std::vec
   std::vector<RunPair> pairs;
   for (auto& [order, pair] : by_key) {
     for (auto* runs : {&pair.base, &pair.fresh})
-      std::ranges::sort(*runs, {}, [](const FoundRun& run) { return run.folder.string(); });
+      std::ranges::sort(*runs, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
     pairs.push_back(std::move(pair));
   }
   join_lone_runs(pairs);
@@ -155,4 +157,4 @@ std::vector<RunPair> pair_runs(const std::vector<FoundRun>& base, const std::vec
   return pairs;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "eval/found_runs.hpp"
+#include "eval/run_files/found_runs.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 /// What was asked of a run. Options count only if somebody set them (in a file or by --set): a default that
 /// has changed since must not make another experiment of it, or the change would go unseen.
@@ -26,18 +26,18 @@ struct RunKey {
 struct RunPair {
   RunKey key;
   std::string label;  ///< "fr1_rpy/full", with what else tells it from the others
-  std::vector<FoundRun> base;
-  std::vector<FoundRun> fresh;  ///< of NEW
+  std::vector<run_files::FoundRun> base;
+  std::vector<run_files::FoundRun> fresh;  ///< of NEW
 };
 
-[[nodiscard]] RunKey key_of(const RunRecord& record);
+[[nodiscard]] RunKey key_of(const record::RunRecord& record);
 
 /// Every run is in one pair, of which a side may be empty. A run that failed before its recording was open
 /// does not know its frames: it goes to the only pair of its recording, variant and options, if there is one.
 /// A run whose record is damaged does not know its options either: it goes to that of its folder's name
 /// first. So does a run over other images of as many or as few frames. By recording, then variant in the
 /// order of all_variants().
-[[nodiscard]] std::vector<RunPair> pair_runs(const std::vector<FoundRun>& base,
-                                             const std::vector<FoundRun>& fresh);
+[[nodiscard]] std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
+                                             const std::vector<run_files::FoundRun>& fresh);
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -7,27 +7,28 @@
 
 #include "eval/compare/comparison.hpp"
 #include "eval/compare/rank_test.hpp"
-#include "eval/statistics.hpp"
+#include "eval/metrics/statistics.hpp"
 
-namespace fusebench {
+namespace fusebench::compare {
 
 namespace {
 
-std::vector<double> numbers_of(std::span<const FoundRun> runs, const TimedQuantity& quantity) {
+std::vector<double> numbers_of(std::span<const run_files::FoundRun> runs, const TimedQuantity& quantity) {
   std::vector<double> numbers;
-  for (const FoundRun& run : runs) {
+  for (const run_files::FoundRun& run : runs) {
     if (const auto value = quantity.of(run.record)) numbers.push_back(*value);
   }
   return numbers;
 }
 
 /// What makes times of two groups of runs not comparable; empty if nothing does.
-std::string different_machines(std::span<const FoundRun> base, std::span<const FoundRun> fresh) {
+std::string different_machines(std::span<const run_files::FoundRun> base,
+                               std::span<const run_files::FoundRun> fresh) {
   std::set<std::string> hosts;
   std::set<std::string> cpus;
   std::set<int> threads;
   for (const auto runs : {base, fresh}) {
-    for (const FoundRun& run : runs) {
+    for (const run_files::FoundRun& run : runs) {
       hosts.insert(run.record.provenance.host);
       cpus.insert(run.record.provenance.cpu);
       threads.insert(run.record.provenance.threads);
@@ -50,13 +51,13 @@ struct TimedTest {
   [[nodiscard]] double ratio() const { return fresh / base; }
 };
 
-TimedTest test_of(std::span<const FoundRun> base, std::span<const FoundRun> fresh,
+TimedTest test_of(std::span<const run_files::FoundRun> base, std::span<const run_files::FoundRun> fresh,
                   const TimedQuantity& quantity, const Gates& gates) {
   const std::vector<double> before = numbers_of(base, quantity);
   const std::vector<double> after = numbers_of(fresh, quantity);
   TimedTest test;
-  test.base = statistics(before).median;
-  test.fresh = statistics(after).median;
+  test.base = metrics::statistics(before).median;
+  test.fresh = metrics::statistics(after).median;
   test.slower = test_larger(before, after);
   test.faster = test_larger(after, before);
   const std::size_t fewest = std::min(before.size(), after.size());
@@ -75,7 +76,8 @@ bool is_slower(const TimedTest& test, double factor, double alpha) {
 
 /// The verdict on what looks slower.
 void judge_slower(const RunPair& pair, const TimedQuantity& quantity, const Gates& gates, double factor,
-                  std::span<const FoundRun> confirming, bool confirmation_given, GateResult& result) {
+                  std::span<const run_files::FoundRun> confirming, bool confirmation_given,
+                  GateResult& result) {
   result.verdict = GateVerdict::suspect;
   result.fails = true;
   if (!confirmation_given) {
@@ -104,7 +106,8 @@ void judge_slower(const RunPair& pair, const TimedQuantity& quantity, const Gate
 }  // namespace
 
 std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
-                                    std::span<const FoundRun> confirming, bool confirmation_given) {
+                                    std::span<const run_files::FoundRun> confirming,
+                                    bool confirmation_given) {
   std::vector<GateResult> results;
   for (std::size_t i = 0; i < timed_quantities().size(); ++i) {
     const TimedQuantity& quantity = timed_quantities()[i];
@@ -137,4 +140,4 @@ std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
   return results;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::compare

@@ -8,12 +8,12 @@
 #include <sstream>
 #include <system_error>
 
-#include "core/fingerprint.hpp"
+#include "core/io/fingerprint.hpp"
 #include "eval/engine/run_claim.hpp"
-#include "eval/json_text.hpp"
-#include "eval/text_file.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/text_file.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
@@ -37,13 +37,13 @@ std::string absolute_text(const fs::path& path) {
 
 }  // namespace
 
-Result<Suite> suite_of(const Invocation& invocation) {
-  auto suite = read_suite(invocation.suite);
+Result<suites::Suite> suite_of(const Invocation& invocation) {
+  auto suite = suites::read_suite(invocation.suite);
   if (!suite) return suite;
   const SuiteOverrides& overrides = invocation.overrides;
   if (overrides.repetitions > 0) suite->repetitions = overrides.repetitions;
-  for (const KeptFiles kept : {KeptFiles::all, KeptFiles::small}) {
-    if (overrides.kept == to_string(kept)) suite->kept = kept;
+  for (const run::KeptFiles kept : {run::KeptFiles::all, run::KeptFiles::small}) {
+    if (overrides.kept == run::to_string(kept)) suite->kept = kept;
   }
   return suite;
 }
@@ -62,17 +62,17 @@ Result<fs::path> keep(const Invocation& invocation) {
                      {"only", options.only},
                      {"repetitions", invocation.overrides.repetitions},
                      {"keep", invocation.overrides.kept}};
-  const std::string text = json_text(json) + "\n";
-  Fingerprint identity;
+  const std::string text = text::json_text(json) + "\n";
+  io::Fingerprint identity;
   identity.add(*suite);
   identity.add(text);
   const std::string name = identity.hex().substr(0, 8);
   const fs::path folder = invocations_folder(options.out);
   fs::path file = folder / (name + ".json");
   if (fs::exists(file, ignored)) return file;
-  if (auto written = write_text_file(folder / (name + ".toml"), *suite); !written)
+  if (auto written = text::write_text_file(folder / (name + ".toml"), *suite); !written)
     return tl::unexpected(written.error());
-  if (auto written = write_text_file(file, text); !written) return tl::unexpected(written.error());
+  if (auto written = text::write_text_file(file, text); !written) return tl::unexpected(written.error());
   return file;
 }
 
@@ -112,4 +112,4 @@ Result<std::vector<fs::path>> kept_invocations(const fs::path& out) {
               "`fusebench bench SUITE --out DIR` writes one");
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

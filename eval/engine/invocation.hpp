@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/suites/experiment.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 /// How a suite's file is changed on the command line.
 struct SuiteOverrides {
@@ -26,7 +26,7 @@ struct Invocation {
 };
 
 /// The suite as this invocation runs it. Errors: those of read_suite(), usage for overrides.
-[[nodiscard]] Result<Suite> suite_of(const Invocation& invocation);
+[[nodiscard]] Result<suites::Suite> suite_of(const Invocation& invocation);
 
 /// Keeps it, with a copy of the suite's file and absolute folders, as
 /// <out>/.fusebench/invocations/<hash8>.{json,toml}; the same one once. Returns the file. Error io.
@@ -38,4 +38,4 @@ struct Invocation {
 /// All that were kept in the folder of runs, by name. Error data_missing if there are none.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> kept_invocations(const std::filesystem::path& out);
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

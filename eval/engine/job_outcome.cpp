@@ -8,19 +8,19 @@
 #include <system_error>
 #include <utility>
 
-#include "core/config_access.hpp"
-#include "core/staged_folder.hpp"
+#include "core/config/config_access.hpp"
+#include "core/io/staged_folder.hpp"
 #include "eval/profile/trace_file.hpp"
-#include "eval/record_files.hpp"
+#include "eval/run_files/record_files.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
 namespace fs = std::filesystem;
 
 fs::path not_started_folder(const BatchJob& job) {
-  std::string name = "not-started-" + config_hash(job.spec.config.values).substr(0, 8);
+  std::string name = "not-started-" + config::config_hash(job.spec.config.values).substr(0, 8);
   if (job.spec.frames) name += fmt::format("-{}-{}", job.spec.frames->begin, job.spec.frames->end);
   if (job.spec.repetition > 1) name += fmt::format("-r{}", job.spec.repetition);
   return job.spec.out / job.recording.filename() / job.variant / name;
@@ -33,7 +33,7 @@ bool is_kept_of_small(const std::string& name) {
   return std::ranges::find(kSmall, name) != kSmall.end();
 }
 
-std::string reason_of(const JobEnd& end) { return end.error ? end.error->message : end.reason; }
+std::string reason_of(const process::JobEnd& end) { return end.error ? end.error->message : end.reason; }
 
 }  // namespace
 
@@ -49,7 +49,7 @@ BatchOutcome outcome_without_results(const BatchJob& job, std::string reason) {
 
 Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason) {
   BatchOutcome outcome = outcome_without_results(job, std::move(reason));
-  RunRecord record;
+  record::RunRecord record;
   record.reason = outcome.reason;
   record.recording.name = outcome.recording;
   record.variant = outcome.variant;
@@ -59,11 +59,11 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
     record.recording.first_frame = job.spec.frames->begin;
     record.recording.frames = job.spec.frames->end - job.spec.frames->begin;
   }
-  record.config_hash = config_hash(job.spec.config.values);
+  record.config_hash = config::config_hash(job.spec.config.values);
   outcome.folder = not_started_folder(job);
-  auto folder = StagedFolder::create(outcome.folder);
+  auto folder = io::StagedFolder::create(outcome.folder);
   if (!folder) return tl::unexpected(folder.error());
-  if (auto done = commit_run(*folder, record); !done) return tl::unexpected(done.error());
+  if (auto done = run_files::commit_run(*folder, record); !done) return tl::unexpected(done.error());
   return outcome;
 }
 
@@ -72,15 +72,15 @@ bool was_not_started(const BatchJob& job) {
   return fs::exists(not_started_folder(job), ignored);
 }
 
-bool is_finished(const PreparedRun& run, const RecordHead& head) {
-  if (head.status == RunStatus::failed || head.run_id != run.run_id) return false;
+bool is_finished(const run::PreparedRun& run, const run::RecordHead& head) {
+  if (head.status == record::RunStatus::failed || head.run_id != run.run_id) return false;
   const bool lacks_one = std::ranges::any_of(head.missing, [&](const std::string& name) {
-    return name != kTraceFile && (run.spec.kept == KeptFiles::all || is_kept_of_small(name));
+    return name != profile::kTraceFile && (run.spec.kept == run::KeptFiles::all || is_kept_of_small(name));
   });
   if (lacks_one) return false;
   std::error_code ignored;
-  if (run.spec.profile && !fs::exists(run.folder / kTraceFile, ignored)) return false;
-  return run.spec.kept == KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
+  if (run.spec.profile && !fs::exists(run.folder / profile::kTraceFile, ignored)) return false;
+  return run.spec.kept == run::KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
 }
 
 void forget_not_started(const BatchJob& job) {
@@ -88,33 +88,35 @@ void forget_not_started(const BatchJob& job) {
   fs::remove_all(not_started_folder(job), ignored);
 }
 
-Result<BatchOutcome> record_failed(const BatchJob& job, const PreparedRun& run, const JobEnd& end) {
+Result<BatchOutcome> record_failed(const BatchJob& job, const run::PreparedRun& run,
+                                   const process::JobEnd& end) {
   BatchOutcome outcome = outcome_without_results(job, reason_of(end));
-  const auto there = record_head(run.folder);
-  if (there && there->status != RunStatus::failed && there->run_id == run.run_id) return outcome;
-  RunRecord record = record_of_question(run);
+  const auto there = run::record_head(run.folder);
+  if (there && there->status != record::RunStatus::failed && there->run_id == run.run_id) return outcome;
+  record::RunRecord record = run::record_of_question(run);
   record.reason = outcome.reason;
   record.frames.total = run.recording.frames.size();
   record.timing.cpu_s = end.cpu_s;
   record.timing.wall_s = end.wall_s;
   record.timing.peak_rss_bytes = end.peak_rss_bytes;
   outcome.folder = run.folder;
-  auto folder = StagedFolder::create(run.folder);
+  auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
   const std::string log =
       fmt::format("{}{}failed: {}\n", end.output,
                   end.output.empty() || end.output.ends_with('\n') ? "" : "\n", outcome.reason);
   if (auto written = folder->write("log.txt", log); !written) return tl::unexpected(written.error());
   // What the process printed may depend on when it was ended.
-  if (auto done = commit_run(*folder, record, "log.txt"); !done) return tl::unexpected(done.error());
+  if (auto done = run_files::commit_run(*folder, record, "log.txt"); !done)
+    return tl::unexpected(done.error());
   return outcome;
 }
 
-BatchOutcome outcome_of_finished(const BatchJob& job, const fs::path& folder, const RecordHead& head) {
+BatchOutcome outcome_of_finished(const BatchJob& job, const fs::path& folder, const run::RecordHead& head) {
   BatchOutcome outcome = outcome_without_results(job, head.reason);
   outcome.status = head.status;
   outcome.folder = folder;
   return outcome;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

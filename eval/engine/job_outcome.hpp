@@ -4,20 +4,20 @@
 #include <filesystem>
 #include <string>
 
-#include "core/error.hpp"
-#include "eval/engine/forked_job.hpp"
+#include "core/base/error.hpp"
 #include "eval/engine/job_plan.hpp"
-#include "eval/record.hpp"
-#include "eval/run.hpp"
+#include "eval/process/forked_job.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run/run.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 struct BatchOutcome {
   std::string recording;
   std::string variant;
   std::string group;
   std::string half;
-  RunStatus status = RunStatus::failed;
+  record::RunStatus status = record::RunStatus::failed;
   std::string reason;
   bool resumed = false;  ///< was there already
   bool skipped = false;  ///< an optional job whose recording nothing here can open; not a failure, and no row
@@ -36,16 +36,16 @@ void forget_not_started(const BatchJob& job);
 
 /// Whether the run is there, ok or lost and whole, with the files that are to be kept of it, and with its
 /// profile if one is asked for.
-[[nodiscard]] bool is_finished(const PreparedRun& run, const RecordHead& head);
+[[nodiscard]] bool is_finished(const run::PreparedRun& run, const run::RecordHead& head);
 
 /// A run whose process left no results: a record in the run's place that says why, with what the process
 /// cost, and a log that ends with what it printed. A finished run of an earlier time that is there stays.
 /// Error io.
-[[nodiscard]] Result<BatchOutcome> record_failed(const BatchJob& job, const PreparedRun& run,
-                                                 const JobEnd& end);
+[[nodiscard]] Result<BatchOutcome> record_failed(const BatchJob& job, const run::PreparedRun& run,
+                                                 const process::JobEnd& end);
 
 /// The outcome of a run that is there.
 [[nodiscard]] BatchOutcome outcome_of_finished(const BatchJob& job, const std::filesystem::path& folder,
-                                               const RecordHead& head);
+                                               const run::RecordHead& head);
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace fs = std::filesystem;
 
@@ -19,7 +19,7 @@ struct Planned {
   std::string group;
   std::string half;
   std::vector<std::string> variants;
-  std::optional<SimulationRequest> simulation = {};
+  std::optional<suites::SimulationRequest> simulation = {};
 };
 
 /// Whether a job is among those asked for.
@@ -48,7 +48,7 @@ bool may_be_wanted(const std::vector<std::string>& only, std::string_view name) 
   });
 }
 
-Result<std::vector<Planned>> existing_recordings(const Suite& suite, const BatchOptions& options) {
+Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, const BatchOptions& options) {
   std::vector<Planned> planned;
   if (suite.all) {
     if (options.data.empty()) {
@@ -56,14 +56,15 @@ Result<std::vector<Planned>> existing_recordings(const Suite& suite, const Batch
                   fmt::format("suite '{}' runs over all recordings, and no folder is given", suite.name),
                   "--data or FUSEBENCH_DATA names the folder of recordings");
     }
-    const auto folders = recordings_under(options.data);
+    const auto folders = suites::recordings_under(options.data);
     if (!folders) return tl::unexpected(folders.error());
     for (const fs::path& folder : *folders) {
-      planned.push_back({folder, folder.filename().string(), std::string(kHeldOutHalf), suite.variants});
+      planned.push_back(
+          {folder, folder.filename().string(), std::string(suites::kHeldOutHalf), suite.variants});
     }
   }
-  for (const SuiteRecording& recording : suite.recordings) {
-    const auto folders = find_recordings(recording.name, options.data);
+  for (const suites::SuiteRecording& recording : suite.recordings) {
+    const auto folders = suites::find_recordings(recording.name, options.data);
     if (!folders) {
       if (!may_be_wanted(options.only, recording.name)) continue;
       return tl::unexpected(folders.error());
@@ -76,8 +77,8 @@ Result<std::vector<Planned>> existing_recordings(const Suite& suite, const Batch
   return planned;
 }
 
-Result<Planned> simulated_recording(const SuiteSimulation& simulation, const BatchOptions& options) {
-  SimulationRequest request = simulation.request;
+Result<Planned> simulated_recording(const suites::SuiteSimulation& simulation, const BatchOptions& options) {
+  suites::SimulationRequest request = simulation.request;
   if (!request.trajectory.empty() && request.trajectory.is_relative()) {
     if (options.data.empty()) {
       return fail(ErrorCode::data_missing,
@@ -91,10 +92,10 @@ Result<Planned> simulated_recording(const SuiteSimulation& simulation, const Bat
                  std::move(request)};
 }
 
-Result<std::vector<Planned>> recordings_of(const Suite& suite, const BatchOptions& options) {
+Result<std::vector<Planned>> recordings_of(const suites::Suite& suite, const BatchOptions& options) {
   auto planned = existing_recordings(suite, options);
   if (!planned) return planned;
-  for (const SuiteSimulation& simulation : suite.simulations) {
+  for (const suites::SuiteSimulation& simulation : suite.simulations) {
     if (!may_be_wanted(options.only, simulation.name)) continue;
     auto recording = simulated_recording(simulation, options);
     if (!recording) return tl::unexpected(recording.error());
@@ -112,9 +113,10 @@ Result<std::vector<Planned>> recordings_of(const Suite& suite, const BatchOption
 }
 
 /// The configuration of a variant at a point of the sweep, after --set.
-Result<EffectiveConfig> config_of(const Suite& suite, const Variant& variant,
-                                  const std::vector<std::string>& sets, const SweepPoint& point) {
-  auto config = suite_config(suite, variant);
+Result<config::EffectiveConfig> config_of(const suites::Suite& suite, const config::Variant& variant,
+                                          const std::vector<std::string>& sets,
+                                          const suites::SweepPoint& point) {
+  auto config = suites::suite_config(suite, variant);
   if (!config) return config;
   for (const std::string& assignment : sets) {
     if (auto set = config->set_assignment(assignment); !set) return tl::unexpected(set.error());
@@ -127,20 +129,20 @@ Result<EffectiveConfig> config_of(const Suite& suite, const Variant& variant,
 
 /// What all runs of a suite have in common.
 struct Common {
-  const Suite& suite;
+  const suites::Suite& suite;
   const BatchOptions& options;
   std::vector<std::string> sets;  ///< those that sweep nothing
-  std::vector<SweepPoint> points;
+  std::vector<suites::SweepPoint> points;
 };
 
 /// One run, but for its recording's window and its repetition.
 Result<BatchJob> job_of(const Common& common, const Planned& recording, const std::string& variant_name,
-                        const SweepPoint& point) {
-  const auto variant = find_variant(variant_name);
+                        const suites::SweepPoint& point) {
+  const auto variant = config::find_variant(variant_name);
   if (!variant) return tl::unexpected(variant.error());
   auto config = config_of(common.suite, *variant, common.sets, point);
   if (!config) return tl::unexpected(config.error());
-  RunSpec spec;
+  run::RunSpec spec;
   spec.recording = recording.folder;
   spec.imu = common.suite.imu;
   spec.variant = variant_name;
@@ -154,24 +156,25 @@ Result<BatchJob> job_of(const Common& common, const Planned& recording, const st
                   recording.group,  recording.half, recording.simulation, point};
 }
 
-const Exclusion* exclusion_of(const Suite& suite, const BatchJob& job) {
+const suites::Exclusion* exclusion_of(const suites::Suite& suite, const BatchJob& job) {
   if (suite.exclusions.empty()) return nullptr;
-  const auto rows = describe_options(job.spec.config.values);
-  const auto found = std::ranges::find_if(suite.exclusions, [&](const Exclusion& exclusion) {
+  const auto rows = config::describe_options(job.spec.config.values);
+  const auto found = std::ranges::find_if(suite.exclusions, [&](const suites::Exclusion& exclusion) {
     return exclusion.covers(job.recording.filename().string(), job.variant, rows);
   });
   return found == suite.exclusions.end() ? nullptr : &*found;
 }
 
 /// Of two values of one option it would be a matter of order which counts.
-Result<void> check_swept_once(const std::vector<SweepBlock>& blocks, const std::vector<std::string>& sets) {
+Result<void> check_swept_once(const std::vector<suites::SweepBlock>& blocks,
+                              const std::vector<std::string>& sets) {
   std::set<std::string> keys;
   const auto twice = [](const std::string& place, const std::string& key) {
     return fail(ErrorCode::configuration, fmt::format("{}: {} is swept as well", place, key),
                 "take it out of the [[sweep]], or leave --set away");
   };
-  for (const SweepBlock& block : blocks) {
-    for (const SweepAxis& axis : block.axes) {
+  for (const suites::SweepBlock& block : blocks) {
+    for (const suites::SweepAxis& axis : block.axes) {
       if (!keys.insert(axis.key).second) return twice(axis.place, axis.key);
     }
   }
@@ -184,20 +187,20 @@ Result<void> check_swept_once(const std::vector<SweepBlock>& blocks, const std::
 
 /// All runs over one recording, once each.
 Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan& plan,
-                      std::set<const Exclusion*>& met, std::vector<BatchJob>& jobs) {
+                      std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const std::string& variant : recording.variants) {
     const auto take = wanted(common.options.only, recording.folder.filename().string(), variant);
     if (!take) return tl::unexpected(take.error());
     if (!*take) continue;
-    for (const SweepPoint& point : common.points) {
+    for (const suites::SweepPoint& point : common.points) {
       auto job = job_of(common, recording, variant, point);
       if (!job) return tl::unexpected(job.error());
-      if (const Exclusion* exclusion = exclusion_of(common.suite, *job)) {
+      if (const suites::Exclusion* exclusion = exclusion_of(common.suite, *job)) {
         met.insert(exclusion);
         plan.excluded.push_back({to_string(*job), exclusion->reason});
         continue;
       }
-      if (auto related = check_relations(job->spec.config.values); !related) {
+      if (auto related = config::check_relations(job->spec.config.values); !related) {
         const Error& error = related.error();
         if (point.empty()) return related;
         return fail(error.code, fmt::format("{}: {}", to_string(*job), error.message),
@@ -210,8 +213,8 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
 }
 
 /// In the order of the plan: windows, then repetitions, then the runs.
-void multiply(const Suite& suite, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
-  std::vector<std::optional<FrameWindow>> windows(suite.windows.begin(), suite.windows.end());
+void multiply(const suites::Suite& suite, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
+  std::vector<std::optional<run::FrameWindow>> windows(suite.windows.begin(), suite.windows.end());
   if (windows.empty()) windows.emplace_back();
   for (const auto& window : windows) {
     for (int repetition = 1; repetition <= suite.repetitions; ++repetition) {
@@ -228,34 +231,34 @@ void multiply(const Suite& suite, const std::vector<BatchJob>& jobs, BatchPlan& 
 
 std::string to_string(const BatchJob& job) {
   std::string text = fmt::format("{} {}", job.recording.filename().string(), job.variant);
-  if (!job.edits.empty()) text += fmt::format(" {}", to_string(job.edits));
+  if (!job.edits.empty()) text += fmt::format(" {}", suites::to_string(job.edits));
   if (job.spec.frames) text += fmt::format(" frames {}:{}", job.spec.frames->begin, job.spec.frames->end);
   if (job.spec.repetition > 1) text += fmt::format(" repetition {}", job.spec.repetition);
   return text;
 }
 
-Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options) {
+Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options) {
   Common common{suite, options, options.sets, {}};
-  std::vector<SweepBlock> blocks = suite.sweeps;
-  auto swept = take_swept_sets(common.sets);
+  std::vector<suites::SweepBlock> blocks = suite.sweeps;
+  auto swept = suites::take_swept_sets(common.sets);
   if (!swept) return tl::unexpected(swept.error());
   if (*swept) blocks.push_back(std::move(**swept));
   if (auto once = check_swept_once(blocks, common.sets); !once) return tl::unexpected(once.error());
-  auto points = sweep_points(blocks);
+  auto points = suites::sweep_points(blocks);
   if (!points) return tl::unexpected(points.error());
   common.points = std::move(*points);
 
   const auto recordings = recordings_of(suite, options);
   if (!recordings) return tl::unexpected(recordings.error());
   BatchPlan plan;
-  std::set<const Exclusion*> met;
+  std::set<const suites::Exclusion*> met;
   for (const Planned& recording : *recordings) {
     std::vector<BatchJob> jobs;
     if (auto added = add_runs(common, recording, plan, met, jobs); !added)
       return tl::unexpected(added.error());
     multiply(suite, jobs, plan);
   }
-  for (const Exclusion& exclusion : suite.exclusions) {
+  for (const suites::Exclusion& exclusion : suite.exclusions) {
     if (!met.contains(&exclusion) && options.only.empty())
       plan.warnings.push_back(
           fmt::format("{}: the exclusion '{}' meets no run", exclusion.place, exclusion.reason));
@@ -267,4 +270,4 @@ Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options) {
   return plan;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
-#include "eval/run.hpp"
+#include "core/base/error.hpp"
+#include "eval/run/run.hpp"
 #include "eval/suites/experiment.hpp"
 #include "eval/suites/sweep_design.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 struct BatchOptions {
   std::filesystem::path data;
@@ -29,12 +29,12 @@ struct BatchOptions {
 struct BatchJob {
   std::filesystem::path recording;
   std::string variant;
-  RunSpec spec;
+  run::RunSpec spec;
   bool optional = false;  ///< from `all = true`: skipped if its format or camera is unknown
   std::string group;      ///< of the recording, for summaries
   std::string half;       ///< "tuning" or "held-out"
-  std::optional<SimulationRequest> simulation = {};  ///< that makes the recording if it is not there
-  SweepPoint edits = {};                             ///< those of the sweep
+  std::optional<suites::SimulationRequest> simulation = {};  ///< that makes the recording if it is not there
+  suites::SweepPoint edits = {};                             ///< those of the sweep
 };
 
 /// "fr1_rpy full tsdf.voxel_m=0.02 frames 0:100 repetition 2", as far as it says something.
@@ -57,6 +57,6 @@ struct BatchPlan {
 /// does not meet all of them. What --only leaves out need not be there. Errors: data_missing (a recording or
 /// a trajectory that is not there), configuration (--set, a recording named twice, a point of the sweep that
 /// no run can have), usage (--only that names no key or leaves nothing).
-[[nodiscard]] Result<BatchPlan> plan_batch(const Suite& suite, const BatchOptions& options);
+[[nodiscard]] Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options);
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -14,13 +14,13 @@
 #include <string_view>
 #include <utility>
 
-#include "core/staged_folder.hpp"
-#include "eval/engine/forked_job.hpp"
-#include "eval/engine/machine_memory.hpp"
+#include "core/io/staged_folder.hpp"
 #include "eval/engine/opened_recordings.hpp"
 #include "eval/engine/run_claim.hpp"
+#include "eval/process/forked_job.hpp"
+#include "eval/process/machine_memory.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
@@ -32,12 +32,13 @@ constexpr std::chrono::milliseconds kWaitForOthers(500);
 constexpr std::chrono::seconds kGrace(10);  // for runs that are asked to stop
 
 struct RunningJob {
-  RunningJob(std::size_t of, PreparedRun prepared, std::optional<RunClaim> held, ForkedJob forked)
+  RunningJob(std::size_t of, run::PreparedRun prepared, std::optional<RunClaim> held,
+             process::ForkedJob forked)
       : index(of), run(std::move(prepared)), claim(std::move(held)), process(std::move(forked)) {}
   std::size_t index;
-  PreparedRun run;
+  run::PreparedRun run;
   std::optional<RunClaim> claim;
-  ForkedJob process;
+  process::ForkedJob process;
 };
 
 class Engine {
@@ -77,7 +78,7 @@ class Engine {
       const std::uint64_t resident = job.process.resident_bytes();
       promised += expected_bytes_ > resident ? expected_bytes_ - resident : 0;
     }
-    return promised < available_memory_bytes();
+    return promised < process::available_memory_bytes();
   }
 
   /// False if no job that waits can be started now: another engine has them.
@@ -97,13 +98,13 @@ class Engine {
   /// False if another engine is at it.
   bool start(std::size_t index) {
     const BatchJob& job = jobs_[index];
-    const Result<Recording>& recording = opened_.of(job.spec);
+    const Result<recording::Recording>& recording = opened_.of(job.spec);
     if (!recording) {
       end_unopened(index, recording.error());
       return true;
     }
     // Two identities of this plan may begin with the same digits before either has a record.
-    PreparedRun run = place_run(job.spec, *recording, places_);
+    run::PreparedRun run = run::place_run(job.spec, *recording, places_);
     places_.emplace(run.folder, run.run_id);
     if (ended_already(index, run)) return true;
     auto claim = RunClaim::take(job.spec.out, claim_name(run.run_id, run.spec.repetition));
@@ -114,9 +115,9 @@ class Engine {
     if (!*claim) return false;
     if (ended_already(index, run)) return true;  // by whoever had the claim just now
     prepare_place(job, run);
-    auto process =
-        ForkedJob::start([&](const JobVoice& voice) { work(run, voice); },
-                         {options_.limits.time_s, options_.limits.stall_s, options_.limits.memory_bytes});
+    auto process = process::ForkedJob::start(
+        [&](const process::JobVoice& voice) { work(run, voice); },
+        {options_.limits.time_s, options_.limits.stall_s, options_.limits.memory_bytes});
     if (!process) {
       fatal_ = process.error();
       return true;
@@ -126,11 +127,11 @@ class Engine {
   }
 
   /// In the child.
-  void work(const PreparedRun& run, const JobVoice& voice) const {
-    const auto record = execute_run(
+  void work(const run::PreparedRun& run, const process::JobVoice& voice) const {
+    const auto record = run::execute_run(
         run, {[&](std::size_t frame, std::size_t total) { voice.progress(frame, total); }, control_.stop});
     if (record) {
-      voice.finished(to_string(record->status));
+      voice.finished(record::to_string(record->status));
     } else {
       voice.failed(record.error());
     }
@@ -156,12 +157,12 @@ class Engine {
     }
   }
 
-  bool ended_already(std::size_t index, const PreparedRun& run) {
-    const auto head = record_head(run.folder);
+  bool ended_already(std::size_t index, const run::PreparedRun& run) {
+    const auto head = run::record_head(run.folder);
     const bool is_ours = head && head->run_id == run.run_id;
-    const bool is_damaged = head && head->state != RunState::whole;
+    const bool is_damaged = head && head->state != run_files::RunState::whole;
     const bool has_failed =
-        (is_ours && head->status == RunStatus::failed) || is_damaged || was_not_started(jobs_[index]);
+        (is_ours && head->status == record::RunStatus::failed) || is_damaged || was_not_started(jobs_[index]);
     if (options_.only_failed && !has_failed) {
       const auto outcome = outcome_without_results(jobs_[index], "not among the failed runs");
       end_resumed(index, outcome, true);
@@ -180,10 +181,10 @@ class Engine {
     end(index, std::move(outcome));
   }
 
-  void prepare_place(const BatchJob& job, const PreparedRun& run) {
+  void prepare_place(const BatchJob& job, const run::PreparedRun& run) {
     forget_not_started(job);
     // Once a folder: it may hold thousands of runs.
-    if (tidied_.insert(run.folder.parent_path()).second) remove_abandoned(run.folder.parent_path());
+    if (tidied_.insert(run.folder.parent_path()).second) io::remove_abandoned(run.folder.parent_path());
   }
 
   /// Until something is to be heard, or it is time to look at clocks and at Ctrl-C.
@@ -204,14 +205,14 @@ class Engine {
     }
   }
 
-  void take_end(const RunningJob& job, const JobEnd& end) {
+  void take_end(const RunningJob& job, const process::JobEnd& end) {
     // A run that cannot write its results says nothing of itself, but of the disk.
     const bool disk = end.error && end.error->code == ErrorCode::io;
     if (disk && !fatal_) fatal_ = end.error;
     if (disk || (is_stopped() && !end.finished)) return;
     const BatchJob& planned = jobs_[job.index];
     if (end.finished) {
-      const auto head = record_head(job.run.folder);
+      const auto head = run::record_head(job.run.folder);
       if (head && head->run_id == job.run.run_id) {
         this->end(job.index, outcome_of_finished(planned, job.run.folder, *head));
         return;
@@ -227,7 +228,7 @@ class Engine {
 
   void end(std::size_t index, BatchOutcome outcome) {
     ++state_.ended;
-    if (!outcome.skipped && outcome.status != RunStatus::ok) ++state_.failed;
+    if (!outcome.skipped && outcome.status != record::RunStatus::ok) ++state_.failed;
     outcomes_[index] = std::move(outcome);
     if (control_.finished) control_.finished(index, outcomes_[index]);
   }
@@ -267,7 +268,7 @@ class Engine {
     }
     running_.clear();  // kills what would not stop
     for (const fs::path& place : places) {
-      remove_abandoned(place);
+      io::remove_abandoned(place);
       // Those that several runs were about to use, none of them could remove.
       std::error_code ignored;
       fs::remove(place, ignored);
@@ -286,7 +287,7 @@ class Engine {
   std::deque<std::size_t> waiting_;
   std::list<RunningJob> running_;
   OpenedRecordings opened_;
-  TakenFolders places_;
+  run::TakenFolders places_;
   std::set<fs::path> tidied_;
   std::optional<Error> fatal_;
   std::uint64_t expected_bytes_ = 300'000'000;  // of a run, until one has ended that needed more
@@ -303,4 +304,4 @@ Result<std::vector<BatchOutcome>> run_locally(std::span<const BatchJob> jobs, co
   return Engine(jobs, options, control).run();
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

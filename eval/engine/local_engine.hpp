@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/engine/job_outcome.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/suites/suite_runs.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 struct EngineOptions {
   int at_once = 1;
-  RunLimits limits = {};
+  suites::RunLimits limits = {};
   bool repeat_finished = false;  ///< runs what is there already, too
   bool only_failed = false;      ///< runs only what is there as failed
 };
@@ -52,4 +52,4 @@ struct EngineControl {
                                                             const EngineOptions& options,
                                                             const EngineControl& control = {});
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -5,22 +5,22 @@
 #include <map>
 #include <string>
 
-#include "core/error.hpp"
-#include "datasets/recording.hpp"
-#include "eval/run.hpp"
+#include "core/base/error.hpp"
+#include "datasets/recording/recording.hpp"
+#include "eval/run/run.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 /// The recording that was asked for last, in each form in which runs see it (window, IMU): jobs over one
 /// recording stand together, and reading its lists and fingerprinting its images once is enough.
 class OpenedRecordings {
  public:
   /// As open_for_run(). Valid until another recording is asked for.
-  [[nodiscard]] const Result<Recording>& of(const RunSpec& spec);
+  [[nodiscard]] const Result<recording::Recording>& of(const run::RunSpec& spec);
 
  private:
   std::filesystem::path recording_;
-  std::map<std::string, Result<Recording>> opened_;
+  std::map<std::string, Result<recording::Recording>> opened_;
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

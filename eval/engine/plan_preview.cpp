@@ -10,10 +10,10 @@
 
 #include "eval/engine/job_outcome.hpp"
 #include "eval/engine/opened_recordings.hpp"
-#include "eval/json_text.hpp"
-#include "eval/report/text_layout.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/text_layout.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
@@ -63,15 +63,15 @@ Seen look_at(const BatchJob& job, OpenedRecordings& opened, KnownTimes& times) {
     if (was_not_started(job)) seen.run.state = JobState::failed;
     return seen;
   }
-  const PreparedRun prepared = place_run(job.spec, *recording);
+  const run::PreparedRun prepared = run::place_run(job.spec, *recording);
   seen.frames = prepared.recording.frames.size();
-  const auto head = record_head(prepared.folder);
+  const auto head = run::record_head(prepared.folder);
   const bool ours = head && head->run_id == prepared.run_id;
-  seen.run.state = ours && is_finished(prepared, *head)        ? JobState::finished
-                   : ours && head->status == RunStatus::failed ? JobState::failed
-                                                               : JobState::waiting;
+  seen.run.state = ours && is_finished(prepared, *head)                ? JobState::finished
+                   : ours && head->status == record::RunStatus::failed ? JobState::failed
+                                                                       : JobState::waiting;
   if (seen.run.state != JobState::finished) return seen;
-  if (const auto record = read_record(prepared.folder / "record.json"))
+  if (const auto record = record::read_record(prepared.folder / "record.json"))
     times.add(kind_of(job), record->timing.wall_s);
   return seen;
 }
@@ -81,8 +81,8 @@ std::string summary(const PlanPreview& preview, const BatchPlan& plan, int at_on
       "{} runs: {} finished, {} failed before, {} to do, {} unknown; {} excluded\n", preview.runs.size(),
       preview.finished, preview.failed, preview.waiting, preview.unknown, plan.excluded.size());
   if (preview.finished == preview.runs.size()) return text;
-  text += fmt::format("about {} of work, {} with {} at a time", duration_text(preview.time_s),
-                      duration_text(preview.time_s / at_once), at_once);
+  text += fmt::format("about {} of work, {} with {} at a time", text::duration_text(preview.time_s),
+                      text::duration_text(preview.time_s / at_once), at_once);
   if (preview.guessed > 0)
     text += fmt::format(" ({} of the runs by a guess of {:.0f} ms a frame: none like them has finished here)",
                         preview.guessed, 1000 * kGuessPerFrame_s);
@@ -121,10 +121,10 @@ std::string to_text(const PlanPreview& preview, const BatchPlan& plan, int at_on
   std::vector<std::vector<std::string>> lines = {{"run", "state", "time", "note"}};
   for (const PlannedRun& run : preview.runs) {
     lines.push_back({run.name, std::string(name_of(run.state)),
-                     run.time_s > 0 ? duration_text(run.time_s) : "-", run.note});
+                     run.time_s > 0 ? text::duration_text(run.time_s) : "-", run.note});
   }
   for (const ExcludedRun& run : plan.excluded) lines.push_back({run.run, "excluded", "-", run.reason});
-  return aligned_columns(lines) + "\n" + summary(preview, plan, at_once);
+  return text::aligned_columns(lines) + "\n" + summary(preview, plan, at_once);
 }
 
 std::string to_json(const PlanPreview& preview, const BatchPlan& plan, int at_once) {
@@ -145,7 +145,7 @@ std::string to_json(const PlanPreview& preview, const BatchPlan& plan, int at_on
                          {"time_s", preview.time_s / at_once},
                          {"runs", runs},
                          {"excluded", excluded}};
-  return json_text(document) + "\n";
+  return text::json_text(document) + "\n";
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

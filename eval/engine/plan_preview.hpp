@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/engine/job_plan.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 /// Of a run that nothing is known of.
 inline constexpr double kGuessPerFrame_s = 0.05;
@@ -44,4 +44,4 @@ struct PlanPreview {
 [[nodiscard]] std::string to_text(const PlanPreview& preview, const BatchPlan& plan, int at_once);
 [[nodiscard]] std::string to_json(const PlanPreview& preview, const BatchPlan& plan, int at_once);
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

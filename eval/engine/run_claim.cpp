@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
-#include "eval/found_runs.hpp"
+#include "eval/run_files/found_runs.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace fs = std::filesystem;
 
@@ -31,7 +31,7 @@ bool is_claim(std::string_view name) {
 
 }  // namespace
 
-fs::path engine_folder(const fs::path& out) { return out / kEngineFolderName; }
+fs::path engine_folder(const fs::path& out) { return out / run_files::kEngineFolderName; }
 
 std::string claim_name(const std::string& run_id, int repetition) {
   return fmt::format("{}-{}", run_id, repetition);
@@ -89,4 +89,4 @@ std::vector<fs::path> remove_free_claims(const fs::path& out, bool only_look) {
   return free;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 /// The folder of what engines keep among the runs of `out`: no table looks into it, see is_engine_folder().
 [[nodiscard]] std::filesystem::path engine_folder(const std::filesystem::path& out);
@@ -41,4 +41,4 @@ class RunClaim {
 std::vector<std::filesystem::path> remove_free_claims(const std::filesystem::path& out,
                                                       bool only_look = false);
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

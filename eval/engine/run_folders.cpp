@@ -6,14 +6,14 @@
 #include <set>
 #include <system_error>
 
-#include "core/staged_folder.hpp"
-#include "eval/build_info.hpp"
+#include "core/io/staged_folder.hpp"
 #include "eval/engine/run_claim.hpp"
-#include "eval/found_runs.hpp"
-#include "eval/record.hpp"
-#include "eval/record_files.hpp"
+#include "eval/record/build_info.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/record_files.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
@@ -40,14 +40,14 @@ bool has_name_of_run(const fs::path& folder) {
          (digits >= kFewestDigits && (digits == name.size() || name.compare(digits, 2, "-r") == 0));
 }
 
-bool is_garbage(const fs::path& folder, const RecordHead& head, const Garbage& garbage) {
-  if (head.state == RunState::unreadable) return false;  // what it is, nobody knows
-  if (head.state == RunState::damaged) return garbage.failed && has_name_of_run(folder);
-  if (garbage.failed && head.status == RunStatus::failed) return true;
+bool is_garbage(const fs::path& folder, const run::RecordHead& head, const Garbage& garbage) {
+  if (head.state == run_files::RunState::unreadable) return false;  // what it is, nobody knows
+  if (head.state == run_files::RunState::damaged) return garbage.failed && has_name_of_run(folder);
+  if (garbage.failed && head.status == record::RunStatus::failed) return true;
   if (!garbage.stale) return false;
-  const auto record = read_record(folder / "record.json");
+  const auto record = record::read_record(folder / "record.json");
   // Imported runs come from elsewhere, and have no estimator of ours.
-  return record && !record->config.empty() && record->provenance.estimator != build_info().estimator;
+  return record && !record->config.empty() && record->provenance.estimator != record::build_info().estimator;
 }
 
 /// Where place_run() looks next for an identity whose first digits are another's there.
@@ -68,7 +68,7 @@ void copy_invocations(const fs::path& from, const fs::path& into) {
 }
 
 Result<void> copy_run(const fs::path& from, const fs::path& to) {
-  auto staged = StagedFolder::create(to);
+  auto staged = io::StagedFolder::create(to);
   if (!staged) return tl::unexpected(staged.error());
   std::error_code error;
   fs::copy(from, staged->path(), fs::copy_options::recursive, error);
@@ -80,13 +80,13 @@ Result<void> copy_run(const fs::path& from, const fs::path& to) {
 }
 
 /// A file that is not what the run wrote makes it a damaged one.
-void verify_files(const fs::path& folder, RecordHead& head) {
-  if (head.state != RunState::whole) return;
-  const auto record = read_record(folder / "record.json");
-  const auto checked = record ? check_files(folder, *record) : Result<void>();
+void verify_files(const fs::path& folder, run::RecordHead& head) {
+  if (head.state != run_files::RunState::whole) return;
+  const auto record = record::read_record(folder / "record.json");
+  const auto checked = record ? run_files::check_files(folder, *record) : Result<void>();
   if (checked) return;
-  head.status = RunStatus::failed;
-  head.state = RunState::damaged;
+  head.status = record::RunStatus::failed;
+  head.state = run_files::RunState::damaged;
   head.reason = checked.error().message;
 }
 
@@ -97,9 +97,9 @@ std::set<fs::path> parents_of_staged_folders(const fs::path& root) {
        entry.increment(error)) {
     std::error_code ignored;
     if (!entry->is_directory(ignored)) continue;
-    const bool is_staged = is_staged_folder(entry->path());
+    const bool is_staged = io::is_staged_folder(entry->path());
     if (is_staged) parents.insert(entry->path().parent_path());
-    if (is_staged || is_engine_folder(entry->path())) entry.disable_recursion_pending();
+    if (is_staged || run_files::is_engine_folder(entry->path())) entry.disable_recursion_pending();
   }
   return parents;
 }
@@ -107,12 +107,12 @@ std::set<fs::path> parents_of_staged_folders(const fs::path& root) {
 }  // namespace
 
 Result<std::vector<ListedRun>> list_runs(const fs::path& root, bool verify) {
-  const auto files = record_files(root);
+  const auto files = run_files::record_files(root);
   if (!files) return tl::unexpected(files.error());
   std::vector<ListedRun> runs;
   for (const fs::path& file : *files) {
     const fs::path folder = file.parent_path();
-    auto head = record_head(folder);
+    auto head = run::record_head(folder);
     if (!head) continue;  // removed just now
     if (verify) verify_files(folder, *head);
     runs.push_back({folder.lexically_relative(root), std::move(*head)});
@@ -124,7 +124,8 @@ Result<std::vector<ListedRun>> list_runs(const fs::path& root, bool verify) {
 Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garbage) {
   const auto runs = list_runs(root);
   if (!runs) return tl::unexpected(runs.error());
-  if (runs->empty() && !is_engine_folder(engine_folder(root))) return holds_no_runs(root);
+  if (runs->empty() && !run_files::is_engine_folder(engine_folder(root)))
+    return run_files::holds_no_runs(root);
   GarbageReport report;
   for (const ListedRun& run : *runs) {
     const fs::path folder = root / run.folder;
@@ -132,7 +133,7 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
     ++report.runs;
     report.bytes += size_of(folder);
     report.paths.push_back(folder);
-    const auto error = garbage.only_look ? std::error_code() : remove_whole(folder);
+    const auto error = garbage.only_look ? std::error_code() : io::remove_whole(folder);
     if (error)
       return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", folder.string(), error.message()));
   }
@@ -142,7 +143,7 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
   };
   add_temporaries(remove_free_claims(root, garbage.only_look));
   for (const fs::path& parent : parents_of_staged_folders(root))
-    add_temporaries(remove_abandoned(parent, garbage.only_look));
+    add_temporaries(io::remove_abandoned(parent, garbage.only_look));
   std::ranges::sort(report.paths);
   return report;
 }
@@ -152,19 +153,19 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
   if (!runs) return tl::unexpected(runs.error());
   MergeReport report;
   for (const ListedRun& run : *runs) {
-    if (run.head.state != RunState::whole) {
+    if (run.head.state != run_files::RunState::whole) {
       ++report.damaged;
       continue;
     }
     const fs::path target = into / run.folder;
-    const auto there = record_head(target);
+    const auto there = run::record_head(target);
     std::error_code ignored;
-    const bool replaced = there && there->state == RunState::damaged;
+    const bool replaced = there && there->state == run_files::RunState::damaged;
     const bool same = there && !replaced && there->run_id == run.head.run_id;
-    const bool finished_there = same && there->status != RunStatus::failed;
-    if (finished_there || (same && run.head.status == RunStatus::failed)) {
+    const bool finished_there = same && there->status != record::RunStatus::failed;
+    if (finished_there || (same && run.head.status == record::RunStatus::failed)) {
       ++report.there;
-      if (finished_there && run.head.status != RunStatus::failed && there->status != run.head.status)
+      if (finished_there && run.head.status != record::RunStatus::failed && there->status != run.head.status)
         ++report.differing;
       continue;
     }
@@ -177,4 +178,4 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
   return report;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

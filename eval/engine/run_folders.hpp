@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
-#include "eval/run.hpp"
+#include "core/base/error.hpp"
+#include "eval/run/run.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 struct ListedRun {
   std::filesystem::path folder;  ///< relative to the root
-  RecordHead head;
+  run::RecordHead head;
 };
 
 /// Every run below a folder, by path. What is damaged, or no record that can be read, is a failed run with
@@ -50,4 +50,4 @@ struct MergeReport {
 [[nodiscard]] Result<MergeReport> merge_runs(const std::filesystem::path& from,
                                              const std::filesystem::path& into);
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -15,18 +15,18 @@
 #include <thread>
 #include <utility>
 
-#include "core/config_access.hpp"
-#include "core/fingerprint.hpp"
-#include "eval/build_info.hpp"
-#include "eval/engine/forked_job.hpp"
+#include "core/config/config_access.hpp"
+#include "core/io/fingerprint.hpp"
 #include "eval/engine/opened_recordings.hpp"
 #include "eval/engine/plan_preview.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/engine/slurm_queue.hpp"
-#include "eval/process_meter.hpp"
-#include "eval/text_file.hpp"
+#include "eval/process/forked_job.hpp"
+#include "eval/record/build_info.hpp"
+#include "eval/record/process_meter.hpp"
+#include "eval/text/text_file.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
@@ -72,11 +72,11 @@ std::string text_of(const fs::path& file) {
 
 /// Numbers of jobs mean the same to whoever has this one.
 std::string plan_digest(std::span<const BatchJob> jobs) {
-  Fingerprint digest;
-  digest.add(build_info().estimator);
+  io::Fingerprint digest;
+  digest.add(record::build_info().estimator);
   for (const BatchJob& job : jobs) {
     digest.add(to_string(job));
-    digest.add(config_hash(job.spec.config.values));
+    digest.add(config::config_hash(job.spec.config.values));
   }
   return digest.hex();
 }
@@ -98,7 +98,7 @@ class SlurmEngine {
         control_(control),
         queue_(slurm.command_limit_s),
         outcomes_(jobs.size()) {
-    name_ = fmt::format("fusebench-{}-{}-{}", site.invocation.stem().string(), host_name(), getpid());
+    name_ = fmt::format("fusebench-{}-{}-{}", site.invocation.stem().string(), record::host_name(), getpid());
     folder_ = fs::absolute(engine_folder(jobs.front().spec.out) / "slurm" / name_);
   }
 
@@ -128,7 +128,7 @@ class SlurmEngine {
  private:
   void end(std::size_t index, BatchOutcome outcome) {
     ++state_.ended;
-    if (!outcome.skipped && outcome.status != RunStatus::ok) ++state_.failed;
+    if (!outcome.skipped && outcome.status != record::RunStatus::ok) ++state_.failed;
     if (outcome.resumed) ++state_.resumed;
     outcomes_[index] = std::move(outcome);
     if (control_.finished) control_.finished(index, outcomes_[index]);
@@ -149,9 +149,9 @@ class SlurmEngine {
         end(i, std::move(*outcome));
         continue;
       }
-      const PreparedRun run = place_run(jobs_[i].spec, *recording);
+      const run::PreparedRun run = run::place_run(jobs_[i].spec, *recording);
       Awaited awaited{run.folder, run.run_id, recording->frames.size(), {}, 0};
-      const auto head = record_head(awaited.folder);
+      const auto head = run::record_head(awaited.folder);
       const bool ours = head && head->run_id == awaited.run_id;
       if (ours && is_finished(run, *head)) {
         BatchOutcome outcome = outcome_of_finished(jobs_[i], awaited.folder, *head);
@@ -208,7 +208,7 @@ class SlurmEngine {
     std::error_code error;
     fs::create_directories(part / "logs", error);
     for (const auto& [name, text] : {std::pair("tasks.txt", lines), std::pair("task.sh", script)}) {
-      if (auto written = write_text_file(part / name, text); !written) return written;
+      if (auto written = text::write_text_file(part / name, text); !written) return written;
     }
     std::size_t largest = 0;
     for (const Chunk& chunk : chunks) largest = std::max(largest, chunk.jobs.size());
@@ -245,13 +245,14 @@ class SlurmEngine {
   }
 
   /// A record of before does not count.
-  [[nodiscard]] std::optional<RecordHead> result_of(const Awaited& awaited) const {
+  [[nodiscard]] std::optional<run::RecordHead> result_of(const Awaited& awaited) const {
     // Listing a folder makes a network file system look again for what was not there the last time.
     std::error_code unlisted;
     static_cast<void>(fs::directory_iterator(awaited.folder.parent_path(), unlisted));
-    auto head = record_head(awaited.folder);
+    auto head = run::record_head(awaited.folder);
     // Where a network file system shows the record before the other files, they come a moment later.
-    if (!head || head->run_id != awaited.run_id || head->state != RunState::whole) return std::nullopt;
+    if (!head || head->run_id != awaited.run_id || head->state != run_files::RunState::whole)
+      return std::nullopt;
     std::error_code ignored;
     if (awaited.written_before &&
         fs::last_write_time(awaited.folder / "record.json", ignored) == *awaited.written_before)
@@ -334,11 +335,11 @@ class SlurmEngine {
   }
 
   void give_up(std::size_t index, const Chunk& chunk) {
-    JobEnd none;
+    process::JobEnd none;
     none.reason = fmt::format("its Slurm task ended without a result {} times{}", awaited_.at(index).attempts,
                               chunk.node.empty() ? "" : ", the last time on node " + chunk.node);
     none.output = log_of(chunk);
-    const auto run = prepare_run(jobs_[index].spec);
+    const auto run = run::prepare_run(jobs_[index].spec);
     auto outcome =
         run ? record_failed(jobs_[index], *run, none) : record_not_started(jobs_[index], none.reason);
     end(index, outcome ? std::move(*outcome) : outcome_without_results(jobs_[index], none.reason));
@@ -443,10 +444,10 @@ Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions&
     return fail(ErrorCode::data_missing, fmt::format("{}: has no task {}", task_file.string(), task));
   // In a process of its own: opening a large recording takes longer than a sign of life may.
   const fs::path alive = task_file.parent_path() / fmt::format("alive-{}", task);
-  const auto pulse = ForkedJob::start(
-      [&](const JobVoice&) {
+  const auto pulse = process::ForkedJob::start(
+      [&](const process::JobVoice&) {
         for (std::size_t count = 0;; ++count) {
-          static_cast<void>(write_text_file(alive, fmt::format("{} {}\n", host_name(), count)));
+          static_cast<void>(text::write_text_file(alive, fmt::format("{} {}\n", record::host_name(), count)));
           std::this_thread::sleep_for(std::chrono::seconds(1));
         }
       },
@@ -457,4 +458,4 @@ Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions&
   return {};
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

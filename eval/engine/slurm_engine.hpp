@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/engine/local_engine.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 struct SlurmOptions {
   std::size_t chunk = 0;               ///< runs of one task; 0: as many as take about a minute
@@ -46,4 +46,4 @@ struct SlurmSite {
                                           const std::filesystem::path& task_file, std::size_t task,
                                           const EngineControl& control = {});
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -8,9 +8,9 @@
 #include <sstream>
 #include <thread>
 
-#include "eval/engine/child_processes.hpp"
+#include "eval/process/child_processes.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 namespace {
 
@@ -37,7 +37,7 @@ SlurmQueue::Answer SlurmQueue::ask(const std::vector<std::string>& command) cons
   using Clock = std::chrono::steady_clock;
   std::vector<std::string> words = {"/usr/bin/env"};
   words.insert(words.end(), command.begin(), command.end());
-  auto child = ChildProcess::start(words);
+  auto child = process::ChildProcess::start(words);
   if (!child) return {};
   const auto until = Clock::now() + std::chrono::duration<double>(limit_s_);
   while (Clock::now() < until) {
@@ -115,4 +115,4 @@ void SlurmQueue::cancel_all(const std::string& name) const {
   static_cast<void>(ask({"scancel", "--name=" + name}));
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
-namespace fusebench {
+namespace fusebench::engine {
 
 /// One array to submit.
 struct SlurmArray {
@@ -58,4 +58,4 @@ class SlurmQueue {
   double limit_s_;
 };
 
-}  // namespace fusebench
+}  // namespace fusebench::engine

@@ -2,10 +2,10 @@
 
 #include <utility>
 
-namespace fusebench {
+namespace fusebench::profile {
 
-std::vector<std::pair<std::string, DurationHistogram>> stage_histograms(const RunProfile& profile) {
-  std::vector<std::pair<std::string, DurationHistogram>> histograms;
+std::vector<std::pair<std::string, record::DurationHistogram>> stage_histograms(const RunProfile& profile) {
+  std::vector<std::pair<std::string, record::DurationHistogram>> histograms;
   const auto add = [&](std::string_view name, const auto& duration_ms_of) {
     std::vector<double> durations_ms;
     for (const FrameTimes& frame : profile.frames) {
@@ -13,14 +13,14 @@ std::vector<std::pair<std::string, DurationHistogram>> stage_histograms(const Ru
       if (duration_ms > 0) durations_ms.push_back(duration_ms);
     }
     if (!durations_ms.empty())
-      histograms.emplace_back(std::string(name), histogram_of(std::move(durations_ms)));
+      histograms.emplace_back(std::string(name), record::histogram_of(std::move(durations_ms)));
   };
   add("decode", [](const FrameTimes& frame) { return frame.decode.milliseconds(); });
-  for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
-    add(kStageNames[stage], [&](const FrameTimes& frame) { return frame.stages.sums_ms()[stage]; });
+  for (std::size_t stage = 0; stage < health::kStageNames.size(); ++stage) {
+    add(health::kStageNames[stage], [&](const FrameTimes& frame) { return frame.stages.sums_ms()[stage]; });
   }
   add(kFrameName, [](const FrameTimes& frame) { return frame.frame_time().milliseconds(); });
   return histograms;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::profile

@@ -4,9 +4,9 @@
 
 #include <iterator>
 
-#include "eval/json_text.hpp"
+#include "eval/text/json_text.hpp"
 
-namespace fusebench {
+namespace fusebench::profile {
 
 namespace {
 
@@ -23,11 +23,12 @@ class TraceWriter {
   void name(std::string_view kind, TraceThread thread, const std::string& name) {
     begin_event();
     fmt::format_to(out(), R"({{"ph":"M","pid":{},"tid":{},"name":"{}","args":{{"name":{}}}}})", kProcess,
-                   static_cast<int>(thread), kind, json_text(name, -1));
+                   static_cast<int>(thread), kind, text::json_text(name, -1));
   }
 
   /// args: the members of a JSON object.
-  void complete(std::string_view name, TraceThread thread, const TimeSpan& time, const std::string& args) {
+  void complete(std::string_view name, TraceThread thread, const health::TimeSpan& time,
+                const std::string& args) {
     begin_event();
     fmt::format_to(out(),
                    R"({{"ph":"X","pid":{},"tid":{},"name":"{}","ts":{:.3f},"dur":{:.3f},"args":{{{}}}}})",
@@ -57,12 +58,13 @@ class TraceWriter {
 void add_frame(const FrameTimes& frame, bool decodes_ahead, TraceWriter& trace) {
   const std::string number = fmt::format(R"("frame":{})", frame.frame);
   trace.complete(kFrameName, TraceThread::run, frame.frame_time(),
-                 fmt::format(R"({},"status":"{}")", number, to_string(frame.status)));
+                 fmt::format(R"({},"status":"{}")", number, health::to_string(frame.status)));
   trace.complete("decode", decodes_ahead ? TraceThread::decode_ahead : TraceThread::run, frame.decode,
                  number);
   if (decodes_ahead) trace.complete("wait", TraceThread::run, frame.images, number);
-  for (const StageSpan& span : frame.stages.spans()) {
-    trace.complete(kStageNames[static_cast<std::size_t>(span.stage)], TraceThread::run, span.time, number);
+  for (const health::StageSpan& span : frame.stages.spans()) {
+    trace.complete(health::kStageNames[static_cast<std::size_t>(span.stage)], TraceThread::run, span.time,
+                   number);
   }
   trace.complete("output", TraceThread::run, frame.output, number);
 }
@@ -79,4 +81,4 @@ std::string trace_text(const RunProfile& profile, const std::string& title) {
   return std::move(trace).finish();
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::profile

@@ -13,11 +13,11 @@
 
 #include "eval/profile/run_profile.hpp"
 
-namespace fusebench {
+namespace fusebench::profile {
 
 inline constexpr const char* kTraceFile = "trace.json";
 
 /// title: of the process, what was run. The whole file.
 [[nodiscard]] std::string trace_text(const RunProfile& profile, const std::string& title);
 
-}  // namespace fusebench
+}  // namespace fusebench::profile

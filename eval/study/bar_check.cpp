@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "eval/consistency_metrics.hpp"
-#include "eval/statistics.hpp"
+#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/statistics.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
@@ -30,21 +30,21 @@ struct Items {
   std::vector<std::string> left_out;   // nothing to compare with
 };
 
-double comparison(const Bar& bar, double own, double other) {
+double comparison(const suites::Bar& bar, double own, double other) {
   if (bar.against.empty()) return own;
-  return bar.compare == BarComparison::ratio ? own / other : own - other;
+  return bar.compare == suites::BarComparison::ratio ? own / other : own - other;
 }
 
-bool is_meant(const Bar& bar, const StudyRun& run, std::string_view half) {
+bool is_meant(const suites::Bar& bar, const StudyRun& run, std::string_view half) {
   const bool in_group =
       bar.groups.empty() || std::find(bar.groups.begin(), bar.groups.end(), run.group) != bar.groups.end();
   return in_group && run.half == half && run.variant == bar.variant;
 }
 
-void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items) {
-  const StudyValue& value = *find_study_value(bar.metric);
-  if (run.record.status != RunStatus::ok && !value.of_every_run) {
-    if (bar.lost_counts && run.record.status == RunStatus::lost) {
+void take(const Study& study, const suites::Bar& bar, const StudyRun& run, Items& items) {
+  const suites::StudyValue& value = *suites::find_study_value(bar.metric);
+  if (run.record.status != record::RunStatus::ok && !value.of_every_run) {
+    if (bar.lost_counts && run.record.status == record::RunStatus::lost) {
       ++items.counted_as_lost;
     } else {
       items.not_ok.push_back(run.recording);
@@ -55,20 +55,21 @@ void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items)
   if (!bar.against.empty()) {
     const StudyRun* other = sibling(study, run, bar.against);
     if (other == nullptr) return;  // the suite does not run that variant here
-    if (other->record.status != RunStatus::ok && !value.of_every_run) {
+    if (other->record.status != record::RunStatus::ok && !value.of_every_run) {
       items.left_out.push_back(run.recording);
       return;
     }
     const auto number = value_of(study, *other, value, bar.variant);
     if (!number) {
-      (other->record.status == RunStatus::ok ? items.valueless : items.left_out).push_back(run.recording);
+      (other->record.status == record::RunStatus::ok ? items.valueless : items.left_out)
+          .push_back(run.recording);
       return;
     }
     item.other = *number;
   }
   const auto number = value_of(study, run, value, bar.against);
   if (!number) {
-    (run.record.status == RunStatus::ok ? items.valueless : items.not_ok).push_back(run.recording);
+    (run.record.status == record::RunStatus::ok ? items.valueless : items.not_ok).push_back(run.recording);
     return;
   }
   item.own = *number;
@@ -77,7 +78,7 @@ void take(const Study& study, const Bar& bar, const StudyRun& run, Items& items)
 }
 
 /// All frames of all recordings together.
-std::optional<double> pooled(const Study& study, const Bar& bar, const Items& items) {
+std::optional<double> pooled(const Study& study, const suites::Bar& bar, const Items& items) {
   const bool reversed = bar.variant == study.reference();
   std::vector<SharedFrame> frames;
   for (const Item& item : items.items) {
@@ -99,7 +100,7 @@ std::vector<double> numbers(const Items& items, double Item::*which) {
   return result;
 }
 
-double share(const Bar& bar, const Items& items) {
+double share(const suites::Bar& bar, const Items& items) {
   const auto keeps = [&](const Item& item) {
     return (!bar.each_at_most || item.compared <= *bar.each_at_most) &&
            (!bar.each_at_least || item.compared >= *bar.each_at_least);
@@ -109,23 +110,23 @@ double share(const Bar& bar, const Items& items) {
          static_cast<double>(items.items.size() + items.counted_as_lost);
 }
 
-const Item& worst(const Bar& bar, const Items& items) {
+const Item& worst(const suites::Bar& bar, const Items& items) {
   const auto smaller = [](const Item& a, const Item& b) { return a.compared < b.compared; };
   return bar.has_upper() ? *std::max_element(items.items.begin(), items.items.end(), smaller)
                          : *std::min_element(items.items.begin(), items.items.end(), smaller);
 }
 
-std::optional<double> measured(const Study& study, const Bar& bar, const Items& items) {
-  if (bar.statistic == BarStatistic::share) return share(bar, items);
+std::optional<double> measured(const Study& study, const suites::Bar& bar, const Items& items) {
+  if (bar.statistic == suites::BarStatistic::share) return share(bar, items);
   if (items.items.empty()) return std::nullopt;
-  if (bar.statistic == BarStatistic::worst) return worst(bar, items).compared;
+  if (bar.statistic == suites::BarStatistic::worst) return worst(bar, items).compared;
   if (bar.of_means) {
-    if (find_study_value(bar.metric)->of == nullptr) return pooled(study, bar, items);
-    return comparison(bar, statistics(numbers(items, &Item::own)).mean,
-                      statistics(numbers(items, &Item::other)).mean);
+    if (suites::find_study_value(bar.metric)->of == nullptr) return pooled(study, bar, items);
+    return comparison(bar, metrics::statistics(numbers(items, &Item::own)).mean,
+                      metrics::statistics(numbers(items, &Item::other)).mean);
   }
-  const Statistics stats = statistics(numbers(items, &Item::compared));
-  return bar.statistic == BarStatistic::mean ? stats.mean : stats.median;
+  const metrics::Statistics stats = metrics::statistics(numbers(items, &Item::compared));
+  return bar.statistic == suites::BarStatistic::mean ? stats.mean : stats.median;
 }
 
 struct Limit {
@@ -139,11 +140,12 @@ struct Limit {
   }
 };
 
-Limit limit_of(const Bar& bar, std::size_t runs) {
+Limit limit_of(const suites::Bar& bar, std::size_t runs) {
   Limit limit;
   if (bar.within_bounds) {
     if (runs == 0) return limit;
-    const NeesBounds bounds = nees_bounds_95(runs, find_study_value(bar.metric)->nees_dof);
+    const metrics::NeesBounds bounds =
+        metrics::nees_bounds_95(runs, suites::find_study_value(bar.metric)->nees_dof);
     limit.lower = bounds.lower;
     limit.upper = bounds.upper;
     limit.text = fmt::format("{:.3g} .. {:.3g} (95 % of {} runs)", bounds.lower, bounds.upper, runs);
@@ -159,9 +161,9 @@ Limit limit_of(const Bar& bar, std::size_t runs) {
   return limit;
 }
 
-std::string note_of(const Bar& bar, const Items& items) {
+std::string note_of(const suites::Bar& bar, const Items& items) {
   std::vector<std::string> parts;
-  if (bar.statistic == BarStatistic::worst && items.items.size() > 1)
+  if (bar.statistic == suites::BarStatistic::worst && items.items.size() > 1)
     parts.push_back(fmt::format("worst: {}", worst(bar, items).run->recording));
   if (items.counted_as_lost > 0) parts.push_back(fmt::format("{} lost", items.counted_as_lost));
   if (!items.not_ok.empty()) parts.push_back(fmt::format("not ok: {}", fmt::join(items.not_ok, ", ")));
@@ -172,7 +174,7 @@ std::string note_of(const Bar& bar, const Items& items) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-BarMeasurement measure(const Study& study, const Bar& bar, std::string_view half) {
+BarMeasurement measure(const Study& study, const suites::Bar& bar, std::string_view half) {
   Items items;
   for (const StudyRun& run : study.runs) {
     if (is_meant(bar, run, half)) take(study, bar, run, items);
@@ -206,13 +208,14 @@ std::string_view to_string(Verdict verdict) {
   return "n.a.";
 }
 
-std::vector<BarResult> check_bars(const Study& study, std::span<const Bar> bars) {
+std::vector<BarResult> check_bars(const Study& study, std::span<const suites::Bar> bars) {
   std::vector<BarResult> results;
-  for (const Bar& bar : bars) {
-    const std::string_view beside = bar.half == kHeldOutHalf ? kTuningHalf : kHeldOutHalf;
+  for (const suites::Bar& bar : bars) {
+    const std::string_view beside =
+        bar.half == suites::kHeldOutHalf ? suites::kTuningHalf : suites::kHeldOutHalf;
     results.push_back({bar, measure(study, bar, bar.half), measure(study, bar, beside)});
   }
   return results;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

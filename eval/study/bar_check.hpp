@@ -11,7 +11,7 @@
 #include "eval/study/study.hpp"
 #include "eval/suites/suite_bars.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 enum class Verdict {
   passed,
@@ -32,7 +32,7 @@ struct BarMeasurement {
 
 /// The half of the bar decides; the other one stands beside it.
 struct BarResult {
-  Bar bar;
+  suites::Bar bar;
   BarMeasurement decided;
   BarMeasurement beside;
 };
@@ -40,6 +40,6 @@ struct BarResult {
 /// A run of the bar's variant that was lost or failed, or lacks the number while others have it, fails the
 /// bar, unless the bar counts lost runs. Where the run that it is compared with is not ok, the recording is
 /// left out, and the note says so.
-[[nodiscard]] std::vector<BarResult> check_bars(const Study& study, std::span<const Bar> bars);
+[[nodiscard]] std::vector<BarResult> check_bars(const Study& study, std::span<const suites::Bar> bars);
 
-}  // namespace fusebench
+}  // namespace fusebench::study

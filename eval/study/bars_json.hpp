@@ -6,9 +6,9 @@
 
 #include "eval/study/bar_check.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 /// A list with an object for each bar, keys in a fixed order.
 [[nodiscard]] nlohmann::ordered_json bars_json(const std::vector<BarResult>& bars);
 
-}  // namespace fusebench
+}  // namespace fusebench::study

@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
-#include "core/text_table.hpp"
-#include "eval/intensity_file.hpp"
+#include "core/io/text_table.hpp"
+#include "eval/metrics/intensity_file.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
@@ -38,8 +38,8 @@ class PixelMap {
   std::uint32_t mark_ = 0;
 };
 
-SharedFrame shared_frame(const IntensityFrame& reference, PixelMap& reference_map,
-                         const IntensityFrame& variant, PixelMap& variant_map) {
+SharedFrame shared_frame(const metrics::IntensityFrame& reference, PixelMap& reference_map,
+                         const metrics::IntensityFrame& variant, PixelMap& variant_map) {
   reference_map.fill(reference.pixels);
   variant_map.fill(variant.pixels);
   SharedFrame frame;
@@ -75,9 +75,9 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 
 Result<std::vector<SharedFrame>> shared_frames(const std::filesystem::path& reference_file,
                                                const std::filesystem::path& variant_file) {
-  auto reference = IntensityReader::open(reference_file);
+  auto reference = metrics::IntensityReader::open(reference_file);
   if (!reference) return tl::unexpected(reference.error());
-  auto variant = IntensityReader::open(variant_file);
+  auto variant = metrics::IntensityReader::open(variant_file);
   if (!variant) return tl::unexpected(variant.error());
   const auto different = [&](std::string_view what) {
     return fail(ErrorCode::data_corrupt, fmt::format("{} and {} differ in their {}", reference_file.string(),
@@ -125,9 +125,9 @@ Result<std::map<std::int64_t, double>> read_patch_motion(const std::filesystem::
     if (cells.size() != header.size())
       return corrupt(number, "has another number of columns than the header");
     if (cells[motion].empty()) continue;
-    const auto time = parse_time_ns(cells[stamp]);
+    const auto time = io::parse_time_ns(cells[stamp]);
     if (!time) return corrupt(number, time.error().message);
-    const auto pixels = parse_number(cells[motion]);
+    const auto pixels = io::parse_number(cells[motion]);
     if (!pixels) return corrupt(number, pixels.error().message);
     result[*time] = *pixels;
   }
@@ -148,4 +148,4 @@ SharedMeans shared_means(std::span<const SharedFrame> frames) {
   return means;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

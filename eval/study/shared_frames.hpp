@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 /// A frame in which both runs have a pixel in common.
 struct SharedFrame {
@@ -23,8 +23,8 @@ struct SharedFrame {
       {};  ///< how far patches moved since the frame before, as the reference saw it
 };
 
-/// From two files of intensity differences (eval/intensity_file.hpp), with the definition of common pixels of
-/// CommonIntensityAccumulator. Frames in which nothing is shared are left out. Errors: those of
+/// From two files of intensity differences (eval/metrics/intensity_file.hpp), with the definition of common
+/// pixels of CommonIntensityAccumulator. Frames in which nothing is shared are left out. Errors: those of
 /// IntensityReader; data_corrupt if the files are not of the same frames.
 [[nodiscard]] Result<std::vector<SharedFrame>> shared_frames(const std::filesystem::path& reference,
                                                              const std::filesystem::path& variant);
@@ -43,4 +43,4 @@ struct SharedMeans {
 };
 [[nodiscard]] SharedMeans shared_means(std::span<const SharedFrame> frames);
 
-}  // namespace fusebench
+}  // namespace fusebench::study

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/error.hpp"
-#include "eval/record_files.hpp"
+#include "core/base/error.hpp"
+#include "eval/run_files/record_files.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
 /// The frames of the pair, with the motion that the reference saw.
 Result<std::vector<SharedFrame>> compared(const StudyRun& reference, const StudyRun& run) {
   for (const StudyRun* side : {&reference, &run}) {
-    if (auto checked = check_file(side->folder, side->record, "intensity.bin"); !checked)
+    if (auto checked = run_files::check_file(side->folder, side->record, "intensity.bin"); !checked)
       return tl::unexpected(checked.error());
   }
   auto frames = shared_frames(reference.folder / "intensity.bin", run.folder / "intensity.bin");
@@ -35,9 +35,9 @@ Study gather_study(std::vector<StudyRun> runs, std::vector<std::string> variants
   check(!variants.empty(), "a suite names a variant");
   Study study{std::move(variants), std::move(runs), {}};
   for (StudyRun& run : study.runs) {
-    if (run.variant == study.reference() || run.record.status != RunStatus::ok) continue;
+    if (run.variant == study.reference() || run.record.status != record::RunStatus::ok) continue;
     const StudyRun* reference = sibling(study, run, study.reference());
-    if (reference == nullptr || reference->record.status != RunStatus::ok) continue;
+    if (reference == nullptr || reference->record.status != record::RunStatus::ok) continue;
     auto frames = compared(*reference, run);
     if (frames) {
       run.shared = std::move(*frames);
@@ -56,9 +56,9 @@ const StudyRun* sibling(const Study& study, const StudyRun& run, std::string_vie
   return found == study.runs.end() ? nullptr : &*found;
 }
 
-std::optional<double> value_of(const Study& study, const StudyRun& run, const StudyValue& value,
+std::optional<double> value_of(const Study& study, const StudyRun& run, const suites::StudyValue& value,
                                std::string_view partner) {
-  if (run.record.status != RunStatus::ok && !value.of_every_run) return std::nullopt;
+  if (run.record.status != record::RunStatus::ok && !value.of_every_run) return std::nullopt;
   if (value.of != nullptr) return value.of(run.record);
   const bool is_reference = run.variant == study.reference();
   const StudyRun* pair =
@@ -69,4 +69,4 @@ std::optional<double> value_of(const Study& study, const StudyRun& run, const St
   return is_reference ? means.reference_grey : means.variant_grey;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

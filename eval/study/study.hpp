@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "eval/record.hpp"
+#include "eval/record/record.hpp"
 #include "eval/study/shared_frames.hpp"
-#include "eval/study/study_values.hpp"
+#include "eval/suites/study_values.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 struct StudyRun {
   std::string recording;
@@ -20,7 +20,7 @@ struct StudyRun {
   std::string half;
   std::string variant;
   std::filesystem::path folder;  ///< empty if there is none
-  RunRecord record;
+  record::RunRecord record;
   /// On the pixels shared with the reference variant's run of the recording; empty for the reference itself,
   /// and unless both runs are ok.
   std::vector<SharedFrame> shared = {};
@@ -47,7 +47,7 @@ struct Study {
 /// A number of one run, as StudyValue says. On common pixels, a variant is measured on those that it shares
 /// with the reference, and the reference on those that it shares with `partner`; empty: with the
 /// study's partner.
-[[nodiscard]] std::optional<double> value_of(const Study& study, const StudyRun& run, const StudyValue& value,
-                                             std::string_view partner = {});
+[[nodiscard]] std::optional<double> value_of(const Study& study, const StudyRun& run,
+                                             const suites::StudyValue& value, std::string_view partner = {});
 
-}  // namespace fusebench
+}  // namespace fusebench::study

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "core/variants.hpp"
-#include "eval/report/data_labels.hpp"
-#include "eval/statistics.hpp"
+#include "core/config/variants.hpp"
+#include "eval/metrics/statistics.hpp"
+#include "eval/record/data_labels.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
@@ -26,14 +26,15 @@ std::vector<std::string> distinct(const Study& study, std::string StudyRun::*tex
 std::vector<std::string> variants_in_order(const Study& study) {
   std::vector<std::string> present = distinct(study, &StudyRun::variant);
   std::vector<std::string> ordered;
-  for (const Variant& variant : all_variants()) {
+  for (const config::Variant& variant : config::all_variants()) {
     if (std::find(present.begin(), present.end(), variant.name) != present.end())
       ordered.emplace_back(variant.name);
   }
   return ordered;
 }
 
-ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& runs, const StudyValue& value) {
+ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& runs,
+                      const suites::StudyValue& value) {
   ValueSpread spread;
   std::vector<double> values;
   std::vector<double> partners;
@@ -54,11 +55,11 @@ ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& ru
   }
   spread.count = values.size();
   if (values.empty()) return spread;
-  const Statistics stats = statistics(values);
+  const metrics::Statistics stats = metrics::statistics(values);
   spread.mean = stats.mean;
   spread.median = stats.median;
-  if (!partners.empty()) spread.partner_mean = statistics(partners).mean;
-  if (value.nees_dof > 0) spread.bounds_95 = nees_bounds_95(values.size(), value.nees_dof);
+  if (!partners.empty()) spread.partner_mean = metrics::statistics(partners).mean;
+  if (value.nees_dof > 0) spread.bounds_95 = metrics::nees_bounds_95(values.size(), value.nees_dof);
   return spread;
 }
 
@@ -70,13 +71,14 @@ std::optional<SummaryRow> row_of(const Study& study, const std::string& half, co
     if (run.half != half || run.group != group || run.variant != variant) continue;
     runs.push_back(&run);
     ++row.total;
-    if (run.record.status == RunStatus::ok) ++row.ok;
-    if (run.record.status == RunStatus::lost) ++row.lost;
+    if (run.record.status == record::RunStatus::ok) ++row.ok;
+    if (run.record.status == record::RunStatus::lost) ++row.lost;
     row.lost_frames += run.record.frames.lost;
     row.frames += run.record.frames.total;
   }
   if (runs.empty()) return std::nullopt;
-  for (const StudyValue& value : study_values()) row.values.push_back(spread_of(study, runs, value));
+  for (const suites::StudyValue& value : suites::study_values())
+    row.values.push_back(spread_of(study, runs, value));
   return row;
 }
 
@@ -108,11 +110,11 @@ std::optional<MotionCurve> curve_of(const Study& study, const std::string& half,
 /// Footnotes of where the data come from, each with the groups that it is about.
 std::vector<std::string> data_notes(const Study& study) {
   std::vector<std::string> notes;
-  for (const DataLabel& label : data_labels()) {
+  for (const record::DataLabel& label : record::data_labels()) {
     std::vector<std::string> groups;
     for (const StudyRun& run : study.runs) {
       const bool known = std::find(groups.begin(), groups.end(), run.group) != groups.end();
-      if (!known && label.applies(words_of(run.record.recording))) groups.push_back(run.group);
+      if (!known && label.applies(record::words_of(run.record.recording))) groups.push_back(run.group);
     }
     if (!groups.empty()) notes.push_back(fmt::format("{} ({})", label.footnote(), fmt::join(groups, ", ")));
   }
@@ -121,7 +123,7 @@ std::vector<std::string> data_notes(const Study& study) {
 
 }  // namespace
 
-StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars) {
+StudySummary summarise(const std::string& suite, const Study& study, std::span<const suites::Bar> bars) {
   StudySummary summary;
   summary.suite = suite;
   summary.reference = study.reference();
@@ -130,7 +132,7 @@ StudySummary summarise(const std::string& suite, const Study& study, std::span<c
   summary.notes.insert(summary.notes.end(), study.notes.begin(), study.notes.end());
   const std::vector<std::string> groups = distinct(study, &StudyRun::group);
   const std::vector<std::string> variants = variants_in_order(study);
-  for (const std::string_view half_name : {kHeldOutHalf, kTuningHalf}) {
+  for (const std::string_view half_name : {suites::kHeldOutHalf, suites::kTuningHalf}) {
     const std::string half(half_name);
     for (const std::string& group : groups) {
       for (const std::string& variant : variants) {
@@ -146,4 +148,4 @@ StudySummary summarise(const std::string& suite, const Study& study, std::span<c
   return summary;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "eval/consistency_metrics.hpp"
+#include "eval/metrics/consistency_metrics.hpp"
 #include "eval/study/bar_check.hpp"
 #include "eval/study/study.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 /// One number over the recordings of a row.
 struct ValueSpread {
@@ -23,7 +23,7 @@ struct ValueSpread {
   double median = 0;
   double worst = 0;
   std::string worst_recording;
-  std::optional<NeesBounds> bounds_95;  ///< of the mean over so many runs, for NEES
+  std::optional<metrics::NeesBounds> bounds_95;  ///< of the mean over so many runs, for NEES
   /// On common pixels: with which variant they are shared, and its mean on the same pixels.
   std::string partner;
   double partner_mean = 0;
@@ -68,6 +68,7 @@ struct StudySummary {
 
 inline constexpr std::string_view kAllGroups = "all";
 
-[[nodiscard]] StudySummary summarise(const std::string& suite, const Study& study, std::span<const Bar> bars);
+[[nodiscard]] StudySummary summarise(const std::string& suite, const Study& study,
+                                     std::span<const suites::Bar> bars);
 
-}  // namespace fusebench
+}  // namespace fusebench::study

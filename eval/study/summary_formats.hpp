@@ -6,7 +6,7 @@
 #include "eval/study/study.hpp"
 #include "eval/study/study_summary.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 /// JSON in SI units with keys in a fixed order: rows, curves, bars, and every run. No times but frames a
 /// second; what does not exist is null.
@@ -31,4 +31,4 @@ struct SummaryTable {
 [[nodiscard]] std::vector<SummaryTable> value_tables(const StudySummary& summary);
 [[nodiscard]] std::vector<SummaryTable> motion_tables(const StudySummary& summary);
 
-}  // namespace fusebench
+}  // namespace fusebench::study

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "eval/json_text.hpp"
 #include "eval/study/bars_json.hpp"
 #include "eval/study/summary_formats.hpp"
+#include "eval/text/json_text.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
@@ -15,7 +15,7 @@ Json number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-Json json_of(const ValueSpread& spread, const StudyValue& value) {
+Json json_of(const ValueSpread& spread, const suites::StudyValue& value) {
   Json json = {{"runs", spread.count}};
   if (spread.count == 0) return json;
   json["mean"] = spread.mean;
@@ -36,8 +36,8 @@ Json json_of(const SummaryRow& row) {
       {"half", row.half},     {"group", row.group}, {"variant", row.variant},         {"n_ok", row.ok},
       {"n_total", row.total}, {"n_lost", row.lost}, {"lost_frames", row.lost_frames}, {"frames", row.frames}};
   Json values = Json::object();
-  for (std::size_t i = 0; i < study_values().size(); ++i) {
-    const StudyValue& value = study_values()[i];
+  for (std::size_t i = 0; i < suites::study_values().size(); ++i) {
+    const suites::StudyValue& value = suites::study_values()[i];
     values[std::string(value.name)] = json_of(row.values[i], value);
   }
   json["values"] = std::move(values);
@@ -85,12 +85,12 @@ Json json_of(const Study& study, const StudyRun& run) {
                {"variant", run.variant},
                {"group", run.group},
                {"half", run.half},
-               {"status", to_string(run.record.status)},
+               {"status", record::to_string(run.record.status)},
                {"reason", run.record.reason},
                {"config_hash", run.record.config_hash},
                {"fingerprint", run.record.recording.fingerprint}};
   Json values = Json::object();
-  for (const StudyValue& value : study_values())
+  for (const suites::StudyValue& value : suites::study_values())
     values[std::string(value.name)] = number(value_of(study, run, value));
   json["values"] = std::move(values);
   return json;
@@ -115,7 +115,7 @@ std::string summary_json(const StudySummary& summary, const Study& study) {
   const Json document = {{"suite", summary.suite},        {"bars", bars_json(summary.bars)},
                          {"rows", list_of(summary.rows)}, {"motion", motion},
                          {"notes", summary.notes},        {"runs", runs}};
-  return json_text(document) + "\n";
+  return text::json_text(document) + "\n";
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

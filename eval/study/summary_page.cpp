@@ -4,16 +4,16 @@
 #include <cmath>
 #include <utility>
 
-#include "eval/report/page.hpp"
+#include "eval/page/page.hpp"
 #include "eval/study/summary_formats.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
-PageTable page_table(const SummaryTable& table) {
-  PageTable page{table.header, {}};
+page::PageTable page_table(const SummaryTable& table) {
+  page::PageTable page{table.header, {}};
   for (const std::vector<std::string>& cells : table.rows) {
     const bool failed = cells.front() == to_string(Verdict::failed);
     page.rows.push_back({cells, failed ? "error" : ""});
@@ -29,19 +29,20 @@ double place_px(const MotionBin& bin) {
 /// Of the variants that the suite names, charts show so many; each has its own colour wherever it occurs.
 constexpr std::size_t kMostCharted = 3;
 
-ChartSeries series_of(const std::string& variant, std::size_t colour, SeriesStyle style) {
+page::ChartSeries series_of(const std::string& variant, std::size_t colour, page::SeriesStyle style) {
   return {.label = variant, .points = {}, .style = style, .colour = colour};
 }
 
-Chart motion_chart(const StudySummary& summary, const MotionCurve& curve) {
-  Chart chart;
+page::Chart motion_chart(const StudySummary& summary, const MotionCurve& curve) {
+  page::Chart chart;
   chart.title = curve.group == kAllGroups ? "all groups" : curve.group;
   chart.x_label = "motion of patches between two frames [px]";
   chart.left_label = "AIE [grey levels]";
   chart.right_label = fmt::format("{} / {}", summary.partner, summary.reference);
-  ChartSeries reference = series_of(summary.reference, 0, SeriesStyle::line);
-  ChartSeries partner = series_of(summary.partner, 1, SeriesStyle::line);
-  ChartSeries ratio{.label = chart.right_label, .points = {}, .style = SeriesStyle::dots, .right = true};
+  page::ChartSeries reference = series_of(summary.reference, 0, page::SeriesStyle::line);
+  page::ChartSeries partner = series_of(summary.partner, 1, page::SeriesStyle::line);
+  page::ChartSeries ratio{
+      .label = chart.right_label, .points = {}, .style = page::SeriesStyle::dots, .right = true};
   ratio.colour = kMostCharted;
   std::size_t frames = 0;
   for (const MotionBin& bin : curve.bins) {
@@ -68,16 +69,16 @@ std::vector<std::string_view> recordings_of(const Study& study, std::string_view
 }
 
 /// A dot for each ok run, above the number of its recording.
-Chart value_chart(const StudySummary& summary, const Study& study, std::string_view group,
-                  const StudyValue& value) {
-  Chart chart;
+page::Chart value_chart(const StudySummary& summary, const Study& study, std::string_view group,
+                  const suites::StudyValue& value) {
+  page::Chart chart;
   chart.title = fmt::format("{}: {}", group, value.label);
   chart.x_label = "recording";
   chart.left_label = value.label;
   const std::vector<std::string_view> recordings = recordings_of(study, group);
   for (std::size_t i = 0; i < std::min(study.variants.size(), kMostCharted); ++i) {
     const std::string& variant = study.variants[i];
-    ChartSeries series = series_of(variant, i, SeriesStyle::dots);
+    page::ChartSeries series = series_of(variant, i, page::SeriesStyle::dots);
     for (const StudyRun& run : study.runs) {
       if (run.group != group || run.variant != variant) continue;
       const auto number = value_of(study, run, value);
@@ -92,15 +93,15 @@ Chart value_chart(const StudySummary& summary, const Study& study, std::string_v
   return chart;
 }
 
-std::vector<Chart> value_charts(const StudySummary& summary, const Study& study) {
-  std::vector<Chart> charts;
+std::vector<page::Chart> value_charts(const StudySummary& summary, const Study& study) {
+  std::vector<page::Chart> charts;
   std::vector<std::string> groups;
   for (const SummaryRow& row : summary.rows) {
     if (std::find(groups.begin(), groups.end(), row.group) == groups.end()) groups.push_back(row.group);
   }
   for (const std::string& group : groups) {
     for (const std::string_view name : {"ate_rmse_m", "aie_grey"}) {
-      Chart chart = value_chart(summary, study, group, *find_study_value(name));
+      page::Chart chart = value_chart(summary, study, group, *suites::find_study_value(name));
       if (!chart.series.empty()) charts.push_back(std::move(chart));
     }
   }
@@ -110,10 +111,10 @@ std::vector<Chart> value_charts(const StudySummary& summary, const Study& study)
 }  // namespace
 
 std::string summary_page(const StudySummary& summary, const Study& study) {
-  Page page;
+  page::Page page;
   page.title = fmt::format("Study: {}", summary.suite);
   std::size_t ok = 0;
-  for (const StudyRun& run : study.runs) ok += run.record.status == RunStatus::ok ? 1 : 0;
+  for (const StudyRun& run : study.runs) ok += run.record.status == record::RunStatus::ok ? 1 : 0;
   page.subtitle = fmt::format(
       "{} of {} runs ok. The tuning half is for choosing parameters, the held-out half for judging them.", ok,
       study.runs.size());
@@ -121,23 +122,23 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
     SummaryTable bars = bar_table(summary.bars);
     page.sections.push_back({bars.title, "", page_table(bars)});
   }
-  std::vector<Chart> motion;
+  std::vector<page::Chart> motion;
   for (const MotionCurve& curve : summary.curves) {
-    if (curve.half == kHeldOutHalf) motion.push_back(motion_chart(summary, curve));
+    if (curve.half == suites::kHeldOutHalf) motion.push_back(motion_chart(summary, curve));
   }
   if (!motion.empty())
     page.sections.push_back({"AIE against image motion, held-out half", "", std::move(motion)});
-  std::vector<Chart> charts = value_charts(summary, study);
+  std::vector<page::Chart> charts = value_charts(summary, study);
   if (!charts.empty()) page.sections.push_back({"Each recording", "", std::move(charts)});
   for (const auto& tables : {value_tables(summary), motion_tables(summary)}) {
     for (const SummaryTable& table : tables) page.sections.push_back({table.title, "", page_table(table)});
   }
   if (!summary.notes.empty()) {
-    PageTable notes;
+    page::PageTable notes;
     for (const std::string& note : summary.notes) notes.rows.push_back({{note}, ""});
     page.sections.push_back({"Remarks", "", std::move(notes)});
   }
-  return to_html(page);
+  return page::to_html(page);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

@@ -7,14 +7,14 @@
 #include "eval/study/summary_formats.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
 using Cells = std::vector<std::string>;
 
 /// "1.20 / 1.18 / 1.90": mean, median, worst.
-std::string spread_cell(const ValueSpread& spread, const StudyValue& value) {
+std::string spread_cell(const ValueSpread& spread, const suites::StudyValue& value) {
   if (spread.count == 0) return "-";
   const auto shown = [&](double number) {
     return fmt::format("{:.{}f}", number * value.shown_factor, value.decimals);
@@ -61,7 +61,7 @@ SummaryTable value_table(std::string_view half, const std::vector<const SummaryR
     table.rows.push_back(
         {row->group, row->variant, counts_cell(*row), fmt::format("{}/{}", row->lost_frames, row->frames)});
   }
-  const auto values = study_values();
+  const auto values = suites::study_values();
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool told = values[i].name == "runs_not_ok" || values[i].name == "lost_frames";
     if (told || values[i].nees_dof > 0 || !any_value(rows, i)) continue;
@@ -79,7 +79,7 @@ SummaryTable nees_table(std::string_view half, const std::vector<const SummaryRo
       fmt::format("NEES / dof, {} half: mean over runs (95 % bounds of that mean); ! is outside", half),
       {"group", "variant"},
       {}};
-  const auto values = study_values();
+  const auto values = suites::study_values();
   for (const SummaryRow* row : rows) {
     Cells cells = {row->group, row->variant};
     bool any = false;
@@ -90,7 +90,7 @@ SummaryTable nees_table(std::string_view half, const std::vector<const SummaryRo
     }
     if (any) table.rows.push_back(std::move(cells));
   }
-  for (const StudyValue& value : values) {
+  for (const suites::StudyValue& value : values) {
     if (value.nees_dof > 0) table.header.emplace_back(value.label);
   }
   return table;
@@ -121,7 +121,7 @@ SummaryTable bar_table(const std::vector<BarResult>& bars) {
 
 std::vector<SummaryTable> value_tables(const StudySummary& summary) {
   std::vector<SummaryTable> tables;
-  for (const std::string_view half : {kHeldOutHalf, kTuningHalf}) {
+  for (const std::string_view half : {suites::kHeldOutHalf, suites::kTuningHalf}) {
     const std::vector<const SummaryRow*> rows = rows_of(summary, half);
     if (rows.empty()) continue;
     tables.push_back(value_table(half, rows));
@@ -133,7 +133,7 @@ std::vector<SummaryTable> value_tables(const StudySummary& summary) {
 
 std::vector<SummaryTable> motion_tables(const StudySummary& summary) {
   std::vector<SummaryTable> tables;
-  for (const std::string_view half : {kHeldOutHalf, kTuningHalf}) {
+  for (const std::string_view half : {suites::kHeldOutHalf, suites::kTuningHalf}) {
     SummaryTable table{
         fmt::format("AIE on common pixels against the motion of patches between two frames, {} half", half),
         {"group", "motion [px]", "frames", "pixels", summary.reference, summary.partner,
@@ -158,4 +158,4 @@ std::vector<SummaryTable> motion_tables(const StudySummary& summary) {
   return tables;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

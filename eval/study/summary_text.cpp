@@ -4,7 +4,7 @@
 
 #include "eval/study/summary_formats.hpp"
 
-namespace fusebench {
+namespace fusebench::study {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::string summary_text(const StudySummary& summary) {
   return text;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::study

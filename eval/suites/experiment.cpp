@@ -8,12 +8,12 @@
 #include <system_error>
 #include <utility>
 
-#include "core/nearest_name.hpp"
+#include "core/base/nearest_name.hpp"
+#include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/open_recording.hpp"
-#include "datasets/recording_catalogue.hpp"
 #include "eval/suites/suite_entries.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 namespace fs = std::filesystem;
 
@@ -34,7 +34,7 @@ tl::unexpected<Error> unknown_suite_key(const std::string& place, const std::str
   return unknown_key(place, key, kSuiteKeys, "a suite");
 }
 
-Result<void> read_imu(const TomlEntry& entry, Suite& suite) {
+Result<void> read_imu(const config::TomlEntry& entry, Suite& suite) {
   const auto text = plain_entry<std::string>(entry);
   if (!text) return wrong_entry(entry, "\"recorded\", \"synthetic\" or \"auto\"");
   const auto choice = parse_imu_choice(*text);
@@ -44,16 +44,16 @@ Result<void> read_imu(const TomlEntry& entry, Suite& suite) {
   return {};
 }
 
-Result<void> read_kept(const TomlEntry& entry, Suite& suite) {
-  for (const KeptFiles kept : {KeptFiles::all, KeptFiles::small}) {
-    if (plain_entry<std::string>(entry) != to_string(kept)) continue;
+Result<void> read_kept(const config::TomlEntry& entry, Suite& suite) {
+  for (const run::KeptFiles kept : {run::KeptFiles::all, run::KeptFiles::small}) {
+    if (plain_entry<std::string>(entry) != run::to_string(kept)) continue;
     suite.kept = kept;
     return {};
   }
   return wrong_entry(entry, "\"all\" or \"small\"");
 }
 
-Result<void> read_repetitions(const TomlEntry& entry, Suite& suite) {
+Result<void> read_repetitions(const config::TomlEntry& entry, Suite& suite) {
   constexpr std::int64_t kMost = 1000;
   const auto count = plain_entry<std::int64_t>(entry);
   if (!count || *count < 1 || *count > kMost)
@@ -62,7 +62,7 @@ Result<void> read_repetitions(const TomlEntry& entry, Suite& suite) {
   return {};
 }
 
-Result<void> read_entry(const TomlEntry& entry, Suite& suite) {
+Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   const auto store = [](auto value, auto& target) -> Result<void> {
     if (!value) return tl::unexpected(value.error());
     target = std::move(*value);
@@ -93,7 +93,7 @@ Result<void> read_entry(const TomlEntry& entry, Suite& suite) {
 
 Result<void> read_recording(const EntryTable& table, Suite& suite) {
   SuiteRecording recording;
-  for (const TomlEntry& entry : table.entries) {
+  for (const config::TomlEntry& entry : table.entries) {
     if (entry.key == "variants") {
       auto list = variants_entry(entry);
       if (!list) return tl::unexpected(list.error());
@@ -117,7 +117,7 @@ Result<void> read_recording(const EntryTable& table, Suite& suite) {
   return {};
 }
 
-Result<void> read_tables(const TomlDocument& document, Suite& suite) {
+Result<void> read_tables(const config::TomlDocument& document, Suite& suite) {
   for (const EntryTable& table : entry_tables(document, "recordings")) {
     if (auto read = read_recording(table, suite); !read) return read;
   }
@@ -181,9 +181,9 @@ Result<void> check_suite(const Suite& suite, const fs::path& file) {
   if (auto good = check_groups(suite); !good) return good;
   // Each edit must be one that a configuration takes, before hours are spent on the runs before it.
   for (const std::string& name : variants_of(suite)) {
-    const auto config = suite_config(suite, *find_variant(name));
+    const auto config = suite_config(suite, *config::find_variant(name));
     if (!config) return tl::unexpected(config.error());
-    if (auto related = check_relations(config->values); !related) {
+    if (auto related = config::check_relations(config->values); !related) {
       return lacks(fmt::format("variant {}: {}", name, related.error().message));
     }
   }
@@ -203,7 +203,7 @@ std::vector<fs::path> folders_in(const fs::path& parent, std::error_code& error)
 }
 
 /// A recording of the catalogue that is not under `data`.
-tl::unexpected<Error> not_there(const CatalogueEntry& entry, const fs::path& data) {
+tl::unexpected<Error> not_there(const calibration::CatalogueEntry& entry, const fs::path& data) {
   const std::string folder = (data / entry.folders.front()).string();
   return fail(
       ErrorCode::data_missing,
@@ -223,7 +223,8 @@ Result<fs::path> find_folder_named(const std::string& name, const fs::path& data
     }
   }
   std::vector<std::string_view> known(present.begin(), present.end());
-  for (const CatalogueEntry& entry : recording_catalogue()) known.push_back(entry.name);
+  for (const calibration::CatalogueEntry& entry : calibration::recording_catalogue())
+    known.push_back(entry.name);
   const std::string there = present.empty()
                                 ? "there are none under --data"
                                 : fmt::format("under --data there are: {}", fmt::join(present, ", "));
@@ -234,12 +235,12 @@ Result<fs::path> find_folder_named(const std::string& name, const fs::path& data
 }  // namespace
 
 Result<Suite> read_suite(const fs::path& file) {
-  const auto document = read_toml(file);
+  const auto document = config::read_toml(file);
   if (!document) return tl::unexpected(document.error());
   constexpr std::array<std::string_view, 3> lists = {"recordings", "simulations", "bars"};
   constexpr std::array<std::string_view, 2> lists_of_options = {"sweep",
                                                                 "exclude"};  // with tables of their own
-  for (const TomlTable& table : document->tables) {
+  for (const config::TomlTable& table : document->tables) {
     const auto list = list_of_key(table.key);
     const bool plain = list && std::find(lists.begin(), lists.end(), *list) != lists.end();
     const bool of_options =
@@ -250,7 +251,7 @@ Result<Suite> read_suite(const fs::path& file) {
     if (!known) return unknown_suite_key(table.place, table.key);
   }
   Suite suite;
-  for (const TomlEntry& entry : document->entries) {
+  for (const config::TomlEntry& entry : document->entries) {
     if (auto read = read_entry(entry, suite); !read) return tl::unexpected(read.error());
   }
   if (auto read = read_tables(*document, suite); !read) return tl::unexpected(read.error());
@@ -258,20 +259,20 @@ Result<Suite> read_suite(const fs::path& file) {
   return suite;
 }
 
-Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant) {
-  EffectiveConfig config = variant_config(variant);
-  for (const TomlEntry& entry : suite.config) {
-    const auto* value = std::get_if<OptionValue>(&entry.value);
+Result<config::EffectiveConfig> suite_config(const Suite& suite, const config::Variant& variant) {
+  config::EffectiveConfig config = config::variant_config(variant);
+  for (const config::TomlEntry& entry : suite.config) {
+    const auto* value = std::get_if<config::OptionValue>(&entry.value);
     if (value == nullptr) return wrong_entry(entry, "one value, not a list");
     if (auto set = config.set(entry.key, *value, entry.place); !set) return tl::unexpected(set.error());
   }
   return config;
 }
 
-Result<ImuChoice> parse_imu_choice(const std::string& text) {
-  if (text == "recorded") return ImuChoice::recorded;
-  if (text == "synthetic") return ImuChoice::synthetic;
-  if (text == "auto") return ImuChoice::automatic;
+Result<run::ImuChoice> parse_imu_choice(const std::string& text) {
+  if (text == "recorded") return run::ImuChoice::recorded;
+  if (text == "synthetic") return run::ImuChoice::synthetic;
+  if (text == "auto") return run::ImuChoice::automatic;
   return fail(ErrorCode::configuration, fmt::format("imu = {} (allowed: recorded | synthetic | auto)", text));
 }
 
@@ -279,13 +280,13 @@ Result<std::vector<fs::path>> recordings_under(const fs::path& data) {
   std::error_code error;
   std::vector<fs::path> folders;
   for (const fs::path& folder : folders_in(data, error)) {
-    if (recognise_format(folder)) {
+    if (datasets::recognise_format(folder)) {
       folders.push_back(folder);
       continue;
     }
     std::error_code ignored;  // a folder that may not be read holds nothing for us
     for (const fs::path& inner : folders_in(folder, ignored)) {
-      if (recognise_format(inner)) folders.push_back(inner);
+      if (datasets::recognise_format(inner)) folders.push_back(inner);
     }
   }
   if (error) {
@@ -327,7 +328,7 @@ Result<fs::path> find_recording(const std::string& name, const fs::path& data) {
     const fs::path folder = fs::weakly_canonical(name, ignored);
     return ignored ? fs::path(name) : folder;
   }
-  const CatalogueEntry* entry = find_catalogue_entry(name);
+  const calibration::CatalogueEntry* entry = calibration::find_catalogue_entry(name);
   if (data.empty()) {
     return fail(ErrorCode::data_missing,
                 entry == nullptr
@@ -337,11 +338,11 @@ Result<fs::path> find_recording(const std::string& name, const fs::path& data) {
   }
   if (fs::is_directory(data / name, ignored)) return data / name;
   if (entry != nullptr) {
-    const auto folder = catalogue_folder(*entry, data);
+    const auto folder = calibration::catalogue_folder(*entry, data);
     if (folder) return *folder;
     return not_there(*entry, data);
   }
   return find_folder_named(name, data);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "core/config_access.hpp"
-#include "core/error.hpp"
-#include "core/toml_document.hpp"
-#include "core/variants.hpp"
-#include "eval/run.hpp"
+#include "core/base/error.hpp"
+#include "core/config/config_access.hpp"
+#include "core/config/toml_document.hpp"
+#include "core/config/variants.hpp"
+#include "eval/run/run.hpp"
 #include "eval/suites/suite_bars.hpp"
 #include "eval/suites/suite_runs.hpp"
 #include "eval/suites/suite_simulations.hpp"
 #include "eval/suites/sweep_design.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 /// A recording that exists, as a suite names it.
 ///
@@ -55,11 +55,11 @@ struct Suite {
   std::vector<SuiteRecording> recordings;
   std::vector<SuiteSimulation> simulations;
   std::vector<std::string> variants;
-  ImuChoice imu = ImuChoice::recorded;
-  std::vector<TomlEntry> config;  ///< keys without "config."
+  run::ImuChoice imu = run::ImuChoice::recorded;
+  std::vector<config::TomlEntry> config;  ///< keys without "config."
   int repetitions = 1;
-  std::vector<FrameWindow> windows;  ///< empty: all frames
-  KeptFiles kept = KeptFiles::all;
+  std::vector<run::FrameWindow> windows;  ///< empty: all frames
+  run::KeptFiles kept = run::KeptFiles::all;
   RunLimits limits;
   std::vector<SweepBlock> sweeps;
   std::vector<Exclusion> exclusions;
@@ -71,14 +71,15 @@ struct Suite {
 [[nodiscard]] Result<Suite> read_suite(const std::filesystem::path& file);
 
 /// The configuration of one of the suite's variants, before --set.
-[[nodiscard]] Result<EffectiveConfig> suite_config(const Suite& suite, const Variant& variant);
+[[nodiscard]] Result<config::EffectiveConfig> suite_config(const Suite& suite,
+                                                           const config::Variant& variant);
 
 /// "recorded", "synthetic" or "auto". Error configuration.
-[[nodiscard]] Result<ImuChoice> parse_imu_choice(const std::string& text);
+[[nodiscard]] Result<run::ImuChoice> parse_imu_choice(const std::string& text);
 
 /// A folder as it is named, else the folder of that name under `data` (may be empty), else the recording of
-/// that name in the catalogue (datasets/recording_catalogue.hpp). Error data_missing that says what is known:
-/// how to fetch a recording of the catalogue, or what is under `data`, with the nearest name.
+/// that name in the catalogue (datasets/calibration/recording_catalogue.hpp). Error data_missing that says
+/// what is known: how to fetch a recording of the catalogue, or what is under `data`, with the nearest name.
 [[nodiscard]] Result<std::filesystem::path> find_recording(const std::string& name,
                                                            const std::filesystem::path& data);
 
@@ -91,4 +92,4 @@ struct Suite {
 /// (<scene>/<sequence>), by path. Errors: data_missing if `data` is no folder or has none.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> recordings_under(const std::filesystem::path& data);
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

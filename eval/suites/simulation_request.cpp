@@ -4,10 +4,10 @@
 
 #include <charconv>
 
-namespace fusebench {
+namespace fusebench::suites {
 
-Result<SimulationOptions> simulation_options(const SimulationRequest& request) {
-  auto options = simulation_defaults(request.layout, request.preset, request.size);
+Result<simulator::SimulationOptions> simulation_options(const SimulationRequest& request) {
+  auto options = simulator::simulation_defaults(request.layout, request.preset, request.size);
   if (!options) return options;
   options->seed = request.seed;
   options->duration_s = request.duration_s;
@@ -24,14 +24,14 @@ Result<SimulationOptions> simulation_options(const SimulationRequest& request) {
   options->blur_samples = request.blur_samples;
   options->rig.color.timing.color_readout_s = request.rolling_shutter_s;
   options->imu.time_offset_s = request.time_offset_s;
-  if (request.no_noise) remove_noise(*options);
+  if (request.no_noise) simulator::remove_noise(*options);
   for (const std::string& text : request.faults) {
-    const auto fault = parse_fault(text);
+    const auto fault = simulator::faults::parse_fault(text);
     if (!fault) return tl::unexpected(fault.error());
     options->faults.push_back(*fault);
   }
   if (!request.calibration_error.empty()) {
-    const auto error = parse_calibration_error(request.calibration_error);
+    const auto error = simulator::faults::parse_calibration_error(request.calibration_error);
     if (!error) return tl::unexpected(error.error());
     options->calibration_error = *error;
   }
@@ -39,24 +39,27 @@ Result<SimulationOptions> simulation_options(const SimulationRequest& request) {
   return options;
 }
 
-Result<MotionPreset> parse_motion_preset(std::string_view text) {
-  for (const MotionPreset preset :
-       {MotionPreset::slow, MotionPreset::fast, MotionPreset::shake, MotionPreset::sweep}) {
-    if (text == to_string(preset)) return preset;
+Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text) {
+  for (const simulator::motion::MotionPreset preset :
+       {simulator::motion::MotionPreset::slow, simulator::motion::MotionPreset::fast,
+        simulator::motion::MotionPreset::shake, simulator::motion::MotionPreset::sweep}) {
+    if (text == simulator::motion::to_string(preset)) return preset;
   }
   return fail(ErrorCode::configuration,
               fmt::format("preset = {} (allowed: slow | fast | shake | sweep)", text));
 }
 
-Result<RecordingLayout> parse_recording_layout(std::string_view text) {
-  for (const RecordingLayout layout : {RecordingLayout::zr300, RecordingLayout::tum, RecordingLayout::icl}) {
-    if (text == to_string(layout)) return layout;
+Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text) {
+  for (const simulator::layouts::RecordingLayout layout :
+       {simulator::layouts::RecordingLayout::zr300, simulator::layouts::RecordingLayout::tum,
+        simulator::layouts::RecordingLayout::icl}) {
+    if (text == simulator::layouts::to_string(layout)) return layout;
   }
   return fail(ErrorCode::configuration, fmt::format("format = {} (allowed: zr300 | tum | icl)", text));
 }
 
-Result<ImageSize> parse_image_size(std::string_view text) {
-  ImageSize size;
+Result<images::ImageSize> parse_image_size(std::string_view text) {
+  images::ImageSize size;
   const char* const end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, size.width_px);
   const bool cross = width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x';
@@ -67,4 +70,4 @@ Result<ImageSize> parse_image_size(std::string_view text) {
   return size;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

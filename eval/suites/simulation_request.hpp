@@ -9,23 +9,23 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "datasets/simulator/simulation.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 struct SimulationRequest {
-  RecordingLayout layout = RecordingLayout::zr300;
-  MotionPreset preset = MotionPreset::slow;
+  simulator::layouts::RecordingLayout layout = simulator::layouts::RecordingLayout::zr300;
+  simulator::motion::MotionPreset preset = simulator::motion::MotionPreset::slow;
   std::uint64_t seed = 1;
   double duration_s = 10;
   double rate_hz = 30;
-  ImageSize size{640, 480};
+  images::ImageSize size{640, 480};
   std::optional<bool> from_rest;     ///< default: a preset starts from rest, a trajectory as it begins
   std::filesystem::path trajectory;  ///< instead of the preset; empty: none
   double speed = 1;                  ///< of the trajectory
   std::filesystem::path scene;       ///< instead of the furnished room; empty: none
-  SceneFileOptions scene_options;
+  simulator::scene::SceneFileOptions scene_options;
   double exposure_s = 0.008;
   int blur_samples = 8;
   double rolling_shutter_s = 0;
@@ -38,13 +38,13 @@ struct SimulationRequest {
 
 /// Errors: configuration (the image size), usage (the form of a fault); everything else is checked by
 /// simulate().
-[[nodiscard]] Result<SimulationOptions> simulation_options(const SimulationRequest& request);
+[[nodiscard]] Result<simulator::SimulationOptions> simulation_options(const SimulationRequest& request);
 
 /// "slow", "fast", "shake", "sweep". Error configuration.
-[[nodiscard]] Result<MotionPreset> parse_motion_preset(std::string_view text);
+[[nodiscard]] Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text);
 /// "zr300", "tum", "icl". Error configuration.
-[[nodiscard]] Result<RecordingLayout> parse_recording_layout(std::string_view text);
+[[nodiscard]] Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text);
 /// "640x480". Error usage.
-[[nodiscard]] Result<ImageSize> parse_image_size(std::string_view text);
+[[nodiscard]] Result<images::ImageSize> parse_image_size(std::string_view text);
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

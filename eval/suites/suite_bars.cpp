@@ -7,12 +7,12 @@
 #include <array>
 #include <utility>
 
-#include "core/nearest_name.hpp"
-#include "core/variants.hpp"
-#include "eval/study/study_values.hpp"
+#include "core/base/nearest_name.hpp"
+#include "core/config/variants.hpp"
+#include "eval/suites/study_values.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 namespace {
 
@@ -36,7 +36,7 @@ Result<void> store(Result<T> value, auto& target) {
 }
 
 template <class Choice, std::size_t N>
-Result<void> store_choice(const TomlEntry& entry,
+Result<void> store_choice(const config::TomlEntry& entry,
                           const std::array<std::pair<std::string_view, Choice>, N>& choices, Choice& target) {
   const auto text = plain_entry<std::string>(entry).value_or("");
   std::vector<std::string_view> names;
@@ -49,9 +49,9 @@ Result<void> store_choice(const TomlEntry& entry,
   return wrong_entry(entry, fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
-Result<void> check_variants(const TomlEntry& entry, const std::vector<std::string>& names) {
+Result<void> check_variants(const config::TomlEntry& entry, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    const auto variant = find_variant(name);
+    const auto variant = config::find_variant(name);
     if (!variant)
       return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, variant.error().message),
                   variant.error().hint);
@@ -59,7 +59,7 @@ Result<void> check_variants(const TomlEntry& entry, const std::vector<std::strin
   return {};
 }
 
-Result<void> check_metrics(const TomlEntry& entry, const std::vector<std::string>& names) {
+Result<void> check_metrics(const config::TomlEntry& entry, const std::vector<std::string>& names) {
   std::vector<std::string_view> known;
   for (const StudyValue& value : study_values()) known.push_back(value.name);
   for (const std::string& name : names) {
@@ -72,7 +72,7 @@ Result<void> check_metrics(const TomlEntry& entry, const std::vector<std::string
   return {};
 }
 
-Result<void> read_number(const TomlEntry& entry, Bar& bar) {
+Result<void> read_number(const config::TomlEntry& entry, Bar& bar) {
   const std::array<std::pair<std::string_view, std::optional<double>*>, 7> numbers = {
       {{"at_most", &bar.at_most},
        {"at_least", &bar.at_least},
@@ -87,14 +87,14 @@ Result<void> read_number(const TomlEntry& entry, Bar& bar) {
   return unknown_key(entry.place, entry.key, kKeys, "a bar");
 }
 
-Result<void> read_half(const TomlEntry& entry, Bar& bar) {
+Result<void> read_half(const config::TomlEntry& entry, Bar& bar) {
   if (auto stored = store(text_entry(entry), bar.half); !stored) return stored;
   if (bar.half != kTuningHalf && bar.half != kHeldOutHalf)
     return wrong_entry(entry, "\"tuning\" or \"held-out\"");
   return {};
 }
 
-Result<void> read_value(const TomlEntry& entry, BarTable& table) {
+Result<void> read_value(const config::TomlEntry& entry, BarTable& table) {
   Bar& bar = table.bar;
   const std::string& key = entry.key;
   if (key == "title") return store(text_entry(entry), bar.title);
@@ -184,7 +184,7 @@ Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables, std::s
     BarTable table;
     table.bar.half = kHeldOutHalf;
     table.bar.place = entries.place;
-    for (const TomlEntry& entry : entries.entries) {
+    for (const config::TomlEntry& entry : entries.entries) {
       if (auto read = read_value(entry, table); !read) return tl::unexpected(read.error());
     }
     for (const std::string_view key : {"title", "variant", "metric", "statistic"}) {
@@ -197,4 +197,4 @@ Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables, std::s
   return bars;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/suites/suite_entries.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 /// How the values of several recordings become one.
 enum class BarStatistic {
@@ -69,4 +69,4 @@ struct Bar {
 [[nodiscard]] Result<std::vector<Bar>> read_bars(const std::vector<EntryTable>& tables,
                                                  std::string_view reference);
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

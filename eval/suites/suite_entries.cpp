@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/nearest_name.hpp"
-#include "core/variants.hpp"
+#include "core/base/nearest_name.hpp"
+#include "core/config/variants.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
-tl::unexpected<Error> wrong_entry(const TomlEntry& entry, std::string_view expected) {
+tl::unexpected<Error> wrong_entry(const config::TomlEntry& entry, std::string_view expected) {
   return fail(ErrorCode::configuration, fmt::format("{}: {} must be {}", entry.place, entry.key, expected));
 }
 
@@ -22,13 +22,13 @@ tl::unexpected<Error> unknown_key(const std::string& place, const std::string& k
               fmt::format("keys of {} are {}", what, fmt::join(keys, ", ")));
 }
 
-Result<std::string> text_entry(const TomlEntry& entry) {
+Result<std::string> text_entry(const config::TomlEntry& entry) {
   auto text = plain_entry<std::string>(entry);
   if (!text || text->empty()) return wrong_entry(entry, "a text that is not empty");
   return std::move(*text);
 }
 
-Result<void> check_folder_name(const TomlEntry& entry, std::string_view name) {
+Result<void> check_folder_name(const config::TomlEntry& entry, std::string_view name) {
   const auto plain = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
            c == '-' || c == '.';
@@ -43,42 +43,42 @@ Result<void> check_folder_name(const TomlEntry& entry, std::string_view name) {
       "it becomes the name of a folder");
 }
 
-Result<std::string> folder_name_entry(const TomlEntry& entry) {
+Result<std::string> folder_name_entry(const config::TomlEntry& entry) {
   auto name = text_entry(entry);
   if (!name) return name;
   if (auto good = check_folder_name(entry, *name); !good) return tl::unexpected(good.error());
   return name;
 }
 
-Result<bool> flag_entry(const TomlEntry& entry) {
+Result<bool> flag_entry(const config::TomlEntry& entry) {
   const auto flag = plain_entry<bool>(entry);
   if (!flag) return wrong_entry(entry, "true or false");
   return *flag;
 }
 
-Result<double> number_entry(const TomlEntry& entry) {
+Result<double> number_entry(const config::TomlEntry& entry) {
   if (const auto integer = plain_entry<std::int64_t>(entry)) return static_cast<double>(*integer);
   const auto number = plain_entry<double>(entry);
   if (!number || !std::isfinite(*number)) return wrong_entry(entry, "a number");
   return *number;
 }
 
-Result<std::uint64_t> count_entry(const TomlEntry& entry) {
+Result<std::uint64_t> count_entry(const config::TomlEntry& entry) {
   const auto integer = plain_entry<std::int64_t>(entry);
   if (!integer || *integer < 0) return wrong_entry(entry, "an integer, 0 or more");
   return static_cast<std::uint64_t>(*integer);
 }
 
-Result<std::vector<std::string>> names_entry(const TomlEntry& entry, bool one_allowed) {
+Result<std::vector<std::string>> names_entry(const config::TomlEntry& entry, bool one_allowed) {
   if (one_allowed && plain_entry<std::string>(entry)) {
     auto text = text_entry(entry);
     if (!text) return tl::unexpected(text.error());
     return std::vector<std::string>{std::move(*text)};
   }
-  const auto* list = std::get_if<TomlList>(&entry.value);
+  const auto* list = std::get_if<config::TomlList>(&entry.value);
   if (list == nullptr || list->empty()) return wrong_entry(entry, "a list of names that is not empty");
   std::vector<std::string> result;
-  for (const OptionValue& value : *list) {
+  for (const config::OptionValue& value : *list) {
     const auto* name = std::get_if<std::string>(&value);
     if (name == nullptr) return wrong_entry(entry, "a list of names");
     if (std::find(result.begin(), result.end(), *name) != result.end()) {
@@ -90,11 +90,11 @@ Result<std::vector<std::string>> names_entry(const TomlEntry& entry, bool one_al
   return result;
 }
 
-Result<std::vector<std::string>> variants_entry(const TomlEntry& entry) {
+Result<std::vector<std::string>> variants_entry(const config::TomlEntry& entry) {
   auto list = names_entry(entry);
   if (!list) return list;
   for (const std::string& name : *list) {
-    if (const auto variant = find_variant(name); !variant) {
+    if (const auto variant = config::find_variant(name); !variant) {
       return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, variant.error().message),
                   variant.error().hint);
     }
@@ -102,21 +102,21 @@ Result<std::vector<std::string>> variants_entry(const TomlEntry& entry) {
   return list;
 }
 
-const TomlEntry* EntryTable::find(std::string_view key) const {
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const TomlEntry& entry) { return entry.key == key; });
+const config::TomlEntry* EntryTable::find(std::string_view key) const {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const config::TomlEntry& entry) { return entry.key == key; });
   return found == entries.end() ? nullptr : &*found;
 }
 
-std::vector<EntryTable> entry_tables(const TomlDocument& document, std::string_view name) {
+std::vector<EntryTable> entry_tables(const config::TomlDocument& document, std::string_view name) {
   std::vector<EntryTable> tables;
   for (std::size_t i = 0;; ++i) {
     const std::string key = fmt::format("{}[{}]", name, i);
     const auto header = std::find_if(document.tables.begin(), document.tables.end(),
-                                     [&](const TomlTable& table) { return table.key == key; });
+                                     [&](const config::TomlTable& table) { return table.key == key; });
     if (header == document.tables.end()) return tables;
     EntryTable table{header->place, {}};
-    for (const TomlEntry& entry : document.entries) {
+    for (const config::TomlEntry& entry : document.entries) {
       if (!entry.key.starts_with(key + ".")) continue;
       table.entries.push_back({entry.key.substr(key.size() + 1), entry.value, entry.place});
     }
@@ -130,4 +130,4 @@ std::optional<std::string_view> list_of_key(std::string_view key) {
   return key.substr(0, bracket);
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 
-#include "core/config_access.hpp"
-#include "core/variants.hpp"
+#include "core/config/config_access.hpp"
+#include "core/config/variants.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 namespace {
 
@@ -23,8 +23,8 @@ bool matches(std::string_view pattern, std::string_view name) {
 Result<Exclusion> read_exclusion(const EntryTable& table) {
   Exclusion exclusion;
   exclusion.place = table.place;
-  EffectiveConfig scratch;  // whether the options exist and take the values
-  for (const TomlEntry& entry : table.entries) {
+  config::EffectiveConfig scratch;  // whether the options exist and take the values
+  for (const config::TomlEntry& entry : table.entries) {
     std::string* const text = entry.key == "reason"      ? &exclusion.reason
                               : entry.key == "recording" ? &exclusion.recording
                               : entry.key == "variant"   ? &exclusion.variant
@@ -34,11 +34,11 @@ Result<Exclusion> read_exclusion(const EntryTable& table) {
       if (!read) return tl::unexpected(read.error());
       *text = std::move(*read);
       if (entry.key != "variant") continue;
-      if (const auto known = find_variant(exclusion.variant); !known)
+      if (const auto known = config::find_variant(exclusion.variant); !known)
         return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, known.error().message));
       continue;
     }
-    const auto* value = std::get_if<OptionValue>(&entry.value);
+    const auto* value = std::get_if<config::OptionValue>(&entry.value);
     if (value == nullptr) return wrong_entry(entry, "one value");
     if (auto set = scratch.set(entry.key, *value, entry.place); !set) return tl::unexpected(set.error());
     exclusion.options.emplace_back(entry.key, *value);
@@ -53,15 +53,15 @@ Result<Exclusion> read_exclusion(const EntryTable& table) {
 }  // namespace
 
 bool Exclusion::covers(std::string_view recording_name, std::string_view variant_name,
-                       const std::vector<OptionRow>& options_of_run) const {
+                       const std::vector<config::OptionRow>& options_of_run) const {
   if (!matches(recording, recording_name) || (!variant.empty() && variant != variant_name)) return false;
   return std::ranges::all_of(options, [&](const auto& wanted) {
-    EffectiveConfig scratch;
+    config::EffectiveConfig scratch;
     if (!scratch.set(wanted.first, wanted.second, "")) return false;
-    const auto value_in = [&](const std::vector<OptionRow>& rows) {
-      return std::ranges::find(rows, wanted.first, &OptionRow::key)->value;
+    const auto value_in = [&](const std::vector<config::OptionRow>& rows) {
+      return std::ranges::find(rows, wanted.first, &config::OptionRow::key)->value;
     };
-    return value_in(describe_options(scratch.values)) == value_in(options_of_run);
+    return value_in(config::describe_options(scratch.values)) == value_in(options_of_run);
   });
 }
 
@@ -75,7 +75,7 @@ Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& ta
   return exclusions;
 }
 
-Result<void> read_limit(const TomlEntry& entry, std::string_view key, RunLimits& limits) {
+Result<void> read_limit(const config::TomlEntry& entry, std::string_view key, RunLimits& limits) {
   if (std::ranges::find(kLimitKeys, key) == kLimitKeys.end())
     return unknown_key(entry.place, std::string(key), kLimitKeys, "[limits]");
   const auto number = number_entry(entry);
@@ -88,12 +88,12 @@ Result<void> read_limit(const TomlEntry& entry, std::string_view key, RunLimits&
   return {};
 }
 
-Result<std::vector<FrameWindow>> windows_entry(const TomlEntry& entry) {
+Result<std::vector<run::FrameWindow>> windows_entry(const config::TomlEntry& entry) {
   const auto texts = names_entry(entry, true);
   if (!texts) return tl::unexpected(texts.error());
-  std::vector<FrameWindow> windows;
+  std::vector<run::FrameWindow> windows;
   for (const std::string& text : *texts) {
-    const auto window = parse_window(text);
+    const auto window = run::parse_window(text);
     if (!window)
       return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, window.error().message));
     windows.push_back(*window);
@@ -101,4 +101,4 @@ Result<std::vector<FrameWindow>> windows_entry(const TomlEntry& entry) {
   return windows;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -7,13 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
-#include "core/options.hpp"
-#include "eval/run.hpp"
+#include "core/base/error.hpp"
+#include "core/config/options.hpp"
+#include "eval/run/run.hpp"
 #include "eval/suites/suite_entries.hpp"
 #include "eval/suites/sweep_design.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 /// Runs that are not made, and why.
 ///
@@ -31,7 +31,7 @@ struct Exclusion {
 
   /// `options_of_run`: all of a run's effective options.
   [[nodiscard]] bool covers(std::string_view recording_name, std::string_view variant_name,
-                            const std::vector<OptionRow>& options_of_run) const;
+                            const std::vector<config::OptionRow>& options_of_run) const;
 };
 /// Errors: configuration, with file:line.
 [[nodiscard]] Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables);
@@ -49,10 +49,11 @@ struct RunLimits {
   std::uint64_t memory_bytes = 0;  ///< 0: none
 };
 /// Of one entry of [limits], by its key there. Errors: configuration, with file:line.
-[[nodiscard]] Result<void> read_limit(const TomlEntry& entry, std::string_view key, RunLimits& limits);
+[[nodiscard]] Result<void> read_limit(const config::TomlEntry& entry, std::string_view key,
+                                      RunLimits& limits);
 
 /// frames = "0:100", or a list of such windows: each is a run of its own. Errors: configuration, with
 /// file:line.
-[[nodiscard]] Result<std::vector<FrameWindow>> windows_entry(const TomlEntry& entry);
+[[nodiscard]] Result<std::vector<run::FrameWindow>> windows_entry(const config::TomlEntry& entry);
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-namespace fusebench {
+namespace fusebench::suites {
 
 namespace {
 
@@ -42,38 +42,39 @@ bool contains(const List& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-std::string shown(const OptionValue& value) {
+std::string shown(const config::OptionValue& value) {
   const auto* text = std::get_if<std::string>(&value);
   if (text != nullptr) return *text;
   const auto* number = std::get_if<double>(&value);
-  return number != nullptr ? fmt::format("{}", *number) : to_toml(value);
+  return number != nullptr ? fmt::format("{}", *number) : config::to_toml(value);
 }
 
-std::string shown(const TomlEntry& entry) {
-  if (const auto* value = std::get_if<OptionValue>(&entry.value)) return shown(*value);
+std::string shown(const config::TomlEntry& entry) {
+  if (const auto* value = std::get_if<config::OptionValue>(&entry.value)) return shown(*value);
   std::string text;
-  for (const OptionValue& value : std::get<TomlList>(entry.value))
+  for (const config::OptionValue& value : std::get<config::TomlList>(entry.value))
     text += fmt::format("{}{}", text.empty() ? "" : " and ", shown(value));
   return text;
 }
 
 /// One value a key: a point of the product of lists.
-using Assignments = std::vector<TomlEntry>;
+using Assignments = std::vector<config::TomlEntry>;
 
 Result<std::vector<Assignments>> multiplied(const EntryTable& table) {
   std::vector<Assignments> product = {{}};
-  for (const TomlEntry& entry : table.entries) {
+  for (const config::TomlEntry& entry : table.entries) {
     if (contains(kUse, entry.key)) continue;
-    const auto* list = std::get_if<TomlList>(&entry.value);
+    const auto* list = std::get_if<config::TomlList>(&entry.value);
     if (entry.key == kFaults) {
       for (Assignments& begun : product) begun.push_back(entry);
       continue;
     }
-    const TomlList values = list != nullptr ? *list : TomlList{std::get<OptionValue>(entry.value)};
+    const config::TomlList values =
+        list != nullptr ? *list : config::TomlList{std::get<config::OptionValue>(entry.value)};
     if (values.empty()) return wrong_entry(entry, "a value or a list that is not empty");
     std::vector<Assignments> longer;
     for (const Assignments& begun : product) {
-      for (const OptionValue& value : values) {
+      for (const config::OptionValue& value : values) {
         longer.push_back(begun);
         longer.back().push_back({entry.key, value, entry.place});
       }
@@ -88,7 +89,7 @@ Result<std::vector<Assignments>> multiplied(const EntryTable& table) {
 }
 
 /// Puts the values of keys into a text with {key} in it.
-Result<std::string> filled_in(const TomlEntry& pattern, const Assignments& values) {
+Result<std::string> filled_in(const config::TomlEntry& pattern, const Assignments& values) {
   const auto text = text_entry(pattern);
   if (!text) return text;
   std::string result;
@@ -99,8 +100,8 @@ Result<std::string> filled_in(const TomlEntry& pattern, const Assignments& value
     }
     const std::size_t end = text->find('}', i);
     const std::string key = text->substr(i + 1, end == std::string::npos ? end : end - i - 1);
-    const auto value =
-        std::find_if(values.begin(), values.end(), [&](const TomlEntry& entry) { return entry.key == key; });
+    const auto value = std::find_if(values.begin(), values.end(),
+                                    [&](const config::TomlEntry& entry) { return entry.key == key; });
     if (end == std::string::npos || value == values.end()) {
       return fail(ErrorCode::configuration,
                   fmt::format("{}: {}: '{{{}}}' is no key of this table", pattern.place, pattern.key, key));
@@ -111,7 +112,7 @@ Result<std::string> filled_in(const TomlEntry& pattern, const Assignments& value
   return result;
 }
 
-Result<void> refused(const TomlEntry& entry, const Error& error) {
+Result<void> refused(const config::TomlEntry& entry, const Error& error) {
   return fail(error.code == ErrorCode::usage ? ErrorCode::configuration : error.code,
               fmt::format("{}: {}", entry.place, error.message), error.hint);
 }
@@ -125,7 +126,7 @@ Result<void> store(const Result<T>& value, Target& target) {
 }
 
 template <class T>
-Result<void> store_parsed(const TomlEntry& entry, Result<T> (*parse)(std::string_view), T& target) {
+Result<void> store_parsed(const config::TomlEntry& entry, Result<T> (*parse)(std::string_view), T& target) {
   const auto text = text_entry(entry);
   if (!text) return tl::unexpected(text.error());
   const auto value = parse(*text);
@@ -134,32 +135,34 @@ Result<void> store_parsed(const TomlEntry& entry, Result<T> (*parse)(std::string
   return {};
 }
 
-Result<void> store_start(const TomlEntry& entry, SimulationRequest& request) {
+Result<void> store_start(const config::TomlEntry& entry, SimulationRequest& request) {
   const auto text = plain_entry<std::string>(entry);
   if (!text || (*text != "rest" && *text != "motion")) return wrong_entry(entry, "\"rest\" or \"motion\"");
   request.from_rest = *text == "rest";
   return {};
 }
 
-Result<void> store_faults(const TomlEntry& entry, SimulationRequest& request) {
+Result<void> store_faults(const config::TomlEntry& entry, SimulationRequest& request) {
   auto faults = names_entry(entry, true);
   if (!faults) return tl::unexpected(faults.error());
   for (const std::string& fault : *faults) {
-    if (const auto parsed = parse_fault(fault); !parsed) return refused(entry, parsed.error());
+    if (const auto parsed = simulator::faults::parse_fault(fault); !parsed)
+      return refused(entry, parsed.error());
   }
   request.faults = std::move(*faults);
   return {};
 }
 
-Result<void> store_calibration_error(const TomlEntry& entry, SimulationRequest& request) {
+Result<void> store_calibration_error(const config::TomlEntry& entry, SimulationRequest& request) {
   const auto text = text_entry(entry);
   if (!text) return tl::unexpected(text.error());
-  if (const auto parsed = parse_calibration_error(*text); !parsed) return refused(entry, parsed.error());
+  if (const auto parsed = simulator::faults::parse_calibration_error(*text); !parsed)
+    return refused(entry, parsed.error());
   request.calibration_error = *text;
   return {};
 }
 
-Result<void> read_value(const TomlEntry& entry, SimulationRequest& request) {
+Result<void> read_value(const config::TomlEntry& entry, SimulationRequest& request) {
   const std::string& key = entry.key;
   if (key == "format") return store_parsed(entry, parse_recording_layout, request.layout);
   if (key == "preset") return store_parsed(entry, parse_motion_preset, request.preset);
@@ -191,11 +194,11 @@ Result<void> read_value(const TomlEntry& entry, SimulationRequest& request) {
 
 Result<std::vector<std::uint64_t>> tuning_seeds(const EntryTable& table) {
   std::vector<std::uint64_t> seeds;
-  const TomlEntry* entry = table.find("tuning_seeds");
+  const config::TomlEntry* entry = table.find("tuning_seeds");
   if (entry == nullptr) return seeds;
-  const auto* list = std::get_if<TomlList>(&entry->value);
+  const auto* list = std::get_if<config::TomlList>(&entry->value);
   if (list == nullptr) return wrong_entry(*entry, "a list of seeds");
-  for (const OptionValue& value : *list) {
+  for (const config::OptionValue& value : *list) {
     const auto seed = count_entry({entry->key, value, entry->place});
     if (!seed) return wrong_entry(*entry, "a list of seeds");
     seeds.push_back(*seed);
@@ -204,7 +207,7 @@ Result<std::vector<std::uint64_t>> tuning_seeds(const EntryTable& table) {
 }
 
 Result<void> check_table(const EntryTable& table) {
-  for (const TomlEntry& entry : table.entries) {
+  for (const config::TomlEntry& entry : table.entries) {
     if (!contains(kKeys, entry.key)) return unknown_key(entry.place, entry.key, kKeys, "a simulation");
   }
   const auto lacks = [&](std::string_view what) {
@@ -224,19 +227,21 @@ Result<SuiteSimulation> simulation_of(const EntryTable& table, const Assignments
                                       const std::vector<std::uint64_t>& tuning) {
   SuiteSimulation simulation;
   simulation.place = table.place;
-  for (const TomlEntry& entry : values) {
+  for (const config::TomlEntry& entry : values) {
     if (auto read = read_value(entry, simulation.request); !read) return tl::unexpected(read.error());
     simulation.described +=
         fmt::format("{}{} = {}", simulation.described.empty() ? "" : ", ", entry.key, shown(entry));
   }
-  const TomlEntry& name = *table.find("name");
+  const config::TomlEntry& name = *table.find("name");
   auto filled = filled_in(name, values);
   if (!filled) return tl::unexpected(filled.error());
   if (auto good = check_folder_name(name, *filled); !good) return tl::unexpected(good.error());
   simulation.name = std::move(*filled);
-  const TomlEntry* group = table.find("group");
-  auto group_name = group == nullptr ? Result<std::string>(std::string(to_string(simulation.request.preset)))
-                                     : filled_in(*group, values);
+  const config::TomlEntry* group = table.find("group");
+  auto group_name =
+      group == nullptr
+          ? Result<std::string>(std::string(simulator::motion::to_string(simulation.request.preset)))
+          : filled_in(*group, values);
   if (!group_name) return tl::unexpected(group_name.error());
   simulation.group = std::move(*group_name);
   const bool tunes = std::find(tuning.begin(), tuning.end(), simulation.request.seed) != tuning.end();
@@ -278,7 +283,7 @@ Result<std::vector<SuiteSimulation>> read_simulations(const std::vector<EntryTab
   for (const EntryTable& table : tables) {
     if (auto good = check_table(table); !good) return tl::unexpected(good.error());
     std::vector<std::string> variants = suite_variants;
-    if (const TomlEntry* entry = table.find("variants")) {
+    if (const config::TomlEntry* entry = table.find("variants")) {
       auto list = variants_entry(*entry);
       if (!list) return tl::unexpected(list.error());
       variants = std::move(*list);
@@ -297,4 +302,4 @@ Result<std::vector<SuiteSimulation>> read_simulations(const std::vector<EntryTab
   return all;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

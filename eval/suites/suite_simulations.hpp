@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "eval/suites/simulation_request.hpp"
 #include "eval/suites/suite_entries.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 /// Which half of a study a recording belongs to: parameters are chosen by looking at one half only, and bars
 /// are set on the other.
@@ -48,4 +48,4 @@ struct SuiteSimulation {
 [[nodiscard]] Result<std::vector<SuiteSimulation>> read_simulations(
     const std::vector<EntryTable>& tables, const std::vector<std::string>& suite_variants);
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

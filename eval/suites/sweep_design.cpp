@@ -9,10 +9,10 @@
 #include <random>
 #include <set>
 
-#include "core/nearest_name.hpp"
-#include "core/toml_document.hpp"
+#include "core/base/nearest_name.hpp"
+#include "core/config/toml_document.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 namespace {
 
@@ -33,7 +33,7 @@ tl::unexpected<Error> wrong(const std::string& place, std::string text, std::str
 }
 
 bool is_integer_option(const std::string& key) {
-  for (const OptionRow& row : describe_options(Config{})) {
+  for (const config::OptionRow& row : config::describe_options(config::Config{})) {
     if (row.key == key) return row.type == "integer";
   }
   return false;
@@ -41,7 +41,7 @@ bool is_integer_option(const std::string& key) {
 
 Result<void> check_option(const std::string& key, const std::string& place) {
   std::vector<std::string> names;
-  for (const OptionRow& row : describe_options(Config{})) names.push_back(row.key);
+  for (const config::OptionRow& row : config::describe_options(config::Config{})) names.push_back(row.key);
   if (std::ranges::find(names, key) != names.end()) return {};
   const std::vector<std::string_view> known(names.begin(), names.end());
   return wrong(place,
@@ -65,7 +65,7 @@ std::optional<std::pair<std::string, std::string>> range_key(const std::string& 
   return std::pair(key.substr(0, dot), last);
 }
 
-Result<void> read_range(const TomlEntry& entry, const std::string& last, SweepAxis::Range& range) {
+Result<void> read_range(const config::TomlEntry& entry, const std::string& last, SweepAxis::Range& range) {
   if (last == "scale") {
     const auto text = plain_entry<std::string>(entry);
     if (!text || (*text != "linear" && *text != "log")) return wrong_entry(entry, "\"linear\" or \"log\"");
@@ -84,7 +84,7 @@ Result<void> read_range(const TomlEntry& entry, const std::string& last, SweepAx
   return {};
 }
 
-Result<void> read_entry(const TomlEntry& entry, SweepBlock& block) {
+Result<void> read_entry(const config::TomlEntry& entry, SweepBlock& block) {
   if (entry.key == "design") {
     const auto text = plain_entry<std::string>(entry);
     const auto found =
@@ -108,7 +108,7 @@ Result<void> read_entry(const TomlEntry& entry, SweepBlock& block) {
     return read_range(entry, range->second, *axis.range);
   }
   if (auto known = check_option(entry.key, entry.place); !known) return known;
-  const auto* list = std::get_if<TomlList>(&entry.value);
+  const auto* list = std::get_if<config::TomlList>(&entry.value);
   if (list == nullptr || list->empty())
     return wrong_entry(entry, "a list of values, or a range { from, to, steps, scale }");
   axis_of(block, entry.key, entry.place).values = *list;
@@ -117,8 +117,8 @@ Result<void> read_entry(const TomlEntry& entry, SweepBlock& block) {
 
 /// Each value must be one that the option takes, before hours are spent on the runs before it.
 Result<void> check_values(const SweepAxis& axis) {
-  EffectiveConfig scratch;
-  for (const OptionValue& value : axis.values) {
+  config::EffectiveConfig scratch;
+  for (const config::OptionValue& value : axis.values) {
     if (auto set = scratch.set(axis.key, value, axis.place); !set) return set;
   }
   return {};
@@ -173,7 +173,7 @@ double rounded(double value) {
 }
 
 /// The value of an axis at a share (0 to 1) of its range or list.
-OptionValue value_at(const SweepAxis& axis, double share) {
+config::OptionValue value_at(const SweepAxis& axis, double share) {
   if (!axis.range) {
     const auto size = static_cast<double>(axis.values.size());
     return axis.values[std::min(static_cast<std::size_t>(share * size), axis.values.size() - 1)];
@@ -185,9 +185,9 @@ OptionValue value_at(const SweepAxis& axis, double share) {
   return rounded(value);
 }
 
-std::vector<OptionValue> values_of(const SweepAxis& axis) {
+std::vector<config::OptionValue> values_of(const SweepAxis& axis) {
   if (!axis.range) return axis.values;
-  std::vector<OptionValue> values;
+  std::vector<config::OptionValue> values;
   for (std::size_t i = 0; i < axis.range->steps; ++i)
     values.push_back(value_at(axis, static_cast<double>(i) / static_cast<double>(axis.range->steps - 1)));
   return values;
@@ -198,7 +198,7 @@ std::vector<SweepPoint> grid_points(const SweepBlock& block) {
   for (const SweepAxis& axis : block.axes) {
     std::vector<SweepPoint> longer;
     for (const SweepPoint& point : points) {
-      for (const OptionValue& value : values_of(axis)) {
+      for (const config::OptionValue& value : values_of(axis)) {
         longer.push_back(point);
         longer.back().emplace_back(axis.key, value);
       }
@@ -256,7 +256,7 @@ Result<std::vector<SweepBlock>> read_sweeps(const std::vector<EntryTable>& table
   std::set<std::string> swept;
   for (const EntryTable& table : tables) {
     SweepBlock block;
-    for (const TomlEntry& entry : table.entries) {
+    for (const config::TomlEntry& entry : table.entries) {
       if (auto read = read_entry(entry, block); !read) return tl::unexpected(read.error());
     }
     if (auto good = check_block(block, table.place); !good) return tl::unexpected(good.error());
@@ -283,7 +283,7 @@ Result<std::optional<SweepBlock>> take_swept_sets(std::vector<std::string>& sets
     for (std::size_t begin = equals + 1; begin <= set.size();) {
       const std::size_t end = std::min(set.find(',', begin), set.size());
       if (end == begin) return wrong(axis.place, "a value between commas is missing");
-      axis.values.push_back(parse_option_value(std::string_view(set).substr(begin, end - begin)));
+      axis.values.push_back(config::parse_option_value(std::string_view(set).substr(begin, end - begin)));
       begin = end + 1;
     }
     if (auto good = check_values(axis); !good) return tl::unexpected(good.error());
@@ -327,9 +327,9 @@ std::string to_string(const SweepPoint& point) {
     text += fmt::format("{}{}={}", text.empty() ? "" : " ", key,
                         plain != nullptr    ? *plain
                         : number != nullptr ? fmt::format("{}", *number)
-                                            : to_toml(value));
+                                            : config::to_toml(value));
   }
   return text;
 }
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/config_access.hpp"
-#include "core/error.hpp"
-#include "core/options.hpp"
+#include "core/base/error.hpp"
+#include "core/config/config_access.hpp"
+#include "core/config/options.hpp"
 #include "eval/suites/suite_entries.hpp"
 
-namespace fusebench {
+namespace fusebench::suites {
 
 /// One option of a sweep: the values that are tried, or the range that they are drawn from.
 struct SweepAxis {
@@ -26,7 +26,7 @@ struct SweepAxis {
     bool log = false;       ///< equal ratios in place of equal differences
   };
   std::string key;
-  std::vector<OptionValue> values;  ///< empty: see range
+  std::vector<config::OptionValue> values;  ///< empty: see range
   std::optional<Range> range;
   std::string place;
 };
@@ -55,7 +55,7 @@ struct SweepBlock {
 };
 
 /// What one run of a sweep edits.
-using SweepPoint = std::vector<std::pair<std::string, OptionValue>>;
+using SweepPoint = std::vector<std::pair<std::string, config::OptionValue>>;
 
 /// Errors: configuration, with file:line: unknown keys and options, lists of unequal length in a zip, ranges
 /// that are none, a logarithmic range that is not positive, an option that is swept twice.
@@ -72,4 +72,4 @@ using SweepPoint = std::vector<std::pair<std::string, OptionValue>>;
 /// "iekf.max_iterations=4 tsdf.voxel_m=0.01"; empty of the empty point.
 [[nodiscard]] std::string to_string(const SweepPoint& point);
 
-}  // namespace fusebench
+}  // namespace fusebench::suites

@@ -7,13 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "core/config_access.hpp"
+#include "core/config/config_access.hpp"
 #include "eval/aggregate/long_table.hpp"
 #include "eval/aggregate/run_rows.hpp"
-#include "eval/record.hpp"
+#include "eval/record/record.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace config;
+using namespace metrics;
+using namespace trajectory_error;
+using namespace record;
+using namespace aggregate;
+
 namespace {
 
 constexpr std::size_t kRuns = 2'000;

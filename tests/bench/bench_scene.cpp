@@ -6,15 +6,23 @@
 #include <map>
 #include <utility>
 
-#include "core/depth_gates.hpp"
 #include "core/pipeline.hpp"
-#include "core/trajectory.hpp"
+#include "core/preprocessing/depth_gates.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "datasets/open_recording.hpp"
-#include "datasets/synthetic_imu.hpp"
+#include "datasets/synthetic_imu/synthetic_imu.hpp"
 #include "tests/support/camera_velocity.hpp"
 #include "tests/support/rolling_shutter.hpp"
 
 namespace fusebench::testing {
+
+using namespace simd;
+using namespace trajectory;
+using namespace preprocessing;
+using namespace health;
+using namespace core;
+using namespace synthetic_imu;
+using namespace datasets;
 
 namespace {
 

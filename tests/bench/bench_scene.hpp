@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/config.hpp"
-#include "core/error.hpp"
-#include "core/motion_compensation.hpp"
-#include "core/parallel.hpp"
-#include "core/tsdf_volume.hpp"
-#include "core/types.hpp"
+#include "core/base/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::testing {
 
@@ -26,16 +26,16 @@ struct FusedView {
 
 struct BenchScene {
   SceneKind kind = SceneKind::room;
-  Config config;
+  config::Config config;
   PinholeCamera camera;
   SensorTiming timing;
-  CameraVelocity velocity;       ///< at the frame
+  preprocessing::CameraVelocity velocity;  ///< at the frame
   SE3 T_world_camera;            ///< of the frame: exact in the room, the ground truth of the recording
   RgbdFrame sensed;              ///< the frame as a rolling shutter reads it
   RgbdFrame frame;               ///< as it is fused: of one instant; the recording's depth is gated
   DepthImage ungated_depth_m;    ///< of `frame`, before that
   std::vector<FusedView> views;  ///< in the model; patches are cut from the last one
-  TsdfVolume model{config.tsdf};
+  tsdf::TsdfVolume model{config.tsdf};
 };
 
 /// Made once. The room: 67 degrees of view at a width of 320 or 640 pixels, three near views, the last of

@@ -5,12 +5,17 @@
 #include <array>
 #include <cmath>
 
-#include "core/corner_selection.hpp"
+#include "core/patches/corner_selection.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
 #include "tests/support/gated_depth.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+using namespace config;
+using namespace patches;
+
 namespace {
 
 using testing::BenchScene;

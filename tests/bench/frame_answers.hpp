@@ -43,7 +43,7 @@ inline bool is_pyramid_of(const std::vector<GreyImage>& pyramid, const GreyImage
 }
 
 /// What a pixel of a depth image is once it is gated.
-inline float gated_plainly(const DepthImage& depth_m, const DepthConfig& config, int x, int y) {
+inline float gated_plainly(const DepthImage& depth_m, const config::DepthConfig& config, int x, int y) {
   const float z = depth_m(x, y);
   const bool inner = x > 0 && y > 0 && x + 1 < depth_m.width && y + 1 < depth_m.height;
   if (!inner || !(z >= static_cast<float>(config.min_m) && z <= static_cast<float>(config.max_m)))
@@ -59,7 +59,8 @@ inline float gated_plainly(const DepthImage& depth_m, const DepthConfig& config,
 }
 
 /// Every pixel is gated so, most are left, and some are not.
-inline bool is_gated(const DepthImage& gated_m, const DepthImage& depth_m, const DepthConfig& config) {
+inline bool is_gated(const DepthImage& gated_m, const DepthImage& depth_m,
+                     const config::DepthConfig& config) {
   std::size_t measured = 0;
   std::size_t kept = 0;
   for (int y = 0; y < depth_m.height; ++y) {
@@ -168,7 +169,7 @@ class PlainCompensation {
   const RgbdFrame& sensed_;
   const PinholeCamera& camera_;
   const SensorTiming& timing_;
-  const CameraVelocity& velocity_;
+  const preprocessing::CameraVelocity& velocity_;
 };
 
 /// Nearly every pixel that is looked at is the same, as same(x, y, expected) says of it and of what the plain

@@ -1,13 +1,16 @@
 // What happens to a frame before it is tracked: motion compensation, pyramid, depth gates.
 #include <benchmark/benchmark.h>
 
-#include "core/depth_gates.hpp"
-#include "core/motion_compensation.hpp"
+#include "core/preprocessing/depth_gates.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
 
 namespace fusebench {
+
+using namespace preprocessing;
+
 namespace {
 
 using testing::BenchScene;

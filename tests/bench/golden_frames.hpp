@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "datasets/image_files.hpp"
+#include "datasets/images/image_files.hpp"
 
 namespace fusebench::testing {
 
@@ -30,9 +30,9 @@ inline ImagePairFiles golden_pair_files() {
 }
 
 inline Result<ImagePair> read_pair(const ImagePairFiles& files) {
-  auto color = read_color(files.color);
+  auto color = images::read_color(files.color);
   if (!color) return tl::unexpected(color.error());
-  auto depth = read_depth16(files.depth);
+  auto depth = images::read_depth16(files.depth);
   if (!depth) return tl::unexpected(depth.error());
   return ImagePair{std::move(*color), std::move(*depth)};
 }

@@ -6,11 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "core/keyframes.hpp"
+#include "core/relocalisation/keyframes.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+using namespace relocalisation;
+
 namespace {
 
 using testing::BenchScene;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/fingerprint.hpp"
+#include "core/io/fingerprint.hpp"
 #include "datasets/open_recording.hpp"
 #include "tests/bench/golden_frames.hpp"
 #include "tests/bench/rates.hpp"
@@ -16,6 +16,12 @@
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
+
+using namespace io;
+using namespace images;
+using namespace recording;
+using namespace datasets;
+
 namespace {
 
 using testing::bytes_of;

@@ -13,10 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "core/simd/lanes.hpp"
 #include "tests/bench/rates.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+
 namespace {
 
 using testing::report_rates;

@@ -6,13 +6,13 @@
 #include <opencv2/core/utility.hpp>
 #include <string>
 
-#include "eval/build_info.hpp"
+#include "eval/record/build_info.hpp"
 #include "tests/bench/bench_scene.hpp"
 
 int main(int argc, char** argv) {
   // What has no threads of ours has none of OpenCV's either, as `workers` says.
   cv::setNumThreads(1);
-  const fusebench::BuildInfo& build = fusebench::build_info();
+  const fusebench::record::BuildInfo& build = fusebench::record::build_info();
   benchmark::AddCustomContext("compiler", std::string(build.compiler));
   benchmark::AddCustomContext("flags", std::string(build.flags));
   if (const auto folder = fusebench::testing::recorded_folder(); !folder)

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <thread>
 
-#include "eval/mesh/mesh_metrics.hpp"
+#include "eval/mesh_error/mesh_metrics.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/support/test_meshes.hpp"
 
 namespace fusebench {
+
+using namespace metrics;
+using namespace mesh_error;
+
 namespace {
 
 using testing::bytes_of;

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/band_blocks.hpp"
+#include "core/tsdf/band_blocks.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/support/felt_blocks.hpp"
 #include "tests/support/plain_field.hpp"
@@ -29,7 +29,7 @@ class DepthCheck {
     const double error_m = std::abs(depth_m - static_cast<double>(scene_.frame.depth_m(x, y)));
     if (error_m < scene_.config.tsdf.voxel_m) ++close_;
   }
-  void add(const std::vector<PixelRay>& pixels, const std::vector<SurfacePoint>& points) {
+  void add(const std::vector<raycast::PixelRay>& pixels, const std::vector<raycast::SurfacePoint>& points) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       add(static_cast<int>(pixels[i].u_px), static_cast<int>(pixels[i].v_px),
           points[i].valid ? points[i].depth_m : 0.0);
@@ -45,8 +45,8 @@ class DepthCheck {
 };
 
 /// The pixels of 100 patches of 10x10.
-inline std::vector<PixelRay> patch_pixels(const PinholeCamera& camera) {
-  std::vector<PixelRay> pixels;
+inline std::vector<raycast::PixelRay> patch_pixels(const PinholeCamera& camera) {
+  std::vector<raycast::PixelRay> pixels;
   for (int patch = 0; patch < 100; ++patch) {
     const int x0 = (patch % 10 + 1) * camera.width_px / 12;
     const int y0 = (patch / 10 + 1) * camera.height_px / 12;
@@ -62,7 +62,7 @@ class PlainRays {
   explicit PlainRays(const BenchScene& scene) : scene_(scene), field_(scene.model) {}
 
   /// z-depth of the first change from front to back of the trilinear field; 0 = none.
-  [[nodiscard]] double depth_m(const PixelRay& ray) {
+  [[nodiscard]] double depth_m(const raycast::PixelRay& ray) {
     const double length = scene_.camera.back_project(ray.u_px, ray.v_px, 1.0).norm();
     const double step_m = kStep_voxels * scene_.model.voxel_m() / length;
     const double end_m = std::min(static_cast<double>(ray.end_m), scene_.config.depth.max_m);
@@ -80,8 +80,8 @@ class PlainRays {
 
   /// Whether that is what another cast found, for every so many-th of its rays: nearly always, since where
   /// the field is torn, what is first is a matter of steps.
-  [[nodiscard]] bool agree(const std::vector<PixelRay>& rays, const std::vector<SurfacePoint>& points,
-                           std::size_t every) {
+  [[nodiscard]] bool agree(const std::vector<raycast::PixelRay>& rays,
+                           const std::vector<raycast::SurfacePoint>& points, std::size_t every) {
     std::size_t asked = 0;
     std::size_t found = 0;
     std::size_t same = 0;
@@ -104,15 +104,15 @@ class PlainRays {
 };
 
 /// The voxels between which surface points lie, each counted once: what rays have to read at the least.
-inline std::size_t voxels_around(const BenchScene& scene, const std::vector<PixelRay>& rays,
-                                 const std::vector<SurfacePoint>& points) {
+inline std::size_t voxels_around(const BenchScene& scene, const std::vector<raycast::PixelRay>& rays,
+                                 const std::vector<raycast::SurfacePoint>& points) {
   std::vector<std::uint64_t> keys;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!points[i].valid) continue;
     const Vector3d at_voxels = scene.T_world_camera *
                                scene.camera.back_project(rays[i].u_px, rays[i].v_px, points[i].depth_m) /
                                scene.model.voxel_m();
-    const VoxelIndex base = at_voxels.array().floor().cast<int>();
+    const tsdf::VoxelIndex base = at_voxels.array().floor().cast<int>();
     for (int corner = 0; corner < 8; ++corner) {
       std::uint64_t key = 0;
       for (int axis = 0; axis < 3; ++axis)
@@ -125,11 +125,11 @@ inline std::size_t voxels_around(const BenchScene& scene, const std::vector<Pixe
 }
 
 /// On a surface that was fused the field is zero, within a voxel, wherever it can be interpolated.
-inline bool is_zero_on_surface(const TsdfVolume& model, const BenchScene& scene) {
+inline bool is_zero_on_surface(const tsdf::TsdfVolume& model, const BenchScene& scene) {
   PlainField field(model);
   double error_m = 0;
   int sampled = 0;
-  for (const PixelRay& pixel : patch_pixels(scene.camera)) {
+  for (const raycast::PixelRay& pixel : patch_pixels(scene.camera)) {
     const double depth_m =
         static_cast<double>(scene.frame.depth_m(static_cast<int>(pixel.u_px), static_cast<int>(pixel.v_px)));
     if (!(depth_m > 0)) continue;
@@ -144,12 +144,12 @@ inline bool is_zero_on_surface(const TsdfVolume& model, const BenchScene& scene)
 
 /// The blocks around the frame's measurements: nearly all that are felt for along its rays, and not many
 /// more.
-inline bool are_band_blocks(const std::vector<BlockIndex>& found, const BenchScene& scene) {
+inline bool are_band_blocks(const std::vector<tsdf::BlockIndex>& found, const BenchScene& scene) {
   constexpr int kEvery_px = 4;
   const BlockSet blocks = block_set(found);
-  const BlockSet felt =
-      felt_blocks(scene.frame.depth_m, scene.camera, scene.T_world_camera,
-                  kBlockSide * scene.config.tsdf.voxel_m, scene.config.tsdf, scene.config.depth, kEvery_px);
+  const BlockSet felt = felt_blocks(scene.frame.depth_m, scene.camera, scene.T_world_camera,
+                                    tsdf::kBlockSide * scene.config.tsdf.voxel_m, scene.config.tsdf,
+                                    scene.config.depth, kEvery_px);
   return blocks.size() == found.size() && felt.size() > 100 &&
          static_cast<double>(missing(felt, blocks)) < 0.05 * static_cast<double>(felt.size()) &&
          static_cast<double>(missing(blocks, felt)) < 0.25 * static_cast<double>(blocks.size());
@@ -163,7 +163,7 @@ struct FusedVoxels {
   std::size_t colored = 0;  ///< of them
 };
 
-inline PlainBlock stored_block(const TsdfVolume& model, const BlockIndex& index) {
+inline PlainBlock stored_block(const tsdf::TsdfVolume& model, const tsdf::BlockIndex& index) {
   PlainBlock block;
   const int slot = model.find_block(index);
   for (std::size_t i = 0; slot >= 0 && i < block.size(); ++i)
@@ -171,7 +171,7 @@ inline PlainBlock stored_block(const TsdfVolume& model, const BlockIndex& index)
   return block;
 }
 
-inline bool is_same_voxel(const Voxel& a, const Voxel& b) {
+inline bool is_same_voxel(const tsdf::Voxel& a, const tsdf::Voxel& b) {
   // A last digit may round to the next number of eleven bits.
   constexpr float kDigit = 1.0F / 1024.0F;
   constexpr float kDistance_m = 1e-5F;
@@ -187,16 +187,18 @@ inline bool is_same_voxel(const Voxel& a, const Voxel& b) {
 }
 
 /// before, after: the model without and with the frame.
-inline FusedVoxels fused_voxels(const TsdfVolume& before, const TsdfVolume& after, const BenchScene& scene) {
-  BandBlocks band;
-  band.find(scene.frame.depth_m, scene.camera, scene.T_world_camera, kBlockSide * scene.config.tsdf.voxel_m,
-            scene.config.tsdf, scene.config.depth, before.frame_count(), Workers(1));
+inline FusedVoxels fused_voxels(const tsdf::TsdfVolume& before, const tsdf::TsdfVolume& after,
+                                const BenchScene& scene) {
+  tsdf::BandBlocks band;
+  band.find(scene.frame.depth_m, scene.camera, scene.T_world_camera,
+            tsdf::kBlockSide * scene.config.tsdf.voxel_m, scene.config.tsdf, scene.config.depth,
+            before.frame_count(), Workers(1));
   const PlainVoxelUpdate update(scene.frame, scene.camera, scene.T_world_camera, scene.config.depth,
                                 scene.config.tsdf, before.frame_count());
   FusedVoxels fused;
   fused.blocks = band.blocks().size();
   std::size_t different = 0;
-  for (const BlockIndex& index : band.blocks()) {
+  for (const tsdf::BlockIndex& index : band.blocks()) {
     const PlainBlock old = stored_block(before, index);
     const PlainBlock now = stored_block(after, index);
     PlainBlock plain = old;
@@ -213,7 +215,7 @@ inline FusedVoxels fused_voxels(const TsdfVolume& before, const TsdfVolume& afte
 }
 
 /// Vertices lie where the field crosses zero, and triangles have corners.
-inline bool is_zero_level(const Mesh& mesh, const TsdfVolume& model) {
+inline bool is_zero_level(const Mesh& mesh, const tsdf::TsdfVolume& model) {
   if (mesh.triangles.size() <= 1000) return false;
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {

@@ -3,12 +3,17 @@
 
 #include <optional>
 
-#include "core/marching_cubes.hpp"
+#include "core/meshing/marching_cubes.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
 
 namespace fusebench {
+
+using namespace tsdf;
+using namespace raycast;
+using namespace meshing;
+
 namespace {
 
 using testing::BenchScene;

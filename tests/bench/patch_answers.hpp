@@ -8,23 +8,24 @@
 #include <span>
 #include <vector>
 
-#include "core/patch_lanes.hpp"
+#include "core/patches/patch_lanes.hpp"
 #include "tests/bench/patch_problem.hpp"
 
 namespace fusebench::testing {
 
 /// Of all levels.
-inline std::size_t pixels_of(std::span<const Patch> patches) {
+inline std::size_t pixels_of(std::span<const patches::Patch> patches) {
   std::size_t pixels = 0;
-  for (const Patch& patch : patches) {
-    for (const PatchLevel& level : patch.levels) pixels += level.pixels.size();
+  for (const patches::Patch& patch : patches) {
+    for (const patches::PatchLevel& level : patch.levels) pixels += level.pixels.size();
   }
   return pixels;
 }
 
 /// A pixel has the grey level of its place in its level, a point of the model behind that place, where depth
 /// was measured if it was, and a normal that faces the camera.
-inline bool is_cut_from(const PatchPixel& pixel, std::size_t level, const ReferenceFrame& frame) {
+inline bool is_cut_from(const patches::PatchPixel& pixel, std::size_t level,
+                        const patches::ReferenceFrame& frame) {
   constexpr double kSameSurface_m = 0.15;
   const auto width = static_cast<std::uint32_t>(frame.camera.width_px);
   const auto u = static_cast<int>(pixel.reference_pixel % width);
@@ -40,11 +41,11 @@ inline bool is_cut_from(const PatchPixel& pixel, std::size_t level, const Refere
 }
 
 /// Many patches, each with pixels at every level that are cut from the frame.
-inline bool are_cut_from(std::span<const Patch> patches, const ReferenceFrame& frame) {
-  for (const Patch& patch : patches) {
+inline bool are_cut_from(std::span<const patches::Patch> patches, const patches::ReferenceFrame& frame) {
+  for (const patches::Patch& patch : patches) {
     if (patch.levels.size() != frame.pyramid.size() || patch.levels[0].pixels.empty()) return false;
     for (std::size_t level = 0; level < patch.levels.size(); ++level) {
-      for (const PatchPixel& pixel : patch.levels[level].pixels) {
+      for (const patches::PatchPixel& pixel : patch.levels[level].pixels) {
         if (!is_cut_from(pixel, level, frame)) return false;
       }
     }
@@ -53,18 +54,18 @@ inline bool are_cut_from(std::span<const Patch> patches, const ReferenceFrame& f
 }
 
 /// The lanes of a level hold its pixels, patch after patch.
-inline bool are_packed(const LevelLanes& lanes, std::span<const Patch> patches, std::size_t level,
-                       const Vector3d& origin_world) {
-  const auto lane_of = [](const Points& points, std::size_t lane) {
+inline bool are_packed(const patches::LevelLanes& lanes, std::span<const patches::Patch> patches,
+                       std::size_t level, const Vector3d& origin_world) {
+  const auto lane_of = [](const simd::Points& points, std::size_t lane) {
     return Vector3d(points.x[lane], points.y[lane], points.z[lane]);
   };
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    const std::vector<PatchPixel>& pixels = patches[p].levels[level].pixels;
-    const std::span<const PixelLanes> packed = lanes.pixels_of(p);
-    if (packed.size() != (pixels.size() + kLanes - 1) / kLanes) return false;
-    for (std::size_t i = 0; i < packed.size() * kLanes; ++i) {
-      const PixelLanes& eight = packed[i / kLanes];
-      const std::size_t lane = i % kLanes;
+    const std::vector<patches::PatchPixel>& pixels = patches[p].levels[level].pixels;
+    const std::span<const patches::PixelLanes> packed = lanes.pixels_of(p);
+    if (packed.size() != (pixels.size() + simd::kLanes - 1) / simd::kLanes) return false;
+    for (std::size_t i = 0; i < packed.size() * simd::kLanes; ++i) {
+      const patches::PixelLanes& eight = packed[i / simd::kLanes];
+      const std::size_t lane = i % simd::kLanes;
       if ((eight.present[lane] != 0) != (i < pixels.size())) return false;
       if (i >= pixels.size()) continue;
       const Vector3d point = pixels[i].point_world - origin_world;
@@ -85,11 +86,11 @@ struct ResidualCounts {
   std::size_t geometric = 0;
 };
 /// At the last linearisation. accepted: only of patches that count in trials.
-inline ResidualCounts residual_counts(const PatchMeasurement& measurement, std::span<const Patch> patches,
-                                      bool accepted) {
+inline ResidualCounts residual_counts(const measurement::PatchMeasurement& measurement,
+                                      std::span<const patches::Patch> patches, bool accepted) {
   ResidualCounts counts;
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    const PatchOutcome& outcome = measurement.outcomes()[p];
+    const measurement::PatchOutcome& outcome = measurement.outcomes()[p];
     if (accepted && !outcome.accepted) continue;
     counts.pixels += pixels_of(patches.subspan(p, 1));
     counts.photometric += static_cast<std::size_t>(outcome.photometric_residuals);

@@ -6,6 +6,12 @@
 #include "tests/bench/scene_arguments.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+using namespace filter;
+using namespace patches;
+using namespace measurement;
+
 namespace {
 
 using testing::BenchScene;

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <functional>
 
-#include "datasets/depth_registration.hpp"
+#include "datasets/calibration/depth_registration.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/support/two_cameras.hpp"
 
 namespace fusebench {
+
+using namespace calibration;
+
 namespace {
 
 using testing::RegistrationQuality;

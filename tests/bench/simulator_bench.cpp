@@ -6,11 +6,17 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "datasets/simulator/image_sensors.hpp"
-#include "datasets/simulator/room.hpp"
+#include "datasets/simulator/scene/room.hpp"
+#include "datasets/simulator/sensors/image_sensors.hpp"
 #include "tests/bench/rates.hpp"
 
 namespace fusebench {
+
+using namespace synthetic_imu;
+using namespace simulator::scene;
+using namespace simulator::render;
+using namespace simulator::sensors;
+
 namespace {
 
 constexpr std::int64_t kMiddle_ns = 500'000'000;

@@ -3,10 +3,13 @@
 
 #include <cmath>
 
-#include "eval/trajectory/evaluation.hpp"
+#include "eval/trajectory_error/evaluation.hpp"
 #include "tests/bench/wandering_trajectory.hpp"
 
 namespace fusebench {
+
+using namespace trajectory_error;
+
 namespace {
 
 using testing::seen_from_elsewhere;

@@ -10,10 +10,16 @@
 #include <set>
 #include <string>
 
-#include "core/variants.hpp"
+#include "core/config/variants.hpp"
 #include "tests/support/simulated_run.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+using namespace config;
+using namespace health;
+using namespace core;
+
 namespace {
 
 using testing::simulate;

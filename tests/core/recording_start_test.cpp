@@ -8,6 +8,11 @@
 #include <vector>
 
 namespace fusebench {
+
+using namespace filter;
+using namespace health;
+using namespace core;
+
 namespace {
 
 /// Says what it is asked for, and finds a velocity in the second frame.

@@ -4,9 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "datasets/open_recording.hpp"
-#include "tests/datasets/tum_folder.hpp"
+#include "tests/datasets/formats/tum/tum_folder.hpp"
 
 namespace fusebench {
+
+using namespace io;
+using namespace images;
+using namespace calibration;
+using namespace recording;
+using namespace datasets;
+
 namespace {
 
 using testing::read_bytes;

@@ -1,11 +1,14 @@
 // calibration.toml and calib.txt, malformed.
 #include <gtest/gtest.h>
 
-#include "datasets/infinitam_calibration.hpp"
-#include "datasets/rig_calibration.hpp"
+#include "datasets/calibration/infinitam_calibration.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
 #include "tests/datasets/malformed_text.hpp"
 
 namespace fusebench {
+
+using namespace calibration;
+
 namespace {
 
 using namespace testing;

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "datasets/image_files.hpp"
-#include "tests/datasets/child_process.hpp"
+#include "datasets/images/image_files.hpp"
+#include "tests/datasets/images/child_process.hpp"
 #include "tests/datasets/malformed_text.hpp"
 
 namespace fusebench {
+
+using namespace images;
+
 namespace {
 
 using namespace testing;

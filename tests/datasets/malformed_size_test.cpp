@@ -3,13 +3,19 @@
 
 #include <fstream>
 
-#include "core/toml_document.hpp"
-#include "datasets/side_files.hpp"
-#include "datasets/tum_lists.hpp"
-#include "tests/datasets/child_process.hpp"
+#include "core/config/toml_document.hpp"
+#include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/side_files.hpp"
+#include "tests/datasets/images/child_process.hpp"
 #include "tests/datasets/malformed_text.hpp"
 
 namespace fusebench {
+
+using namespace config;
+using namespace recording;
+using namespace reading;
+using namespace formats::tum;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -4,14 +4,22 @@
 
 #include <cstdlib>
 
-#include "core/trajectory_file.hpp"
-#include "datasets/associated_row.hpp"
-#include "datasets/side_files.hpp"
-#include "datasets/tum_lists.hpp"
-#include "datasets/zr300_lists.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/formats/zr300/zr300_lists.hpp"
+#include "datasets/reading/associated_row.hpp"
+#include "datasets/reading/side_files.hpp"
 #include "tests/datasets/malformed_text.hpp"
 
 namespace fusebench {
+
+using namespace io;
+using namespace trajectory;
+using namespace recording;
+using namespace reading;
+using namespace formats::tum;
+using namespace formats::zr300;
+
 namespace {
 
 namespace fs = std::filesystem;

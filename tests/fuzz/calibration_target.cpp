@@ -1,12 +1,15 @@
 // TOML, and the calibration of a recording's sensors written in it.
 #include <cmath>
 
-#include "datasets/rig_calibration.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace config;
+using namespace calibration;
 
 namespace {
 

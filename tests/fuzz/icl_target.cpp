@@ -2,13 +2,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/associated_row.hpp"
-#include "datasets/icl_povray_files.hpp"
+#include "datasets/formats/icl/icl_povray_files.hpp"
+#include "datasets/reading/associated_row.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace io;
+using namespace reading;
+using namespace formats::icl;
 
 namespace {
 

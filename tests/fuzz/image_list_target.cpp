@@ -1,10 +1,12 @@
 // The lists of a TUM folder: images and accelerometer.
-#include "datasets/tum_lists.hpp"
+#include "datasets/formats/tum/tum_lists.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace formats::tum;
 
 namespace {
 

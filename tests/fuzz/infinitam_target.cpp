@@ -1,5 +1,5 @@
 // calib.txt, InfiniTAM's calibration.
-#include "datasets/infinitam_calibration.hpp"
+#include "datasets/calibration/infinitam_calibration.hpp"
 
 #include <cmath>
 
@@ -8,6 +8,8 @@
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace calibration;
 
 namespace {
 

@@ -1,12 +1,14 @@
 // PLY meshes.
 #include <algorithm>
 
-#include "core/ply_file.hpp"
+#include "core/mesh/ply_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace mesh;
 
 void ply(std::string_view bytes) {
   static const MemoryFile file("mesh.ply");

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <string>
 
-#include "core/error.hpp"
-#include "datasets/png_check.hpp"
+#include "core/base/error.hpp"
+#include "datasets/images/png_check.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace images;
 
 namespace {
 

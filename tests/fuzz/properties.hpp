@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 
 namespace fusebench::fuzz {
 

@@ -1,14 +1,17 @@
 // groundtruth.txt and imu.csv, which may lie beside the images of any format.
-#include "datasets/side_files.hpp"
+#include "datasets/reading/side_files.hpp"
 
 #include <cmath>
 
-#include "datasets/sensor_columns.hpp"
+#include "datasets/recording/sensor_columns.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace recording;
+using namespace reading;
 
 namespace {
 

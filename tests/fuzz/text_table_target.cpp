@@ -1,15 +1,18 @@
 // The scanner of text tables: fields, times and numbers, against properties and the C library.
-#include "core/text_table.hpp"
+#include "core/io/text_table.hpp"
 
 #include <cmath>
 #include <cstdlib>
 
-#include "core/trajectory_file.hpp"
+#include "core/trajectory/trajectory_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace io;
+using namespace trajectory;
 
 namespace {
 

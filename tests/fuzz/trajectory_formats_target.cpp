@@ -2,12 +2,15 @@
 #include <cmath>
 #include <optional>
 
-#include "eval/trajectory/trajectory_formats.hpp"
+#include "eval/trajectory_files/trajectory_formats.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace trajectory;
+using namespace trajectory_files;
 
 namespace {
 

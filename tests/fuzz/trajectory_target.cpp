@@ -2,13 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/trajectory.hpp"
-#include "core/trajectory_file.hpp"
+#include "core/trajectory/trajectory.hpp"
+#include "core/trajectory/trajectory_file.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace trajectory;
 
 namespace {
 

@@ -1,11 +1,14 @@
 // The lists of a ZR300 recording, all of them the same bytes.
-#include "datasets/sensor_columns.hpp"
-#include "datasets/zr300_lists.hpp"
+#include "datasets/formats/zr300/zr300_lists.hpp"
+#include "datasets/recording/sensor_columns.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
+
+using namespace recording;
+using namespace formats::zr300;
 
 namespace {
 

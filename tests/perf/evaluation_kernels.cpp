@@ -1,13 +1,18 @@
 #include <cmath>
 #include <optional>
 
-#include "eval/mesh/mesh_metrics.hpp"
-#include "eval/trajectory/evaluation.hpp"
+#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/trajectory_error/evaluation.hpp"
 #include "tests/bench/wandering_trajectory.hpp"
 #include "tests/perf/kernel_counts.hpp"
 #include "tests/support/test_meshes.hpp"
 
 namespace fusebench::perf {
+
+using namespace simd;
+using namespace metrics;
+using namespace trajectory_error;
+using namespace mesh_error;
 
 namespace {
 

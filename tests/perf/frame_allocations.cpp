@@ -10,7 +10,7 @@
 #include <opencv2/core/utility.hpp>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/base/error.hpp"
 #include "core/pipeline.hpp"
 #include "tests/support/simulated_frames.hpp"
 
@@ -65,6 +65,11 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
 }
 
 namespace fusebench::perf {
+
+using namespace config;
+using namespace health;
+using namespace core;
+
 namespace {
 
 // Bounds of the median, once the first frames have made room: a frame takes memory for what it is reported

@@ -1,12 +1,14 @@
 #include <optional>
 
-#include "core/depth_gates.hpp"
-#include "core/motion_compensation.hpp"
+#include "core/preprocessing/depth_gates.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/golden_frames.hpp"
 #include "tests/perf/kernel_counts.hpp"
 
 namespace fusebench::perf {
+
+using namespace preprocessing;
 
 namespace {
 

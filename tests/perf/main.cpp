@@ -7,7 +7,7 @@
 #include <opencv2/core/utility.hpp>
 #include <string_view>
 
-#include "eval/build_info.hpp"
+#include "eval/record/build_info.hpp"
 #include "tests/perf/kernel_counts.hpp"
 
 namespace {
@@ -16,7 +16,7 @@ constexpr int kWidth_px = 320;
 
 /// What counts depend on, as far as the program knows.
 void print_build() {
-  const fusebench::BuildInfo& build = fusebench::build_info();
+  const fusebench::record::BuildInfo& build = fusebench::record::build_info();
   fmt::print("compiler: {}\nflags: {}\n", build.compiler, build.flags);
 }
 

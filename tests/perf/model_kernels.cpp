@@ -1,9 +1,13 @@
-#include "core/band_blocks.hpp"
-#include "core/marching_cubes.hpp"
+#include "core/meshing/marching_cubes.hpp"
+#include "core/tsdf/band_blocks.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/perf/kernel_counts.hpp"
 
 namespace fusebench::perf {
+
+using namespace tsdf;
+using namespace raycast;
+using namespace meshing;
 
 namespace {
 

@@ -7,6 +7,14 @@
 
 namespace fusebench::perf {
 
+using namespace simd;
+using namespace config;
+using namespace filter;
+using namespace patches;
+using namespace measurement;
+using namespace health;
+using namespace core;
+
 namespace {
 
 void count_refresh(KernelCounts& counts, const testing::PatchProblem& problem, const Workers& workers) {

@@ -6,16 +6,26 @@
 #include <string_view>
 #include <vector>
 
-#include "core/marching_cubes.hpp"
-#include "core/motion_compensation.hpp"
-#include "core/patch_deformation.hpp"
-#include "core/patch_sums.hpp"
-#include "core/tsdf_volume.hpp"
+#include "core/measurement/patch_sums.hpp"
+#include "core/meshing/marching_cubes.hpp"
+#include "core/patches/patch_deformation.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
 #include "tests/support/gated_depth.hpp"
 #include "tests/support/raycast_image.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+using namespace config;
+using namespace filter;
+using namespace preprocessing;
+using namespace tsdf;
+using namespace meshing;
+using namespace patches;
+using namespace measurement;
+
 namespace {
 
 /// FNV-1a: enough to tell results apart.

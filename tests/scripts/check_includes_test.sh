@@ -1,68 +1,116 @@
 #!/usr/bin/env bash
-# Plants includes into a small tree and expects scripts/check_includes.sh to refuse the bad ones, naming the line and
-# the rule, and to let the good ones pass.
+# Plants faults into a small tree of rooms and expects scripts/check_includes.py to refuse each, naming the place and the rule,
+# and to let the sound tree pass.
 set -euo pipefail
 
-check=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../scripts" && pwd)/check_includes.sh
+check=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../scripts" && pwd)/check_includes.py
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 failures=0
 
-fresh_tree() {
-  rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{core,datasets,eval/cli,eval/mesh,eval/trajectory,tests/support}
-  printf '#pragma once\n#include <vector>\n' >"$tree/core/types.hpp"
+# write FILE NAMESPACE LINES
+write() {
+  mkdir -p "$tree/$(dirname "$1")"
+  printf '%b\n\nnamespace %s {\n}\n' "$3" "$2" >"$tree/$1"
 }
 
-# expect_refused FILE INCLUDE_LINE RULE_WORDS
+sound_tree() {
+  rm -rf "${tree:?}"/*
+  cat >"$tree/CMakeLists.txt" <<'TEXT'
+fusebench_room(core/base PUBLIC Eigen3::Eigen)
+fusebench_room(core/filter USES base)
+fusebench_room(core USES base filter PRIVATE filter::library)
+fusebench_room(datasets/recording USES base)
+fusebench_room(datasets/formats/tum USES recording)
+fusebench_room(eval/metrics USES base)
+fusebench_room(eval/run
+  USES base core recording tum metrics
+  SOURCES ${build_info})
+TEXT
+  write core/base/types.hpp 'fusebench::inline base' '#pragma once\n#include <vector>'
+  write core/filter/iekf.cpp fusebench::filter '#include "core/base/types.hpp"'
+  write core/filter/iekf.hpp fusebench::filter '#pragma once'
+  write core/pipeline.cpp fusebench::core '#include "core/base/types.hpp"\n#include "core/filter/iekf.hpp"'
+  write core/pipeline.hpp fusebench::core '#pragma once'
+  write datasets/recording/recording.hpp fusebench::recording '#include "core/base/types.hpp"'
+  write datasets/formats/tum/tum_rgbd.cpp fusebench::formats::tum '#include "datasets/recording/recording.hpp"'
+  write datasets/formats/tum/tum_rgbd.hpp fusebench::formats::tum '#pragma once'
+  write eval/metrics/statistics.cpp fusebench::metrics '#include "core/base/types.hpp"'
+  write eval/run/run.cpp fusebench::run '#include "core/base/types.hpp"\n#include "core/pipeline.hpp"
+#include "datasets/formats/tum/tum_rgbd.hpp"\n#include "datasets/recording/recording.hpp"
+#include "eval/metrics/statistics.hpp"'
+}
+
+# expect_refused WHERE RULE_WORDS, after the fault was planted
 expect_refused() {
-  fresh_tree
-  printf '// first line\n%b\n' "$2" >"$tree/$1"
   local output
   if output=$("$check" "$tree"); then
-    printf 'not refused: %s in %s\n' "$2" "$1" >&2
+    printf 'not refused: %s (%s)\n' "$1" "$2" >&2
     failures=1
-  elif [[ $output != *"$1:2:"* || $output != *"$3"* ]]; then
-    printf 'refused without naming %s:2 and "%s":\n%s\n' "$1" "$3" "$output" >&2
-    failures=1
-  fi
-}
-
-# expect_accepted FILE INCLUDE_LINES
-expect_accepted() {
-  fresh_tree
-  printf '// first line\n%b\n' "$2" >"$tree/$1"
-  local output
-  if ! output=$("$check" "$tree"); then
-    printf 'refused, but allowed:\n%s\n' "$output" >&2
+  elif [[ $output != *"$1"* || $output != *"$2"* ]]; then
+    printf 'refused without naming %s and "%s":\n%s\n' "$1" "$2" "$output" >&2
     failures=1
   fi
+  sound_tree
 }
 
-both='#include "datasets/recording.hpp"\n#include "core/frame_report.hpp"'
+# include FILE PATH: adds an include as the file's last line
+include() {
+  printf '#include %s\n' "$2" >>"$tree/$1"
+}
 
-expect_refused core/iekf.cpp '#include "datasets/recording.hpp"' 'core never includes'
-expect_refused core/iekf.hpp '  #  include "eval/statistics.hpp"' 'core never includes'
-expect_refused core/iekf.cpp '#include <fusebench/eval/run.hpp>' 'core never includes'
-expect_refused datasets/tum_rgbd.cpp '#include "eval/run.hpp"' 'datasets never includes eval'
-expect_refused eval/mesh/mesh_metrics.cpp '#include "core/frame_report.hpp"' 'metrics never include'
-expect_refused eval/trajectory_metrics.hpp '#include "datasets/recording.hpp"' 'metrics never include'
-expect_refused eval/statistics.cpp '#include "core/frame_report.hpp"' 'metrics never include'
-expect_refused eval/trajectory/alignment.cpp '#include "datasets/recording.hpp"' 'metrics never include'
-expect_refused eval/record.cpp "$both" 'know both'
-expect_refused eval/run.hpp "$both" 'know both'
-expect_refused eval/batch.cpp "$both" 'know both'
-expect_refused eval/run.cpp '#include "tests/support/scene.hpp"' 'only tests include tests'
-expect_refused core/iekf.cpp '#include "../eval/run.hpp"' 'start at the repository root'
-expect_refused core/iekf.cpp '#include "types.hpp"' 'start at the repository root'
+sound_tree
+if ! output=$("$check" "$tree"); then
+  printf 'the sound tree is refused:\n%s\n' "$output" >&2
+  failures=1
+fi
 
-expect_accepted eval/run.cpp "$both"
-expect_accepted eval/measured_motion.cpp "$both"
-expect_accepted eval/cli/run.cpp "$both"
-expect_accepted eval/trajectory_metrics.cpp '#include "core/types.hpp"\n#include "eval/statistics.hpp"'
-expect_accepted datasets/tum_rgbd.cpp '#include "core/types.hpp"'
-expect_accepted tests/support/scene.hpp "$both"
-expect_accepted core/iekf.cpp '// #include "eval/run.hpp" would be wrong here'
+include core/filter/iekf.cpp '"datasets/recording/recording.hpp"'
+expect_refused core/filter/iekf.cpp:5 'core includes neither'
+include core/filter/iekf.cpp '<fusebench/eval/run/run.hpp>'
+expect_refused core/filter/iekf.cpp:5 'core includes neither'
+include datasets/recording/recording.hpp '"eval/run/run.hpp"'
+expect_refused datasets/recording/recording.hpp:5 'datasets does not include eval'
+include core/filter/iekf.cpp '"core/pipeline.hpp"'
+expect_refused core/filter/iekf.cpp:5 'core/filter does not use core'
+include core/filter/iekf.cpp '"core/types.hpp"'
+expect_refused core/filter/iekf.cpp:5 'core/filter does not use core'
+include core/filter/iekf.cpp '"core/gone/types.hpp"'
+expect_refused core/filter/iekf.cpp:5 'there is no such room'
+include eval/run/run.cpp '"tests/support/scene.hpp"'
+expect_refused eval/run/run.cpp:9 'nothing outside tests'
+include core/filter/iekf.cpp '"types.hpp"'
+expect_refused core/filter/iekf.cpp:5 'start at the repository root'
+include core/filter/iekf.cpp '"../eval/run.hpp"'
+expect_refused core/filter/iekf.cpp:5 'start at the repository root'
 
-if ((failures == 0)); then printf 'check_includes: all cases as expected\n'; fi
+sed -i 's/(core\/filter USES base)/(core\/filter USES base recording)/' "$tree/CMakeLists.txt"
+expect_refused 'core/filter uses recording' 'only rooms before it'
+sed -i 's/USES recording)/USES base recording)/' "$tree/CMakeLists.txt"
+expect_refused 'datasets/formats/tum uses base' 'what its files include'
+sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base recording)/' "$tree/CMakeLists.txt"
+include eval/metrics/statistics.cpp '"datasets/recording/recording.hpp"'
+expect_refused 'eval/metrics uses' 'metrics know neither'
+sed -i 's/(eval\/metrics USES base)/(eval\/metrics USES base filter)\nfusebench_room(eval\/tables USES core recording)/' "$tree/CMakeLists.txt"
+write eval/tables/table.cpp fusebench::tables '#include "core/pipeline.hpp"\n#include "datasets/recording/recording.hpp"'
+expect_refused 'eval/tables uses' 'use both recordings and the pipeline'
+sed -i 's/eval\/metrics/eval\/filter/' "$tree/CMakeLists.txt"
+expect_refused CMakeLists.txt 'last names of rooms differ'
+sed -i '/eval\/metrics/d' "$tree/CMakeLists.txt"
+expect_refused eval/metrics/statistics.cpp 'every source lies in a room'
+write core/filter/state.cpp fusebench ''
+expect_refused core/filter/state.cpp:3 'the namespace of core/filter is fusebench::filter'
+for unit in a b c d e f g h i j k l m n o; do write "core/filter/$unit.cpp" fusebench::filter ''; done
+expect_refused core/filter 'at most 15 units'
+rm "$tree/core/filter/"*
+expect_refused core/filter 'every room has sources'
+
+rm -rf "${tree:?}"/*
+printf 'fusebench_room(core/base)\n' >"$tree/CMakeLists.txt"
+status=0
+"$check" "$tree" 2>/dev/null || status=$?
+if ((status != 2)); then
+  printf 'an empty tree ends with %d instead of 2\n' "$status" >&2
+  failures=1
+fi
 exit "$failures"

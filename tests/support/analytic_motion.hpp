@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry.hpp"
-#include "core/types.hpp"
+#include "core/base/geometry.hpp"
+#include "core/base/types.hpp"
 
 namespace fusebench::testing {
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 namespace fusebench {
+
 namespace {
 
 // Part of a line inside a convex solid: from `enter` to `leave`, and the outer normals there.

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fusebench {
 

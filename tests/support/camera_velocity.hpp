@@ -1,12 +1,13 @@
 // The camera's velocity, from what a report says of the IMU.
 #pragma once
 
-#include "core/frame_report.hpp"
-#include "core/motion_compensation.hpp"
+#include "core/health/frame_report.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
 
 namespace fusebench::testing {
 
-inline CameraVelocity camera_velocity(const FrameReport& report, const SE3& T_imu_camera) {
+inline preprocessing::CameraVelocity camera_velocity(const health::FrameReport& report,
+                                                     const SE3& T_imu_camera) {
   const Matrix3d R_camera_imu = T_imu_camera.rotation_matrix().transpose();
   const Matrix3d R_camera_world = report.T_world_camera.rotation_matrix().transpose();
   const Vector3d& rate_imu = report.angular_velocity_radps;

@@ -5,16 +5,17 @@
 
 #include <vector>
 
-#include "core/tsdf_volume.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
 #include "tests/support/analytic_scene.hpp"
 
 namespace fusebench {
 
 /// Fuses one rendered frame a pose; a failure fails the test that calls.
-inline TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera, const std::vector<SE3>& poses,
-                       const TsdfConfig& tsdf = {}, const DepthConfig& depth = {}, int threads = 2) {
+inline tsdf::TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera,
+                             const std::vector<SE3>& poses, const config::TsdfConfig& tsdf = {},
+                             const config::DepthConfig& depth = {}, int threads = 2) {
   const Workers workers(threads);
-  TsdfVolume volume(tsdf);
+  tsdf::TsdfVolume volume(tsdf);
   for (const SE3& T_world_camera : poses) {
     const auto fused =
         volume.integrate(scene.render(camera, T_world_camera), camera, T_world_camera, depth, workers);

@@ -1,13 +1,13 @@
 // Gated depth as a value.
 #pragma once
 
-#include "core/depth_gates.hpp"
+#include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::testing {
 
-[[nodiscard]] inline DepthImage gated_depth(const DepthImage& depth_m, const DepthConfig& config) {
+[[nodiscard]] inline DepthImage gated_depth(const DepthImage& depth_m, const config::DepthConfig& config) {
   DepthImage gated_m;
-  gate_depth(depth_m, config, gated_m);
+  preprocessing::gate_depth(depth_m, config, gated_m);
   return gated_m;
 }
 

@@ -1,8 +1,8 @@
-// The normal of a measured surface at one pixel: what the association of eight (core/patch_sums.hpp) is held
-// against.
+// The normal of a measured surface at one pixel: what the association of eight
+// (core/measurement/patch_sums.hpp) is held against.
 #pragma once
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fusebench::testing {
 

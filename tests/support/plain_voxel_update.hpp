@@ -7,16 +7,17 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/tsdf_volume.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::testing {
 
-using PlainBlock = std::array<Voxel, kBlockVoxels>;
+using PlainBlock = std::array<tsdf::Voxel, tsdf::kBlockVoxels>;
 
 class PlainVoxelUpdate {
  public:
   PlainVoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
-                   const DepthConfig& depth, const TsdfConfig& tsdf, std::uint32_t frame_number)
+                   const config::DepthConfig& depth, const config::TsdfConfig& tsdf,
+                   std::uint32_t frame_number)
       : frame_(frame),
         camera_(camera),
         T_camera_world_(T_world_camera.inverse()),
@@ -25,11 +26,11 @@ class PlainVoxelUpdate {
         color_rounding_(std::min(static_cast<float>((frame_number * 2654435769U) >> 8) / 16777216.0F,
                                  65535.0F / 65536.0F)) {}
 
-  void apply(const BlockIndex& index, PlainBlock& block) const {
-    const Vector3d corner = index.cast<double>() * (kBlockSide * tsdf_.voxel_m);
+  void apply(const tsdf::BlockIndex& index, PlainBlock& block) const {
+    const Vector3d corner = index.cast<double>() * (tsdf::kBlockSide * tsdf_.voxel_m);
     const Eigen::Vector3f corner_camera = (T_camera_world_ * corner).cast<float>();
     const Eigen::Matrix3f step = (T_camera_world_.rotation_matrix() * tsdf_.voxel_m).cast<float>();
-    for (int i = 0; i < kBlockVoxels; ++i) {
+    for (int i = 0; i < tsdf::kBlockVoxels; ++i) {
       const Eigen::Vector3f row = corner_camera + static_cast<float>((i >> 3) & 7) * step.col(1) +
                                   static_cast<float>(i >> 6) * step.col(2);
       const Eigen::Vector3f along = static_cast<float>(i & 7) * step.col(0);
@@ -39,7 +40,7 @@ class PlainVoxelUpdate {
   }
 
  private:
-  void observe(float x, float y, float z, Voxel& voxel) const {
+  void observe(float x, float y, float z, tsdf::Voxel& voxel) const {
     if (!(z > 0.0F)) return;
     const float inverse_z = 1.0F / z;
     const float u =
@@ -72,7 +73,7 @@ class PlainVoxelUpdate {
     add_color(frame_.color(static_cast<int>(u), static_cast<int>(v)), voxel);
   }
 
-  void add_color(const Rgb& observed, Voxel& voxel) const {
+  void add_color(const Rgb& observed, tsdf::Voxel& voxel) const {
     const auto count = static_cast<float>(voxel.color_count);
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const auto mean = static_cast<float>(voxel.color[channel]);
@@ -84,13 +85,13 @@ class PlainVoxelUpdate {
     voxel.color_count = static_cast<std::uint8_t>(std::min(count + 1.0F, most));
   }
 
-  static float as_stored(float value) { return static_cast<float>(Half(value)); }
+  static float as_stored(float value) { return static_cast<float>(simd::Half(value)); }
 
   const RgbdFrame& frame_;
   const PinholeCamera& camera_;
   SE3 T_camera_world_;
-  const DepthConfig& depth_;
-  const TsdfConfig& tsdf_;
+  const config::DepthConfig& depth_;
+  const config::TsdfConfig& tsdf_;
   float color_rounding_;
 };
 

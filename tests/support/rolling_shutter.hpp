@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench::testing {

@@ -1,13 +1,13 @@
 // The residuals of the update, their Jacobians and the robust kernel for one pixel in double precision: what
-// the sums over eight pixels at a time (core/patch_sums.hpp) are held against.
+// the sums over eight pixels at a time (core/measurement/patch_sums.hpp) are held against.
 #pragma once
 
 #include <cmath>
 
-#include "core/geometry.hpp"
-#include "core/image.hpp"
-#include "core/posed_camera.hpp"
-#include "core/types.hpp"
+#include "core/base/geometry.hpp"
+#include "core/base/image.hpp"
+#include "core/base/types.hpp"
+#include "core/patches/posed_camera.hpp"
 
 namespace fusebench::testing {
 
@@ -18,7 +18,7 @@ struct Projection {
   Vector2d pixel_px = Vector2d::Zero();
   Eigen::Matrix<double, 2, 6> jacobian;
 };
-inline Projection project_with_jacobian(const PosedCamera& posed, const Vector3d& point_camera) {
+inline Projection project_with_jacobian(const patches::PosedCamera& posed, const Vector3d& point_camera) {
   // X_c = R_ci (R_wi^T (P - p_wi) - p_ic): turning the IMU by phi moves X_c by R_ci [X_i]x phi.
   Projection projection;
   projection.pixel_px = posed.camera.project(point_camera);
@@ -48,7 +48,7 @@ struct PlaneResidual {
   double value_m = 0;
   RowVector6d jacobian = RowVector6d::Zero();
 };
-inline PlaneResidual point_to_plane_residual(const PosedCamera& posed, const Vector3d& point_imu,
+inline PlaneResidual point_to_plane_residual(const patches::PosedCamera& posed, const Vector3d& point_imu,
                                              const Vector3d& plane_point_world,
                                              const Vector3d& normal_world) {
   PlaneResidual residual;

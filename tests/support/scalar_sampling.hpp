@@ -1,12 +1,12 @@
 // Grey levels between pixels for one place in double precision: what samples at eight places at a time
-// (core/image_lanes.hpp) are held against.
+// (core/simd/image_lanes.hpp) are held against.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "core/image.hpp"
+#include "core/base/image.hpp"
 
 namespace fusebench::testing {
 

@@ -12,10 +12,11 @@
 namespace fusebench::testing {
 
 /// Runs the pipeline over all frames; errors fail the test that calls.
-inline std::vector<FrameReport> track(const SimulatedRun& run, const Config& config, int threads = 1) {
+inline std::vector<health::FrameReport> track(const SimulatedRun& run, const config::Config& config,
+                                              int threads = 1) {
   const Workers workers(threads);
-  Pipeline pipeline(config, run.rig, run.imu, workers);
-  std::vector<FrameReport> reports;
+  core::Pipeline pipeline(config, run.rig, run.imu, workers);
+  std::vector<health::FrameReport> reports;
   for (const RgbdFrame& frame : run.frames) {
     auto report = pipeline.process(frame);
     EXPECT_TRUE(report.has_value()) << (report ? "" : report.error().message);
@@ -26,7 +27,7 @@ inline std::vector<FrameReport> track(const SimulatedRun& run, const Config& con
 }
 
 /// Largest distance of an estimated camera from the truth, metres.
-inline double worst_error_m(const SimulatedRun& run, const std::vector<FrameReport>& reports) {
+inline double worst_error_m(const SimulatedRun& run, const std::vector<health::FrameReport>& reports) {
   double worst = 0;
   for (std::size_t k = 0; k < reports.size(); ++k) {
     worst =

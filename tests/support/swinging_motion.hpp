@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry.hpp"
-#include "core/types.hpp"
+#include "core/base/geometry.hpp"
+#include "core/base/types.hpp"
 
 namespace fusebench::testing {
 

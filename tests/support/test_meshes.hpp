@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fusebench::testing {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fusebench::testing {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/types.hpp"
+#include "core/base/types.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench::testing {

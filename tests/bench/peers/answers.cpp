@@ -3,10 +3,14 @@
 #include <cmath>
 #include <optional>
 
-#include "eval/statistics.hpp"
+#include "eval/metrics/statistics.hpp"
 #include "tests/support/plain_field.hpp"
 
 namespace fusebench::peers {
+
+using namespace simd;
+using namespace tsdf;
+using namespace metrics;
 
 namespace {
 

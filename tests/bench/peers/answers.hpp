@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/tsdf_volume.hpp"
-#include "core/types.hpp"
+#include "core/base/types.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
 #include "tests/bench/peers/contestant.hpp"
 
 namespace fusebench::peers {

@@ -7,14 +7,20 @@
 #include <memory>
 #include <utility>
 
-#include "core/motion_compensation.hpp"
-#include "eval/true_camera.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
+#include "eval/record/true_camera.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/our_pipeline.hpp"
 #include "tests/bench/peers/single_thread.hpp"
 #include "tests/support/gated_depth.hpp"
 
 namespace fusebench::peers {
+
+using namespace simd;
+using namespace config;
+using namespace preprocessing;
+using namespace recording;
+using namespace record;
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/config.hpp"
-#include "core/error.hpp"
-#include "datasets/recording.hpp"
+#include "core/base/error.hpp"
+#include "core/config/config.hpp"
+#include "datasets/recording/recording.hpp"
 #include "tests/bench/peers/answers.hpp"
 #include "tests/bench/peers/contestant.hpp"
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "core/variants.hpp"
-#include "eval/build_info.hpp"
-#include "eval/process_meter.hpp"
-#include "eval/run.hpp"
-#include "eval/text_file.hpp"
+#include "core/config/variants.hpp"
+#include "eval/record/build_info.hpp"
+#include "eval/record/process_meter.hpp"
+#include "eval/run/run.hpp"
+#include "eval/text/text_file.hpp"
 #include "tests/bench/peers/contest.hpp"
 #include "tests/bench/peers/open3d_fusions.hpp"
 #include "tests/bench/peers/opencv_odometries.hpp"
@@ -20,6 +20,12 @@
 #include "tests/bench/peers/single_thread.hpp"
 
 namespace fusebench::peers {
+
+using namespace config;
+using namespace recording;
+using namespace text;
+using namespace record;
+using namespace run;
 
 namespace {
 

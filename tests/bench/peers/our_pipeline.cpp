@@ -2,12 +2,17 @@
 
 #include <numeric>
 
-#include "core/marching_cubes.hpp"
+#include "core/meshing/marching_cubes.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/wall_stopwatch.hpp"
 #include "tests/support/camera_velocity.hpp"
 
 namespace fusebench::peers {
+
+using namespace preprocessing;
+using namespace tsdf;
+using namespace meshing;
+using namespace health;
 
 Result<OurCost> OurPipeline::process(const RgbdFrame& frame) {
   const WallStopwatch wall;

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "core/motion_compensation.hpp"
-#include "core/parallel.hpp"
+#include "core/base/parallel.hpp"
 #include "core/pipeline.hpp"
-#include "datasets/recording.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
+#include "datasets/recording/recording.hpp"
 #include "tests/bench/peers/contestant.hpp"
 
 namespace fusebench::peers {

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "eval/json_text.hpp"
-#include "eval/mesh/mesh_metrics.hpp"
-#include "eval/report/text_layout.hpp"
-#include "eval/statistics.hpp"
+#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/statistics.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/text_layout.hpp"
 
 namespace fusebench::peers {
+
+using namespace text;
+using namespace metrics;
+using namespace mesh_error;
 
 namespace {
 

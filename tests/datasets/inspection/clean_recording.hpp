@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "datasets/inspection/inspection.hpp"
-#include "datasets/synthetic_imu.hpp"
+#include "datasets/synthetic_imu/synthetic_imu.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench::testing {
@@ -53,8 +53,8 @@ struct CleanOptions {
 };
 
 /// 30 Hz images from 10 s on, truth at 100 Hz, IMU at 200 Hz with the noise of a ZR300, both 0.5 s longer.
-inline Recording clean_recording(const CleanOptions& options = {}) {
-  Recording recording;
+inline recording::Recording clean_recording(const CleanOptions& options = {}) {
+  recording::Recording recording;
   recording.name = "clean";
   recording.format = "memory";
   recording.rig.camera = options.camera;
@@ -73,11 +73,11 @@ inline Recording clean_recording(const CleanOptions& options = {}) {
     }
   }
   if (options.imu) {
-    const ImuSensor sensor = zr300_imu();
-    recording.imu_source = ImuSource::recorded;
+    const synthetic_imu::ImuSensor sensor = synthetic_imu::zr300_imu();
+    recording.imu_source = recording::ImuSource::recorded;
     recording.rig.imu_noise = sensor.noise;
     recording.imu = ideal_samples(recording.rig.T_imu_camera, begin_s - 0.5, end_s + 0.5, 200);
-    add_imu_noise(recording.imu, sensor, 200, 7);
+    synthetic_imu::add_imu_noise(recording.imu, sensor, 200, 7);
   }
   recording.load_frame = [camera = options.camera, factor = options.depth_factor,
                           frames = recording.frames](std::size_t k) -> Result<RgbdFrame> {
@@ -91,22 +91,22 @@ inline Recording clean_recording(const CleanOptions& options = {}) {
   return recording;
 }
 
-inline Inspection inspected(const Recording& recording, int threads = 2) {
+inline inspection::Inspection inspected(const recording::Recording& recording, int threads = 2) {
   const Workers workers(threads);
-  return inspect(recording, workers);
+  return inspection::inspect(recording, workers);
 }
 
 /// Codes of errors and warnings, for messages and for comparison.
-inline std::vector<std::string> faults(const Inspection& inspection) {
+inline std::vector<std::string> faults(const inspection::Inspection& inspection) {
   std::vector<std::string> codes;
-  for (const Finding& finding : inspection.findings) {
-    if (finding.severity != Severity::note) codes.push_back(finding.code);
+  for (const inspection::Finding& finding : inspection.findings) {
+    if (finding.severity != inspection::Severity::note) codes.push_back(finding.code);
   }
   return codes;
 }
 
-inline const Finding* find(const Inspection& inspection, std::string_view code) {
-  for (const Finding& finding : inspection.findings) {
+inline const inspection::Finding* find(const inspection::Inspection& inspection, std::string_view code) {
+  for (const inspection::Finding& finding : inspection.findings) {
     if (finding.code == code) return &finding;
   }
   return nullptr;

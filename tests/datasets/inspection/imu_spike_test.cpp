@@ -5,11 +5,17 @@
 
 #include <cmath>
 
-#include "core/trajectory_file.hpp"
-#include "datasets/inspection/imu_faults.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "datasets/inspection/measures/imu_faults.hpp"
 #include "tests/datasets/inspection/clean_recording.hpp"
 
 namespace fusebench::testing {
+
+using namespace trajectory;
+using namespace recording;
+using namespace inspection::measures;
+using namespace inspection;
+
 namespace {
 
 using ::testing::AllOf;

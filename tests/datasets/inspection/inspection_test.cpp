@@ -8,6 +8,11 @@
 #include "tests/datasets/inspection/clean_recording.hpp"
 
 namespace fusebench::testing {
+
+using namespace recording;
+using namespace datasets;
+using namespace inspection;
+
 namespace {
 
 TEST(Inspection, MeasuresWhatIsKnown) {

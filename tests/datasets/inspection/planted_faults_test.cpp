@@ -6,6 +6,10 @@
 #include "tests/datasets/inspection/clean_recording.hpp"
 
 namespace fusebench::testing {
+
+using namespace recording;
+using namespace inspection;
+
 namespace {
 
 using ::testing::AllOf;

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "core/ply_file.hpp"
+#include "core/mesh/ply_file.hpp"
 
 namespace fusebench::testing {
 
@@ -35,7 +35,7 @@ inline std::filesystem::path write_box_scene(const std::filesystem::path& folder
     }
   }
   const std::filesystem::path file = folder / "box.ply";
-  const auto written = write_ply(mesh, file);
+  const auto written = mesh::write_ply(mesh, file);
   EXPECT_TRUE(written);
   return file;
 }

@@ -6,13 +6,22 @@
 #include <map>
 #include <numeric>
 
-#include "datasets/image_files.hpp"
+#include "datasets/images/image_files.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/simulation.hpp"
 #include "tests/datasets/simulator/box_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace images;
+using namespace datasets;
+using namespace simulator::texture;
+using namespace simulator::motion;
+using namespace simulator::faults;
+using namespace simulator::layouts;
+using namespace simulator;
+
 namespace {
 
 namespace fs = std::filesystem;

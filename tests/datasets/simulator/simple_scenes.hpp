@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "datasets/pose_spline.hpp"
-#include "datasets/simulator/scene.hpp"
+#include "datasets/simulator/scene/scene.hpp"
+#include "datasets/synthetic_imu/pose_spline.hpp"
 
 namespace fusebench::testing {
 
@@ -15,8 +15,8 @@ inline constexpr std::uint8_t kWhite = 255;
 inline constexpr std::int64_t kHalfSecond_ns = 500'000'000;  ///< the middle of straight_motion()
 
 /// Adds a rectangle of one colour: corner, corner + along, corner + along + up, corner + up.
-inline void add_rectangle(SimulatedScene& scene, const Eigen::Vector3f& corner, const Eigen::Vector3f& along,
-                          const Eigen::Vector3f& up, std::uint8_t grey) {
+inline void add_rectangle(simulator::scene::SimulatedScene& scene, const Eigen::Vector3f& corner,
+                          const Eigen::Vector3f& along, const Eigen::Vector3f& up, std::uint8_t grey) {
   const auto first = static_cast<std::uint32_t>(scene.mesh.vertices.size());
   for (const Eigen::Vector3f& point : {corner, Eigen::Vector3f(corner + along),
                                        Eigen::Vector3f(corner + along + up), Eigen::Vector3f(corner + up)}) {
@@ -28,23 +28,23 @@ inline void add_rectangle(SimulatedScene& scene, const Eigen::Vector3f& corner, 
 }
 
 /// The plane z = depth, one colour.
-inline SimulatedScene plane_at(float depth_m, std::uint8_t grey) {
-  SimulatedScene scene;
+inline simulator::scene::SimulatedScene plane_at(float depth_m, std::uint8_t grey) {
+  simulator::scene::SimulatedScene scene;
   add_rectangle(scene, {-20, -20, depth_m}, {40, 0, 0}, {0, 40, 0}, grey);
   return scene;
 }
 
 /// The plane z = depth, black where x < 0 and white elsewhere.
-inline SimulatedScene edge_at(float depth_m) {
-  SimulatedScene scene;
+inline simulator::scene::SimulatedScene edge_at(float depth_m) {
+  simulator::scene::SimulatedScene scene;
   add_rectangle(scene, {-20, -20, depth_m}, {20, 0, 0}, {0, 40, 0}, 0);
   add_rectangle(scene, {0, -20, depth_m}, {20, 0, 0}, {0, 40, 0}, kWhite);
   return scene;
 }
 
 /// A sphere of quads in rings.
-inline SimulatedScene sphere_at(const Eigen::Vector3f& centre, float radius_m, int rings) {
-  SimulatedScene scene;
+inline simulator::scene::SimulatedScene sphere_at(const Eigen::Vector3f& centre, float radius_m, int rings) {
+  simulator::scene::SimulatedScene scene;
   const auto point = [&](int i, int j) -> Eigen::Vector3f {
     const float polar = std::numbers::pi_v<float> * static_cast<float>(j) / static_cast<float>(rings);
     const float angle = std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rings);
@@ -67,8 +67,8 @@ inline SimulatedScene sphere_at(const Eigen::Vector3f& centre, float radius_m, i
 }
 
 /// From t = 0 to 1 s at constant velocity, at the origin of the world at 0.5 s, axes as the world's.
-inline PoseSpline straight_motion(const Vector3d& velocity_mps) {
-  PoseSpline spline(0, 1'000'000'000, 100'000'000);
+inline synthetic_imu::PoseSpline straight_motion(const Vector3d& velocity_mps) {
+  synthetic_imu::PoseSpline spline(0, 1'000'000'000, 100'000'000);
   for (std::size_t i = 0; i < spline.position_world_m.size(); ++i) {
     spline.position_world_m[i] = seconds_between(kHalfSecond_ns, spline.control_time_ns(i)) * velocity_mps;
   }

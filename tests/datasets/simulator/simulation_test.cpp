@@ -7,12 +7,20 @@
 #include <cmath>
 #include <map>
 
-#include "core/trajectory_file.hpp"
+#include "core/trajectory/trajectory_file.hpp"
 #include "datasets/open_recording.hpp"
 #include "tests/datasets/simulator/box_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace trajectory;
+using namespace recording;
+using namespace datasets;
+using namespace simulator::motion;
+using namespace simulator::layouts;
+using namespace simulator;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -5,13 +5,21 @@
 #include <array>
 #include <cmath>
 
-#include "datasets/simulator/motion.hpp"
-#include "datasets/simulator/renderer.hpp"
-#include "datasets/simulator/room.hpp"
+#include "datasets/simulator/motion/motion.hpp"
+#include "datasets/simulator/render/renderer.hpp"
+#include "datasets/simulator/scene/room.hpp"
+#include "datasets/simulator/scene/storage_room.hpp"
 #include "datasets/simulator/simulation.hpp"
-#include "datasets/simulator/storage_room.hpp"
 
 namespace fusebench {
+
+using namespace synthetic_imu;
+using namespace simulator::scene;
+using namespace simulator::render;
+using namespace simulator::motion;
+using namespace simulator::layouts;
+using namespace simulator;
+
 namespace {
 
 constexpr std::int64_t kFrame_ns = 33'333'333;

@@ -8,6 +8,10 @@
 #include "tests/eval/aggregate/sample_rows.hpp"
 
 namespace fusebench {
+
+using namespace record;
+using namespace aggregate;
+
 namespace {
 
 using testing::metric_of;

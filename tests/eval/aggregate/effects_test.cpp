@@ -7,10 +7,15 @@
 #include <string>
 
 #include "eval/aggregate/option_bins.hpp"
-#include "eval/report/results/sweep_charts.hpp"
+#include "eval/report/sweep_charts.hpp"
 #include "tests/eval/aggregate/sample_rows.hpp"
 
 namespace fusebench {
+
+using namespace record;
+using namespace aggregate;
+using namespace report;
+
 namespace {
 
 using testing::metric_of;

@@ -9,6 +9,10 @@
 #include "tests/eval/aggregate/sample_rows.hpp"
 
 namespace fusebench {
+
+using namespace record;
+using namespace aggregate;
+
 namespace {
 
 using testing::sample_bad_row;

@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/report/results/sweep_charts.hpp"
+#include "eval/report/sweep_charts.hpp"
 #include "tests/eval/aggregate/sample_rows.hpp"
 
 namespace fusebench {
+
+using namespace record;
+using namespace aggregate;
+using namespace page;
+using namespace report;
+
 namespace {
 
 using testing::metric_of;

@@ -9,10 +9,18 @@
 
 #include "eval/aggregate/long_table.hpp"
 #include "eval/aggregate/record_scan.hpp"
-#include "eval/found_runs.hpp"
+#include "eval/run_files/found_runs.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace config;
+using namespace metrics;
+using namespace trajectory_error;
+using namespace record;
+using namespace run_files;
+using namespace aggregate;
+
 namespace {
 
 RunRecord sample_record(const std::string& recording, const std::string& variant, double ate_m) {

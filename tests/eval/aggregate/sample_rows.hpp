@@ -12,14 +12,14 @@
 namespace fusebench::testing {
 
 /// An ok run with a position error and a time for each frame.
-inline RunRow sample_row(std::string recording, RunOptions options, double ate_m,
-                         double cpu_ms_per_frame = 10, std::string variant = "full") {
-  RunRow row;
+inline aggregate::RunRow sample_row(std::string recording, aggregate::RunOptions options, double ate_m,
+                                    double cpu_ms_per_frame = 10, std::string variant = "full") {
+  aggregate::RunRow row;
   row.recording = std::move(recording);
   row.variant = std::move(variant);
   row.truth = "given";
   row.options = std::move(options);
-  row.status = RunStatus::ok;
+  row.status = record::RunStatus::ok;
   row.total = row.tracked = 100;
   row.ate_rmse_m = ate_m;
   row.cpu_ms_per_frame = cpu_ms_per_frame;
@@ -27,21 +27,24 @@ inline RunRow sample_row(std::string recording, RunOptions options, double ate_m
 }
 
 /// The same without numbers.
-inline RunRow sample_bad_row(std::string recording, RunOptions options, RunStatus status) {
-  RunRow row = sample_row(std::move(recording), std::move(options), 0);
-  static_cast<RunNumbers&>(row) = {};
+inline aggregate::RunRow sample_bad_row(std::string recording, aggregate::RunOptions options,
+                                        record::RunStatus status) {
+  aggregate::RunRow row = sample_row(std::move(recording), std::move(options), 0);
+  static_cast<aggregate::RunNumbers&>(row) = {};
   row.status = status;
   row.reason = "lost at frame 12";
   return row;
 }
 
-inline std::vector<RunRow> shuffled(std::vector<RunRow> rows, unsigned seed) {
+inline std::vector<aggregate::RunRow> shuffled(std::vector<aggregate::RunRow> rows, unsigned seed) {
   std::mt19937 random(seed);
   std::shuffle(rows.begin(), rows.end(), random);
   return rows;
 }
 
 /// By its word.
-inline const RunMetric& metric_of(const char* word) { return *find_run_metric(word).value(); }
+inline const aggregate::RunMetric& metric_of(const char* word) {
+  return *aggregate::find_run_metric(word).value();
+}
 
 }  // namespace fusebench::testing

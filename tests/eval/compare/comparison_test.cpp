@@ -11,6 +11,13 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace metrics;
+using namespace trajectory_error;
+using namespace record;
+using namespace run_files;
+using namespace compare;
+
 namespace {
 
 constexpr std::size_t kFrames = 20;

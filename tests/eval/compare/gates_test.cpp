@@ -6,6 +6,9 @@
 #include <filesystem>
 
 namespace fusebench {
+
+using namespace compare;
+
 namespace {
 
 std::size_t metric(std::string_view key) {

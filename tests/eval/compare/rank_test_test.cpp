@@ -6,6 +6,9 @@
 #include <vector>
 
 namespace fusebench {
+
+using namespace compare;
+
 namespace {
 
 TEST(RankTestTest, KnownExactProbabilities) {

@@ -8,15 +8,22 @@
 #include <utility>
 #include <vector>
 
-#include "core/staged_folder.hpp"
+#include "core/io/staged_folder.hpp"
 #include "eval/engine/invocation.hpp"
 #include "eval/engine/plan_preview.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/engine/run_folders.hpp"
-#include "tests/datasets/tum_folder.hpp"
+#include "tests/datasets/formats/tum/tum_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace io;
+using namespace record;
+using namespace run;
+using namespace suites;
+using namespace engine;
+
 namespace {
 
 namespace fs = std::filesystem;

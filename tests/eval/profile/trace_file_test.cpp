@@ -5,6 +5,10 @@
 #include "tests/support/trace_events.hpp"
 
 namespace fusebench {
+
+using namespace health;
+using namespace profile;
+
 namespace {
 
 using std::chrono::microseconds;

@@ -1,17 +1,29 @@
-#include "eval/report/results/results_page.hpp"
+#include "eval/report/results_page.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "core/ply_file.hpp"
-#include "core/trajectory_file.hpp"
-#include "eval/report/results/profile_charts.hpp"
-#include "eval/report/results/run_charts.hpp"
+#include "core/mesh/ply_file.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "eval/report/profile_charts.hpp"
+#include "eval/report/run_charts.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_meshes.hpp"
 
 namespace fusebench {
+
+using namespace simd;
+using namespace trajectory;
+using namespace mesh;
+using namespace health;
+using namespace metrics;
+using namespace trajectory_error;
+using namespace record;
+using namespace run_files;
+using namespace page;
+using namespace report;
+
 namespace {
 
 constexpr std::int64_t kStart_ns = 1'305'031'229'000'000'000;

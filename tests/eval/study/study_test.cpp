@@ -5,15 +5,24 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/trajectory_file.hpp"
-#include "eval/intensity_file.hpp"
-#include "eval/report/common_pixels.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "eval/metrics/intensity_file.hpp"
 #include "eval/study/bar_check.hpp"
 #include "eval/study/study_summary.hpp"
 #include "eval/study/summary_formats.hpp"
+#include "eval/tables/common_pixels.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
+
+using namespace trajectory;
+using namespace metrics;
+using namespace trajectory_error;
+using namespace record;
+using namespace suites;
+using namespace tables;
+using namespace study;
+
 namespace {
 
 using Pixels = std::vector<IntensityResidual>;

@@ -1,0 +1,16 @@
+// Sets kept as the bits of a number.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+
+namespace fusebench::inline base {
+
+/// Calls use(i) for each bit i that is set, from the lowest on.
+template <std::unsigned_integral Bits, class Use>
+void for_each_bit(Bits bits, const Use& use) {
+  for (; bits != 0; bits &= bits - 1) use(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+}  // namespace fusebench::inline base

@@ -1,0 +1,76 @@
+// Rotations, rigid transforms and directions.
+//
+// The convention in one equation: p_a = T_a_b * p_b, so adjacent frames cancel (T_a_c = T_a_b * T_b_c).
+// Perturbations act on the right, R * Exp(phi), with phi in radians in the local (body) frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <numbers>
+
+namespace fusebench::inline base {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Matrix3x2d = Eigen::Matrix<double, 3, 2>;
+using Matrix2x3d = Eigen::Matrix<double, 2, 3>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+[[nodiscard]] constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
+[[nodiscard]] constexpr double degrees(double radians) { return radians * kDegreesPerRadian; }
+
+/// Cross-product matrix: hat(a) * b = a x b.
+[[nodiscard]] Matrix3d hat(const Vector3d& a);
+
+/// Exponential of SO(3): rotation vector (rad) to unit quaternion (Rodrigues; series near zero).
+[[nodiscard]] Quaterniond so3_exp(const Vector3d& phi_rad);
+
+/// Logarithm of SO(3): the shortest rotation vector (rad), |phi| <= pi.
+[[nodiscard]] Vector3d so3_log(const Quaterniond& rotation);
+
+/// Right Jacobian: Exp(phi + d) = Exp(phi) * Exp(Jr(phi) d) + O(d^2) (Forster et al., T-RO 2017, Eq. 8).
+[[nodiscard]] Matrix3d so3_right_jacobian(const Vector3d& phi_rad);
+
+/// A rigid transform T_a_b: maps coordinates of frame b into frame a.
+struct SE3 {
+  Quaterniond rotation = Quaterniond::Identity();  ///< unit quaternion, R_a_b
+  Vector3d translation = Vector3d::Zero();         ///< origin of b in a, metres
+
+  [[nodiscard]] SE3 inverse() const {
+    const Quaterniond r = rotation.conjugate();
+    return {r, -(r * translation)};
+  }
+  [[nodiscard]] SE3 operator*(const SE3& other) const {
+    return {(rotation * other.rotation).normalized(), translation + rotation * other.translation};
+  }
+  [[nodiscard]] Vector3d operator*(const Vector3d& point) const { return rotation * point + translation; }
+  [[nodiscard]] Matrix3d rotation_matrix() const { return rotation.toRotationMatrix(); }
+};
+
+/// Shortest rotation angle between two orientations, radians in [0, pi].
+[[nodiscard]] double rotation_angle_rad(const Quaterniond& a, const Quaterniond& b);
+
+/// A pose moved along its tangent (right rotation in rad, then position of its origin in m).
+[[nodiscard]] SE3 pose_plus(const SE3& pose, const Vector6d& tangent);
+
+/// Inverse of pose_plus: the tangent that moves `from` to `to`.
+[[nodiscard]] Vector6d pose_minus(const SE3& to, const SE3& from);
+
+/// Geodesic interpolation: a at fraction 0, b at fraction 1 (rotation and translation apart).
+[[nodiscard]] SE3 interpolate(const SE3& a, const SE3& b, double fraction);
+
+/// Orthonormal basis (columns) of the plane orthogonal to a unit direction; the tangent of S2 at it.
+/// A pure function of the direction (not continuous: the reference axis switches).
+[[nodiscard]] Matrix3x2d s2_basis(const Vector3d& direction);
+
+/// Moves a unit direction along its tangent: Exp(B(direction) * delta) * direction. delta in radians.
+[[nodiscard]] Vector3d s2_plus(const Vector3d& direction, const Vector2d& delta_rad);
+
+/// Inverse of s2_plus: the delta that moves `from` to `to` (both unit).
+[[nodiscard]] Vector2d s2_minus(const Vector3d& to, const Vector3d& from);
+
+}  // namespace fusebench::inline base

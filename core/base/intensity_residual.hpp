@@ -1,0 +1,33 @@
+// What the estimator reports of each tracked pixel, and what the intensity metrics take.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace fusebench::inline base {
+
+/// |I_k - I_{k-1}| of one pixel of a tracked patch at level 0, before robust weighting and brightness
+/// correction.
+struct IntensityResidual {
+  std::uint32_t reference_pixel =
+      0;                      ///< v * width + u in frame k-1: the same pixel has the same key in all variants
+  float difference_grey = 0;  ///< absolute, grey levels
+  bool accepted = false;      ///< its patch also passed the chi-square gate
+};
+
+/// Where that pixel was found in frame k, and what it is compared with.
+struct PixelLanding {
+  std::uint32_t patch = 0;  ///< number of its patch in the frame
+  Eigen::Vector2f landed_px = Eigen::Vector2f::Zero();
+  float reference_grey = 0;
+  float observed_grey = 0;
+};
+
+/// The same pixels in both lists.
+struct TrackedPixels {
+  std::vector<IntensityResidual> intensity;
+  std::vector<PixelLanding> landings;
+};
+
+}  // namespace fusebench::inline base

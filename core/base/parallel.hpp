@@ -1,0 +1,46 @@
+// Deterministic parallel loops: work is cut into chunks whose size does not depend on the thread count,
+// each chunk writes its own slot, and whoever sums the slots does so in index order. The number of threads
+// therefore never shows in a result.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace fusebench::inline base {
+
+/// A fixed number of threads to run chunks on. Cheap to pass by reference, not copyable.
+class Workers {
+ public:
+  /// threads >= 1.
+  explicit Workers(int threads);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  [[nodiscard]] int threads() const { return threads_; }
+
+  /// Calls body(begin, end) for consecutive chunks of [0, count), in any order, possibly at once. Exceptions
+  /// of the body arrive at the caller.
+  void for_chunks(std::size_t count, std::size_t chunk_size,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body) const;
+
+  /// Maps each chunk to a value, in any order, and returns the values in chunk order.
+  template <class Value, class Map>
+  [[nodiscard]] std::vector<Value> map_chunks(std::size_t count, std::size_t chunk_size,
+                                              const Map& map) const {
+    std::vector<Value> values((count + chunk_size - 1) / chunk_size);
+    for_chunks(count, chunk_size,
+               [&](std::size_t begin, std::size_t end) { values[begin / chunk_size] = map(begin, end); });
+    return values;
+  }
+
+ private:
+  struct Arena;
+  int threads_;
+  std::unique_ptr<Arena> arena_;
+};
+
+}  // namespace fusebench::inline base

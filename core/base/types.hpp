@@ -1,0 +1,119 @@
+// The values that all layers share. Aggregates with defaults; SI units; time in integer nanoseconds.
+// Camera axes: x right, y down, z forward.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/geometry.hpp"
+#include "core/base/image.hpp"
+
+namespace fusebench::inline base {
+
+inline constexpr double kGravity_mps2 = 9.81;  ///< magnitude only; the direction is a state of the filter
+
+[[nodiscard]] constexpr double seconds_between(std::int64_t begin_ns, std::int64_t end_ns) {
+  return 1e-9 * static_cast<double>(end_ns - begin_ns);
+}
+
+/// Pinhole camera without distortion (readers undistort images). u = fx x/z + cx, v = fy y/z + cy.
+struct PinholeCamera {
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0;
+  double fy_px = 0;
+  double cx_px = 0;
+  double cy_px = 0;
+
+  /// Pixel coordinates of a point in the camera frame (metres, z > 0).
+  [[nodiscard]] Vector2d project(const Vector3d& point_camera) const {
+    return {fx_px * point_camera.x() / point_camera.z() + cx_px,
+            fy_px * point_camera.y() / point_camera.z() + cy_px};
+  }
+  /// The point at z-depth depth_m behind the pixel, in the camera frame.
+  [[nodiscard]] Vector3d back_project(double u_px, double v_px, double depth_m) const {
+    return {(u_px - cx_px) / fx_px * depth_m, (v_px - cy_px) / fy_px * depth_m, depth_m};
+  }
+  /// Derivative of project() by the point (pixels per metre).
+  [[nodiscard]] Matrix2x3d projection_jacobian(const Vector3d& point_camera) const {
+    const double inverse_z = 1.0 / point_camera.z();
+    Matrix2x3d j;
+    j << fx_px * inverse_z, 0, -fx_px * point_camera.x() * inverse_z * inverse_z,  //
+        0, fy_px * inverse_z, -fy_px * point_camera.y() * inverse_z * inverse_z;
+    return j;
+  }
+};
+
+/// One colour-depth pair; depth is registered to the colour camera.
+struct RgbdFrame {
+  std::int64_t timestamp_ns = 0;       ///< the colour image's stamp: what outputs call the frame
+  std::int64_t capture_offset_ns = 0;  ///< instant of the colour image (its middle row) minus its stamp
+  std::int64_t depth_offset_ns = 0;    ///< instant of the depth image minus that of the colour image
+  ColorImage color;
+  GreyImage grey;
+  DepthImage depth_m;
+
+  [[nodiscard]] std::int64_t capture_ns() const { return timestamp_ns + capture_offset_ns; }
+};
+
+/// One inertial sample in the IMU frame.
+struct ImuSample {
+  std::int64_t timestamp_ns = 0;
+  Vector3d angular_velocity_radps = Vector3d::Zero();
+  Vector3d specific_force_mps2 =
+      Vector3d::Zero();  ///< what an accelerometer reads: a - g, so +9.81 up at rest
+};
+
+/// Continuous-time noise densities of an IMU (Kalibr's convention).
+struct ImuNoise {
+  double gyroscope_radps_sqrthz = 0;          ///< white noise, rad/s/sqrt(Hz)
+  double accelerometer_mps2_sqrthz = 0;       ///< white noise, m/s^2/sqrt(Hz)
+  double gyroscope_bias_radps2_sqrthz = 0;    ///< bias random walk, rad/s^2/sqrt(Hz)
+  double accelerometer_bias_mps3_sqrthz = 0;  ///< bias random walk, m/s^3/sqrt(Hz)
+};
+
+/// When the rows of an image are exposed. Zero read-out is a global shutter.
+struct SensorTiming {
+  double color_readout_s = 0;  ///< between the first and the last row
+  double depth_readout_s = 0;  ///< the same for depth
+  double depth_delay_s =
+      0;  ///< how much later than its stamp says, relative to colour, depth is taken (readers apply it)
+};
+
+/// What the estimator must know of a recording's sensors.
+struct SensorRig {
+  PinholeCamera camera;
+  SensorTiming timing;
+  SE3 T_imu_camera;
+  ImuNoise imu_noise;
+};
+
+struct StampedPose {
+  std::int64_t timestamp_ns = 0;
+  SE3 T_world_camera;
+};
+using Trajectory = std::vector<StampedPose>;  ///< sorted by time, stamps unique
+
+/// Indexed triangle mesh in the world frame (metres). normals, colors and quality are empty or one per
+/// vertex.
+template <class Scalar>
+struct BasicMesh {
+  std::vector<Eigen::Matrix<Scalar, 3, 1>> vertices;
+  std::vector<Eigen::Vector3f> normals;  ///< unit, pointing out of the surface
+  std::vector<Rgb> colors;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<float> quality = {};                      ///< any number, such as the vertex's error
+
+  template <class Other>
+  [[nodiscard]] BasicMesh<Other> cast() const {
+    BasicMesh<Other> result{{}, normals, colors, triangles, quality};
+    result.vertices.reserve(vertices.size());
+    for (const auto& vertex : vertices) result.vertices.push_back(vertex.template cast<Other>());
+    return result;
+  }
+};
+using Mesh = BasicMesh<float>;          ///< as it is reconstructed and drawn
+using PreciseMesh = BasicMesh<double>;  ///< as files hold it, and as it is measured
+
+}  // namespace fusebench::inline base

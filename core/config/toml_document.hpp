@@ -1,0 +1,50 @@
+// A TOML file as a flat list of dotted keys with their lines: the one place that knows the parser.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// A list of plain values, e.g. variants = ["full", "dm"].
+using TomlList = std::vector<OptionValue>;
+
+/// One assignment of the file.
+struct TomlEntry {
+  /// dotted: [iekf] max_iterations = 8 has the key "iekf.max_iterations", the first [[bars]] title = "x" the
+  /// key "bars[0].title"
+  std::string key;
+  std::variant<OptionValue, TomlList> value;
+  std::string place;  ///< "file:line", for messages
+};
+
+/// One [table] or [[table]] header (or inline table), also when it is empty.
+struct TomlTable {
+  std::string key;
+  std::string place;
+};
+
+struct TomlDocument {
+  std::vector<TomlEntry> entries;  ///< in the order of the file
+  std::vector<TomlTable> tables;   ///< in the order of the file
+};
+
+/// Reads a TOML file. Errors: data_missing if it cannot be opened; configuration, with file:line, for bad
+/// syntax, for what nothing here takes (dates, lists of tables and other values, quoted keys that are no
+/// plain names), and for more than 1 MiB.
+[[nodiscard]] Result<TomlDocument> read_toml(const std::filesystem::path& file);
+
+/// The same for a text; `name` stands for the file in messages.
+[[nodiscard]] Result<TomlDocument> parse_toml(std::string_view text, const std::string& name);
+
+/// How a value is written in TOML: true, 8, 0.5, "text"; doubles with the shortest text that reads back the
+/// same.
+[[nodiscard]] std::string to_toml(const OptionValue& value);
+
+}  // namespace fusebench::config

@@ -1,0 +1,70 @@
+#include "core/config/variants.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <sstream>
+#include <string>
+
+#include "core/base/nearest_name.hpp"
+
+namespace fusebench::config {
+
+namespace {
+constexpr std::array kVariants = {
+    Variant{"full", "Ours",
+            "the paper's system: IMU prior, pixelwise deformation, colour and depth residuals", ""},
+    Variant{"dm", "DM",
+            "the direct method: the patch stays a rigid square at one depth, without visibility test; "
+            "everything else "
+            "as in full",
+            "terms.deformation=rigid_square terms.visibility_test=false"},
+    Variant{"no-imu", "without IMU", "constant velocity instead of the IMU as the prior; the same filter",
+            "terms.prior=constant_velocity"},
+    Variant{"dm-no-imu", "", "the direct method without IMU",
+            "terms.deformation=rigid_square terms.visibility_test=false terms.prior=constant_velocity"},
+    Variant{"planar", "", "each patch is warped by one plane, as Bloesch et al. 2017 do",
+            "terms.deformation=planar"},
+    Variant{"photometric-only", "", "no point-to-plane residuals", "terms.geometric_weight=0"},
+    Variant{"geometric-only", "", "no photometric residuals", "terms.photometric_weight=0"},
+    Variant{"single-iteration", "", "the plain extended Kalman filter: one iteration",
+            "iekf.max_iterations=1"},
+    Variant{
+        "literal", "",
+        "as close to the letter of the paper as runs: Eq. 22 without the prior after the first iteration, "
+        "independent pixels of fixed noise, squared residuals, no brightness, clock offset, motion "
+        "compensation or relocalisation",
+        "iekf.prior_in_every_iteration=false iekf.scatter_prior_freedom=1e9 iekf.scale_share=0 "
+        "photometric.pixels_per_measurement=1 geometric.pixels_per_measurement=1 "
+        "photometric.huber_sigmas=1e6 geometric.huber_sigmas=1e6 photometric.gain_sigma=0 "
+        "photometric.offset_sigma_grey=0 initialisation.imu_time_offset_sigma_s=0 "
+        "terms.motion_compensation=false terms.relocalisation=false"},
+};
+}  // namespace
+
+std::span<const Variant> all_variants() { return kVariants; }
+
+Result<Variant> find_variant(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const Variant& variant : kVariants) {
+    if (variant.name == name) return variant;
+    names.push_back(variant.name);
+  }
+  return fail(ErrorCode::usage,
+              fmt::format("unknown variant '{}' (nearest: {})", name, nearest_name(name, names)),
+              fmt::format("variants are {}", fmt::join(names, ", ")));
+}
+
+EffectiveConfig variant_config(const Variant& variant) {
+  EffectiveConfig config;
+  std::istringstream edits{std::string(variant.edits)};
+  for (std::string edit; edits >> edit;) {
+    const auto equals = edit.find('=');
+    const auto set = config.set(edit.substr(0, equals), parse_option_value(edit.substr(equals + 1)),
+                                fmt::format("variant {}", variant.name));
+    check(set.has_value(), "the table of variants edits existing options");
+  }
+  return config;
+}
+
+}  // namespace fusebench::config

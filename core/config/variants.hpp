@@ -1,0 +1,31 @@
+// Variants of the estimator: rows of one table, each an edit of the configuration.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/config/config.hpp"
+#include "core/config/config_access.hpp"
+
+namespace fusebench::config {
+
+struct Variant {
+  std::string_view name;         ///< e.g. "full"
+  std::string_view paper_label;  ///< e.g. "Ours"; empty if the paper has none
+  std::string_view sentence;
+  std::string_view edits;  ///< "key=value key=value", as --set takes them; empty for `full`
+};
+
+/// All variants, in the order in which tables list them.
+[[nodiscard]] std::span<const Variant> all_variants();
+
+/// The variant of that name; the error lists all names and the nearest one.
+[[nodiscard]] Result<Variant> find_variant(std::string_view name);
+
+/// The configuration of a variant before any file or --set.
+[[nodiscard]] EffectiveConfig variant_config(const Variant& variant);
+
+/// True if the effective configuration cannot run without inertial samples.
+[[nodiscard]] inline bool needs_imu(const Config& config) { return config.terms.prior == Prior::imu; }
+
+}  // namespace fusebench::config

@@ -1,0 +1,185 @@
+#include "core/filter/iekf.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace fusebench::filter {
+
+namespace {
+
+/// One iterate: y, the chart coordinates d = P B^T y, the state there, and what the images are compared at.
+struct Iterate {
+  MeasuredVector y = MeasuredVector::Zero();
+  StateVector delta = StateVector::Zero();
+  MeasuredVector measured = MeasuredVector::Zero();  ///< B d
+  MeasuredVector tangents = MeasuredVector::Zero();  ///< of the poses, at the prior's pose
+  FilterState state;
+  PoseHypothesis poses;
+};
+
+class Update {
+ public:
+  Update(const GaussianState& prior, PoseMeasurement& measurement, const config::IekfConfig& config)
+      : prior_(prior),
+        measurement_(measurement),
+        config_(config),
+        combinations_(measured_combinations(prior.mean)),
+        gain_columns_(prior.covariance * combinations_.transpose()),
+        measured_covariance_(combinations_ * gain_columns_) {
+    // What an earlier update of the same patches has learnt of the reference pose.
+    known_.head<kPoseSize>() = -pose_transport(prior.mean.T_world_imu, prior.mean.T_world_imu_reference) *
+                               prior.mean.reference_offset;
+  }
+
+  IekfResult run(const MeasuredVector& start) {
+    IekfResult result;
+    Iterate now = at(start);
+    MeasurementQuadratic quadratic;
+    const int stages = measurement_.stages();
+    for (int stage = 0; stage < stages; ++stage) {
+      const bool last = stage + 1 == stages;
+      // Coarse stages only bring the estimate into the basin; at least one iteration is left for the real
+      // thing.
+      const int budget = last ? config_.max_iterations - result.iterations
+                              : std::min(config_.coarse_iterations,
+                                         config_.max_iterations - result.iterations - (stages - 1 - stage));
+      if (budget <= 0) continue;
+      iterate_stage(stage, budget, last, now, quadratic, result);
+    }
+    result.map_cost_posterior = map_cost(now, quadratic.cost());
+    result.posterior = posterior(now, quadratic);
+    result.measurement = at_posterior(now, quadratic);
+    return result;
+  }
+
+ private:
+  Iterate at(const MeasuredVector& y) const {
+    Iterate iterate;
+    iterate.y = y;
+    iterate.delta = gain_columns_ * y;
+    iterate.measured = measured_covariance_ * y;
+    iterate.state = plus(prior_.mean, iterate.delta);
+    iterate.tangents = iterate.measured + known_;
+    iterate.poses = {pose_plus(prior_.mean.T_world_imu, iterate.tangents.head<kPoseSize>()),
+                     pose_plus(prior_.mean.T_world_imu, iterate.tangents.tail<kPoseSize>())};
+    return iterate;
+  }
+
+  double map_cost(const Iterate& iterate, double measurement_cost) const {
+    const double prior_cost = config_.prior_in_every_iteration ? 0.5 * iterate.y.dot(iterate.measured) : 0.0;
+    return prior_cost + measurement_cost;
+  }
+
+  /// Derivative of the poses' tangents at the iterate by the chart coordinates at the prior.
+  static MeasuredMatrix chart_jacobian(const Iterate& iterate) {
+    MeasuredMatrix jacobian = MeasuredMatrix::Identity();
+    jacobian.topLeftCorner<3, 3>() = so3_right_jacobian(iterate.tangents.head<3>());
+    jacobian.block<3, 3>(kPoseSize, kPoseSize) = so3_right_jacobian(iterate.tangents.segment<3>(kPoseSize));
+    return jacobian;
+  }
+
+  /// Information and gradient of the measurement in the chart at the prior.
+  struct ChartQuadratic {
+    MeasuredMatrix information = MeasuredMatrix::Zero();
+    MeasuredVector gradient;
+  };
+  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const MeasuredMatrix& chart) {
+    ChartQuadratic result;
+    result.information.topLeftCorner<kPoseSize, kPoseSize>() = quadratic.by_reference.information;
+    result.information.bottomRightCorner<kPoseSize, kPoseSize>() = quadratic.by_model.information;
+    result.information = chart.transpose() * result.information * chart;
+    result.gradient << quadratic.by_reference.gradient, quadratic.by_model.gradient;
+    result.gradient = chart.transpose() * result.gradient;
+    return result;
+  }
+
+  void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,
+                     IekfResult& result) {
+    quadratic = measurement_.linearise(now.poses, stage, false);
+    if (last) result.map_cost_prior = map_cost(now, quadratic.cost());
+    result.converged = false;
+    bool gated = false;
+    for (int iteration = 0; iteration < budget && !result.converged; ++iteration) {
+      const PoseHypothesis before = now.poses;
+      if (!step(now, quadratic)) break;
+      ++result.iterations;
+      result.converged = is_small_step(before.T_world_imu_by_reference, now.poses.T_world_imu_by_reference) &&
+                         is_small_step(before.T_world_imu_by_model, now.poses.T_world_imu_by_model);
+      // The next stage linearises by itself where this one ends.
+      if (!last && (result.converged || iteration + 1 == budget)) break;
+      quadratic = measurement_.linearise(now.poses, stage, last);
+      gated = last;
+    }
+    if (last && !gated) quadratic = measurement_.linearise(now.poses, stage, true);
+  }
+
+  bool is_small_step(const SE3& from, const SE3& to) const {
+    return rotation_angle_rad(from.rotation, to.rotation) < config_.converged_rotation_rad &&
+           (to.translation - from.translation).norm() < config_.converged_translation_m;
+  }
+
+  /// Both parts around the posterior: the one by reference was taken at another pose.
+  static PoseQuadratic at_posterior(const Iterate& now, const MeasurementQuadratic& quadratic) {
+    const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
+    PoseQuadratic sum = quadratic.by_model;
+    sum.add(quadratic.by_reference, 1.0);
+    const Vector6d change = quadratic.by_reference.information * step;
+    sum.cost += step.dot(quadratic.by_reference.gradient) + 0.5 * step.dot(change);
+    sum.gradient += change;
+    return sum;
+  }
+
+  /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.
+  bool step(Iterate& now, const MeasurementQuadratic& quadratic) {
+    const MeasuredMatrix chart = chart_jacobian(now);
+    const ChartQuadratic local = in_chart(quadratic, chart);
+    // Stationarity of J in y: (I + Lambda S) y = Lambda S y_now - g, with S = B P B^T. Eq. 22 of the paper
+    // takes each iterate for a new prediction: (I + Lambda S) (y - y_now) = -g.
+    const MeasuredMatrix system = MeasuredMatrix::Identity() + local.information * measured_covariance_;
+    MeasuredVector full;
+    if (config_.prior_in_every_iteration) {
+      full = system.partialPivLu().solve(local.information * now.measured - local.gradient) - now.y;
+    } else {
+      full = -system.partialPivLu().solve(local.gradient);
+    }
+    const MeasuredVector tangent_step = chart * (measured_covariance_ * full);
+    const double cost_now = map_cost(now, quadratic.cost());
+    for (double fraction = 1.0; fraction > 0.05; fraction *= 0.5) {
+      const Iterate trial = at(now.y + fraction * full);
+      const double cost = map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction));
+      if (cost <= cost_now) {
+        measurement_.accept();
+        now = trial;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  GaussianState posterior(const Iterate& now, const MeasurementQuadratic& quadratic) const {
+    const MeasuredMatrix information = in_chart(quadratic, chart_jacobian(now)).information;
+    const MeasuredMatrix system = MeasuredMatrix::Identity() + information * measured_covariance_;
+    const MeasuredMatrix reduction = system.partialPivLu().solve(information);
+    const StateMatrix in_chart_at_prior =
+        prior_.covariance - gain_columns_ * reduction * gain_columns_.transpose();
+    const StateMatrix transport = chart_transport(prior_.mean, now.delta);
+    return {now.state, symmetrised(transport * in_chart_at_prior * transport.transpose())};
+  }
+
+  const GaussianState& prior_;
+  PoseMeasurement& measurement_;
+  const config::IekfConfig& config_;
+  const Eigen::Matrix<double, kMeasuredSize, kStateSize> combinations_;  ///< B
+  const Eigen::Matrix<double, kStateSize, kMeasuredSize> gain_columns_;  ///< P B^T
+  MeasuredVector known_ = MeasuredVector::Zero();  ///< tangents of the poses at the prior
+  const MeasuredMatrix measured_covariance_;       ///< S = B P B^T
+};
+
+}  // namespace
+
+IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
+                       const config::IekfConfig& config, const MeasuredVector& start) {
+  return Update(prior, measurement, config).run(start);
+}
+
+}  // namespace fusebench::filter

@@ -1,0 +1,89 @@
+// The iterated extended Kalman update (Eqs. 15-23 of the paper) as Gauss-Newton on the MAP cost
+//
+//   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
+//
+// (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
+// every one (iekf.prior_in_every_iteration). A measurement sees two combinations B d of the error state only
+// (pose_anchors.hpp), so the optimum is x_prior (+) P B^T y for some y in R^12: the update iterates on y,
+// never inverts P (which may be singular), and carries velocity, biases and gravity along by their
+// correlations.
+#pragma once
+
+#include "core/config/config.hpp"
+#include "core/filter/filter_state.hpp"
+#include "core/filter/pose_anchors.hpp"
+
+namespace fusebench::filter {
+
+/// Second-order model of a measurement's cost around a pose, in the tangent space of the pose there
+/// (right rotation in rad, then world position in m).
+struct PoseQuadratic {
+  Matrix6d information = Matrix6d::Zero();  ///< H^T R^-1 H
+  Vector6d gradient = Vector6d::Zero();     ///< H^T R^-1 r
+  double cost = 0;                          ///< robust cost of the residuals, at the pose
+
+  void add(const PoseQuadratic& other, double factor) {
+    information += factor * other.information;
+    gradient += factor * other.gradient;
+    cost += factor * other.cost;
+  }
+};
+
+/// Where the IMU is, if the frame that the patches were cut from, or the model, is where it was thought to
+/// be. The two differ by what the update learns about these.
+struct PoseHypothesis {
+  SE3 T_world_imu_by_reference;
+  SE3 T_world_imu_by_model;
+};
+
+/// The cost of a measurement, in the tangents of the two poses of a hypothesis.
+struct MeasurementQuadratic {
+  PoseQuadratic by_reference;
+  PoseQuadratic by_model;
+
+  [[nodiscard]] double cost() const { return by_reference.cost + by_model.cost; }
+};
+
+inline constexpr int kMeasuredSize = 2 * kPoseSize;
+using MeasuredVector = Eigen::Matrix<double, kMeasuredSize, 1>;
+using MeasuredMatrix = Eigen::Matrix<double, kMeasuredSize, kMeasuredSize>;
+
+/// What an update needs of a measurement. Nuisance parameters (brightness of patches) are the measurement's
+/// own: it eliminates them in linearise() and moves them along in trial_cost() and accept().
+class PoseMeasurement {
+ public:
+  PoseMeasurement() = default;
+  PoseMeasurement(const PoseMeasurement&) = delete;
+  PoseMeasurement& operator=(const PoseMeasurement&) = delete;
+  virtual ~PoseMeasurement() = default;
+
+  /// Number of resolutions, coarse to fine; the last one is the measurement itself.
+  [[nodiscard]] virtual int stages() const { return 1; }
+  /// Fixes associations, visibility and robust weights at the pose (those of an earlier linearisation may
+  /// do). `gate`: reject what is inconsistent.
+  [[nodiscard]] virtual MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) = 0;
+  /// Cost at other poses with everything that the last linearise() fixed; `step` is the full tangent step
+  /// from there (by reference, then by model), of which `fraction` was taken.
+  [[nodiscard]] virtual double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
+                                          double fraction) = 0;
+  /// The last trial becomes the current estimate.
+  virtual void accept() = 0;
+};
+
+struct IekfResult {
+  GaussianState posterior;
+  PoseQuadratic measurement;  ///< the last linearisation, at the posterior: what the measurement alone says
+  int iterations = 0;         ///< accepted steps over all stages
+  bool converged = false;     ///< the last step was below both thresholds
+  double map_cost_prior = 0;  ///< J at the prediction (last stage only)
+  double map_cost_posterior = 0;
+};
+
+/// Runs the update. The covariance is updated once, after the last iteration (Eq. 23 in its symmetric form),
+/// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the
+/// prediction).
+[[nodiscard]] IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
+                                     const config::IekfConfig& config,
+                                     const MeasuredVector& start = MeasuredVector::Zero());
+
+}  // namespace fusebench::filter

@@ -1,0 +1,76 @@
+#include "core/filter/pose_anchors.hpp"
+
+#include <algorithm>
+
+namespace fusebench::filter {
+
+namespace {
+
+/// How a rigid displacement of everything, given as a pose error at the pose, moves the error state: what is
+/// seen from the displaced world moves the other way.
+Eigen::Matrix<double, kStateSize, kPoseSize> displacement(const FilterState& state) {
+  Eigen::Matrix<double, kStateSize, kPoseSize> moves = Eigen::Matrix<double, kStateSize, kPoseSize>::Zero();
+  const Matrix3d R = state.T_world_imu.rotation_matrix();
+  moves.topRows<kPoseSize>().setIdentity();
+  // A rotation error phi of the body is R phi of the world.
+  moves.block<3, 3>(kVelocity, 0) = -hat(state.velocity_world_mps) * R;
+  moves.block<2, 3>(kGravity, 0) = s2_basis(state.gravity_direction_world).transpose() * R;
+  return moves;
+}
+
+GaussianState transformed(const GaussianState& state, const StateMatrix& by) {
+  return {state.mean, symmetrised(by * state.covariance * by.transpose())};
+}
+
+}  // namespace
+
+Matrix6d pose_transport(const SE3& to, const SE3& from) {
+  Matrix6d transport = Matrix6d::Identity();
+  const Matrix3d R_from = from.rotation_matrix();
+  transport.topLeftCorner<3, 3>() = to.rotation_matrix().transpose() * R_from;
+  transport.bottomLeftCorner<3, 3>() = -hat(to.translation - from.translation) * R_from;
+  return transport;
+}
+
+Eigen::Matrix<double, 2 * kPoseSize, kStateSize> measured_combinations(const FilterState& state) {
+  Eigen::Matrix<double, 2 * kPoseSize, kStateSize> rows =
+      Eigen::Matrix<double, 2 * kPoseSize, kStateSize>::Zero();
+  rows.topLeftCorner<kPoseSize, kPoseSize>().setIdentity();
+  rows.block<kPoseSize, kPoseSize>(0, kReferencePose) =
+      -pose_transport(state.T_world_imu, state.T_world_imu_reference);
+  rows.bottomLeftCorner<kPoseSize, kPoseSize>().setIdentity();
+  return rows;
+}
+
+GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift) {
+  StateMatrix to_model = StateMatrix::Identity();
+  to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
+  to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * Matrix6d::Identity();
+  to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) =
+      pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
+  to_model.middleRows<kPoseSize>(kReferencePose).setZero();
+
+  StateMatrix clone = StateMatrix::Identity();
+  clone.middleRows<kPoseSize>(kReferencePose).setZero();
+  clone.block<kPoseSize, kPoseSize>(kReferencePose, 0).setIdentity();
+
+  GaussianState result = transformed(state, clone * to_model);
+  // What the model drifts beyond independent errors is no error of this pose.
+  const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
+  result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
+      excess * state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
+  result.mean.model_offset =
+      to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) * state.mean.model_offset;
+  result.mean.T_world_imu_reference = state.mean.T_world_imu;
+  result.mean.reference_offset.setZero();
+  return result;
+}
+
+GaussianState in_first_camera_world(const GaussianState& state) {
+  const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
+  StateMatrix to_world = StateMatrix::Identity();
+  to_world.middleCols<kPoseSize>(kModelPose) += displacement(state.mean) * carried;
+  return transformed(state, to_world);
+}
+
+}  // namespace fusebench::filter

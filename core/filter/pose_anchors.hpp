@@ -1,0 +1,37 @@
+// What the images are compared with, and how certain it is: the frame that the patches were cut from, and the
+// model. Neither is exact. A photometric residual tells the motion since the reference frame; a geometric one
+// the pose against the model, which was built at estimated poses and drifts with them.
+//
+// Between fusions the pose, velocity and gravity of the filter are against the model ("world" as the model
+// has it). When a frame is fused the model takes over a share of its pose error. That error is then no longer
+// one against the model, but one of the model against the world of the first camera (kModelPose).
+#pragma once
+
+#include "core/filter/filter_state.hpp"
+
+namespace fusebench::filter {
+
+/// Carries a pose error from one pose to another that is rigidly attached to it: tangents of T_world_imu
+/// (right rotation in rad, world position in m).
+[[nodiscard]] Matrix6d pose_transport(const SE3& to, const SE3& from);
+
+/// The two things that images tell, as combinations of the error state: the pose against the reference frame
+/// (rows 0-5) and against the model (rows 6-11), both in the tangent of the pose.
+[[nodiscard]] Eigen::Matrix<double, 2 * kPoseSize, kStateSize> measured_combinations(
+    const FilterState& state);
+
+/// How the model follows the frames that are fused into it.
+struct ModelDrift {
+  double share = 0;   ///< of a frame's pose error that the model takes over, 0 to 1
+  double factor = 1;  ///< how much larger its drift is than that of independent errors (sigmas)
+};
+
+/// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its
+/// pose.
+[[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift);
+
+/// The estimate in the world of the first camera: the uncertainty of the model's place is added to that of
+/// the pose, the velocity and the direction of gravity.
+[[nodiscard]] GaussianState in_first_camera_world(const GaussianState& state);
+
+}  // namespace fusebench::filter

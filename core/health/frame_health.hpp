@@ -1,0 +1,39 @@
+// The health of a frame: judged by its images and by the outcomes of the patches, so that a report can say
+// why a frame was lost or is poorly constrained. The paper leaves failures open.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "core/config/config.hpp"
+#include "core/measurement/patch_measurement.hpp"
+
+namespace fusebench::health {
+
+/// The first that applies, in this order.
+enum class FrameHealth {
+  dark,              ///< (nearly) no light: a covered or switched-off camera
+  occluded,          ///< something new stands before a quarter of the patches or more
+  short_of_depth,    ///< most of the image has no usable depth
+  short_of_texture,  ///< nearly no gradients to track
+  inconsistent,      ///< most patches contradict the pose
+  short_of_patches,  ///< too few in view for another reason
+  blurred,           ///< the predicted blur is longer than a patch
+  diverged,          ///< the images were not asked: the state is not finite (state_validity.hpp)
+  good,
+};
+[[nodiscard]] std::string_view to_string(FrameHealth health);
+
+/// Judges a frame by its pyramid, its gated depth, the outcomes of the patches that were projected into it
+/// and the predicted length of its motion blur.
+[[nodiscard]] FrameHealth judge_health(const measurement::ObservedFrame& frame,
+                                       std::span<const measurement::PatchOutcome> outcomes, double blur_px,
+                                       const config::Config& config);
+
+/// Judges a frame as the first one, from which `patches` usable ones were cut: good if the next frame can be
+/// tracked from it. Without light, or with fewer patches than iekf.min_patches, it cannot.
+[[nodiscard]] FrameHealth judge_start(const measurement::ObservedFrame& frame, std::size_t patches,
+                                      const config::Config& config);
+
+}  // namespace fusebench::health

@@ -1,0 +1,71 @@
+#include "core/health/frame_report.hpp"
+
+#include <algorithm>
+
+#include "core/filter/pose_anchors.hpp"
+
+namespace fusebench::health {
+
+std::string_view to_string(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::initialised:
+      return "initialised";
+    case FrameStatus::tracked:
+      return "tracked";
+    case FrameStatus::relocalised:
+      return "relocalised";
+    case FrameStatus::lost:
+      break;
+  }
+  return "lost";
+}
+
+FrameReport report_of(const RgbdFrame& frame) {
+  FrameReport report;
+  report.timestamp_ns = frame.timestamp_ns;
+  report.capture_ns = frame.capture_ns();
+  return report;
+}
+
+void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report) {
+  report.T_world_camera = estimate.mean.T_world_imu * T_imu_camera;
+  report.estimate = filter::in_first_camera_world(estimate);
+  report.velocity_world_mps = estimate.mean.velocity_world_mps;
+  report.angular_velocity_radps = estimate.mean.angular_velocity_imu_radps;
+}
+
+void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
+                     std::span<const patches::Patch> patches, FrameReport& report) {
+  double chi2_photometric = 0;
+  double chi2_geometric = 0;
+  std::vector<double> motion_px;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const patches::Patch& patch = patches[p];
+    const measurement::PatchOutcome& outcome = measurement.outcomes()[p];
+    report.patches += outcome.in_view ? 1 : 0;
+    report.patches_tracked += outcome.tracked ? 1 : 0;
+    report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
+    report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
+    if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());
+    if (!outcome.accepted) continue;
+    ++report.patches_accepted;
+    report.pixels_photometric += outcome.photometric_residuals;
+    report.pixels_geometric += outcome.geometric_residuals;
+    chi2_photometric += outcome.chi2_photometric;
+    chi2_geometric += outcome.chi2_geometric;
+  }
+  if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
+  if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
+  if (!motion_px.empty()) {
+    const auto middle = motion_px.begin() + static_cast<std::ptrdiff_t>(motion_px.size() / 2);
+    std::nth_element(motion_px.begin(), middle, motion_px.end());
+    report.patch_motion_px = *middle;
+  }
+  report.variance_photometric = measurement.photometric_variance();
+  report.variance_geometric = measurement.geometric_variance();
+  report.iterations = result.iterations;
+  report.converged = result.converged;
+  report.pixels = measurement.tracked_pixels();
+}
+
+}  // namespace fusebench::health

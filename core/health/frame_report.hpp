@@ -1,0 +1,81 @@
+// What the pipeline says of each frame.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/intensity_residual.hpp"
+#include "core/filter/filter_state.hpp"
+#include "core/filter/iekf.hpp"
+#include "core/health/frame_health.hpp"
+#include "core/health/stage_times.hpp"
+#include "core/measurement/patch_measurement.hpp"
+#include "core/patches/patches.hpp"
+
+namespace fusebench::health {
+
+enum class FrameStatus {
+  initialised,  ///< the first frame that could be used
+  tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
+  relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
+  lost,         ///< too few usable patches, or after a gap ones that do not fit, and no keyframe was
+                ///< recognised: the prediction was kept, the frame not fused. Or no start yet
+};
+[[nodiscard]] std::string_view to_string(FrameStatus status);
+
+/// What the images alone say about the pose of a frame, given the frame that its patches were cut from and
+/// the model: cost(T_world_imu * d) = information and gradient around the pose. Batch estimators use it.
+struct PoseEvidence {
+  std::int64_t reference_ns = 0;  ///< capture instant of the frame that the patches were cut from
+  SE3 T_world_imu_reference;      ///< the pose that they were cut at
+  SE3 T_world_imu;                ///< where the quadratic was taken: the posterior
+  filter::PoseQuadratic quadratic;
+};
+
+/// What happened in one frame.
+struct FrameReport {
+  std::int64_t timestamp_ns = 0;
+  FrameStatus status = FrameStatus::lost;
+  std::string reason;  ///< why it is lost, or started from again; empty otherwise
+  FrameHealth health = FrameHealth::good;
+  std::int64_t capture_ns = 0;  ///< the instant that the pose is of
+  SE3 T_world_camera;
+  filter::GaussianState estimate;        ///< the whole state and its covariance, after the frame
+  std::optional<PoseEvidence> evidence;  ///< of tracked frames but the first
+  Vector3d velocity_world_mps = Vector3d::Zero();
+  Vector3d angular_velocity_radps = Vector3d::Zero();  ///< body frame
+  int patches = 0;                                     ///< projected into this frame
+  int patches_tracked = 0;                             ///< with enough usable pixels at the final pose
+  int patches_accepted = 0;    ///< that also passed the chi-square gate: those the update used
+  int patches_shrunk = 0;      ///< lost pixels to occlusion (shrink effect)
+  int patches_extended = 0;    ///< bounding box larger than the square (extend effect)
+  int pixels_photometric = 0;  ///< residuals of all levels in the update
+  int pixels_geometric = 0;
+  int iterations = 0;
+  bool converged = false;
+  double chi2_photometric = 0;  ///< mean squared whitened residual of accepted patches
+  double chi2_geometric = 0;
+  double variance_photometric = 1;  ///< factor on the claimed variance (patch_scatter.hpp)
+  double variance_geometric = 1;
+  std::size_t model_blocks = 0;
+  double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
+  double blur_px = 0;          ///< predicted length of motion blur at the image centre
+  TrackedPixels pixels;        ///< of all tracked patches, by patch, then pixel
+  StageTimes stages;           ///< wall time; the only part that is not reproducible
+};
+
+/// The report of a frame of which nothing is known yet.
+[[nodiscard]] FrameReport report_of(const RgbdFrame& frame);
+
+/// Fills in the state after the frame: of the IMU that the camera is mounted to.
+void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report);
+
+/// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
+void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
+                     std::span<const patches::Patch> patches, FrameReport& report);
+
+}  // namespace fusebench::health

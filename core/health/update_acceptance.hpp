@@ -1,0 +1,39 @@
+// Whether the result of an update is believed, and whether its frame is fused. The paper leaves both open.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/config/config.hpp"
+#include "core/health/frame_report.hpp"
+
+namespace fusebench::health {
+
+/// True if the photometric residuals are too large for the patches to lie where they belong: the mean squared
+/// whitened residual of accepted ones.
+[[nodiscard]] bool fails_chi2_gate(const FrameReport& report, const config::Config& config);
+
+/// Why an update, described in the report, is not believed; empty if it is. after_gap: the prediction may be
+/// so far off that patches settle on the wrong corners.
+[[nodiscard]] std::string rejection_reason(const FrameReport& report, bool after_gap,
+                                           const config::Config& config);
+
+/// Where the patches that are good enough to be cut again are in the current frame: accepted, and with a mean
+/// intensity error of at most patches.max_mean_error (Sec. 2.3). The memory of `survivors` is used again.
+void find_survivors(std::span<const patches::Patch> patches,
+                    std::span<const measurement::PatchOutcome> outcomes, const config::PatchConfig& config,
+                    std::vector<patches::TrackedCentre>& survivors);
+
+/// Keeps what has come to stand before many patches out of the model: it is no part of the scene, and patches
+/// cut from it would lead astray. What stays there for a second is let in.
+class OcclusionGate {
+ public:
+  /// Called once a frame; true if the frame may be fused.
+  [[nodiscard]] bool admits(const FrameReport& report);
+
+ private:
+  int occluded_frames_ = 0;  ///< in a row
+};
+
+}  // namespace fusebench::health

@@ -1,0 +1,249 @@
+#include "core/io/staged_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+namespace fusebench::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Others work beside us only now and then, so that a few attempts in a row do not all meet them.
+constexpr int kAttempts = 100;
+
+/// ".<name>.<process>[-<attempt>].tmp" beside a path; the dot keeps it out of listings. Processes of other
+/// machines can have the same number.
+fs::path hidden_sibling(const fs::path& path, int attempt) {
+  const std::string again = attempt == 0 ? "" : fmt::format("-{}", attempt);
+  return path.parent_path() / fmt::format(".{}.{}{}.tmp", path.filename().string(), getpid(), again);
+}
+
+tl::unexpected<Error> io_error(const fs::path& path, const std::error_code& error) {
+  return fail(ErrorCode::io, fmt::format("{}: cannot be written: {}", path.string(), error.message()),
+              "choose another folder with --out");
+}
+
+/// The folders above a path that are not there; those that it made are added, outermost first.
+std::error_code create_parents(const fs::path& path, std::vector<fs::path>& created) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path parent = path.parent_path(); !parent.empty() && !fs::exists(parent, error);
+       parent = parent.parent_path()) {
+    missing.push_back(parent);
+  }
+  error.clear();
+  for (auto parent = missing.rbegin(); parent != missing.rend() && !error; ++parent) {
+    // Another process may have made it in the meantime: that is not an error, and it is not ours to remove.
+    if (fs::create_directory(*parent, error)) created.push_back(*parent);
+  }
+  return error;
+}
+
+/// Tells others that somebody works in the folder; the system lets go of it when the process ends, however it
+/// does. -1 where the file system has no locks, and where somebody else has this one.
+int lock_folder(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0 && flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  const int why = errno;
+  if (descriptor >= 0) close(descriptor);
+  errno = why;
+  return -1;
+}
+
+/// Onto the disk, so that a power cut keeps it. A file system that cannot do this for a folder says that the
+/// argument is invalid; whatever else it says is an error of the disk.
+std::error_code sync_to_disk(const fs::path& place) {
+  const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return {errno, std::generic_category()};
+  const int failed = fsync(descriptor) == 0 ? 0 : errno;
+  close(descriptor);
+  if (failed == EINVAL || failed == ENOTSUP) return {};
+  return {failed, std::generic_category()};
+}
+
+/// Every file and folder below, and then the folder itself.
+std::error_code sync_tree(const fs::path& folder) {
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->is_symlink(error) || error) continue;
+    const bool is_kept = entry->is_regular_file(error) || entry->is_directory(error);
+    if (is_kept && !error) error = sync_to_disk(entry->path());
+    if (error) return error;
+  }
+  return error ? error : sync_to_disk(folder);
+}
+
+/// The folder that a path stands in.
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// ".<name>.<process>[-<attempt>].tmp".
+bool is_hidden_sibling(std::string_view name) {
+  constexpr std::string_view kEnd = ".tmp";
+  if (!name.starts_with('.') || !name.ends_with(kEnd)) return false;
+  name = name.substr(1, name.size() - 1 - kEnd.size());
+  const std::size_t point = name.rfind('.');
+  if (point == std::string_view::npos || point == 0) return false;
+  const std::string_view numbers = name.substr(point + 1);
+  const std::size_t dash = numbers.find('-');
+  return is_number(numbers.substr(0, dash)) &&
+         (dash == std::string_view::npos || is_number(numbers.substr(dash + 1)));
+}
+
+bool is_older_than_a_day(const fs::path& folder) {
+  std::error_code error;
+  const auto written = fs::last_write_time(folder, error);
+  return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(24);
+}
+
+}  // namespace
+
+Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
+  StagedFolder folder;
+  folder.final_ = final_folder.has_filename() ? final_folder : final_folder.parent_path();  // "folder/"
+  std::error_code error;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const fs::path temporary = hidden_sibling(folder.final_, attempt);
+    error = create_parents(folder.final_, folder.created_);
+    if (!error && fs::create_directory(temporary, error)) {
+      folder.temporary_ = temporary;
+      folder.lock_ = lock_folder(temporary);
+      // Somebody took the empty folder for one that was left by a dead process, and is removing it.
+      if (folder.lock_ < 0 && errno == EWOULDBLOCK) continue;
+      if (fs::create_directory(folder.path(), error)) return folder;
+    }
+    // Others may have removed a parent that was theirs, or the folder of this name, just now.
+    const bool met_another =
+        !error || error == std::errc::no_such_file_or_directory || error == std::errc::file_exists;
+    if (!met_another) break;
+  }
+  if (!error) error = std::make_error_code(std::errc::file_exists);
+  return io_error(folder.final_, error);
+}
+
+StagedFolder::StagedFolder(StagedFolder&& other) noexcept
+    : final_(std::move(other.final_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      lock_(std::exchange(other.lock_, -1)),
+      created_(std::exchange(other.created_, {})) {}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  if (lock_ >= 0) close(lock_);
+  // Innermost first; one that holds something else stays.
+  for (auto parent = created_.rbegin(); parent != created_.rend(); ++parent) fs::remove(*parent, ignored);
+}
+
+Result<void> StagedFolder::write(std::string_view name, std::string_view text) const {
+  std::ofstream stream(file(name), std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) return fail(ErrorCode::io, fmt::format("{}: cannot be written", file(name).string()));
+  return {};
+}
+
+Result<void> StagedFolder::commit() {
+  const fs::path old = temporary_ / "old";
+  std::error_code error = sync_tree(path());
+  if (error) return io_error(final_, error);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    fs::rename(final_, old, error);
+    if (error && error != std::errc::no_such_file_or_directory) break;
+    fs::rename(path(), final_, error);
+    std::error_code ignored;
+    if (!error) {
+      // What was replaced goes once the new one is on the disk.
+      error = sync_places();
+      fs::remove_all(std::exchange(temporary_, {}), ignored);
+      created_.clear();
+      if (error) break;
+      return {};
+    }
+    // Another one was committed in between. It is replaced in its turn; what it replaced is out of date.
+    const bool met_another = error == std::errc::directory_not_empty || error == std::errc::file_exists;
+    if (!met_another) {
+      fs::rename(old, final_, ignored);  // if there is one
+      break;
+    }
+    fs::remove_all(old, ignored);
+  }
+  return io_error(final_, error);
+}
+
+/// The names of the folder, and of those above it that were made for it.
+std::error_code StagedFolder::sync_places() const {
+  std::error_code error = sync_to_disk(folder_of(final_));
+  for (auto parent = created_.rbegin(); parent != created_.rend() && !error; ++parent)
+    error = sync_to_disk(folder_of(*parent));
+  return error;
+}
+
+bool is_staged_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!is_hidden_sibling(folder.filename().string()) || !fs::is_directory(folder, error)) return false;
+  if (fs::is_symlink(folder, error)) return false;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path name = entry->path().filename();
+    std::error_code ignored;
+    if ((name != "new" && name != "old") || !entry->is_directory(ignored)) return false;
+  }
+  return !error;
+}
+
+std::error_code remove_whole(const fs::path& folder) {
+  std::error_code error;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const fs::path hidden = hidden_sibling(folder, attempt);
+    if (!fs::create_directory(hidden, error)) {
+      if (error && error != std::errc::file_exists) return error;
+      error = std::make_error_code(std::errc::file_exists);
+      continue;
+    }
+    const int lock = lock_folder(hidden);
+    fs::rename(folder, hidden / "old", error);
+    std::error_code removing;
+    fs::remove_all(hidden, removing);
+    if (lock >= 0) close(lock);
+    return error ? error : removing;
+  }
+  return error;
+}
+
+std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
+  std::vector<fs::path> hidden;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_staged_folder(entry->path())) hidden.push_back(entry->path());
+  }
+  std::vector<fs::path> abandoned;
+  for (const fs::path& folder : hidden) {
+    const int lock = lock_folder(folder);
+    const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
+    std::error_code ignored;
+    if (lock >= 0 || (unlockable && is_older_than_a_day(folder))) {
+      abandoned.push_back(folder);
+      // The lock is held meanwhile, so that whoever has just made the folder learns it.
+      if (!only_look) fs::remove_all(folder, ignored);
+    }
+    if (lock >= 0) close(lock);
+  }
+  return abandoned;
+}
+
+}  // namespace fusebench::io

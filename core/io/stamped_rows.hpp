@@ -1,0 +1,35 @@
+// Text tables whose first column is a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "core/base/error.hpp"
+#include "core/io/text_table.hpp"
+
+namespace fusebench::io {
+
+enum class TimeOrder {
+  increasing,     ///< strictly; a row that breaks it is an error that names both lines
+  not_backwards,  ///< stamps may repeat
+  any,
+};
+
+/// Calls row for every row of the table, in the order of the file, up to the first error. Errors:
+/// data_missing; data_corrupt (those of TextTable, a table without rows); those of row.
+[[nodiscard]] Result<void> for_each_row(const std::filesystem::path& file, std::string_view columns,
+                                        const std::function<Result<void>(const TextTable& table)>& row);
+
+/// What is done with one row; column 0 is its time.
+using StampedRow = std::function<Result<void>(const TextTable& table, std::int64_t time_ns)>;
+
+/// Calls row for every row of the table, in the order of the file, up to the first error. columns: names,
+/// separated by blanks, the first one the time in the given unit. Errors: data_missing; data_corrupt (those
+/// of TextTable, the order in time, a table without rows); those of row.
+[[nodiscard]] Result<void> for_each_stamped_row(const std::filesystem::path& file, std::string_view columns,
+                                                TimeOrder order, const StampedRow& row,
+                                                TimeUnit unit = TimeUnit::seconds);
+
+}  // namespace fusebench::io

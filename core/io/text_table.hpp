@@ -1,0 +1,76 @@
+// Strict reader of text tables: rows of columns separated by white space or commas.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+
+namespace fusebench::io {
+
+/// In which unit a file counts time. The value is the number of decimals that a nanosecond takes.
+enum class TimeUnit { nanoseconds = 0, microseconds = 3, milliseconds = 6, seconds = 9 };
+[[nodiscard]] std::string_view to_string(TimeUnit unit);  ///< "microseconds"
+
+/// Decimal time ("1305031229.528748", "1.5e-3") to integer nanoseconds in integer arithmetic, so that no
+/// digit is lost to a double. Digits beyond the nanosecond round to nearest, halves away from zero. Error
+/// data_corrupt: not a decimal number, or beyond half the range of int64 nanoseconds (about 146 years), so
+/// that differences of times fit, too.
+[[nodiscard]] Result<std::int64_t> parse_time_ns(std::string_view text, TimeUnit unit = TimeUnit::seconds);
+
+/// A finite decimal number; the whole text must be one. Error data_corrupt: anything else, also "nan" and
+/// "inf".
+[[nodiscard]] Result<double> parse_number(std::string_view text);
+
+/// Splits at white space and commas: white space with at most one comma in it is one separator, so "1, 2" has
+/// two fields and "1,,2" three. White space at the ends does not count.
+void split_fields(std::string_view line, std::vector<std::string_view>& fields);
+
+/// Reads one table row by row; only one line is in memory. A byte order mark, carriage returns, blank lines
+/// and comments (first character '#') are skipped. Every row must have exactly the named columns; the last
+/// ones may stand in brackets ("timestamp gx gy gz [ax ay az]"), and a row may then do without all of these.
+class TextTable {
+ public:
+  static constexpr std::size_t kLongestLine = 1 << 16;  ///< characters; a longer line is not a table
+
+  /// columns: names, separated by blanks ("timestamp filename"). Errors: data_missing.
+  [[nodiscard]] static Result<TextTable> open(const std::filesystem::path& file, std::string_view columns);
+
+  /// Moves to the next row; false at the end of the file. Errors: data_corrupt (number of columns, a line
+  /// that is too long, bytes that are not text).
+  [[nodiscard]] Result<bool> next();
+
+  /// Of the current row. Columns count from 0. Errors: data_corrupt.
+  [[nodiscard]] int line() const { return line_; }
+  [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[column]; }
+  [[nodiscard]] bool has(std::size_t column) const { return column < fields_.size(); }
+  [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column, TimeUnit unit = TimeUnit::seconds) const;
+  [[nodiscard]] Result<double> number(std::size_t column) const;
+  /// Fills values from as many neighbouring columns.
+  [[nodiscard]] Result<void> numbers(std::size_t first_column, std::span<double> values) const;
+
+  /// An error about the current row: "file:line: what", where `what` may quote the row (see printable.hpp).
+  [[nodiscard]] tl::unexpected<Error> fail_here(std::string_view what, std::string hint = {}) const;
+
+ private:
+  TextTable(std::filesystem::path file, std::string_view columns, std::ifstream stream);
+  [[nodiscard]] Result<bool> read_line();
+  [[nodiscard]] std::string expectation() const;
+
+  std::filesystem::path file_;
+  std::vector<std::string> columns_;
+  std::size_t needed_columns_ = 0;
+  std::ifstream stream_;
+  std::string buffer_;
+  std::string_view text_;  ///< the current line within buffer_
+  std::vector<std::string_view> fields_;
+  int line_ = 0;
+};
+
+}  // namespace fusebench::io

@@ -1,0 +1,341 @@
+#include "core/measurement/patch_measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/bits.hpp"
+#include "core/base/error.hpp"
+#include "core/measurement/patch_scatter.hpp"
+#include "core/patches/posed_camera.hpp"
+#include "core/simd/image_lanes.hpp"
+
+namespace fusebench::measurement {
+
+namespace {
+// Patches a task: fixed, so that the work is cut alike for every number of threads.
+constexpr std::size_t kPatchesPerChunk = 8;
+
+/// A place near the points of the patches.
+Vector3d origin_of(std::span<const patches::Patch> patches) {
+  for (const patches::Patch& patch : patches) {
+    for (const patches::PatchLevel& level : patch.levels) {
+      if (!level.pixels.empty()) return level.pixels.front().point_world;
+    }
+  }
+  return Vector3d::Zero();
+}
+
+/// A pixel's residual against the patch's grey level at this brightness, and what whitens it.
+struct GreyResidual {
+  GreyResidual(const Vector2d& gain_and_offset, double noise_grey)
+      : gain(static_cast<float>(gain_and_offset.x())),
+        offset(static_cast<float>(gain_and_offset.y())),
+        per_noise(static_cast<float>(1.0 / noise_grey)) {}
+
+  [[nodiscard]] simd::Float8 operator()(simd::Float8 observed, simd::Float8 reference) const {
+    return observed - (gain * reference + offset);
+  }
+
+  float gain;
+  float offset;
+  float per_noise;
+};
+}  // namespace
+
+struct PatchMeasurement::PosedLevels {
+  PosedLevels(const SensorRig& rig, const filter::PoseHypothesis& poses, int levels,
+              const Vector3d& origin_world)
+      : by_model(patches::PosedCamera(rig.camera, poses.T_world_imu_by_model, rig.T_imu_camera),
+                 origin_world) {
+    for (int level = 0; level < levels; ++level) {
+      at.emplace_back(patches::PosedCamera(patches::camera_at_level(rig.camera, level),
+                                           poses.T_world_imu_by_reference, rig.T_imu_camera),
+                      origin_world);
+    }
+  }
+  std::vector<patches::PosedLanes> at;  ///< by reference
+  patches::PosedLanes by_model;
+};
+
+PatchMeasurement::PatchMeasurement(const config::Config& config, const SensorRig& rig, const Workers& workers)
+    : config_(config),
+      rig_(rig),
+      workers_(workers),
+      brightness_prior_(config.photometric),
+      gates_(config.geometric, config.depth, scale_.geometric),
+      levels_(static_cast<std::size_t>(config.patches.levels)) {}
+
+void PatchMeasurement::observe(const ObservedFrame& frame, std::span<const patches::Patch> patches,
+                               const ResidualScale& scale) {
+  frame_.emplace(frame);
+  patches_ = patches;
+  scale_ = scale;
+  origin_world_ = origin_of(patches);
+  gates_ = AssociationGates(config_.geometric, config_.depth, scale.geometric);
+  states_.assign(patches.size(), {});
+  outcomes_.assign(patches.size(), {});
+  workers_.for_chunks(levels_.size(), 1, [&](std::size_t l, std::size_t /*end*/) {
+    Level& level = levels_[l];
+    patches::pack(patches, l, origin_world_, level.lanes);
+    level.fixed.assign(level.lanes.pixels.size(), {});
+    level.occlusion.resize(frame.pyramid[l].width, frame.pyramid[l].height);
+  });
+}
+
+filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypothesis& poses, int stage,
+                                                         bool gate) {
+  check(frame_.has_value(), "a frame is observed before it is measured by");
+  finest_ = static_cast<std::size_t>(config_.patches.levels - 1 - stage);
+  const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
+  warp_all(posed);
+  workers_.for_chunks(patches_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      outcomes_[p] = {};
+      associate_planes(p, posed);
+      sum_photometric(p, posed);
+      sum_geometric(p, posed);
+      states_[p].counts = outcomes_[p].photometric_residuals + outcomes_[p].geometric_residuals > 0;
+      if (finest_ == 0) judge(p, gate);
+    }
+  });
+  photometric_variance_ = measured_variance(&PatchState::photometric);
+  geometric_variance_ = measured_variance(&PatchState::geometric);
+  filter::MeasurementQuadratic sum;
+  for (const PatchState& state : states_) {
+    sum.by_reference.add(state.photometric, 1.0 / photometric_variance_);
+    sum.by_model.add(state.geometric, 1.0 / geometric_variance_);
+  }
+  return sum;
+}
+
+double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*kind) const {
+  std::vector<filter::PoseQuadratic> clusters;
+  clusters.reserve(states_.size());
+  for (const PatchState& state : states_) clusters.push_back(state.*kind);
+  return variance_factor(patch_scatter(clusters), config_.iekf.scatter_prior_freedom);
+}
+
+/// Levels do not know of each other, and have about as many pixels each.
+void PatchMeasurement::warp_all(const PosedLevels& posed) {
+  const bool coarse = finest_ > 0;
+  const double tolerance_m = (coarse ? 2.0 : 1.0) * config_.patches.occlusion_distance_m;
+  workers_.for_chunks(levels_.size() - finest_, 1, [&](std::size_t begin, std::size_t /*end*/) {
+    const std::size_t l = finest_ + begin;
+    patches::LevelLanes& lanes = levels_[l].lanes;
+    patches::warp_level(lanes.pixels, lanes.warp_points, posed.at[l], lanes.warped);
+    if (!config_.terms.visibility_test) return;
+    levels_[l].occlusion.test(lanes.warped, config_.depth);
+    patches::test_measured_occlusion(lanes.warped, frame_->depth_m, 1 << l, tolerance_m, config_.depth);
+  });
+}
+
+void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& posed) {
+  if (config_.terms.geometric_weight <= 0) return;
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
+      PlanePairs& pairs = level.fixed[i].pairs;
+      pairs = associate(posed.by_model, level.lanes.pixels[i], frame_->depth_m, gates_, pairs);
+    }
+  }
+}
+
+PatchMeasurement::Weighting PatchMeasurement::photometric_weighting() const {
+  return {static_cast<float>(config_.terms.photometric_weight / config_.photometric.pixels_per_measurement),
+          static_cast<float>(config_.photometric.huber_sigmas)};
+}
+
+PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
+  return {static_cast<float>(config_.terms.geometric_weight / config_.geometric.pixels_per_measurement),
+          static_cast<float>(config_.geometric.huber_sigmas)};
+}
+
+void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed) {
+  PatchState& state = states_[patch];
+  const Weighting weighting = photometric_weighting();
+  const GreyResidual residual_of(state.brightness.value, scale_.photometric * config_.photometric.noise_grey);
+  QuadraticSums sums;
+  BrightnessSums light;
+  FitSums fit;
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    const patches::LevelLanes& lanes = level.lanes;
+    for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
+      const patches::PixelLanes& pixels = lanes.pixels[i];
+      const patches::WarpedLanes& w = lanes.warped[i];
+      const simd::Int8 used = w.visible & pixels.depth_confirmed;
+      level.fixed[i].photometric = used;
+      if (!simd::any(used)) continue;
+      const simd::IntensityLanes observed = simd::sample_bicubic(
+          frame_->pyramid[l], used ? w.x : simd::all_lanes(1.0F), used ? w.y : simd::all_lanes(1.0F));
+      simd::Points point = posed.at[l].to_camera(lanes.projected(i));
+      point.z = used ? point.z : simd::all_lanes(1.0F);
+      const JacobianLanes jacobian = photometric_jacobian(posed.at[l], point, observed.dx, observed.dy);
+      const simd::Float8 residual = residual_of(observed.value, pixels.intensity);
+      const simd::Float8 whitened = residual * residual_of.per_noise;
+      const RobustLanes robust = huber(whitened, weighting.robust_sigmas);
+      const simd::Float8 weight =
+          used ? weighting.share * residual_of.per_noise * residual_of.per_noise * robust.weight
+               : simd::Float8{};
+      sums.add(jacobian, residual, weight, used ? weighting.share * robust.cost : simd::Float8{});
+      light.add(jacobian, residual, weight, pixels.intensity);
+      fit.add(whitened, robust.weight, used);
+    }
+  }
+  state.photometric = sums.total();
+  state.brightness.information = light.information();
+  state.brightness.gradient = light.gradient();
+  state.brightness.by_pose = light.by_pose();
+  outcomes_[patch].chi2_photometric = simd::sum_of_lanes(fit.chi2);
+  outcomes_[patch].robust_photometric = simd::sum_of_lanes(fit.robust);
+  outcomes_[patch].photometric_residuals = fit.count;
+  brightness_prior_.eliminate(state.brightness, state.photometric);
+}
+
+void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed) {
+  const Weighting weighting = geometric_weighting();
+  QuadraticSums sums;
+  FitSums fit;
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    const Level& level = levels_[l];
+    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
+      const PlanePairs& pairs = level.fixed[i].pairs;
+      if (!simd::any(pairs.valid)) continue;
+      const patches::PixelLanes& planes = level.lanes.pixels[i];
+      const simd::Float8 per_sigma = 1.0F / (pairs.valid ? pairs.sigma_m : simd::all_lanes(1.0F));
+      const simd::Float8 residual_m =
+          pairs.valid ? plane_residual(posed.by_model, pairs, planes) : simd::Float8{};
+      const simd::Float8 whitened = residual_m * per_sigma;
+      const RobustLanes robust = huber(whitened, weighting.robust_sigmas);
+      const simd::Float8 weight =
+          pairs.valid ? weighting.share * per_sigma * per_sigma * robust.weight : simd::Float8{};
+      sums.add(plane_jacobian(posed.by_model, pairs, planes), residual_m, weight,
+               pairs.valid ? weighting.share * robust.cost : simd::Float8{});
+      fit.add(whitened, robust.weight, pairs.valid);
+    }
+  }
+  states_[patch].geometric = sums.total();
+  outcomes_[patch].chi2_geometric = simd::sum_of_lanes(fit.chi2);
+  outcomes_[patch].robust_geometric = simd::sum_of_lanes(fit.robust);
+  outcomes_[patch].geometric_residuals = fit.count;
+}
+
+void PatchMeasurement::judge(std::size_t patch, bool gate) {
+  PatchState& state = states_[patch];
+  PatchOutcome& outcome = outcomes_[patch];
+  outcome.gain = state.brightness.value.x();
+  judge_visibility(levels_.front().lanes.pixels_of(patch), levels_.front().lanes.warped_of(patch),
+                   frame_->pyramid.front(), config_.patches, outcome);
+  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_));
+  if (!outcome.accepted) {
+    // Rejected honestly: neither its residuals nor its brightness prior count.
+    state.counts = false;
+    state.photometric = {};
+    state.geometric = {};
+  }
+}
+
+double PatchMeasurement::trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+                                    double fraction) {
+  const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
+  std::vector<double> costs(states_.size(), 0.0);
+  workers_.for_chunks(states_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      states_[p].brightness.try_step(step.head<filter::kPoseSize>(), fraction);
+      costs[p] = patch_cost(p, posed);
+    }
+  });
+  double sum = 0;
+  for (const double cost : costs) sum += cost;
+  return sum;
+}
+
+double PatchMeasurement::patch_cost(std::size_t patch, const PosedLevels& posed) const {
+  const PatchState& state = states_[patch];
+  if (!state.counts) return 0;
+  return (brightness_prior_.cost(state.brightness.trial) + photometric_cost(patch, posed)) /
+             photometric_variance_ +
+         geometric_cost(patch, posed) / geometric_variance_;
+}
+
+double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& posed) const {
+  const Weighting weighting = geometric_weighting();
+  simd::Float8 cost{};
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    const Level& level = levels_[l];
+    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
+      const PlanePairs& pairs = level.fixed[i].pairs;
+      if (!simd::any(pairs.valid)) continue;
+      const simd::Float8 whitened = plane_residual(posed.by_model, pairs, level.lanes.pixels[i]) /
+                                    (pairs.valid ? pairs.sigma_m : simd::all_lanes(1.0F));
+      cost += pairs.valid ? huber(whitened, weighting.robust_sigmas).cost : simd::Float8{};
+    }
+  }
+  return static_cast<double>(weighting.share) * simd::sum_of_lanes(cost);
+}
+
+double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
+  const Weighting weighting = photometric_weighting();
+  const GreyResidual residual_of(states_[patch].brightness.trial,
+                                 scale_.photometric * config_.photometric.noise_grey);
+  simd::Float8 cost{};
+  for (std::size_t l = finest_; l < levels_.size(); ++l) {
+    const patches::LevelLanes& lanes = levels_[l].lanes;
+    const GreyImage& image = frame_->pyramid[l];
+    const patches::PosedLanes& camera = posed.at[l];
+    for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
+      const simd::Int8 used = levels_[l].fixed[i].photometric;
+      if (!simd::any(used)) continue;
+      // A pixel that leaves the image, or passes behind the camera, keeps counting at the border: leaving
+      // must not pay.
+      const simd::Points point = camera.to_camera(lanes.projected(i));
+      const simd::Float8 inverse_z =
+          1.0F / simd::max(used ? point.z : simd::all_lanes(1.0F), simd::all_lanes(1e-3F));
+      simd::Float8 x = camera.fx_px * point.x * inverse_z + camera.cx_px;
+      simd::Float8 y = camera.fy_px * point.y * inverse_z + camera.cy_px;
+      if (!lanes.warp_points.empty()) {
+        x += lanes.warp_points[i].offset_x;
+        y += lanes.warp_points[i].offset_y;
+      }
+      const simd::Float8 observed =
+          simd::sample_bicubic_value(image, simd::clamp(x, 1.0F, static_cast<float>(image.width - 2)),
+                                     simd::clamp(y, 1.0F, static_cast<float>(image.height - 2)));
+      const simd::Float8 whitened = residual_of(observed, lanes.pixels[i].intensity) * residual_of.per_noise;
+      cost += used ? huber(whitened, weighting.robust_sigmas).cost : simd::Float8{};
+    }
+  }
+  return static_cast<double>(weighting.share) * simd::sum_of_lanes(cost);
+}
+
+void PatchMeasurement::accept() {
+  for (PatchState& state : states_) state.brightness.value = state.brightness.trial;
+}
+
+TrackedPixels PatchMeasurement::tracked_pixels() const {
+  TrackedPixels tracked;
+  std::size_t count = 0;
+  for (const PatchOutcome& outcome : outcomes_)
+    count += outcome.tracked ? static_cast<std::size_t>(outcome.usable_pixels) : 0;
+  tracked.intensity.reserve(count);
+  tracked.landings.reserve(count);
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    if (!outcomes_[p].tracked) continue;
+    const auto& pixels = patches_[p].levels.front().pixels;
+    const auto warped = levels_.front().lanes.warped_of(p);
+    for (std::size_t group = 0; group < warped.size(); ++group) {
+      const patches::WarpedLanes& w = warped[group];
+      const simd::Float8 observed = grey_at(frame_->pyramid.front(), w);
+      for_each_bit(simd::lane_bits(w.visible), [&](std::size_t lane) {
+        const patches::PatchPixel& pixel = pixels[group * simd::kLanes + lane];
+        const float reference = pixel.intensity;
+        tracked.intensity.push_back(
+            {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
+        tracked.landings.push_back(
+            {static_cast<std::uint32_t>(p), {w.x[lane], w.y[lane]}, reference, observed[lane]});
+      });
+    }
+  }
+  return tracked;
+}
+
+}  // namespace fusebench::measurement

@@ -1,0 +1,111 @@
+// The measurement of the filter: all patches against one frame. Stacks the photometric (Eq. 3) and
+// point-to-plane (Eq. 4) residuals of all pixels of all patches, whitened and robustly weighted, and reduces
+// them to two 6x6 information forms: colour tells the pose against the reference frame, depth against the
+// model.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/intensity_residual.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/filter/iekf.hpp"
+#include "core/measurement/patch_brightness.hpp"
+#include "core/measurement/patch_outcome.hpp"
+#include "core/measurement/patch_sums.hpp"
+#include "core/measurement/residual_scale.hpp"
+#include "core/patches/patch_deformation.hpp"
+#include "core/patches/patches.hpp"
+
+namespace fusebench::measurement {
+
+/// The current frame as the measurement sees it.
+struct ObservedFrame {
+  std::span<const GreyImage> pyramid;
+  const DepthImage& depth_m;  ///< gated
+};
+
+class PatchMeasurement final : public filter::PoseMeasurement {
+ public:
+  /// All references must outlive the measurement.
+  PatchMeasurement(const config::Config& config, const SensorRig& rig, const Workers& workers);
+
+  /// Begins with a frame, in the memory of the one before; comes before all else. Frame and patches must stay
+  /// as they are until the next one, or until nothing more is asked.
+  void observe(const ObservedFrame& frame, std::span<const patches::Patch> patches,
+               const ResidualScale& scale);
+
+  [[nodiscard]] int stages() const override { return config_.patches.levels; }
+  [[nodiscard]] filter::MeasurementQuadratic linearise(const filter::PoseHypothesis& poses, int stage,
+                                                       bool gate) override;
+  [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+                                  double fraction) override;
+  void accept() override;
+
+  /// One outcome a patch, from the last linearise() (which must have been of the last stage).
+  [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
+  /// By what factors the variances of the residuals exceed their claim there (patch_scatter.hpp).
+  [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
+  [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
+  /// The level-0 pixels of tracked patches there, by patch.
+  [[nodiscard]] TrackedPixels tracked_pixels() const;
+
+ private:
+  /// Everything that the last linearisation fixed for one patch.
+  struct PatchState {
+    PatchBrightness brightness;
+    filter::PoseQuadratic photometric;
+    filter::PoseQuadratic geometric;
+    bool counts = false;  ///< has residuals, and was not rejected
+  };
+  /// What the last linearisation fixed for eight pixels.
+  struct FixedLanes {
+    PlanePairs pairs;
+    simd::Int8 photometric{};  ///< pixels with a residual
+  };
+  struct Level {
+    patches::LevelLanes lanes;
+    std::vector<FixedLanes> fixed;
+    patches::MutualOcclusion occlusion;
+  };
+  /// The hypothesis for colour at all pyramid levels, and for depth.
+  struct PosedLevels;
+  /// How residuals of one kind are weighted.
+  struct Weighting {
+    float share = 0;          ///< of a pixel's residual in one measurement
+    float robust_sigmas = 0;  ///< Huber's k
+  };
+
+  void warp_all(const PosedLevels& posed);
+  void judge(std::size_t patch, bool gate);
+  void associate_planes(std::size_t patch, const PosedLevels& posed);
+  void sum_photometric(std::size_t patch, const PosedLevels& posed);
+  void sum_geometric(std::size_t patch, const PosedLevels& posed);
+  [[nodiscard]] Weighting photometric_weighting() const;
+  [[nodiscard]] Weighting geometric_weighting() const;
+  [[nodiscard]] double measured_variance(filter::PoseQuadratic PatchState::*kind) const;
+  [[nodiscard]] double patch_cost(std::size_t patch, const PosedLevels& posed) const;
+  [[nodiscard]] double photometric_cost(std::size_t patch, const PosedLevels& posed) const;
+  [[nodiscard]] double geometric_cost(std::size_t patch, const PosedLevels& posed) const;
+
+  const config::Config& config_;
+  const SensorRig& rig_;
+  const Workers& workers_;
+  std::optional<ObservedFrame> frame_;
+  std::span<const patches::Patch> patches_;
+  ResidualScale scale_;
+  BrightnessPrior brightness_prior_;
+  Vector3d origin_world_ = Vector3d::Zero();  ///< of the lanes' coordinates
+  AssociationGates gates_;
+  std::size_t finest_ = 0;  ///< level that the last linearise() began with
+  std::vector<Level> levels_;
+  std::vector<PatchState> states_;
+  std::vector<PatchOutcome> outcomes_;
+  double photometric_variance_ = 1;  ///< these two: factors on the claimed variance, by the last linearise()
+  double geometric_variance_ = 1;
+};
+
+}  // namespace fusebench::measurement

@@ -1,0 +1,59 @@
+#include "core/measurement/patch_outcome.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "core/patches/patch_deformation.hpp"
+#include "core/simd/image_lanes.hpp"
+
+namespace fusebench::measurement {
+
+simd::Float8 grey_at(const GreyImage& image, const patches::WarpedLanes& warped) {
+  return simd::sample_bilinear_value(image, warped.visible ? warped.x : simd::all_lanes(1.0F),
+                                     warped.visible ? warped.y : simd::all_lanes(1.0F));
+}
+
+void judge_visibility(std::span<const patches::PixelLanes> pixels,
+                      std::span<const patches::WarpedLanes> warped, const GreyImage& image,
+                      const config::PatchConfig& config, PatchOutcome& outcome) {
+  const auto count = [](simd::Int8 condition) { return std::popcount(simd::lane_bits(condition)); };
+  int in_image = 0;
+  simd::Float8 difference{}, sum_x{}, sum_y{};
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    const patches::WarpedLanes& w = warped[i];
+    in_image += count(w.in_image);
+    outcome.covered_pixels += count(w.covered);
+    outcome.usable_pixels += count(w.visible);
+    sum_x += w.visible ? w.x : simd::Float8{};
+    sum_y += w.visible ? w.y : simd::Float8{};
+    const simd::Float8 apart = simd::abs(grey_at(image, w) - pixels[i].intensity);
+    difference += w.visible ? apart : simd::Float8{};
+  }
+  outcome.centre_px = {simd::sum_of_lanes(sum_x), simd::sum_of_lanes(sum_y)};
+  const int square = config.size_px * config.size_px;
+  outcome.in_view = in_image > 0;
+  outcome.shrunk = outcome.usable_pixels < in_image;
+  outcome.extended = patches::is_extended(warped, config.size_px);
+  outcome.tracked = outcome.usable_pixels >= config.min_valid_px &&
+                    outcome.usable_pixels >= config.min_valid_fraction * square;
+  if (outcome.usable_pixels > 0) {
+    // An even square [c - s/2, c + s/2) has the mean of its pixel centres half a pixel before c.
+    outcome.centre_px =
+        outcome.centre_px / outcome.usable_pixels + Vector2d::Constant(config.size_px % 2 == 0 ? 0.5 : 0.0);
+    outcome.mean_error_grey = simd::sum_of_lanes(difference) / outcome.usable_pixels;
+  }
+}
+
+bool is_consistent(const PatchOutcome& outcome, const config::Config& config) {
+  const double limit = config.iekf.max_chi2_per_measurement;
+  const bool photometric = config.terms.photometric_weight <= 0 ||
+                           outcome.chi2_photometric <= limit * outcome.photometric_residuals;
+  // Any image explains a patch that is dimmed to nothing: a gain far from 1 is no brightness change but
+  // another scene.
+  constexpr double kMaxGain = 2.0;
+  const bool plausible = outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
+  return photometric && plausible &&
+         outcome.chi2_geometric <= limit * std::max(1, outcome.geometric_residuals);
+}
+
+}  // namespace fusebench::measurement

@@ -1,0 +1,45 @@
+// What becomes of a patch in a frame: how much of it is seen, and whether it fits.
+#pragma once
+
+#include <span>
+
+#include "core/base/image.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/patches/patch_lanes.hpp"
+
+namespace fusebench::measurement {
+
+/// What became of one patch at the last linearisation.
+struct PatchOutcome {
+  bool in_view = false;   ///< at least one pixel inside the image
+  bool tracked = false;   ///< enough usable pixels at level 0
+  bool accepted = false;  ///< tracked, and consistent (chi-square gate)
+  bool shrunk = false;    ///< lost pixels to occlusion
+  bool extended = false;
+  int usable_pixels = 0;   ///< visible, level 0
+  int covered_pixels = 0;  ///< in the image, behind something that was measured before them
+  int photometric_residuals = 0;
+  int geometric_residuals = 0;
+  double chi2_photometric = 0;  ///< sum of squared whitened residuals
+  double chi2_geometric = 0;
+  double robust_photometric = 0;  ///< sum of min(r^2, k |r|) of the same, with Huber's k
+  double robust_geometric = 0;
+  double gain = 1;             ///< brightness of the frame against the patch's reference
+  double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
+  Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
+};
+
+/// Grey levels of an image of level 0 where pixels landed; anything where they are not visible.
+[[nodiscard]] simd::Float8 grey_at(const GreyImage& image, const patches::WarpedLanes& warped);
+
+/// How much of a patch is seen: counts, centre, mean error, and whether that is enough to call it tracked.
+/// Pixels, where they landed, and the image are those of level 0.
+void judge_visibility(std::span<const patches::PixelLanes> pixels,
+                      std::span<const patches::WarpedLanes> warped, const GreyImage& image,
+                      const config::PatchConfig& config, PatchOutcome& outcome);
+
+/// The chi-square gate, and a plausible gain. Asks for the sums of the residuals and the gain.
+[[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::Config& config);
+
+}  // namespace fusebench::measurement

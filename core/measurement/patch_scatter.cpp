@@ -1,0 +1,63 @@
+#include "core/measurement/patch_scatter.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace fusebench::measurement {
+
+namespace {
+
+/// Pseudo-inverse after scaling the diagonal to one, so that radians and metres compare.
+Matrix6d scaled_pseudo_inverse(const Matrix6d& information) {
+  constexpr double kLeastShare = 1e-6;
+  Vector6d scale = Vector6d::Zero();
+  for (int i = 0; i < filter::kPoseSize; ++i) {
+    if (information(i, i) > 0) scale[i] = 1.0 / std::sqrt(information(i, i));
+  }
+  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  Vector6d inverse = Vector6d::Zero();
+  for (int i = 0; i < filter::kPoseSize; ++i) {
+    if (eigen.eigenvalues()[i] > kLeastShare) inverse[i] = 1.0 / eigen.eigenvalues()[i];
+  }
+  const Matrix6d& vectors = eigen.eigenvectors();
+  return scale.asDiagonal() * (vectors * inverse.asDiagonal() * vectors.transpose()) * scale.asDiagonal();
+}
+
+}  // namespace
+
+Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters) {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  for (const filter::PoseQuadratic& cluster : clusters) {
+    information += cluster.information;
+    gradient += cluster.gradient;
+  }
+  if (!(information.trace() > 0)) return {};
+  const Matrix6d covariance = scaled_pseudo_inverse(information);
+  const Vector6d optimum = -(covariance * gradient);
+  // With gradients of variance factor * information, the expected square of a cluster's gradient in the
+  // metric of the covariance is factor times its share, less what the optimum took from it.
+  double scatter = 0, expected = 0, squared_influence = 0;
+  for (const filter::PoseQuadratic& cluster : clusters) {
+    const Vector6d left = cluster.gradient + cluster.information * optimum;
+    const Matrix6d influence = covariance * cluster.information;
+    scatter += left.dot(covariance * left);
+    const double squared = influence.cwiseProduct(influence.transpose()).sum();  // trace of its square
+    expected += influence.trace() - squared;
+    squared_influence += squared;
+  }
+  if (!(expected > 1e-9)) return {};
+  const double total = (covariance * information).trace();
+  // Satterthwaite: the freedom of a sum of squares with unequal weights.
+  return {scatter / expected, total * total / squared_influence};
+}
+
+double variance_factor(const Scatter& scatter, double prior_freedom) {
+  const double freedom = prior_freedom + scatter.freedom;
+  if (!(freedom > 0)) return 1.0;
+  return std::max(kLeastVarianceFactor, (prior_freedom + scatter.freedom * scatter.factor) / freedom);
+}
+
+}  // namespace fusebench::measurement

@@ -1,0 +1,25 @@
+#include "core/mesh/mesh_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/mesh/obj_file.hpp"
+#include "core/mesh/ply_file.hpp"
+
+namespace fusebench::mesh {
+
+Result<PreciseMesh> read_mesh(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".ply") return read_ply(file);
+  if (ending == ".obj") return read_obj(file);
+  return fail(
+      ErrorCode::usage,
+      fmt::format("{}: a mesh of the unknown ending '{}' (allowed .ply, .obj)", file.string(), ending),
+      "convert the mesh to PLY");
+}
+
+}  // namespace fusebench::mesh

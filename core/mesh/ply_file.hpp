@@ -1,0 +1,22 @@
+// PLY out and in.
+#pragma once
+
+#include <filesystem>
+
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+
+namespace fusebench::mesh {
+
+/// Writes binary little-endian PLY: float x y z, nx ny nz (if present), uchar red green blue (if present),
+/// float quality (if present; so MeshLab calls it), and triangles. Error io when it cannot be written.
+[[nodiscard]] Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file);
+
+/// Reads a PLY mesh or point cloud, ascii or binary of either byte order: vertices with x y z and, if
+/// present, nx ny nz, red green blue (integers 0-255) and quality, in any numeric type; faces as lists
+/// vertex_indices or vertex_index, where larger polygons are cut into fans. Other properties and elements are
+/// skipped. Errors: data_missing (no such file), data_corrupt (names the line of an ascii file or header, or
+/// the byte of binary data, and the property).
+[[nodiscard]] Result<PreciseMesh> read_ply(const std::filesystem::path& file);
+
+}  // namespace fusebench::mesh

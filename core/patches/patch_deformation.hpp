@@ -1,0 +1,48 @@
+// Geometry-aware deformation of patches (Sec. 2.1.1): how the pixels of a patch move to another view, which
+// of them are still visible there, and what became of the patch's shape.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/config/config.hpp"
+#include "core/patches/patch_lanes.hpp"
+#include "core/patches/patches.hpp"
+
+namespace fusebench::patches {
+
+/// Sets warp_point_world and warp_offset_px of all pixels (Eqs. 1-2): pixelwise, by one plane, or as a rigid
+/// square. For the last two, a patch without a surface at its centre or without a plane loses all its pixels.
+void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_world_camera,
+                     config::Deformation deformation);
+
+/// Projects the pixels of one level of some patches (Eq. 2). `camera` is of that level; visible = in_image
+/// until a test says otherwise. warp_points: as LevelLanes.
+void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
+                const PosedLanes& camera, std::span<WarpedLanes> warped);
+
+/// Shrink test, over all patches at once: of the pixels that land in one cell, those clearly behind the
+/// nearest become invisible (an occluder may belong to another patch).
+class MutualOcclusion {
+ public:
+  /// To the size of a level's image.
+  void resize(int width_px, int height_px);
+
+  /// All pixels of the level.
+  void test(std::span<WarpedLanes> warped, const config::DepthConfig& depth);
+
+ private:
+  int width_px_ = 0;
+  std::vector<float> nearest_m_;  ///< by cell; infinite between tests
+};
+
+/// Against what the camera measured: a pixel whose depth differs from the measurement by more than
+/// tolerance_m is occluded or belongs to a surface that appeared. `scale` = 2^level maps pixels to the depth
+/// image.
+void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& depth_m, int scale,
+                             double tolerance_m, const config::DepthConfig& depth);
+
+/// Bounding box of the visible pixels against the square (extend test).
+[[nodiscard]] bool is_extended(std::span<const WarpedLanes> warped, int size_px);
+
+}  // namespace fusebench::patches

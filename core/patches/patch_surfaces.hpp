@@ -1,0 +1,53 @@
+// The model's surfaces behind the pixels of patches: beside what the camera measured, or along the rays where
+// it measured nothing.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/raycast/raycast.hpp"
+#include "core/raycast/surface_search.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
+
+namespace fusebench::patches {
+
+/// Finds them, frame after frame in the same memory.
+class PatchSurfaces {
+ public:
+  /// One surface a pixel, invalid where there is none; valid until the next call. `first`: number of the
+  /// first pixel of each patch, and the end. A pixel whose depth_m is 0 has no measurement.
+  [[nodiscard]] std::span<const raycast::SurfacePoint> find(
+      const tsdf::TsdfVolume& model, const PinholeCamera& camera, const SE3& T_world_camera,
+      const config::DepthConfig& depth, std::span<const raycast::ExpectedSurface> pixels,
+      std::span<const std::size_t> first, const Workers& workers);
+
+ private:
+  /// What some patches that are searched one after the other work in.
+  struct Beside {
+    tsdf::TsdfBrick brick;
+    std::vector<raycast::ExpectedSurface> measured;
+    std::vector<std::size_t> places;
+    std::vector<raycast::SurfacePoint> found;
+  };
+
+  void find_beside(const raycast::SurfaceSearch& search, std::span<const raycast::ExpectedSurface> pixels,
+                   std::span<const std::size_t> first, const Workers& workers);
+  void find_around(const raycast::SurfaceSearch& search, std::span<const raycast::ExpectedSurface> pixels,
+                   const Workers& workers);
+  void walk_rays(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
+                 const config::DepthConfig& depth, std::span<const raycast::ExpectedSurface> pixels,
+                 const Workers& workers);
+
+  std::vector<raycast::SurfacePoint> surfaces_;
+  std::vector<Beside> beside_;  // one a chunk of patches
+  // Pixels that were not found at once:
+  std::vector<std::size_t> places_;
+  std::vector<raycast::ExpectedSurface> expected_;
+  std::vector<raycast::PixelRay> rays_;
+  std::vector<raycast::SurfacePoint> hits_;
+};
+
+}  // namespace fusebench::patches

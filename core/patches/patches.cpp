@@ -1,0 +1,287 @@
+#include "core/patches/patches.hpp"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "core/base/error.hpp"
+#include "core/patches/corner_selection.hpp"
+#include "core/patches/patch_deformation.hpp"
+#include "core/preprocessing/depth_gates.hpp"
+#include "core/tsdf/block_slots.hpp"
+
+namespace fusebench::patches {
+
+namespace {
+
+constexpr std::size_t kPatchesPerChunk = 8;
+constexpr std::size_t kMostLevels = 6;  // of patches.levels
+
+/// What walks over all squares of all patches need to know.
+struct Squares {
+  /// The first pixel of a square.
+  struct Corner {
+    int x = 0;  ///< level pixels
+    int y = 0;
+  };
+
+  Squares(std::span<const TrackedCentre> centres_in, const ReferenceFrame& frame_in,
+          const config::Config& config_in)
+      : centres(centres_in),
+        frame(frame_in),
+        config(config_in),
+        size_px(config_in.patches.size_px),
+        levels(frame_in.pyramid.size()) {}
+
+  [[nodiscard]] Corner corner(std::size_t patch, std::size_t level) const {
+    const double scale = static_cast<double>(1 << level);
+    const Vector2d& centre_px = centres[patch].pixel_px;
+    return {static_cast<int>(std::lround(centre_px.x() / scale)) - size_px / 2,
+            static_cast<int>(std::lround(centre_px.y() / scale)) - size_px / 2};
+  }
+  /// Number of pixels of a square.
+  [[nodiscard]] std::size_t area() const {
+    return static_cast<std::size_t>(size_px) * static_cast<std::size_t>(size_px);
+  }
+  /// Place of the pixels of a square among those of all, by patch, level, row, column.
+  [[nodiscard]] std::size_t first(std::size_t patch, std::size_t level) const {
+    return (patch * levels + level) * area();
+  }
+
+  /// How far from what was measured a surface is looked for: one at the far end of what UsableSurface allows
+  /// has more noise than one at the measurement.
+  [[nodiscard]] float reach_m(float measured_m) const {
+    constexpr float kMargin = 1.5F;
+    const double noise_m = preprocessing::depth_sigma_m(static_cast<double>(measured_m), config.depth);
+    return kMargin * static_cast<float>(std::max(config.patches.occlusion_distance_m, 3.0 * noise_m));
+  }
+
+  std::span<const TrackedCentre> centres;
+  const ReferenceFrame& frame;
+  const config::Config& config;
+  int size_px;
+  std::size_t levels;
+};
+
+/// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
+/// once, since a coarse level's are partly those of a finer one. Where anything was measured in the finest
+/// square, coarse pixels without measured depth are left out: their colour would not be aligned by
+/// (trust_model_in_holes), intensity errors are taken on the finest level, and a ray each is much work for
+/// the few that would find a plane in the next frame.
+void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
+  const GreyImage& full = squares.frame.pyramid[0];
+  const int size = squares.size_px;
+  std::array<Squares::Corner, kMostLevels> corners;
+  bool measured = false;  // any pixel of the finest square
+  for (std::size_t l = 0; l < squares.levels; ++l) {
+    const GreyImage& image = squares.frame.pyramid[l];
+    const Squares::Corner corner = corners[l] = squares.corner(patch, l);
+    std::size_t place = squares.first(patch, l);
+    for (int y = corner.y; y < corner.y + size; ++y) {
+      for (int x = corner.x; x < corner.x + size; ++x, ++place) {
+        std::int32_t& pixel = work.pixel_of[place];
+        pixel = -1;
+        // A coarse square may reach over the border, and its last row beyond level 0's.
+        if (!image.contains(x, y) || !full.contains(x << l, y << l)) continue;
+        const float measured_m = squares.frame.depth_m(x << l, y << l);
+        if (l == 0) measured |= measured_m > 0;
+        if (l > 0 && measured && measured_m <= 0) continue;
+        for (std::size_t finer = 0; finer < l && pixel < 0; ++finer) {
+          const int column = (x << (l - finer)) - corners[finer].x;
+          const int row = (y << (l - finer)) - corners[finer].y;
+          if (column < 0 || row < 0 || column >= size || row >= size) continue;
+          pixel = work.pixel_of[squares.first(patch, finer) + static_cast<std::size_t>(row * size + column)];
+        }
+        if (pixel >= 0) continue;
+        pixel = static_cast<std::int32_t>(work.pixels.size());
+        work.pixels.push_back({static_cast<float>(x << l), static_cast<float>(y << l), measured_m,
+                               squares.reach_m(measured_m)});
+      }
+    }
+  }
+}
+
+/// What the model says of a pixel, if it can stand for what the camera sees there.
+class UsableSurface {
+ public:
+  UsableSurface(const ReferenceFrame& frame, const config::Config& config)
+      : frame_(frame),
+        config_(config),
+        R_world_camera_(frame.T_world_camera.rotation_matrix()),
+        min_cosine_(std::cos(radians(config.depth.max_incidence_deg))) {}
+
+  [[nodiscard]] std::optional<PatchPixel> operator()(const raycast::ExpectedSurface& pixel,
+                                                     const raycast::SurfacePoint& surface) const {
+    if (!surface.valid) return std::nullopt;
+    const auto u = static_cast<double>(pixel.u_px);
+    const auto v = static_cast<double>(pixel.v_px);
+    const Vector3d from_camera = R_world_camera_ * frame_.camera.back_project(u, v, surface.depth_m);
+    if (-from_camera.dot(surface.normal_world) < min_cosine_ * from_camera.norm()) return std::nullopt;
+    const double allowed_m = std::max(config_.patches.occlusion_distance_m,
+                                      3.0 * preprocessing::depth_sigma_m(surface.depth_m, config_.depth));
+    const auto measured_m = static_cast<double>(pixel.depth_m);
+    if (measured_m > 0 && std::abs(measured_m - surface.depth_m) > allowed_m) return std::nullopt;
+    PatchPixel usable;
+    usable.point_world = frame_.T_world_camera.translation + from_camera;
+    usable.normal_world = surface.normal_world.cast<float>();
+    usable.reference_pixel =
+        static_cast<std::uint32_t>(frame_.depth_m.index(static_cast<int>(u), static_cast<int>(v)));
+    return usable;
+  }
+
+ private:
+  const ReferenceFrame& frame_;
+  const config::Config& config_;
+  Matrix3d R_world_camera_;
+  double min_cosine_;
+};
+
+/// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
+/// without any lies in a hole, or the camera has no depth: there the model's surface has to do.
+void trust_model_in_holes(Patch& patch) {
+  for (const PatchLevel& level : patch.levels) {
+    for (const PatchPixel& pixel : level.pixels) {
+      if (pixel.depth_confirmed) return;
+    }
+  }
+  for (PatchLevel& level : patch.levels) {
+    for (PatchPixel& pixel : level.pixels) pixel.depth_confirmed = true;
+  }
+}
+
+/// The pixels of a patch that have a usable surface.
+void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usable,
+                const PatchWorkspace& work, std::span<const raycast::SurfacePoint> surfaces, Patch& patch) {
+  const ReferenceFrame& frame = squares.frame;
+  const Vector2d& centre_px = squares.centres[p].pixel_px;
+  patch.centre_px = {static_cast<int>(std::lround(centre_px.x())),
+                     static_cast<int>(std::lround(centre_px.y()))};
+  patch.age = squares.centres[p].age;
+  patch.levels.resize(squares.levels);
+  for (std::size_t l = 0; l < squares.levels; ++l) {
+    std::vector<PatchPixel>& pixels = patch.levels[l].pixels;
+    pixels.clear();
+    pixels.reserve(squares.area());
+    // A pixel of a coarse level is a mean over what lies about its own size around it.
+    const int reach_px = l == 0 ? 0 : 1 << l;
+    for (std::size_t i = 0; i < squares.area(); ++i) {
+      const std::int32_t number = work.pixel_of[squares.first(p, l) + i];
+      if (number < 0) continue;
+      const auto at = static_cast<std::size_t>(number);
+      const std::optional<PatchPixel> pixel = usable(work.pixels[at], surfaces[at]);
+      if (!pixel) continue;
+      const auto x = static_cast<int>(work.pixels[at].u_px);
+      const auto y = static_cast<int>(work.pixels[at].v_px);
+      pixels.push_back(*pixel);
+      pixels.back().intensity = frame.pyramid[l](x >> l, y >> l);
+      pixels.back().depth_confirmed =
+          preprocessing::is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
+    }
+  }
+  trust_model_in_holes(patch);
+}
+
+/// Patches with the pixels that have a usable surface.
+void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
+                 std::span<const TrackedCentre> centres, const config::Config& config, const Workers& workers,
+                 PatchWorkspace& work, std::vector<Patch>& patches) {
+  check(frame.pyramid.size() <= kMostLevels, "a pyramid has at most six levels");
+  const Squares squares(centres, frame, config);
+  work.pixels.clear();
+  work.pixel_of.resize(squares.first(centres.size(), 0));
+  work.first.assign(1, 0);
+  for (std::size_t p = 0; p < centres.size(); ++p) {
+    add_pixels(squares, p, work);
+    work.first.push_back(work.pixels.size());
+  }
+  const std::span<const raycast::SurfacePoint> surfaces = work.surfaces.find(
+      model, frame.camera, frame.T_world_camera, config.depth, work.pixels, work.first, workers);
+  const UsableSurface usable(frame, config);
+  patches.resize(centres.size());
+  workers.for_chunks(patches.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) fill_patch(squares, p, usable, work, surfaces, patches[p]);
+  });
+}
+
+/// Survivors that are still inside and apart from each other, oldest first.
+std::vector<TrackedCentre> keep_apart(std::span<const TrackedCentre> survivors, const ReferenceFrame& frame,
+                                      const config::PatchConfig& config) {
+  std::vector<TrackedCentre> kept;
+  // Patches drift towards each other; half the detection distance keeps their squares from overlapping.
+  const double reach = std::max(0.5 * config.min_distance_px, static_cast<double>(config.size_px));
+  for (const TrackedCentre& candidate : survivors) {
+    const Eigen::Vector2i pixel(static_cast<int>(std::lround(candidate.pixel_px.x())),
+                                static_cast<int>(std::lround(candidate.pixel_px.y())));
+    bool free = patch_fits(frame.pyramid[0], pixel, config.size_px);
+    for (const TrackedCentre& other : kept) {
+      free = free && (other.pixel_px - candidate.pixel_px).squaredNorm() >= reach * reach;
+    }
+    if (free && static_cast<int>(kept.size()) < config.max_count) kept.push_back(candidate);
+  }
+  return kept;
+}
+
+}  // namespace
+
+void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
+                     std::span<const TrackedCentre> survivors, const config::Config& config,
+                     const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches) {
+  std::vector<TrackedCentre> centres = keep_apart(survivors, frame, config.patches);
+  std::vector<Eigen::Vector2i> existing;
+  for (const TrackedCentre& c : centres) {
+    existing.emplace_back(static_cast<int>(std::lround(c.pixel_px.x())),
+                          static_cast<int>(std::lround(c.pixel_px.y())));
+  }
+  for (const Eigen::Vector2i& corner :
+       select_corners(frame.pyramid[0], frame.depth_m, existing, config.patches)) {
+    centres.push_back({corner.cast<double>(), 0});
+  }
+
+  cut_patches(frame, model, centres, config, workers, work, patches);
+  const int square = config.patches.size_px * config.patches.size_px;
+  const auto too_few = [&](const Patch& patch) {
+    const auto usable = static_cast<int>(patch.levels.front().pixels.size());
+    return usable < config.patches.min_valid_px || usable < config.patches.min_valid_fraction * square;
+  };
+  std::erase_if(patches, too_few);
+  for (Patch& patch : patches) {
+    set_deformation(patch, frame.camera, frame.T_world_camera, config.terms.deformation);
+  }
+  std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
+}
+
+std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
+                                   std::span<const TrackedCentre> survivors, const config::Config& config,
+                                   const Workers& workers) {
+  PatchWorkspace work;
+  std::vector<Patch> patches;
+  refresh_patches(frame, model, survivors, config, workers, work, patches);
+  return patches;
+}
+
+double fused_share(const tsdf::TsdfVolume& model, std::span<const Patch> patches, const ReferenceFrame& frame,
+                   const config::DepthConfig& depth) {
+  const SE3 T_camera_world = frame.T_world_camera.inverse();
+  tsdf::BlockSlots slots(model);
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Patch& patch : patches) {
+    for (const PatchPixel& pixel : patch.levels.front().pixels) {
+      ++count;
+      if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
+      const Vector3d lattice = pixel.point_world / model.voxel_m();
+      const tsdf::VoxelIndex voxel = lattice.array().round().cast<int>();
+      const int slot = slots.find(tsdf::block_of(voxel));
+      if (slot < 0) continue;
+      const float weight_there =
+          model.voxel(static_cast<std::size_t>(slot), tsdf::offset_in_block(voxel)).weight;
+      if (!(weight_there > 0)) continue;
+      const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
+      sum += std::min(1.0, weight / static_cast<double>(weight_there));
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+}  // namespace fusebench::patches

@@ -1,0 +1,46 @@
+// Pre-integration of inertial samples between two frames (Eqs. 11-13 of the paper, in the form of Forster et
+// al., "On-Manifold Preintegration", T-RO 2017): gravity-free increments in the IMU frame at the first
+// instant.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/base/error.hpp"
+#include "core/base/geometry.hpp"
+#include "core/base/types.hpp"
+
+namespace fusebench::prediction {
+
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// Motion between two instants as the IMU saw it, with first-order dependence on the biases.
+struct PreintegratedImu {
+  double duration_s = 0;
+  Quaterniond delta_rotation = Quaterniond::Identity();  ///< R_begin_end
+  Vector3d delta_velocity_mps = Vector3d::Zero();  ///< without gravity, in the IMU frame at the beginning
+  Vector3d delta_position_m = Vector3d::Zero();    ///< without gravity and initial velocity, same frame
+  Matrix9d covariance = Matrix9d::Zero();          ///< of (rotation (right), velocity, position)
+  Matrix3d rotation_by_gyroscope_bias = Matrix3d::Zero();
+  Matrix3d velocity_by_gyroscope_bias = Matrix3d::Zero();
+  Matrix3d velocity_by_accelerometer_bias = Matrix3d::Zero();
+  Matrix3d position_by_gyroscope_bias = Matrix3d::Zero();
+  Matrix3d position_by_accelerometer_bias = Matrix3d::Zero();
+  Vector3d rotation_by_time_offset =
+      Vector3d::Zero();  ///< rad/s: when both instants shift together on the IMU's clock
+  Vector3d velocity_by_time_offset = Vector3d::Zero();          ///< m/s^2
+  Vector3d position_by_time_offset = Vector3d::Zero();          ///< m/s
+  Vector3d angular_velocity_end_radps = Vector3d::Zero();       ///< bias-corrected rate at the end
+  Vector3d angular_acceleration_end_radps2 = Vector3d::Zero();  ///< its slope there
+  double last_step_s = 0;                                       ///< spacing of the samples there
+};
+
+/// Integrates from begin to end by the mid-point rule; the samples at both ends are interpolated to the exact
+/// instants. `samples` are sorted by time. Where they end up to 50 ms short of either instant, the nearest
+/// one is held; beyond that the error data_corrupt names the times.
+[[nodiscard]] Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::int64_t begin_ns,
+                                                    std::int64_t end_ns, const Vector3d& gyroscope_bias_radps,
+                                                    const Vector3d& accelerometer_bias_mps2,
+                                                    const ImuNoise& noise);
+
+}  // namespace fusebench::prediction

@@ -1,0 +1,36 @@
+// The first state: world = first camera frame, gravity from the accelerometer, velocity zero with an honest
+// covariance.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/filter/filter_state.hpp"
+
+namespace fusebench::prediction {
+
+/// Initial state from the inertial samples within `window_s` before and after the first frame. Samples of the
+/// window are turned into the IMU frame at the first frame by the gyroscope and averaged: the mean specific
+/// force points against gravity. At rest the gyroscope's mean is its bias and the covariances are tight; in
+/// motion the mean contains acceleration, and velocity and gravity start with wide covariances which the
+/// first frames then shrink. Error data_corrupt if the window is empty.
+[[nodiscard]] Result<filter::GaussianState> initialise_with_imu(std::span<const ImuSample> samples,
+                                                                std::int64_t first_frame_ns,
+                                                                const SensorRig& rig,
+                                                                const config::InitialisationConfig& config);
+
+/// Initial state without an IMU: at rest with wide velocity covariances. The "IMU" frame is the camera's.
+[[nodiscard]] filter::GaussianState initialise_without_imu(const config::InitialisationConfig& config);
+
+/// The one of these two that the prior needs. `motion`, if known, gives the velocities; only the means, since
+/// the frames that told them are about to be used as measurements.
+[[nodiscard]] Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples,
+                                                          std::int64_t first_frame_ns, const SensorRig& rig,
+                                                          const config::Config& config,
+                                                          const std::optional<filter::FilterState>& motion);
+
+}  // namespace fusebench::prediction

@@ -1,0 +1,120 @@
+#include "core/prediction/motion_prior.hpp"
+
+#include <cmath>
+
+namespace fusebench::prediction {
+
+namespace {
+double square(double x) { return x * x; }
+
+/// Variance of a random walk of the given density after some time, on the diagonal of a block.
+void add_random_walk(filter::StateMatrix& noise, int offset, int size, double density, double duration_s) {
+  noise.diagonal().segment(offset, size).array() += square(density) * duration_s;
+}
+}  // namespace
+
+Prediction predict_by_imu(const filter::GaussianState& state, const PreintegratedImu& imu,
+                          const ImuNoise& noise, const config::MotionConfig& config) {
+  const filter::FilterState& x = state.mean;
+  const double dt = imu.duration_s;
+  const Matrix3d R = x.T_world_imu.rotation_matrix();
+  const Vector3d gravity = kGravity_mps2 * x.gravity_direction_world;
+
+  Prediction result;
+  filter::FilterState& y = result.state.mean;
+  y = x;
+  y.T_world_imu.rotation = (x.T_world_imu.rotation * imu.delta_rotation).normalized();
+  y.T_world_imu.translation += dt * x.velocity_world_mps + 0.5 * dt * dt * gravity + R * imu.delta_position_m;
+  y.velocity_world_mps += dt * gravity + R * imu.delta_velocity_mps;
+  y.angular_velocity_imu_radps = imu.angular_velocity_end_radps;
+
+  filter::StateMatrix& F = result.transition;
+  const Eigen::Matrix<double, 3, 2> gravity_by_delta =
+      -kGravity_mps2 * hat(x.gravity_direction_world) * s2_basis(x.gravity_direction_world);
+  F.block<3, 3>(filter::kRotation, filter::kRotation) = imu.delta_rotation.toRotationMatrix().transpose();
+  F.block<3, 3>(filter::kRotation, filter::kGyroscopeBias) = imu.rotation_by_gyroscope_bias;
+  F.block<3, 3>(filter::kVelocity, filter::kRotation) = -R * hat(imu.delta_velocity_mps);
+  F.block<3, 3>(filter::kVelocity, filter::kGyroscopeBias) = R * imu.velocity_by_gyroscope_bias;
+  F.block<3, 3>(filter::kVelocity, filter::kAccelerometerBias) = R * imu.velocity_by_accelerometer_bias;
+  F.block<3, 2>(filter::kVelocity, filter::kGravity) = dt * gravity_by_delta;
+  F.block<3, 3>(filter::kPosition, filter::kRotation) = -R * hat(imu.delta_position_m);
+  F.block<3, 3>(filter::kPosition, filter::kVelocity) = dt * Matrix3d::Identity();
+  F.block<3, 3>(filter::kPosition, filter::kGyroscopeBias) = R * imu.position_by_gyroscope_bias;
+  F.block<3, 3>(filter::kPosition, filter::kAccelerometerBias) = R * imu.position_by_accelerometer_bias;
+  F.block<3, 2>(filter::kPosition, filter::kGravity) = 0.5 * dt * dt * gravity_by_delta;
+  // The body rate is re-measured: it forgets its past and moves against the bias.
+  F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity).setZero();
+  F.block<3, 3>(filter::kAngularVelocity, filter::kGyroscopeBias) = -Matrix3d::Identity();
+  F.block<3, 1>(filter::kRotation, filter::kImuTimeOffset) = imu.rotation_by_time_offset;
+  F.block<3, 1>(filter::kVelocity, filter::kImuTimeOffset) = R * imu.velocity_by_time_offset;
+  F.block<3, 1>(filter::kPosition, filter::kImuTimeOffset) = R * imu.position_by_time_offset;
+  F.block<3, 1>(filter::kAngularVelocity, filter::kImuTimeOffset) = imu.angular_acceleration_end_radps2;
+
+  // Increments are in the old IMU frame; velocity and position errors are in the world.
+  Eigen::Matrix<double, filter::kStateSize, 9> G = Eigen::Matrix<double, filter::kStateSize, 9>::Zero();
+  G.block<3, 3>(filter::kRotation, 0).setIdentity();
+  G.block<3, 3>(filter::kVelocity, 3) = R;
+  G.block<3, 3>(filter::kPosition, 6) = R;
+  const double factor = square(config.imu_noise_factor);
+  filter::StateMatrix Q = factor * (G * imu.covariance * G.transpose());
+  add_random_walk(Q, filter::kGyroscopeBias, 3, config.imu_noise_factor * noise.gyroscope_bias_radps2_sqrthz, dt);
+  add_random_walk(Q, filter::kAccelerometerBias, 3, config.imu_noise_factor * noise.accelerometer_bias_mps3_sqrthz,
+                  dt);
+  add_random_walk(Q, filter::kGravity, 2, config.gravity_noise_rad_sqrthz, dt);
+  Q.diagonal().segment<3>(filter::kAngularVelocity).array() +=
+      factor * square(noise.gyroscope_radps_sqrthz) / imu.last_step_s;
+
+  result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
+  return result;
+}
+
+Prediction predict_by_constant_velocity(const filter::GaussianState& state, double duration_s,
+                                        const config::MotionConfig& config) {
+  const filter::FilterState& x = state.mean;
+  const double dt = duration_s;
+  const Vector3d turn = dt * x.angular_velocity_imu_radps;
+
+  Prediction result;
+  filter::FilterState& y = result.state.mean;
+  y = x;
+  y.T_world_imu.rotation = (x.T_world_imu.rotation * so3_exp(turn)).normalized();
+  y.T_world_imu.translation += dt * x.velocity_world_mps;
+
+  filter::StateMatrix& F = result.transition;
+  F.block<3, 3>(filter::kRotation, filter::kRotation) = so3_exp(turn).toRotationMatrix().transpose();
+  F.block<3, 3>(filter::kRotation, filter::kAngularVelocity) = dt * so3_right_jacobian(turn);
+  F.block<3, 3>(filter::kPosition, filter::kVelocity) = dt * Matrix3d::Identity();
+
+  // White acceleration integrated once (rate) and twice (pose).
+  filter::StateMatrix Q = filter::StateMatrix::Zero();
+  const auto add_white_acceleration = [&](int pose, int rate, double density) {
+    const double q = square(density);
+    Q.block<3, 3>(pose, pose).diagonal().setConstant(q * dt * dt * dt / 3.0);
+    Q.block<3, 3>(pose, rate).diagonal().setConstant(q * dt * dt / 2.0);
+    Q.block<3, 3>(rate, pose).diagonal().setConstant(q * dt * dt / 2.0);
+    Q.block<3, 3>(rate, rate).diagonal().setConstant(q * dt);
+  };
+  add_white_acceleration(filter::kRotation, filter::kAngularVelocity, config.angular_acceleration_noise_radps2_sqrthz);
+  add_white_acceleration(filter::kPosition, filter::kVelocity, config.acceleration_noise_mps2_sqrthz);
+
+  result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
+  return result;
+}
+
+Result<filter::GaussianState> predict_state(const filter::GaussianState& state, const FrameInterval& interval,
+                                            std::span<const ImuSample> samples, const ImuNoise& noise,
+                                            const config::Config& config) {
+  if (config.terms.prior == config::Prior::constant_velocity) {
+    const double duration_s = seconds_between(interval.begin_ns, interval.end_ns);
+    return predict_by_constant_velocity(state, duration_s, config.motion).state;
+  }
+  const filter::FilterState& x = state.mean;
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
+  const Result<PreintegratedImu> increments =  // Eqs. 11-13
+      preintegrate(samples, interval.begin_ns + offset_ns, interval.end_ns + offset_ns,
+                   x.gyroscope_bias_radps, x.accelerometer_bias_mps2, noise);
+  if (!increments) return tl::unexpected(increments.error());
+  return predict_by_imu(state, *increments, noise, config.motion).state;  // Eqs. 8-10, 14
+}
+
+}  // namespace fusebench::prediction

@@ -1,0 +1,25 @@
+#include "core/preprocessing/camera_motion.hpp"
+
+namespace fusebench::preprocessing {
+
+CameraVelocity camera_velocity(const filter::FilterState& state, const SE3& T_imu_camera) {
+  const Matrix3d R_camera_imu = T_imu_camera.rotation_matrix().transpose();
+  const Vector3d& rate_imu = state.angular_velocity_imu_radps;
+  const Vector3d velocity_imu = state.T_world_imu.rotation.conjugate() * state.velocity_world_mps +
+                                rate_imu.cross(T_imu_camera.translation);
+  return {R_camera_imu * rate_imu, R_camera_imu * velocity_imu};
+}
+
+double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig, double exposure_s) {
+  return rig.camera.fx_px * camera_velocity(state, rig.T_imu_camera).angular_radps.head<2>().norm() *
+         exposure_s;
+}
+
+bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now) {
+  constexpr double kTurnRadps = 0.05;  // x 13 ms (half a read-out) x 520 px: a third of a pixel
+  constexpr double kMoveMps = 0.05;
+  return (now.angular_velocity_imu_radps - before.angular_velocity_imu_radps).norm() > kTurnRadps ||
+         (now.velocity_world_mps - before.velocity_world_mps).norm() > kMoveMps;
+}
+
+}  // namespace fusebench::preprocessing

@@ -1,0 +1,21 @@
+// The motion of the camera as the state of the IMU that it is mounted to gives it.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "core/filter/filter_state.hpp"
+#include "core/preprocessing/motion_compensation.hpp"
+
+namespace fusebench::preprocessing {
+
+/// Velocities of the camera in its own axes, lever arm included.
+[[nodiscard]] CameraVelocity camera_velocity(const filter::FilterState& state, const SE3& T_imu_camera);
+
+/// Length of the motion blur at the image centre, by rotation alone (the depth is not known yet), pixels.
+[[nodiscard]] double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
+                                       double exposure_s);
+
+/// True if a frame that was compensated for the motion before is off by some tenths of a pixel for that of
+/// now.
+[[nodiscard]] bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now);
+
+}  // namespace fusebench::preprocessing

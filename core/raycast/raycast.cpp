@@ -1,0 +1,268 @@
+#include "core/raycast/raycast.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "core/raycast/block_bounds.hpp"
+#include "core/raycast/ray_lanes.hpp"
+#include "core/tsdf/tsdf_lanes.hpp"
+
+namespace fusebench::raycast {
+namespace {
+
+// Seen from the side, the field overstates the distance; a step of less than its value rarely jumps the
+// surface, and where it jumps into the unknown, the walk repeats it in fine steps.
+constexpr float kStepShare = 0.8F;
+constexpr float kFineStep_voxels = 0.5F;
+// The band before a surface is at least two voxels wide.
+constexpr float kUnknownStep_voxels = 1.5F;
+// Further from the surface than this the nearest voxel says enough; from here on the field is interpolated.
+constexpr float kNear_voxels = 1.75F;
+constexpr int kMostRefinements = 24;
+constexpr int kBlockShift = 3;   // voxels to blocks
+constexpr int kRegionShift = 5;  // voxels to regions
+
+struct Rays : RayLanes {
+  /// How much z-depth a point on the rays has left in the cube with this index along each axis; point and
+  /// cube in units of `side` voxels.
+  [[nodiscard]] simd::Float8 z_to_leave(const simd::Points& point, const tsdf::LatticePoints& cube,
+                                        simd::Float8 side) const {
+    const auto along = [&](simd::Float8 from, simd::Int8 index, simd::Float8 inverse_step) {
+      const simd::Float8 face = simd::to_float(index - (inverse_step >= 0.0F));  // true is -1
+      return (face * side - from) * inverse_step;
+    };
+    return simd::min(simd::min(along(point.x, cube.x, inverse.x), along(point.y, cube.y, inverse.y)),
+                     along(point.z, cube.z, inverse.z));
+  }
+
+  simd::Points inverse;  ///< of the direction
+};
+
+/// Eight rays on their way.
+struct Walk {
+  Rays rays;
+  simd::Float8 end_m;
+  simd::Float8 z_m;
+  simd::Float8 free_z_m =
+      tsdf::not_a_number();    ///< of the sample before, if it was observed and in front of a surface
+  simd::Float8 free_m{};       ///< field there
+  simd::Float8 careful_z_m{};  ///< up to here in fine steps
+  simd::Int8 walking{};
+  tsdf::LatticePoints voxel;  ///< nearest to the rays here
+  tsdf::TsdfLanes::Location location;
+  simd::Float8 nearest_m{};  ///< field of the voxel
+  Brackets brackets;
+};
+
+/// Eight pixels, and the part of their rays that is asked for (z-depth).
+struct RequestedRays {
+  simd::Float8 u{};
+  simd::Float8 v{};
+  simd::Float8 begin_m{};
+  simd::Float8 end_m = simd::all_lanes(std::numeric_limits<float>::infinity());
+};
+
+// Marches along rays of one camera, eight at a time, and several times eight by turns: a processor works on
+// the steps of one while it waits for the memory of another. A ray's result does not depend on those beside
+// it.
+class RayMarcher {
+ public:
+  RayMarcher(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
+             const config::DepthConfig& depth)
+      : field_(field),
+        pixels_(camera, T_world_camera, field.volume().voxel_m()),
+        bounds_(field.volume(), camera, T_world_camera, depth),
+        origin_((T_world_camera.translation / field.volume().voxel_m() - field.origin_voxel()).cast<float>()),
+        nearest_m_(static_cast<float>(depth.min_m)),
+        farthest_m_(static_cast<float>(depth.max_m)),
+        voxel_m_(static_cast<float>(field.volume().voxel_m())) {}
+
+  static constexpr std::size_t kMostTurns = 8;
+
+  /// At most kMostTurns times eight pixels.
+  void march(std::span<const RequestedRays> pixels, std::span<Hits> hits) const {
+    std::array<Walk, kMostTurns> storage;
+    const std::span<Walk> walks = std::span(storage).first(pixels.size());
+    std::array<Walk*, kMostTurns> on_their_way;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+      walks[i] = begin(pixels[i]);
+      if (simd::any(walks[i].walking)) on_their_way[count++] = &walks[i];
+    }
+    // What reads memory that may be far away is done for all before any needs it.
+    while (count > 0) {
+      const std::span<Walk*> active = std::span(on_their_way).first(count);
+      for (Walk* walk : active) locate(*walk);
+      for (Walk* walk : active) walk->nearest_m = field_.distances_m(walk->location);
+      for (Walk* walk : active) step(*walk);
+      const auto arrived = std::remove_if(active.begin(), active.end(),
+                                          [](const Walk* walk) { return !simd::any(walk->walking); });
+      count = static_cast<std::size_t>(arrived - active.begin());
+    }
+    for (std::size_t i = 0; i < walks.size(); ++i) hits[i] = hits_of(walks[i]);
+  }
+
+ private:
+  [[nodiscard]] Rays rays_of(simd::Float8 u, simd::Float8 v) const {
+    Rays rays{pixels_.through(u, v, origin_), {}};
+    // Parallel to a face: it is left after an astronomic way, a number rather than the NaN of 0 * infinity.
+    const auto inverse = [](simd::Float8 step) {
+      return step == 0.0F ? simd::all_lanes(1e30F) : 1.0F / step;
+    };
+    rays.inverse = {inverse(rays.direction.x), inverse(rays.direction.y), inverse(rays.direction.z)};
+    return rays;
+  }
+
+  /// The field along the rays, as far as it matters to the walk.
+  struct Sample {
+    simd::Float8 distance_m;  // NaN where it was not observed
+    simd::Float8 empty_z_m;   // z-depth without any block, > 0 only where there is none
+    simd::Int8 near;          // distance_m was interpolated
+  };
+
+  void locate(Walk& walk) const {
+    // Half a voxel more, so that the floor is the nearest voxel.
+    const simd::Points at = walk.rays.at(walk.z_m);
+    walk.voxel = {simd::floor_to_int(at.x + 0.5F), simd::floor_to_int(at.y + 0.5F),
+                  simd::floor_to_int(at.z + 0.5F)};
+    walk.location = field_.locate(walk.voxel);
+  }
+
+  [[nodiscard]] Sample sample(const Walk& walk) const {
+    const simd::Int8 walking = walk.walking;
+    const simd::Points at = walk.rays.at(walk.z_m);
+    Sample result;
+    result.distance_m = walk.nearest_m;
+    result.empty_z_m = simd::Float8{};
+    const simd::Int8 no_block = walk.location.slot < 0;
+    if (simd::any(no_block & walking)) {
+      const tsdf::LatticePoints& voxel = walk.voxel;
+      const simd::Int8 shift =
+          walk.location.no_region ? simd::all_lanes(kRegionShift) : simd::all_lanes(kBlockShift);
+      const simd::Float8 left = walk.rays.z_to_leave({at.x + 0.5F, at.y + 0.5F, at.z + 0.5F},
+                                                     {voxel.x >> shift, voxel.y >> shift, voxel.z >> shift},
+                                                     simd::to_float(simd::all_lanes(1) << shift));
+      result.empty_z_m = no_block ? left : simd::Float8{};
+    }
+    result.near = (simd::abs(walk.nearest_m) < kNear_voxels * voxel_m_) & walking;
+    if (simd::any(result.near)) {
+      const simd::Float8 interpolated_m = field_.sample(at);
+      result.distance_m = result.near ? interpolated_m : result.distance_m;
+    }
+    return result;
+  }
+
+  [[nodiscard]] Walk begin(const RequestedRays& pixels) const {
+    Walk walk;
+    walk.rays = rays_of(pixels.u, pixels.v);
+    const simd::Float8 begin_m = simd::max(simd::max(pixels.begin_m, bounds_.nearest_m(pixels.u, pixels.v)),
+                                           simd::all_lanes(nearest_m_));
+    walk.end_m = simd::min(pixels.end_m, simd::all_lanes(farthest_m_));
+    walk.walking = begin_m <= walk.end_m;
+    walk.z_m = walk.walking ? begin_m : simd::all_lanes(nearest_m_);
+    return walk;
+  }
+
+  /// A step from front to back. Rays stop where the field changes from + to - between two neighbouring
+  /// observed samples.
+  void step(Walk& walk) const {
+    const Rays& rays = walk.rays;
+    const simd::Float8 fine_z = kFineStep_voxels * rays.z_per_voxel;
+    const simd::Float8 z_m = walk.z_m;
+    const Sample now = sample(walk);
+    const simd::Int8 observed = now.distance_m == now.distance_m;
+    const simd::Int8 was_free = walk.free_z_m == walk.free_z_m;
+    const simd::Int8 careful = z_m < walk.careful_z_m;
+    const simd::Int8 crossed = walk.walking & was_free & observed & (now.distance_m < 0.0F);
+    Brackets& brackets = walk.brackets;
+    brackets.front_z_m = crossed ? walk.free_z_m : brackets.front_z_m;
+    brackets.front_m = crossed ? walk.free_m : brackets.front_m;
+    brackets.back_z_m = crossed ? z_m : brackets.back_z_m;
+    brackets.back_m = crossed ? now.distance_m : brackets.back_m;
+    // From free space into the unknown: perhaps a surface was jumped. Once more in fine steps.
+    const simd::Int8 repeat = was_free & ~observed & ~careful & (z_m - walk.free_z_m > 1.01F * fine_z);
+    const simd::Int8 give_up = ~observed & careful;
+    const simd::Int8 free = observed & (now.distance_m >= 0.0F);
+    const simd::Float8 field_z =
+        (observed ? simd::abs(now.distance_m) : simd::Float8{}) * (rays.z_per_voxel * (1.0F / voxel_m_));
+    const simd::Float8 beyond = field_z + kBeyond_voxels * rays.z_per_voxel;
+    // In the unknown there is nothing to jump until free space is met again, which is wider than this step.
+    const simd::Float8 least_z = observed | was_free ? fine_z : kUnknownStep_voxels * rays.z_per_voxel;
+    const simd::Float8 plain =
+        simd::max(simd::max(least_z, now.empty_z_m), now.near & free ? beyond : kStepShare * field_z);
+    const simd::Float8 onward = careful & free ? z_m + fine_z : z_m + plain;
+    const simd::Float8 next =
+        repeat ? walk.free_z_m + fine_z : (give_up ? simd::max(walk.careful_z_m, onward) : onward);
+    walk.careful_z_m = repeat ? z_m : walk.careful_z_m;
+    walk.free_z_m = free ? z_m : (repeat ? walk.free_z_m : tsdf::not_a_number());
+    walk.free_m = free ? now.distance_m : walk.free_m;
+    walk.walking &= ~crossed & (next <= walk.end_m);
+    walk.z_m = walk.walking ? next : z_m;
+  }
+
+  [[nodiscard]] Hits hits_of(const Walk& walk) const {
+    const Rays& rays = walk.rays;
+    simd::Int8 found = walk.brackets.front_z_m == walk.brackets.front_z_m;
+    if (!simd::any(found)) return {};
+    const simd::Float8 depth_m = refined(rays, walk.brackets, found);
+    const simd::Points gradient = field_.gradient(rays.at(found ? depth_m : simd::all_lanes(nearest_m_)));
+    return hits_at(found, depth_m, gradient, rays.direction);
+  }
+
+  /// The zeros in the brackets: alternates the zero of the chord, which is close where the field is smooth,
+  /// with the middle, which always helps. Removes those from `found` that lie in the unknown.
+  [[nodiscard]] simd::Float8 refined(const Rays& rays, Brackets bracket, simd::Int8& found) const {
+    simd::Int8 open = found & ~bracket.are_narrow(rays.z_per_voxel);
+    for (int i = 0; i < kMostRefinements && simd::any(open); ++i) {
+      const simd::Float8 z_m = i % 2 == 0 ? bracket.zero_of_chord() : bracket.middle();
+      const simd::Float8 distance_m = field_.sample(rays.at(open ? z_m : simd::all_lanes(nearest_m_)));
+      const simd::Int8 unknown = open & (distance_m != distance_m);
+      found &= ~unknown;
+      open &= ~unknown;
+      const simd::Int8 behind = open & (distance_m < 0.0F);
+      bracket.take(open & ~behind, behind, z_m, distance_m);
+      open &= ~(is_zero(distance_m, voxel_m_) | bracket.are_narrow(rays.z_per_voxel));
+    }
+    return found ? bracket.zero_of_chord() : simd::all_lanes(nearest_m_);
+  }
+
+  const tsdf::TsdfLanes& field_;
+  PixelRays pixels_;
+  BlockBounds bounds_;
+  Eigen::Vector3f origin_;
+  float nearest_m_, farthest_m_;
+  float voxel_m_;
+};
+
+constexpr std::size_t kPixelsPerTurn = RayMarcher::kMostTurns * simd::kLanes;
+
+}  // namespace
+
+void raycast_pixels(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
+                    std::span<const PixelRay> pixels, const config::DepthConfig& depth,
+                    const Workers& workers, std::vector<SurfacePoint>& points) {
+  points.resize(pixels.size());
+  const RayMarcher marcher(field, camera, T_world_camera, depth);
+  workers.for_chunks(pixels.size(), kPixelsPerTurn, [&](std::size_t begin, std::size_t end) {
+    std::array<RequestedRays, RayMarcher::kMostTurns> lanes;
+    std::array<Hits, RayMarcher::kMostTurns> hits;
+    for (std::size_t i = begin; i < begin + kPixelsPerTurn; ++i) {
+      const PixelRay& pixel = pixels[std::min(i, end - 1)];
+      RequestedRays& eight = lanes[(i - begin) / simd::kLanes];
+      const std::size_t lane = (i - begin) % simd::kLanes;
+      eight.u[lane] = static_cast<float>(pixel.u_px);
+      eight.v[lane] = static_cast<float>(pixel.v_px);
+      eight.begin_m[lane] = pixel.begin_m;
+      eight.end_m[lane] = pixel.end_m;
+    }
+    marcher.march(lanes, hits);
+    for (std::size_t i = begin; i < end; ++i) {
+      points[i] = surface_point(hits[(i - begin) / simd::kLanes], (i - begin) % simd::kLanes);
+    }
+  });
+}
+
+}  // namespace fusebench::raycast

@@ -1,0 +1,57 @@
+// The model's surface where a camera has measured one: a few steps from the measurement to the zero of the
+// field beside it, instead of a walk along the ray.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/raycast/ray_lanes.hpp"
+#include "core/tsdf/tsdf_brick.hpp"
+#include "core/tsdf/tsdf_lanes.hpp"
+
+namespace fusebench::raycast {
+
+/// A pixel, and where along its ray a surface is expected.
+struct ExpectedSurface {
+  float u_px = 0;
+  float v_px = 0;
+  float depth_m = 0;
+  float reach_m = 0;  ///< no further than this from there
+};
+
+class SurfaceSearch {
+ public:
+  /// field: in view of that camera (field_in_view); must outlive the search.
+  SurfaceSearch(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
+                const config::DepthConfig& depth);
+
+  /// The zero of the trilinear field that the field at the expected place leads to, to a fiftieth of a voxel,
+  /// with the normal there. Where it leads to none within reach, or into the unknown, the result is invalid:
+  /// then the ray has to be walked (raycast_pixels).
+  void find(std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const;
+
+  /// The same for pixels that lie close together in the image and in depth, and no further from the expected
+  /// place than noise explains. `brick`: memory to work in.
+  void find_beside(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
+                   std::span<SurfacePoint> surfaces) const;
+
+ private:
+  struct Box;
+  struct Eight;
+
+  template <class Field>
+  void find_in(const Field& field, const Vector3d& field_origin_voxel, bool beside,
+               std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const;
+  template <class Field>
+  [[nodiscard]] Hits search(const Eight& eight, const Eigen::Vector3f& origin, const Field& field) const;
+  [[nodiscard]] Eight eight_of(std::span<const ExpectedSurface> pixels, std::size_t begin, bool beside) const;
+  [[nodiscard]] Box box_around(std::span<const ExpectedSurface> pixels) const;
+
+  const tsdf::TsdfLanes& field_;
+  PixelRays rays_;
+  Vector3d camera_voxel_;
+  config::DepthConfig depth_;
+  float voxel_m_;
+};
+
+}  // namespace fusebench::raycast

@@ -1,0 +1,95 @@
+// Places seen before: a small store of fused frames by which a tracker that is lost finds its pose again.
+//
+// A kept frame has landmarks: ORB features (place_features.hpp) with the depth of each, found when a place is
+// first looked for. The features of a later image are matched against those of every kept frame; three points
+// give the pose in RANSAC, all inliers refine it (as the relocalisation of ORB-SLAM2, Mur-Artal and Tardos,
+// T-RO 2017, but without a vocabulary: for some tens of frames comparing all descriptors is fast enough).
+//
+// Frames and units: poses map camera to world; metres, pixels of level 0. The same offers and the same image
+// give the same bytes, whatever the number of threads. Errors: none; a place that is not found is no value.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/types.hpp"
+#include "core/relocalisation/packed_depth.hpp"
+#include "core/relocalisation/place_features.hpp"
+
+namespace fusebench::relocalisation {
+
+/// What a place is recognised by.
+struct Landmarks {
+  std::vector<PlaceFeature> features;   ///< those with depth
+  std::vector<Vector3d> points_camera;  ///< one a feature, in the camera's axes, metres
+};
+
+/// The landmarks in a frame; depth in metres, 0 = none.
+[[nodiscard]] Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m,
+                                     const PinholeCamera& camera);
+
+/// A fused frame that can be found again.
+struct Keyframe {
+  std::int64_t timestamp_ns = 0;
+  SE3 T_world_camera;
+  GreyImage grey;
+  double blur_px = 0;                  ///< as it was offered
+  PackedDepth depth;                   ///< as it was offered, to cut patches again
+  std::optional<Landmarks> landmarks;  ///< when they were first asked for: most trackers are never lost
+};
+
+/// Which frames are kept.
+struct KeyframeSpacing {
+  /// Things in a room are 1 to 3 m away: a camera that is half as far aside sees them turned by some 5
+  /// degrees, which descriptors hardly notice.
+  double distance_m = 0.3;
+  double angle_rad = radians(20);  ///< between optical axes (ORB is indifferent to turns about them)
+  std::size_t max_count = 60;      ///< 1 MB each at 640x480
+};
+
+/// A pose found by matching.
+struct FoundPlace {
+  SE3 T_world_camera;
+  std::size_t keyframe = 0;  ///< index of the one that it was found by; valid until the next offer
+  int inliers = 0;           ///< matches that agree with the pose
+  int matches = 0;           ///< all matches with that keyframe
+  double rms_px = 0;         ///< of the inliers, at the scale of each
+  /// Of rotation (on the right, rad) and position (world, metres) against the keyframe, whose own error comes
+  /// on top. Of few inliers, rotation and position are strongly correlated: together they fit the image
+  /// better than each alone.
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/// The store.
+class Keyframes {
+ public:
+  explicit Keyframes(const PinholeCamera& camera, const KeyframeSpacing& spacing = {});
+
+  /// Keeps the frame if no kept one shows the place from near, or a much more blurred one does, whose place
+  /// it takes, and if it has enough corners or landmarks with depth (> 0). Says whether it did. If the store
+  /// is full, one of the two that are nearest to each other makes room. Offer what was fused at a pose to be
+  /// trusted; images have the size of the camera's. blur_px: how far the image moved while it was exposed.
+  bool offer(const GreyImage& grey, const DepthImage& depth_m, const SE3& T_world_camera,
+             std::int64_t timestamp_ns, double blur_px = 0);
+
+  /// The pose of an image by the kept frame with which most of it agrees; nothing if it is not certain. The
+  /// first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long as
+  /// offering them would have taken, but all in one frame.
+  [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
+
+  [[nodiscard]] std::size_t size() const { return kept_.size(); }
+  [[nodiscard]] const Keyframe& operator[](std::size_t index) const { return kept_[index]; }
+
+ private:
+  [[nodiscard]] double separation(const SE3& a, const SE3& b) const;
+  void drop_most_crowded();
+
+  PinholeCamera camera_;
+  KeyframeSpacing spacing_;
+  std::vector<Keyframe> kept_;              ///< in the order of their offers
+  std::optional<SE3> T_world_featureless_;  ///< where the last frame with too few features was
+};
+
+}  // namespace fusebench::relocalisation

@@ -1,0 +1,64 @@
+#include "core/relocalisation/relocalisation.hpp"
+
+#include "core/filter/pose_anchors.hpp"
+#include "core/filter/state_validity.hpp"
+#include "core/relocalisation/relocalisation_update.hpp"
+
+namespace fusebench::relocalisation {
+
+namespace {
+
+/// The pose of the camera as the filter wants it: of the IMU.
+RelocalisedPose relocalised_pose(const FoundPlace& found, const Keyframe& keyframe, const SE3& T_imu_camera) {
+  const SE3 T_camera_imu = T_imu_camera.inverse();
+  RelocalisedPose pose{found.T_world_camera * T_camera_imu, keyframe.T_world_camera * T_camera_imu};
+  const Matrix6d to_imu = filter::pose_transport(pose.T_world_imu, found.T_world_camera);
+  pose.covariance = to_imu * found.covariance * to_imu.transpose();
+  // Drift of the model since the keyframe was fused into it.
+  constexpr double kRotation_rad = 0.005;
+  constexpr double kPosition_m = 0.005;
+  pose.reference_covariance.diagonal() << Vector3d::Constant(kRotation_rad * kRotation_rad),
+      Vector3d::Constant(kPosition_m * kPosition_m);
+  return pose;
+}
+
+UnknownMotion unknown_motion(const config::Config& config) {
+  const config::InitialisationConfig& initial = config.initialisation;
+  const bool gyroscope = config.terms.prior == config::Prior::imu;
+  return {initial.moving_velocity_sigma_mps, gyroscope ? 0.0 : initial.angular_velocity_sigma_radps};
+}
+
+}  // namespace
+
+void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera,
+                                  std::int64_t timestamp_ns, double blur_px) {
+  if (!config_.terms.relocalisation) return;
+  keyframes_.offer(frame.grey, frame.depth_m, T_world_camera, timestamp_ns, blur_px);
+}
+
+std::optional<RelocalisedReference> Relocalisation::find(const GreyImage& grey,
+                                                         const filter::GaussianState& prediction,
+                                                         const tsdf::TsdfVolume& model,
+                                                         const Workers& workers) {
+  if (!config_.terms.relocalisation) return std::nullopt;
+  const std::optional<FoundPlace> found = keyframes_.find(grey);
+  if (!found) return std::nullopt;
+  const Keyframe& keyframe = keyframes_[found->keyframe];
+  const RelocalisedPose pose = relocalised_pose(*found, keyframe, rig_.T_imu_camera);
+  // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
+  // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
+  constexpr double kMostInnovation = 25;  // five standard deviations, root mean square of six axes
+  if (!(normalised_innovation(prediction, pose) <= kMostInnovation)) return std::nullopt;
+
+  RelocalisedReference result;
+  result.prior = relocalisation_update(prediction, pose, unknown_motion(config_));
+  if (!filter::is_valid(result.prior)) return std::nullopt;
+  const std::vector<GreyImage> pyramid = build_pyramid(keyframe.grey, config_.patches.levels);
+  const DepthImage depth_m = keyframe.depth.unpacked_m();
+  const patches::ReferenceFrame reference{pyramid, depth_m, rig_.camera, keyframe.T_world_camera};
+  result.patches = patches::refresh_patches(reference, model, {}, config_, workers);
+  result.reference_ns = keyframe.timestamp_ns;
+  return result;
+}
+
+}  // namespace fusebench::relocalisation

@@ -1,0 +1,51 @@
+// Where a lost camera is, by the frames that were fused before. The paper leaves this open.
+//
+// A pose found by features (keyframes.hpp) is held against the prediction, updates the filter
+// (relocalisation_update.hpp), and is tracked from with patches of the keyframe that showed it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/filter/filter_state.hpp"
+#include "core/patches/patches.hpp"
+#include "core/relocalisation/keyframes.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
+
+namespace fusebench::relocalisation {
+
+/// What tracking goes on from.
+struct RelocalisedReference {
+  filter::GaussianState prior;          ///< after the relocalisation update
+  std::vector<patches::Patch> patches;  ///< cut from the keyframe
+  std::int64_t reference_ns = 0;        ///< capture instant of the keyframe
+};
+
+class Relocalisation {
+ public:
+  /// The references must outlive it.
+  Relocalisation(const config::Config& config, const SensorRig& rig)
+      : config_(config), rig_(rig), keyframes_(rig.camera) {}
+
+  /// Offers a fused frame (motion compensated, depth gated) as one to be found again by.
+  void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,
+                    double blur_px);
+
+  /// Looks for the image among the keyframes; nothing if none shows its place for certain, or if the
+  /// prediction rules the place out.
+  [[nodiscard]] std::optional<RelocalisedReference> find(const GreyImage& grey,
+                                                         const filter::GaussianState& prediction,
+                                                         const tsdf::TsdfVolume& model,
+                                                         const Workers& workers);
+
+ private:
+  const config::Config& config_;
+  const SensorRig& rig_;
+  Keyframes keyframes_;
+};
+
+}  // namespace fusebench::relocalisation

@@ -1,0 +1,94 @@
+#include "core/relocalisation/relocalisation_update.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/filter/pose_anchors.hpp"
+
+namespace fusebench::relocalisation {
+
+namespace {
+
+/// Standard deviations of all that follows from the motion, times a factor; biases and the clock stay as they
+/// are.
+filter::StateMatrix motion_inflated(const filter::StateMatrix& covariance, double factor) {
+  filter::StateVector scale = filter::StateVector::Ones();
+  for (const auto& [offset, size] :
+       {std::pair{filter::kRotation, 9}, std::pair{filter::kGravity, 2}, std::pair{filter::kAngularVelocity, 3}})
+    scale.segment(offset, size).setConstant(factor);
+  return scale.asDiagonal() * covariance * scale.asDiagonal();
+}
+
+/// Three components get a prior of their own, uncorrelated with the rest.
+void reset_covariance(filter::StateMatrix& covariance, int offset, double sigma) {
+  covariance.middleRows<3>(offset).setZero();
+  covariance.middleCols<3>(offset).setZero();
+  covariance.block<3, 3>(offset, offset).diagonal().setConstant(sigma * sigma);
+}
+
+/// The prediction with its covariance inflated by the innovation.
+filter::GaussianState inflated(const filter::GaussianState& prediction, double innovation,
+                       const UnknownMotion& unknown) {
+  filter::GaussianState state{prediction.mean,
+                              motion_inflated(prediction.covariance, std::sqrt(std::max(1.0, innovation)))};
+  if (innovation <= kInconsistentInnovation) return state;
+  state.mean.velocity_world_mps.setZero();
+  reset_covariance(state.covariance, filter::kVelocity, unknown.velocity_sigma_mps);
+  if (unknown.angular_velocity_sigma_radps > 0) {
+    state.mean.angular_velocity_imu_radps.setZero();
+    reset_covariance(state.covariance, filter::kAngularVelocity, unknown.angular_velocity_sigma_radps);
+  }
+  return state;
+}
+
+/// The keyframe becomes the reference pose; its error is not correlated with the rest of the state.
+filter::GaussianState with_reference_pose(const filter::GaussianState& state, const RelocalisedPose& place) {
+  const Matrix6d carried =
+      filter::pose_transport(place.T_world_imu_reference, state.mean.T_world_imu_reference);
+  filter::StateMatrix refer = filter::StateMatrix::Identity();
+  refer.middleRows<filter::kPoseSize>(filter::kReferencePose).setZero();
+  refer.block<filter::kPoseSize, filter::kPoseSize>(filter::kModelPose, filter::kModelPose) = carried;
+  filter::GaussianState result{state.mean, filter::symmetrised(refer * state.covariance * refer.transpose())};
+  result.covariance.block<filter::kPoseSize, filter::kPoseSize>(filter::kReferencePose, filter::kReferencePose) =
+      place.reference_covariance;
+  result.mean.model_offset = carried * state.mean.model_offset;
+  result.mean.T_world_imu_reference = place.T_world_imu_reference;
+  result.mean.reference_offset.setZero();
+  return result;
+}
+
+}  // namespace
+
+double normalised_innovation(const filter::GaussianState& prediction, const RelocalisedPose& place) {
+  const Matrix6d carried = filter::pose_transport(place.T_world_imu, place.T_world_imu_reference);
+  const Matrix6d expected = prediction.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() +
+                            place.covariance + carried * place.reference_covariance * carried.transpose();
+  const Vector6d innovation = pose_minus(place.T_world_imu, prediction.mean.T_world_imu);
+  return innovation.dot(expected.ldlt().solve(innovation)) / filter::kPoseSize;
+}
+
+filter::GaussianState relocalisation_update(const filter::GaussianState& prediction,
+                                            const RelocalisedPose& place, const UnknownMotion& unknown) {
+  const filter::GaussianState prior =
+      with_reference_pose(inflated(prediction, normalised_innovation(prediction, place), unknown), place);
+  // The match tells the pose against that frame, wherever the frame is.
+  Eigen::Matrix<double, filter::kPoseSize, filter::kStateSize> matched =
+      Eigen::Matrix<double, filter::kPoseSize, filter::kStateSize>::Zero();
+  matched.leftCols<filter::kPoseSize>().setIdentity();
+  matched.block<filter::kPoseSize, filter::kPoseSize>(0, filter::kReferencePose) =
+      -filter::pose_transport(place.T_world_imu, place.T_world_imu_reference);
+  const Vector6d innovation = pose_minus(place.T_world_imu, prior.mean.T_world_imu);
+  const Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize> crossed = prior.covariance * matched.transpose();
+  const Matrix6d expected = matched * crossed + place.covariance;
+  const Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize> gain =
+      expected.ldlt().solve(crossed.transpose()).transpose();
+  const filter::StateVector delta = gain * innovation;
+  const filter::StateMatrix transport = filter::chart_transport(prior.mean, delta);
+  const filter::StateMatrix covariance = prior.covariance - gain * crossed.transpose();
+  return {filter::plus(prior.mean, delta),
+          filter::symmetrised(transport * covariance * transport.transpose())};
+}
+
+}  // namespace fusebench::relocalisation

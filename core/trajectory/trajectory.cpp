@@ -1,0 +1,20 @@
+#include "core/trajectory/trajectory.hpp"
+
+#include <algorithm>
+
+namespace fusebench::trajectory {
+
+std::optional<SE3> interpolate_pose(const Trajectory& trajectory, std::int64_t timestamp_ns,
+                                    std::int64_t max_gap_ns) {
+  const auto after = std::ranges::lower_bound(trajectory, timestamp_ns, {}, &StampedPose::timestamp_ns);
+  if (after == trajectory.end()) return std::nullopt;
+  if (after->timestamp_ns == timestamp_ns) return after->T_world_camera;
+  if (after == trajectory.begin()) return std::nullopt;
+  const auto before = after - 1;
+  if (after->timestamp_ns - before->timestamp_ns > max_gap_ns) return std::nullopt;
+  const double fraction = seconds_between(before->timestamp_ns, timestamp_ns) /
+                          seconds_between(before->timestamp_ns, after->timestamp_ns);
+  return interpolate(before->T_world_camera, after->T_world_camera, fraction);
+}
+
+}  // namespace fusebench::trajectory

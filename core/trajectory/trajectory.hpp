@@ -1,0 +1,17 @@
+// Look-up in a trajectory.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/base/types.hpp"
+
+namespace fusebench::trajectory {
+
+/// The pose at a time between two stamps, interpolated geodesically. Nothing if the time lies before the
+/// first or after the last pose, or between two that are more than max_gap_ns apart. The stamps must
+/// increase.
+[[nodiscard]] std::optional<SE3> interpolate_pose(const Trajectory& trajectory, std::int64_t timestamp_ns,
+                                                  std::int64_t max_gap_ns);
+
+}  // namespace fusebench::trajectory

@@ -1,0 +1,50 @@
+#include "core/trajectory/trajectory_file.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <utility>
+
+namespace fusebench::trajectory {
+
+namespace {
+
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+}  // namespace
+
+std::string stamp_text(std::int64_t timestamp_ns) {
+  const bool negative = timestamp_ns < 0;
+  const std::int64_t magnitude = negative ? -timestamp_ns : timestamp_ns;
+  return fmt::format("{}{}.{:09}", negative ? "-" : "", magnitude / kNanosecondsPerSecond,
+                     magnitude % kNanosecondsPerSecond);
+}
+
+std::string tum_text(const Trajectory& trajectory) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& pose : trajectory) {
+    const Vector3d& t = pose.T_world_camera.translation;
+    // q and -q are one rotation; one sign makes files comparable.
+    const double sign = pose.T_world_camera.rotation.w() < 0 ? -1.0 : 1.0;
+    const Eigen::Vector4d q = sign * pose.T_world_camera.rotation.coeffs();
+    fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {} {}\n", stamp_text(pose.timestamp_ns),
+                   t.x(), t.y(), t.z(), q[0], q[1], q[2], q[3]);
+  }
+  return text;
+}
+
+Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                       Duplicates duplicates) {
+  TrajectoryRows rows;
+  const Result<void> done = io::for_each_stamped_row(
+      file, "timestamp tx ty tz qx qy qz qw", order_for(duplicates),
+      [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+        Eigen::Matrix<double, 7, 1> v;
+        if (auto read = table.numbers(1, {v.data(), 7}); !read) return read;
+        return take_pose(table, time_ns, v.head<3>(), Quaterniond(v[6], v[3], v[4], v[5]), rows);
+      });
+  if (!done) return tl::unexpected(done.error());
+  return ordered(std::move(rows), duplicates, file, warnings);
+}
+
+}  // namespace fusebench::trajectory

@@ -1,0 +1,141 @@
+// The model: a truncated signed distance field (Curless & Levoy 1996) with colour, in a hash of 8x8x8 blocks
+// (Niessner et al. 2013). Distances are positive in front of the surface (towards the camera).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/growing_array.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/simd/half_lanes.hpp"
+#include "core/tsdf/band_blocks.hpp"
+#include "core/tsdf/block_table.hpp"
+
+namespace fusebench::tsdf {
+
+inline constexpr int kBlockSide = 8;   ///< voxels
+inline constexpr int kRegionSide = 4;  ///< blocks
+inline constexpr std::size_t kRegionBlocks = kRegionSide * kRegionSide * kRegionSide;
+inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
+
+/// One sample of the field, at the lattice point (ix, iy, iz) * voxel_m of the world.
+///
+/// The distance is kept in metres, clamped to the truncation band of each measurement, because the band grows
+/// with depth: metres of a near and of a far view average to metres, shares of their bands would not. The
+/// band is at least two voxels, so the voxels next to the surface are never clamped, and the zero level is
+/// the same either way.
+struct Voxel {
+  float distance_m = std::numeric_limits<float>::quiet_NaN();  ///< signed; NaN = never observed
+  float weight = 0.0F;                                         ///< 0 = never observed
+  Rgb color{};                                                 ///< running mean
+  std::uint8_t color_count = 0;  ///< observations in the mean (saturates); 0 = no colour
+};
+
+using VoxelIndex = Eigen::Vector3i;  ///< lattice coordinates of a voxel
+
+/// The voxels of one block where they are stored: each of these points to kBlockVoxels values, x fastest,
+/// then y, then z. What is read together lies together: rays read distances alone, and colour is seldom read.
+///
+/// Eleven bits are enough: a distance of a centimetre is rounded by 4 micrometres at most, far below the
+/// depth noise, and the noise keeps the running mean from being stuck. A sum of weights does not grow by one
+/// that is less than a 4096th of it, so that far measurements saturate before tsdf.max_weight.
+struct BlockVoxels {
+  simd::Half* distance_m = nullptr;
+  simd::Half* weight = nullptr;
+  std::uint32_t* color = nullptr;  ///< a byte each, from the lowest on: red, green, blue, count
+};
+
+/// Once moved from, it can only be assigned or destroyed.
+class TsdfVolume {
+ public:
+  explicit TsdfVolume(const config::TsdfConfig& config);
+
+  /// Fuses one frame. Blocks are allocated along each measured ray within the truncation band; then every
+  /// voxel of these blocks takes the projective distance (depth at the nearest pixel minus its own z-depth,
+  /// clamped to the band) into its running mean; voxels further behind the surface than the band are left
+  /// alone. One measurement weighs v^2 / (v^2 + sigma(depth)^2), with v = voxel_m for the errors that no
+  /// averaging removes: about 1 near by, falling with the depth noise; behind the surface it also falls
+  /// linearly to 0 over the back half of the band (as in Bylow et al. 2013), since behind thin parts and
+  /// edges there is free space. Weights saturate at tsdf.max_weight. Colour goes where |distance| < band / 2.
+  ///
+  /// Depth outside [min_m, max_m] of `depth` (and NaN) is ignored, as is colour if the frame has none; depth
+  /// must have the camera's size. Storage order is that of the pixels, thus a function of the frames alone.
+  /// Error run_failed: tsdf.max_blocks is reached (the message names it), or the pose is not a place in the
+  /// lattice (NaN, astronomically far); the volume is then unchanged by this frame.
+  [[nodiscard]] Result<void> integrate(const RgbdFrame& frame, const PinholeCamera& camera,
+                                       const SE3& T_world_camera, const config::DepthConfig& depth,
+                                       const Workers& workers);
+
+  [[nodiscard]] double voxel_m() const { return config_.voxel_m; }
+  [[nodiscard]] std::uint32_t frame_count() const { return frame_count_; }  ///< fused so far
+  [[nodiscard]] std::size_t block_count() const { return indices_.size(); }
+  [[nodiscard]] std::size_t memory_bytes() const;
+  [[nodiscard]] const std::vector<BlockIndex>& block_indices() const { return indices_; }
+  /// The voxel at an offset (offset_in_block) of a block.
+  [[nodiscard]] Voxel voxel(std::size_t slot, std::size_t offset) const;
+  /// Distances of all blocks by slot, kBlockVoxels each; NaN = never observed. Slot -1, of no block, can be
+  /// read as well: there is nothing observed in it. So can one number beyond the last, see gather().
+  [[nodiscard]] const simd::Half* distances_m() const { return distances_m_.data() + kBlockVoxels; }
+  [[nodiscard]] const simd::Half* weights() const { return weights_.data(); }
+  /// As BlockVoxels has them, by slot from 0 on, like the weights.
+  [[nodiscard]] const std::uint32_t* colors() const { return colors_.data(); }
+
+  /// Slot of a block in storage order, or -1.
+  [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }
+  /// Number of a region with an allocated block, or -1; regions are cubes of 4x4x4 blocks: floor(block / 4).
+  [[nodiscard]] int find_region(const Eigen::Vector3i& region) const { return regions_.find(region); }
+  [[nodiscard]] const std::vector<Eigen::Vector3i>& region_indices() const { return region_indices_; }
+  /// Slots of the 64 blocks (x fastest) of each region by its number, -1 = none. Number -1, of no region, can
+  /// be read as well: it has no blocks.
+  [[nodiscard]] const std::int32_t* region_slots() const { return region_slots_.data() + kRegionBlocks; }
+  /// Half width of the band (metres) of the voxels updated at this depth: tsdf.truncation_m, two voxels, or
+  /// tsdf.truncation_sigmas of the depth noise, whichever is most.
+  [[nodiscard]] double truncation_m(double depth_m, const config::DepthConfig& depth) const;
+  /// Weight of one measurement of a surface at this depth, see integrate().
+  [[nodiscard]] double measurement_weight(double depth_m, const config::DepthConfig& depth) const;
+  /// Points whose coordinates are all below this in magnitude (metres) have lattice coordinates.
+  [[nodiscard]] double reach_m() const { return config_.voxel_m * (1 << 30); }
+
+ private:
+  [[nodiscard]] Result<void> allocate();
+  void add_block(const BlockIndex& index);
+  [[nodiscard]] BlockVoxels block(std::size_t slot);
+
+  config::TsdfConfig config_;
+  BlockTable table_;    // block -> slot
+  BlockTable regions_;  // those with a block, so that rays cross empty space in large steps
+  std::vector<Eigen::Vector3i> region_indices_;
+  std::vector<std::int32_t> region_slots_;  // by number + 1
+  std::vector<BlockIndex> indices_;         // by slot
+  GrowingArray<simd::Half> distances_m_;    // by slot + 1
+  GrowingArray<simd::Half> weights_;
+  GrowingArray<std::uint32_t> colors_;
+  BandBlocks touched_;  // by the last frame
+  std::vector<int> touched_slots_;
+  std::uint32_t frame_count_ = 0;
+};
+
+/// Lattice arithmetic. Right shifts of negative numbers round down in C++20, as floor() would.
+[[nodiscard]] inline BlockIndex block_of(const VoxelIndex& voxel) {
+  return {voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3};
+}
+[[nodiscard]] inline Eigen::Vector3i region_of(const BlockIndex& block) {
+  return {block.x() >> 2, block.y() >> 2, block.z() >> 2};
+}
+/// Of a block among the kRegionBlocks of its region.
+[[nodiscard]] inline std::size_t place_in_region(const BlockIndex& block) {
+  return static_cast<std::size_t>((block.x() & 3) +
+                                  kRegionSide * ((block.y() & 3) + kRegionSide * (block.z() & 3)));
+}
+[[nodiscard]] inline std::size_t offset_in_block(const VoxelIndex& voxel) {
+  return static_cast<std::size_t>((voxel.x() & 7) +
+                                  kBlockSide * ((voxel.y() & 7) + kBlockSide * (voxel.z() & 7)));
+}
+
+}  // namespace fusebench::tsdf

@@ -1,0 +1,49 @@
+// One frame as the voxels of the model see it.
+#pragma once
+
+#include "core/preprocessing/depth_gates.hpp"
+#include "core/simd/lanes.hpp"
+#include "core/tsdf/tsdf_volume.hpp"
+
+namespace fusebench::tsdf {
+
+/// What TsdfVolume::integrate does to the voxels of one block after the other. Single precision: an error of
+/// 1e-7 of the depth is far below the depth noise. The frame must outlive it.
+class VoxelUpdate {
+ public:
+  /// frame_number: of the frames that the model has seen; decides how colours are rounded.
+  VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
+              const config::DepthConfig& depth, const config::TsdfConfig& tsdf, std::uint32_t frame_number);
+
+  void apply(const BlockIndex& index, const BlockVoxels& block) const;
+
+ private:
+  /// What the frame says of a row of eight voxels.
+  struct SeenRow {
+    simd::Int8 pixel;         ///< that they are seen in; 0 outside of the image
+    simd::Float8 measured_m;  ///< there
+    simd::Float8 distance_m;  ///< from the voxel to what was measured, along the optical axis
+    simd::Int8 seen;          ///< something was, and the voxel is not hidden behind it
+  };
+  [[nodiscard]] SeenRow look(simd::Float8 x_m, simd::Float8 y_m, simd::Float8 z_m) const;
+  [[nodiscard]] simd::Float8 band_m(simd::Float8 sigma_m) const;
+  [[nodiscard]] simd::Int8 add_distance(const SeenRow& seen, const BlockVoxels& block, std::size_t row) const;
+  void add_color(simd::Int8 pixel, simd::Int8 colored, const BlockVoxels& block, std::size_t row) const;
+
+  const RgbdFrame& frame_;
+  SE3 T_camera_world_;
+  double voxel_m_;
+  Eigen::Matrix3f step_camera_;  // columns: one voxel along each axis of the
+                                 // world, in the camera frame
+  float fx_, fy_, cx_, cy_;      // pixels
+  float nearest_m_, farthest_m_;
+  preprocessing::DepthSigma depth_sigma_;
+  float truncation_m_;
+  float truncation_sigmas_;
+  float voxel_variance_;  // m^2
+  float max_weight_;
+  float max_color_count_;
+  float color_rounding_;  // added before the fraction is cut off
+};
+
+}  // namespace fusebench::tsdf

@@ -1,0 +1,316 @@
+#include "datasets/calibration/rig_calibration.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "core/base/nearest_name.hpp"
+
+namespace fusebench::calibration {
+
+namespace {
+
+constexpr std::array<std::string_view, 8> kColorKeys = {"width_px", "height_px", "fx_px",      "fy_px",
+                                                        "cx_px",    "cy_px",     "distortion", "readout_s"};
+constexpr std::array<std::string_view, 10> kDepthKeys = {
+    "units_per_metre", "width_px", "height_px",     "fx_px",     "fy_px",
+    "cx_px",           "cy_px",    "T_color_depth", "readout_s", "delay_s"};
+constexpr std::array<std::string_view, 7> kDepthCameraKeys = {
+    "width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px", "T_color_depth"};
+constexpr std::array<std::string_view, 7> kImuKeys = {"T_imu_color",
+                                                      "T_imu_depth",
+                                                      "gyroscope_noise_radps_sqrthz",
+                                                      "accelerometer_noise_mps2_sqrthz",
+                                                      "gyroscope_bias_walk_radps2_sqrthz",
+                                                      "accelerometer_bias_walk_mps3_sqrthz",
+                                                      "time_offset_s"};
+
+struct Range {
+  double least;
+  double most;
+};
+constexpr Range kPixels{1e-3, 1e6};
+constexpr Range kCentre{-1e6, 1e6};
+constexpr Range kSize{1, 100'000};
+constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would silence all others
+constexpr Range kWalk{0, 100};
+constexpr Range kReadout{0, 1};
+constexpr Range kOffset{-10, 10};
+constexpr double kMostTranslation_m = 1000;  // between sensors of one rig
+
+/// One of the three tables: its entries by key, and what went wrong first.
+class Section {
+ public:
+  Section(const config::TomlDocument& document, std::string name, const std::string& file)
+      : name_(std::move(name)), place_(file) {
+    const std::string prefix = name_ + ".";
+    for (const config::TomlEntry& entry : document.entries) {
+      if (entry.key.starts_with(prefix)) entries_[entry.key.substr(prefix.size())] = &entry;
+    }
+    there_ = !entries_.empty();
+    for (const config::TomlTable& table : document.tables) {
+      if (table.key != name_) continue;
+      there_ = true;
+      place_ = table.place;
+    }
+  }
+
+  [[nodiscard]] bool is_there() const { return there_; }
+  [[nodiscard]] bool has(const std::string& key) const { return entries_.contains(key); }
+  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+  void allow(std::span<const std::string_view> keys) {
+    for (const auto& [key, entry] : entries_) {
+      if (std::ranges::find(keys, key) != keys.end()) continue;
+      report(fmt::format("{}: unknown key '{}' (nearest: {})", entry->place, entry->key,
+                         nearest_name(key, keys)),
+             fmt::format("keys of [{}] are {}", name_, fmt::join(keys, ", ")));
+    }
+  }
+
+  [[nodiscard]] double number(const std::string& key, Range range, std::optional<double> absent = {}) {
+    const auto found = entries_.find(key);
+    if (found == entries_.end()) {
+      if (!absent) complain(fmt::format("[{}] needs the key {}", name_, key));
+      return absent.value_or(0);
+    }
+    const auto value = number_of(std::get_if<config::OptionValue>(&found->second->value));
+    if (value && *value >= range.least && *value <= range.most) return *value;
+    report(fmt::format("{}: {} must be a number from {} to {}", found->second->place, found->second->key,
+                       range.least, range.most),
+           {});
+    return range.least;
+  }
+
+  [[nodiscard]] int pixels(const std::string& key) {
+    const double value = number(key, kSize);
+    if (value != std::floor(value))
+      report(fmt::format("{}: {} must be a whole number", entries_.at(key)->place, entries_.at(key)->key),
+             {});
+    return static_cast<int>(value);
+  }
+
+  /// A list of exactly `count` numbers; empty if the key is not there.
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, std::size_t count) {
+    const auto found = entries_.find(key);
+    if (found == entries_.end()) return {};
+    std::vector<double> values;
+    if (const auto* list = std::get_if<config::TomlList>(&found->second->value)) {
+      for (const config::OptionValue& value : *list) {
+        if (const auto number = number_of(&value)) values.push_back(*number);
+      }
+      if (values.size() == count && list->size() == count) return values;
+    }
+    report(fmt::format("{}: {} must be a list of {} finite numbers", found->second->place, found->second->key,
+                       count),
+           {});
+    return {};
+  }
+
+  [[nodiscard]] SE3 transform(const std::string& key) {
+    const std::vector<double> rows = numbers(key, 12);
+    if (rows.empty()) return {};
+    const auto T = rigid_transform(std::span<const double, 12>(rows));
+    if (!T) {
+      report(fmt::format("{}: {} is no rigid transform", entries_.at(key)->place, entries_.at(key)->key),
+             fmt::format("a matrix is {}, translation in metres", kRigidTransformRule));
+    }
+    if (T && T->translation.cwiseAbs().maxCoeff() > kMostTranslation_m) {
+      report(fmt::format("{}: {} has a translation of {:g} m (allowed up to {} m)", entries_.at(key)->place,
+                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMostTranslation_m),
+             "translations are in metres");
+    }
+    return T.value_or(SE3{});
+  }
+
+  /// About the table as a whole.
+  void complain(std::string_view what) { report(fmt::format("{}: {}", place_, what), {}); }
+
+  void report(std::string message, std::string hint) {
+    if (!error_) error_ = Error{ErrorCode::configuration, std::move(message), std::move(hint)};
+  }
+
+ private:
+  static std::optional<double> number_of(const config::OptionValue* value) {
+    if (value == nullptr) return std::nullopt;
+    if (const auto* integer = std::get_if<std::int64_t>(value)) return static_cast<double>(*integer);
+    const auto* real = std::get_if<double>(value);
+    return real != nullptr && std::isfinite(*real) ? std::optional<double>(*real) : std::nullopt;
+  }
+
+  std::string name_;
+  std::string place_;  ///< of the table's header, or the file
+  bool there_ = false;
+  std::map<std::string, const config::TomlEntry*> entries_;
+  std::optional<Error> error_;
+};
+
+/// Width and height are both given or both left out (0).
+PinholeCamera read_pinhole(Section& section, bool size_needed) {
+  PinholeCamera camera;
+  if (section.has("width_px") || section.has("height_px") || size_needed) {
+    camera.width_px = section.pixels("width_px");
+    camera.height_px = section.pixels("height_px");
+  }
+  camera.fx_px = section.number("fx_px", kPixels);
+  camera.fy_px = section.number("fy_px", kPixels);
+  camera.cx_px = section.number("cx_px", kCentre);
+  camera.cy_px = section.number("cy_px", kCentre);
+  return camera;
+}
+
+CalibratedCamera read_color_table(Section& section) {
+  CalibratedCamera camera;
+  section.allow(kColorKeys);
+  camera.pinhole = read_pinhole(section, false);
+  if (const auto k = section.numbers("distortion", 5); !k.empty())
+    camera.distortion = {k[0], k[1], k[2], k[3], k[4]};
+  camera.timing.color_readout_s = section.number("readout_s", kReadout, 0.0);
+  return camera;
+}
+
+void read_depth_table(Section& section, RigCalibration& calibration) {
+  section.allow(kDepthKeys);
+  if (section.has("units_per_metre"))
+    calibration.depth_units_per_metre = section.number("units_per_metre", {1e-3, 1e6});
+  calibration.color.timing.depth_readout_s = section.number("readout_s", kReadout, 0.0);
+  calibration.color.timing.depth_delay_s = section.number("delay_s", kOffset, 0.0);
+  const bool own_camera = std::ranges::any_of(
+      kDepthCameraKeys, [&](std::string_view key) { return section.has(std::string(key)); });
+  if (!own_camera) return;
+  calibration.depth = DepthCamera{read_pinhole(section, true), section.transform("T_color_depth")};
+  if (!section.has("T_color_depth"))
+    section.complain(
+        "[depth] with intrinsics needs T_color_depth as well; leave out both if depth is registered");
+}
+
+ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>& depth) {
+  section.allow(kImuKeys);
+  ImuCalibration imu;
+  if (section.has("T_imu_color") == section.has("T_imu_depth")) {
+    section.complain("[imu] needs either T_imu_color or T_imu_depth");
+  } else if (section.has("T_imu_color")) {
+    imu.T_imu_camera = section.transform("T_imu_color");
+  } else if (!depth) {
+    section.complain("[imu] T_imu_depth needs a depth camera of its own ([depth] with T_color_depth)");
+  } else {
+    imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
+    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMostTranslation_m)
+      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMostTranslation_m));
+  }
+  imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
+  imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);
+  imu.noise.gyroscope_bias_radps2_sqrthz = section.number("gyroscope_bias_walk_radps2_sqrthz", kWalk);
+  imu.noise.accelerometer_bias_mps3_sqrthz = section.number("accelerometer_bias_walk_mps3_sqrthz", kWalk);
+  imu.time_offset_s = section.number("time_offset_s", kOffset, 0.0);
+  return imu;
+}
+
+std::string matrix_text(const SE3& T) {
+  const Matrix3d R = T.rotation_matrix();
+  std::vector<double> m;
+  for (int row = 0; row < 3; ++row) m.insert(m.end(), {R(row, 0), R(row, 1), R(row, 2), T.translation[row]});
+  return fmt::format("[{}]", fmt::join(m, ", "));
+}
+
+std::string pinhole_text(const PinholeCamera& p) {
+  std::string text;
+  if (p.width_px > 0) text += fmt::format("width_px = {}\nheight_px = {}\n", p.width_px, p.height_px);
+  return text +
+         fmt::format("fx_px = {}\nfy_px = {}\ncx_px = {}\ncy_px = {}\n", p.fx_px, p.fy_px, p.cx_px, p.cy_px);
+}
+
+}  // namespace
+
+std::optional<SE3> rigid_transform(std::span<const double, 12> rows) {
+  Matrix3d R;
+  R << rows[0], rows[1], rows[2], rows[4], rows[5], rows[6], rows[8], rows[9], rows[10];
+  const double skew = (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(skew < 1e-3 && R.determinant() > 0)) return std::nullopt;
+  const Eigen::JacobiSVD<Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
+  return SE3{Quaterniond(nearest).normalized(), {rows[3], rows[7], rows[11]}};
+}
+
+Result<RigCalibration> rig_calibration(const config::TomlDocument& document, const std::string& file) {
+  RigCalibration calibration;
+  for (const config::TomlEntry& entry : document.entries) {
+    if (entry.key != "calibration_source") continue;
+    const auto* value = std::get_if<config::OptionValue>(&entry.value);
+    const auto* text = value == nullptr ? nullptr : std::get_if<std::string>(value);
+    if (text == nullptr)
+      return fail(ErrorCode::configuration, fmt::format("{}: {} must be a text", entry.place, entry.key));
+    calibration.source = *text;
+  }
+  Section color(document, "color", file);
+  calibration.color = read_color_table(color);
+  if (color.error()) return tl::unexpected(*color.error());
+  Section depth(document, "depth", file);
+  if (depth.is_there()) read_depth_table(depth, calibration);
+  if (depth.error()) return tl::unexpected(*depth.error());
+  Section imu(document, "imu", file);
+  if (imu.is_there()) calibration.imu = read_imu_table(imu, calibration.depth);
+  if (imu.error()) return tl::unexpected(*imu.error());
+  return calibration;
+}
+
+Result<RigCalibration> read_calibration(const std::filesystem::path& file) {
+  const auto document = config::read_toml(file);
+  if (!document) return tl::unexpected(document.error());
+  for (const config::TomlEntry& entry : document->entries) {
+    const bool known = entry.key == "calibration_source" || entry.key.starts_with("color.") ||
+                       entry.key.starts_with("depth.") || entry.key.starts_with("imu.");
+    if (!known) {
+      return fail(ErrorCode::configuration, fmt::format("{}: unknown key '{}'", entry.place, entry.key),
+                  "a calibration has calibration_source and the tables [color], [depth] and [imu]");
+    }
+  }
+  return rig_calibration(*document, file.string());
+}
+
+Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "calibration.toml";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return std::optional<RigCalibration>{};
+  auto calibration = read_calibration(file);
+  if (calibration) return std::optional<RigCalibration>(std::move(*calibration));
+  // The file is part of the recording, not of what the user asked for.
+  calibration.error().code = ErrorCode::data_corrupt;
+  return tl::unexpected(calibration.error());
+}
+
+std::string to_toml(const RigCalibration& calibration) {
+  const BrownConrady& d = calibration.color.distortion;
+  const SensorTiming& timing = calibration.color.timing;
+  std::string text = fmt::format("calibration_source = {}\n\n[color]\n{}",
+                                 config::to_toml(config::OptionValue(calibration.source)),
+                                 pinhole_text(calibration.color.pinhole));
+  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\nreadout_s = {}\n\n[depth]\n", d.k1, d.k2, d.p1,
+                      d.p2, d.k3, timing.color_readout_s);
+  if (calibration.depth_units_per_metre)
+    text += fmt::format("units_per_metre = {}\n", *calibration.depth_units_per_metre);
+  if (calibration.depth) {
+    text += pinhole_text(calibration.depth->pinhole) +
+            fmt::format("T_color_depth = {}\n", matrix_text(calibration.depth->T_color_depth));
+  }
+  text += fmt::format("readout_s = {}\ndelay_s = {}\n", timing.depth_readout_s, timing.depth_delay_s);
+  if (!calibration.imu) return text;
+  const ImuNoise& noise = calibration.imu->noise;
+  return text + fmt::format(
+                    "\n[imu]\nT_imu_color = {}\ngyroscope_noise_radps_sqrthz = {}\n"
+                    "accelerometer_noise_mps2_sqrthz = {}\ngyroscope_bias_walk_radps2_sqrthz = {}\n"
+                    "accelerometer_bias_walk_mps3_sqrthz = {}\ntime_offset_s = {}\n",
+                    matrix_text(calibration.imu->T_imu_camera), noise.gyroscope_radps_sqrthz,
+                    noise.accelerometer_mps2_sqrthz, noise.gyroscope_bias_radps2_sqrthz,
+                    noise.accelerometer_bias_mps3_sqrthz, calibration.imu->time_offset_s);
+}
+
+}  // namespace fusebench::calibration

@@ -1,0 +1,280 @@
+#include "datasets/formats/zr300/zr300_lists.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "core/io/stamped_rows.hpp"
+#include "datasets/reading/time_unit.hpp"
+#include "datasets/recording/sensor_columns.hpp"
+
+namespace fusebench::formats::zr300 {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Over a longer pause (12 samples of the 250 Hz accelerometer) a straight line is no measurement.
+constexpr std::int64_t kMaxAccelerometerGap_ns = 50'000'000;
+// Names are cut to whole microseconds, or to 15 digits.
+constexpr std::int64_t kNameTolerance_ns = 1000;
+
+constexpr std::string_view kTimestampColumns = "timestamp color depth";
+constexpr std::string_view kImageColumns = "timestamp filename";
+constexpr std::string_view kGyroColumns = "timestamp gx gy gz [ax ay az]";
+constexpr std::string_view kAccelColumns = "timestamp ax ay az";
+
+/// The file of column `column`, which must exist.
+Result<fs::path> image_file(const io::TextTable& table, std::size_t column, const fs::path& recording,
+                            std::string_view folder, bool always_there) {
+  const fs::path name = table.text(column);
+  const fs::path file =
+      always_there || !name.has_parent_path() ? recording / folder / name.filename() : recording / name;
+  std::error_code ignored;
+  if (fs::is_regular_file(file, ignored)) return file;
+  auto missing = table.fail_here(fmt::format("image {} does not exist", file.string()),
+                                 "unpack the whole recording; names are relative to its folder");
+  missing.value().code = ErrorCode::data_missing;
+  return missing;
+}
+
+Result<fs::path> depth_file(const io::TextTable& table, std::size_t column, const fs::path& recording,
+                            bool filtered) {
+  return image_file(table, column, recording, filtered ? "filtered" : "depth", filtered);
+}
+
+Result<std::vector<tum::ListedImage>> read_one_list(
+    const fs::path& list, recording::Recording& recording,
+    const std::function<Result<fs::path>(const io::TextTable& table)>& file_of) {
+  const auto unit = reading::detect_time_unit(list, kImageColumns, reading::kImageSpacing);
+  if (!unit) return tl::unexpected(unit.error());
+  recording.notes.push_back(unit->note(list.filename().string()));
+  std::vector<tum::ListedImage> images;
+  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    auto file = file_of(table);
+    if (!file) return tl::unexpected(file.error());
+    images.push_back({time_ns, std::move(*file)});
+    return {};
+  };
+  const auto done = io::for_each_stamped_row(list, kImageColumns, io::TimeOrder::increasing, row, unit->unit);
+  if (!done) return tl::unexpected(done.error());
+  return images;
+}
+
+/// The time in an image's name ("772307.png"), if it is one.
+std::optional<std::int64_t> time_in_name(const fs::path& file, io::TimeUnit unit) {
+  const auto time_ns = io::parse_time_ns(file.stem().string(), unit);
+  return time_ns ? std::optional<std::int64_t>(*time_ns) : std::nullopt;
+}
+
+/// Rows that repeat a depth image give it once.
+void drop_repeated(std::vector<tum::ListedImage>& images) {
+  const auto same = [](const tum::ListedImage& a, const tum::ListedImage& b) { return a.file == b.file; };
+  images.erase(std::unique(images.begin(), images.end(), same), images.end());
+}
+
+/// Gives depth images the times in their names if all names are times.
+Result<void> take_depth_times(const fs::path& list, io::TimeUnit unit, Zr300Images& images,
+                              recording::Recording& recording) {
+  std::vector<std::int64_t> depth_ns;
+  for (std::size_t i = 0; i < images.color.size(); ++i) {
+    const auto color = time_in_name(images.color[i].file, unit);
+    const auto depth = time_in_name(images.depth[i].file, unit);
+    if (!color || !depth || std::abs(*color - images.color[i].timestamp_ns) > kNameTolerance_ns) return {};
+    depth_ns.push_back(*depth);
+  }
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < depth_ns.size(); ++i) {
+    if (i > 0 && depth_ns[i] <= depth_ns[i - 1] && images.depth[i].file != images.depth[i - 1].file) {
+      return fail(ErrorCode::data_corrupt,
+                  fmt::format("{}: depth image {} is not later than {} of the row before, by their names",
+                              list.string(), images.depth[i].file.filename().string(),
+                              images.depth[i - 1].file.filename().string()),
+                  "sort the file by time");
+    }
+    if (std::abs(depth_ns[i] - images.color[i].timestamp_ns) > kNameTolerance_ns) ++differ;
+    images.depth[i].timestamp_ns = depth_ns[i];
+  }
+  if (differ > 0) {
+    recording.notes.push_back(fmt::format("{}: {} of {} depth images have a time of their own in their names",
+                                          list.filename().string(), differ, depth_ns.size()));
+  }
+  return {};
+}
+
+/// Rows of "timestamp x y z [...]"; `keep` sees each row whose stamp is new. The device repeats a sample now
+/// and then, which is counted and left out.
+Result<void> read_sensor(const fs::path& file, std::string_view columns, recording::Recording& recording,
+                         const io::StampedRow& keep) {
+  const auto unit = reading::detect_time_unit(file, columns, reading::kImuSpacing);
+  if (!unit) return tl::unexpected(unit.error());
+  recording.notes.push_back(unit->note(file.filename().string()));
+  std::optional<std::int64_t> last_ns;
+  std::size_t repeated = 0;
+  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    const bool again = last_ns == time_ns;
+    last_ns = time_ns;
+    if (again) ++repeated;
+    return again ? Result<void>{} : keep(table, time_ns);
+  };
+  const auto done = io::for_each_stamped_row(file, columns, io::TimeOrder::not_backwards, row, unit->unit);
+  if (done && repeated > 0) {
+    recording.warnings.push_back(fmt::format(
+        "{}: {} rows repeat the stamp of the row before and are not used", file.string(), repeated));
+  }
+  return done;
+}
+
+/// Joins both sensors and says what had to be interpolated or left out.
+Result<void> set_imu(const fs::path& file, std::span<const GyroscopeSample> gyroscope,
+                     std::span<const recording::AccelerometerSample> accelerometer,
+                     recording::Recording& recording) {
+  recording.imu = interpolate_accelerometer(gyroscope, accelerometer);
+  if (recording.imu.empty()) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: no gyroscope sample lies between two accelerometer samples", file.string()),
+                "both sensors must be of one recording and clock");
+  }
+  recording.imu_source = recording::ImuSource::recorded;
+  const std::size_t dropped = gyroscope.size() - recording.imu.size();
+  if (dropped > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} of {} gyroscope samples have no accelerometer around them and are not used",
+                    file.string(), dropped, gyroscope.size()));
+  }
+  return {};
+}
+
+Result<GyroscopeSample> gyroscope_sample(const io::TextTable& table, std::int64_t time_ns) {
+  const auto rate_radps = recording::read_angular_velocity(table, 1, "g");
+  if (!rate_radps) return tl::unexpected(rate_radps.error());
+  return GyroscopeSample{time_ns, *rate_radps};
+}
+
+Result<recording::AccelerometerSample> accelerometer_sample(const io::TextTable& table, std::int64_t time_ns,
+                                                            std::size_t column) {
+  const auto force_mps2 = recording::read_specific_force(table, column, "a");
+  if (!force_mps2) return tl::unexpected(force_mps2.error());
+  return recording::AccelerometerSample{time_ns, *force_mps2};
+}
+
+}  // namespace
+
+Result<Zr300Images> read_zr300_timestamps(const fs::path& folder, bool filtered,
+                                          recording::Recording& recording) {
+  const fs::path list = folder / "TIMESTAMP.txt";
+  const auto unit = reading::detect_time_unit(list, kTimestampColumns, reading::kImageSpacing);
+  if (!unit) return tl::unexpected(unit.error());
+  recording.notes.push_back(unit->note("TIMESTAMP.txt"));
+  Zr300Images images;
+  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    auto color = image_file(table, 1, folder, "color", false);
+    if (!color) return tl::unexpected(color.error());
+    auto depth = depth_file(table, 2, folder, filtered);
+    if (!depth) return tl::unexpected(depth.error());
+    images.color.push_back({time_ns, std::move(*color)});
+    images.depth.push_back({time_ns, std::move(*depth)});
+    return {};
+  };
+  const auto done =
+      io::for_each_stamped_row(list, kTimestampColumns, io::TimeOrder::increasing, row, unit->unit);
+  if (!done) return tl::unexpected(done.error());
+  if (const auto taken = take_depth_times(list, unit->unit, images, recording); !taken)
+    return tl::unexpected(taken.error());
+  drop_repeated(images.depth);
+  return images;
+}
+
+Result<Zr300Images> read_zr300_image_lists(const fs::path& folder, bool filtered,
+                                           recording::Recording& recording) {
+  auto color = read_one_list(folder / "COLOR.txt", recording, [&](const io::TextTable& table) {
+    return image_file(table, 1, folder, "color", false);
+  });
+  if (!color) return tl::unexpected(color.error());
+  auto depth = read_one_list(folder / "DEPTH.txt", recording, [&](const io::TextTable& table) {
+    return depth_file(table, 1, folder, filtered);
+  });
+  if (!depth) return tl::unexpected(depth.error());
+  return Zr300Images{std::move(*color), std::move(*depth)};
+}
+
+Result<void> read_zr300_imu(const fs::path& folder, recording::Recording& recording) {
+  const fs::path file = folder / "IMU.txt";
+  std::vector<GyroscopeSample> gyroscope;
+  std::vector<recording::AccelerometerSample> accelerometer;
+  const auto keep = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    const auto gyro = gyroscope_sample(table, time_ns);
+    if (!gyro) return tl::unexpected(gyro.error());
+    gyroscope.push_back(*gyro);
+    if (!table.has(4)) return {};
+    const auto accel = accelerometer_sample(table, time_ns, 4);
+    if (!accel) return tl::unexpected(accel.error());
+    accelerometer.push_back(*accel);
+    return {};
+  };
+  if (const auto read = read_sensor(file, kGyroColumns, recording, keep); !read) return read;
+  if (const std::size_t rows = gyroscope.size(), whole = accelerometer.size(); whole < rows) {
+    recording.notes.push_back(fmt::format(
+        "IMU.txt: {} of {} rows have no accelerometer, which is interpolated", rows - whole, rows));
+  }
+  return set_imu(file, gyroscope, accelerometer, recording);
+}
+
+Result<void> read_zr300_gyro_and_accel(const fs::path& folder, recording::Recording& recording) {
+  const fs::path file = folder / "GYRO.txt";
+  std::vector<GyroscopeSample> gyroscope;
+  const auto keep_gyro = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    const auto sample = gyroscope_sample(table, time_ns);
+    if (!sample) return tl::unexpected(sample.error());
+    gyroscope.push_back(*sample);
+    return {};
+  };
+  if (const auto read = read_sensor(file, kGyroColumns, recording, keep_gyro); !read) return read;
+  std::vector<recording::AccelerometerSample> accelerometer;
+  const auto keep_accel = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    const auto sample = accelerometer_sample(table, time_ns, 1);
+    if (!sample) return tl::unexpected(sample.error());
+    accelerometer.push_back(*sample);
+    return {};
+  };
+  if (const auto read = read_sensor(folder / "ACCEL.txt", kAccelColumns, recording, keep_accel); !read)
+    return read;
+  recording.notes.push_back(
+      fmt::format("ACCEL.txt: {} accelerometer samples are interpolated to {} gyroscope times",
+                  accelerometer.size(), gyroscope.size()));
+  return set_imu(file, gyroscope, accelerometer, recording);
+}
+
+std::vector<ImuSample> interpolate_accelerometer(
+    std::span<const GyroscopeSample> gyroscope,
+    std::span<const recording::AccelerometerSample> accelerometer) {
+  std::vector<ImuSample> samples;
+  samples.reserve(gyroscope.size());
+  auto after = accelerometer.begin();
+  for (const GyroscopeSample& gyro : gyroscope) {
+    const std::int64_t time_ns = gyro.timestamp_ns;
+    while (after != accelerometer.end() && after->timestamp_ns < time_ns) ++after;
+    if (after == accelerometer.end()) break;
+    if (after->timestamp_ns == time_ns) {
+      samples.push_back({time_ns, gyro.angular_velocity_radps, after->specific_force_mps2});
+      continue;
+    }
+    if (after == accelerometer.begin()) continue;
+    const recording::AccelerometerSample& before = *std::prev(after);
+    if (after->timestamp_ns - before.timestamp_ns > kMaxAccelerometerGap_ns) continue;
+    const double fraction = seconds_between(before.timestamp_ns, time_ns) /
+                            seconds_between(before.timestamp_ns, after->timestamp_ns);
+    samples.push_back({time_ns, gyro.angular_velocity_radps,
+                       (1 - fraction) * before.specific_force_mps2 + fraction * after->specific_force_mps2});
+  }
+  return samples;
+}
+
+}  // namespace fusebench::formats::zr300

@@ -1,0 +1,34 @@
+// All bytes of a file in memory, and whether they are still those of the recording that was opened.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "core/base/error.hpp"
+#include "core/io/fingerprint.hpp"
+
+namespace fusebench::images {
+
+/// Bytes that nobody has to set before they are written, unlike those of a vector.
+struct ByteBuffer {
+  std::size_t size = 0;
+  std::unique_ptr<std::uint8_t[]> bytes;
+
+  explicit ByteBuffer(std::size_t count)
+      : size(count), bytes(std::make_unique_for_overwrite<std::uint8_t[]>(count)) {}
+  [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.get()), size}; }
+};
+
+/// Empty if it cannot be read; folders and devices have no content of a known size.
+[[nodiscard]] ByteBuffer content_of(const std::filesystem::path& file);
+
+/// Compares the bytes that were read now with those of the opening; no `opened`: nothing to compare with.
+/// Error data_corrupt: they differ.
+[[nodiscard]] Result<void> check_unchanged(const std::filesystem::path& file, std::string_view content,
+                                           const std::optional<io::ContentHash>& opened);
+
+}  // namespace fusebench::images

@@ -1,0 +1,51 @@
+// Image files: 8-bit colour (PNG, JPEG), 8-bit grey and 16-bit grey (PNG). The only user of the image
+// library, which is loaded by the first image that it is needed for: one that is not a plain PNG of a
+// recording (plain_png.hpp: colour, 16-bit grey), or damaged.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/image.hpp"
+#include "core/io/fingerprint.hpp"
+
+namespace fusebench::images {
+
+struct ImageSize {
+  int width_px = 0;
+  int height_px = 0;
+  friend bool operator==(const ImageSize&, const ImageSize&) = default;
+};
+
+/// Size as the header says. Errors as below.
+[[nodiscard]] Result<ImageSize> read_image_size(const std::filesystem::path& file);
+
+/// Reads an image with three channels of 8 bits. expected: the size that it must have; opened: the bytes that
+/// the file must have, those which it had when its recording was opened.
+/// Errors: data_missing (no such file); data_corrupt (changed, unreadable, truncated, other channels, bit
+/// depth or size); io (there is no image library, and this image needs it).
+[[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& file,
+                                            std::optional<ImageSize> expected = std::nullopt,
+                                            const std::optional<io::ContentHash>& opened = std::nullopt);
+
+/// Reads an image with one channel of 8 bits. Errors as read_color().
+[[nodiscard]] Result<GreyImage> read_grey(const std::filesystem::path& file,
+                                          std::optional<ImageSize> expected = std::nullopt);
+
+/// Reads an image with one channel of 16 bits, raw values. Errors as read_color().
+[[nodiscard]] Result<Image<std::uint16_t>> read_depth16(
+    const std::filesystem::path& file, std::optional<ImageSize> expected = std::nullopt,
+    const std::optional<io::ContentHash>& opened = std::nullopt);
+
+/// A JPEG file in memory. quality: 1 to 100. Errors: io.
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality);
+
+/// Writes a PNG: 8-bit colour, 8-bit grey, 16-bit grey. Errors: io.
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const ColorImage& image);
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const GreyImage& image);
+[[nodiscard]] Result<void> write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image);
+
+}  // namespace fusebench::images

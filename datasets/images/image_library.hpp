@@ -1,0 +1,54 @@
+// The image library as the program sees it: functions of a module that is loaded when the first is needed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "datasets/images/pixel_view.hpp"
+
+namespace fusebench::images {
+
+/// What the library answers, or its reason in its own words.
+template <class T>
+using LibraryResult = tl::expected<T, std::string>;
+
+struct ImageHeader {
+  int width_px = 0;
+  int height_px = 0;
+  int channels = 0;
+  SampleType type = SampleType::other;
+  std::string type_name;          ///< in the library's words: "uint8", "float"
+  std::uint64_t pixel_bytes = 0;  ///< of all pixels, decoded
+};
+
+struct OpenedImage {
+  ImageHeader header;
+  /// Decodes into header.pixel_bytes bytes, laid out as those of a PixelView.
+  std::function<LibraryResult<void>(std::span<std::byte> pixels)> read_pixels;
+};
+
+/// May be used by several threads at once. Not a class with virtual functions: a module that is loaded late
+/// has type information of its own, which a sanitizer takes for that of another class.
+struct ImageLibrary {
+  LibraryResult<OpenedImage> (*open)(const std::string& file) = nullptr;
+  /// quality: 1 to 100.
+  LibraryResult<std::vector<std::uint8_t>> (*encode_jpeg)(const PixelView& image, int quality) = nullptr;
+};
+
+/// Equal in a program and a module that fit together: what is above is laid out by the compiler. The number
+/// counts the changes of this file.
+inline constexpr const char* kImageLibraryBuild = "images 1, compiler " __VERSION__;
+
+/// All that the module exports.
+inline constexpr const char* kImageLibraryFunction = "fusebench_image_library";
+
+}  // namespace fusebench::images
+
+/// The module's library, or null if `build` is not the module's own kImageLibraryBuild.
+extern "C" [[gnu::visibility("default")]] const fusebench::images::ImageLibrary* fusebench_image_library(
+    const char* build);

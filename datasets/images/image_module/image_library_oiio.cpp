@@ -1,0 +1,65 @@
+// The module that is the image library. The only file that includes OpenImageIO.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string_view>
+
+#include "datasets/images/image_library.hpp"
+
+namespace fusebench::images {
+
+namespace {
+
+SampleType sample_type_of(const OIIO::TypeDesc& type) {
+  if (type == OIIO::TypeDesc::UINT8) return SampleType::uint8;
+  if (type == OIIO::TypeDesc::UINT16) return SampleType::uint16;
+  return SampleType::other;
+}
+
+LibraryResult<void> read_pixels(OIIO::ImageInput& input, std::span<std::byte> pixels) {
+  const OIIO::ImageSpec& spec = input.spec();
+  // An image may have a depth besides width and height.
+  if (pixels.size() != spec.image_bytes())
+    return tl::unexpected(std::string("it has other pixels than its width and height say"));
+  if (!input.read_image(0, 0, 0, spec.nchannels, spec.format, pixels.data()))
+    return tl::unexpected(input.geterror());
+  return {};
+}
+
+LibraryResult<OpenedImage> open_image(const std::string& file) {
+  const std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file);
+  if (!input) return tl::unexpected(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  return OpenedImage{{spec.width, spec.height, spec.nchannels, sample_type_of(spec.format),
+                      spec.format.c_str(), spec.image_bytes()},
+                     [input](std::span<std::byte> pixels) { return read_pixels(*input, pixels); }};
+}
+
+LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int quality) {
+  std::vector<std::uint8_t> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
+  if (!output) return tl::unexpected(OIIO::geterror());
+  OIIO::ImageSpec spec(image.width_px, image.height_px, image.channels, OIIO::TypeDesc::UINT8);
+  spec.attribute("CompressionQuality", quality);
+  if (!output->set_ioproxy(&memory) || !output->open("memory.jpg", spec) ||
+      !output->write_image(spec.format, image.pixels.data()) || !output->close()) {
+    return tl::unexpected(output->geterror());
+  }
+  return bytes;
+}
+
+constexpr ImageLibrary kLibrary{open_image, encode_jpeg};
+
+}  // namespace
+
+}  // namespace fusebench::images
+
+const fusebench::images::ImageLibrary* fusebench_image_library(const char* build) {
+  if (std::string_view(build) != fusebench::images::kImageLibraryBuild) return nullptr;
+  // Decoding runs inside of our own parallel loops, so the library must not start threads of its own.
+  static const bool done = OIIO::attribute("threads", 1);
+  static_cast<void>(done);
+  return &fusebench::images::kLibrary;
+}

@@ -1,0 +1,16 @@
+// Writes PNG files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "datasets/images/pixel_view.hpp"
+
+namespace fusebench::images {
+
+/// Writes a PNG of one or three channels, whatever the file's name ends with. Not written: the reason.
+[[nodiscard]] tl::expected<void, std::string> write_png_file(const std::filesystem::path& file,
+                                                             const PixelView& image);
+
+}  // namespace fusebench::images

@@ -1,0 +1,34 @@
+// Lists that name a colour and a depth image in one row: "stamp file stamp file".
+//
+// The order of the two is not a convention: TUM's associate.py and ETH3D write colour first, ICL-NUIM depth
+// first. So the images' folder tells which is which, never the column.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/io/text_table.hpp"
+
+namespace fusebench::reading {
+
+/// One row; the depth image is the one whose folder's name begins with "depth".
+struct AssociatedRow {
+  std::string color_stamp;
+  std::string depth_stamp;
+  std::filesystem::path color_file;  ///< the list's folder included
+  std::filesystem::path depth_file;
+};
+
+/// Calls use for every row, up to the first error; the table is for messages. Errors: data_missing (the list,
+/// an image), data_corrupt (a row, both or neither image in a depth folder, no row at all), those of use.
+[[nodiscard]] Result<void> for_each_associated_row(
+    const std::filesystem::path& list,
+    const std::function<Result<void>(const io::TextTable& table, const AssociatedRow& row)>& use);
+
+/// The first row, to recognise a format; nothing if there is no readable one. The images need not exist.
+[[nodiscard]] std::optional<AssociatedRow> first_associated_row(const std::filesystem::path& list);
+
+}  // namespace fusebench::reading

@@ -1,0 +1,264 @@
+#include "datasets/reading/image_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/trajectory/trajectory_file.hpp"
+#include "datasets/calibration/depth_registration.hpp"
+
+namespace fusebench::reading {
+
+namespace {
+
+/// Of a frame's two files.
+struct ImageHashes {
+  io::ContentHash color;
+  io::ContentHash depth;
+};
+
+/// Everything that a frame needs after opening; shared by all copies of the recording.
+struct FrameLoader {
+  std::vector<recording::FrameEntry> frames;
+  std::vector<ImageHashes> opened;  ///< of each frame's images, as the fingerprint has them
+  calibration::Undistortion undistortion;
+  std::optional<calibration::DepthRegistration> registration;
+  DepthReader read_depth;
+
+  [[nodiscard]] Result<DepthImage> load_depth(std::size_t index) const {
+    const PinholeCamera& own = registration ? registration->depth_camera() : undistortion.camera();
+    auto depth = read_depth(frames[index].depth_file, {own.width_px, own.height_px}, opened[index].depth);
+    if (!depth) return depth;
+    return registration ? registration->register_depth(*depth) : undistortion.undistort_depth(*depth);
+  }
+
+  [[nodiscard]] Result<RgbdFrame> load(std::size_t index) const {
+    check(index < frames.size(), "the frame exists");
+    const recording::FrameEntry& entry = frames[index];
+    const PinholeCamera& camera = undistortion.camera();
+    const auto color = images::read_color(
+        entry.color_file, images::ImageSize{camera.width_px, camera.height_px}, opened[index].color);
+    if (!color) return tl::unexpected(color.error());
+    auto depth = load_depth(index);
+    if (!depth) return tl::unexpected(depth.error());
+    RgbdFrame frame;
+    frame.timestamp_ns = entry.timestamp_ns;
+    frame.capture_offset_ns = entry.capture_ns - entry.timestamp_ns;
+    frame.depth_offset_ns = entry.depth_capture_ns - entry.capture_ns;
+    frame.color = undistortion.undistort_color(*color);
+    frame.grey = to_grey(frame.color);
+    frame.depth_m = std::move(*depth);
+    return frame;
+  }
+};
+
+/// The camera with the images' size; a calibration of another size is an error.
+Result<calibration::CalibratedCamera> camera_of_images(calibration::CalibratedCamera camera,
+                                                       const std::filesystem::path& first_image) {
+  const auto size = images::read_image_size(first_image);
+  if (!size) return tl::unexpected(size.error());
+  PinholeCamera& pinhole = camera.pinhole;
+  if (pinhole.width_px == 0) {
+    pinhole.width_px = size->width_px;
+    pinhole.height_px = size->height_px;
+  }
+  if (*size != images::ImageSize{pinhole.width_px, pinhole.height_px}) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: image of {}x{} pixels, but the camera's calibration is for {}x{}",
+                            first_image.string(), size->width_px, size->height_px, pinhole.width_px,
+                            pinhole.height_px),
+                "give the intrinsics of these images: --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]");
+  }
+  return camera;
+}
+
+std::string text_of(const Vector3d& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
+
+std::string text_of(const SE3& T) {
+  const Quaterniond& q = T.rotation;
+  return fmt::format("{} {} {} {} {}", text_of(T.translation), q.x(), q.y(), q.z(), q.w());
+}
+
+std::string text_of(const PinholeCamera& p) {
+  return fmt::format("{} {} {} {} {} {}", p.width_px, p.height_px, p.fx_px, p.fy_px, p.cx_px, p.cy_px);
+}
+
+void add_sensors(io::Fingerprint& fingerprint, const recording::Recording& recording,
+                 const ImageDecoding& decoding, const calibration::CalibratedCamera& camera) {
+  const calibration::BrownConrady& d = camera.distortion;
+  const SensorTiming& timing = camera.timing;
+  fingerprint.add(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", recording.format, decoding.identity,
+                              text_of(camera.pinhole), d.k1, d.k2, d.p1, d.p2, d.k3, timing.color_readout_s,
+                              timing.depth_readout_s, timing.depth_delay_s));
+  if (const auto& depth = decoding.calibration.depth) {
+    fingerprint.add(
+        fmt::format("depth camera {} {}", text_of(depth->pinhole), text_of(depth->T_color_depth)));
+  }
+  if (recording.imu_source == recording::ImuSource::none) return;
+  const ImuNoise& noise = recording.rig.imu_noise;
+  fingerprint.add(fmt::format("imu {} {} {} {} {}", text_of(recording.rig.T_imu_camera),
+                              noise.gyroscope_radps_sqrthz, noise.accelerometer_mps2_sqrthz,
+                              noise.gyroscope_bias_radps2_sqrthz, noise.accelerometer_bias_mps3_sqrthz));
+}
+
+void add_samples(io::Fingerprint& fingerprint, const recording::Recording& recording) {
+  for (const StampedPose& pose : recording.ground_truth) {
+    fingerprint.add(fmt::format("truth {} {}", pose.timestamp_ns, text_of(pose.T_world_camera)));
+  }
+  for (const recording::AccelerometerSample& sample : recording.accelerometer) {
+    fingerprint.add(
+        fmt::format("accelerometer {} {}", sample.timestamp_ns, text_of(sample.specific_force_mps2)));
+  }
+  for (const ImuSample& sample : recording.imu) {
+    fingerprint.add(fmt::format("imu {} {} {}", sample.timestamp_ns, text_of(sample.angular_velocity_radps),
+                                text_of(sample.specific_force_mps2)));
+  }
+}
+
+/// What was read to identify the recording.
+struct Identity {
+  std::string fingerprint;
+  std::vector<ImageHashes> images;  ///< of each frame
+};
+
+/// The values that are used, not the text around them: a comment or a line ending does not make another
+/// recording.
+Result<Identity> identity_of(const recording::Recording& recording, const ImageDecoding& decoding,
+                             const calibration::CalibratedCamera& camera) {
+  io::Fingerprint fingerprint;
+  Identity identity;
+  identity.images.reserve(recording.frames.size());
+  add_sensors(fingerprint, recording, decoding, camera);
+  add_samples(fingerprint, recording);
+  for (const recording::FrameEntry& frame : recording.frames) {
+    fingerprint.add(fmt::format("frame {} {} {} {}", frame.timestamp_ns, frame.depth_timestamp_ns,
+                                frame.capture_ns, frame.depth_capture_ns));
+    const auto color = fingerprint.add_file(frame.color_file);
+    if (!color) return tl::unexpected(color.error());
+    const auto depth = fingerprint.add_file(frame.depth_file);
+    if (!depth) return tl::unexpected(depth.error());
+    identity.images.push_back({*color, *depth});
+  }
+  identity.fingerprint = fingerprint.hex();
+  return identity;
+}
+
+/// The images decide what is used: an IMU of another time is an error, one that begins late or ends early a
+/// warning.
+Result<void> check_imu_overlap(recording::Recording& recording) {
+  const std::int64_t first_ns = recording.imu.front().timestamp_ns;
+  const std::int64_t last_ns = recording.imu.back().timestamp_ns;
+  const std::int64_t begin_ns = recording.frames.front().timestamp_ns;
+  const std::int64_t end_ns = recording.frames.back().timestamp_ns;
+  if (first_ns > end_ns || last_ns < begin_ns) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}: inertial samples (times {} to {}) do not overlap the images (times {} to {})",
+                    recording.name, trajectory::stamp_text(first_ns), trajectory::stamp_text(last_ns),
+                    trajectory::stamp_text(begin_ns), trajectory::stamp_text(end_ns)),
+        "both must be of one recording, in the format's unit of time; clocks that differ by a constant need "
+        "time_offset_s in [imu] of calibration.toml");
+  }
+  const auto outside = std::ranges::count_if(recording.frames, [&](const recording::FrameEntry& frame) {
+    return frame.timestamp_ns < first_ns || frame.timestamp_ns > last_ns;
+  });
+  if (outside > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} of {} frames are before the first or after the last inertial sample",
+                    recording.name, outside, recording.frames.size()));
+  }
+  return {};
+}
+
+/// From here on the IMU's stamps are on the images' clock. Samples of an unknown sensor are of no use.
+Result<void> calibrate_imu(recording::Recording& recording,
+                           const std::optional<calibration::ImuCalibration>& imu) {
+  if (!imu && recording.imu_source == recording::ImuSource::recorded) {
+    recording.imu.clear();
+    recording.imu_source = recording::ImuSource::none;
+    recording.warnings.push_back(fmt::format(
+        "{}: the inertial samples are not used, since nothing says where the IMU sits and how noisy it "
+        "is: put a calibration.toml with [color] and [imu] (T_imu_color, noise densities) beside them",
+        recording.name));
+  }
+  if (!imu) return {};
+  recording.rig.T_imu_camera = imu->T_imu_camera;
+  recording.rig.imu_noise = imu->noise;
+  const std::int64_t offset_ns = std::llround(1e9 * imu->time_offset_s);
+  for (ImuSample& sample : recording.imu) sample.timestamp_ns -= offset_ns;
+  return recording.imu.empty() ? Result<void>{} : check_imu_overlap(recording);
+}
+
+template <class Number>
+void divide(const std::vector<std::uint16_t>& values, Number divisor, std::vector<float>& quotients) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    quotients[i] = static_cast<float>(static_cast<Number>(values[i]) / divisor);
+  }
+}
+
+/// The quotients in double precision, rounded. Where single precision holds the divisor, a division in it
+/// gives the same in a third of the time: double precision has more than twice its digits, so that the first
+/// of two roundings never decides the second.
+DepthImage in_metres(const Image<std::uint16_t>& values, double units_per_metre) {
+  DepthImage depth_m(values.width, values.height);
+  const auto single = static_cast<float>(units_per_metre);
+  if (static_cast<double>(single) == units_per_metre) {
+    divide(values.data, single, depth_m.data);
+  } else {
+    divide(values.data, units_per_metre, depth_m.data);
+  }
+  return depth_m;
+}
+
+}  // namespace
+
+DepthReader png_depth(double units_per_metre) {
+  return [units_per_metre](const std::filesystem::path& file, const images::ImageSize& expected,
+                           const std::optional<io::ContentHash>& opened) -> Result<DepthImage> {
+    const auto values = images::read_depth16(file, expected, opened);
+    if (!values) return tl::unexpected(values.error());
+    return in_metres(*values, units_per_metre);
+  };
+}
+
+Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding) {
+  check(!recording.frames.empty(), "a recording has frames");
+  const calibration::RigCalibration& calibration = decoding.calibration;
+  const auto camera = camera_of_images(calibration.color, recording.frames.front().color_file);
+  if (!camera) return tl::unexpected(camera.error());
+  const std::int64_t depth_delay_ns = std::llround(1e9 * camera->timing.depth_delay_s);
+  for (recording::FrameEntry& frame : recording.frames) frame.depth_capture_ns += depth_delay_ns;
+  if (auto calibrated = calibrate_imu(recording, calibration.imu); !calibrated) return calibrated;
+  recording.calibration = calibration;
+  recording.calibration->color = *camera;
+  recording.rig.camera = camera->pinhole;
+  recording.rig.timing = camera->timing;
+  auto identity = identity_of(recording, decoding, *camera);
+  if (!identity) return tl::unexpected(identity.error());
+  recording.fingerprint = std::move(identity->fingerprint);
+  std::optional<calibration::DepthRegistration> registration;
+  if (calibration.depth) {
+    registration.emplace(calibration.depth->pinhole, camera->pinhole, calibration.depth->T_color_depth);
+  }
+  const auto loader = std::make_shared<const FrameLoader>(
+      FrameLoader{recording.frames, std::move(identity->images), calibration::Undistortion(*camera),
+                  std::move(registration), decoding.read_depth});
+  recording.load_frame = [loader](std::size_t frame) { return loader->load(frame); };
+  return {};
+}
+
+Result<recording::Recording> with_png_images(recording::Recording recording,
+                                             calibration::RigCalibration calibration,
+                                             double published_units_per_metre) {
+  const double units = calibration.depth_units_per_metre.value_or(published_units_per_metre);
+  const auto attached =
+      attach_images(recording, {std::move(calibration), png_depth(units), fmt::format("png {}", units)});
+  if (!attached) return tl::unexpected(attached.error());
+  return recording;
+}
+
+}  // namespace fusebench::reading

@@ -1,0 +1,48 @@
+// From lists of image files to frames: what all formats that store images have in common.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/io/fingerprint.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
+#include "datasets/images/image_files.hpp"
+#include "datasets/recording/recording.hpp"
+
+namespace fusebench::reading {
+
+/// Reads one depth image of the given size: z-depth in metres, 0 = no measurement, not yet undistorted or
+/// registered. opened: the bytes that the file must have. Called from several threads.
+using DepthReader =
+    std::function<Result<DepthImage>(const std::filesystem::path& file, const images::ImageSize& expected,
+                                     const std::optional<io::ContentHash>& opened)>;
+
+/// 16-bit grey PNGs; units_per_metre: the value of one metre.
+[[nodiscard]] DepthReader png_depth(double units_per_metre);
+
+/// How the files of a recording become frames.
+struct ImageDecoding {
+  /// Colour and registered depth are undistorted; depth of a camera of its own is registered to the colour
+  /// camera.
+  calibration::RigCalibration calibration;
+  DepthReader read_depth;
+  std::string identity;  ///< names the way depth is read ("png 5000"), for the fingerprint
+};
+
+/// Completes a recording whose frames, truth and inertial samples are in place: checks the size of the first
+/// image against the calibration, sets rig (camera, timing, IMU), applies the delay of depth and the offset
+/// of the IMU's clock, takes the fingerprint (every used image is read once), and provides load_frame,
+/// which refuses an image whose bytes are no longer those of the fingerprint. Errors: data_missing,
+/// data_corrupt.
+[[nodiscard]] Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding);
+
+/// The same for colour and depth in PNGs. published_units_per_metre: of the format, where the calibration
+/// says nothing.
+[[nodiscard]] Result<recording::Recording> with_png_images(recording::Recording recording,
+                                                           calibration::RigCalibration calibration,
+                                                           double published_units_per_metre);
+
+}  // namespace fusebench::reading

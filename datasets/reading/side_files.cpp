@@ -1,0 +1,131 @@
+#include "datasets/reading/side_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "core/io/stamped_rows.hpp"
+#include "core/trajectory/trajectory.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "datasets/recording/sensor_columns.hpp"
+#include "datasets/recording/state_truth.hpp"
+
+namespace fusebench::reading {
+
+namespace {
+
+// A truth that pauses for longer than this (ten samples at 100 Hz) does not say what the camera did in
+// between.
+constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
+
+/// Positions of the truth are used in double precision only, but they must leave room for squares.
+Result<void> check_positions(const Trajectory& truth, const std::filesystem::path& source) {
+  for (const StampedPose& pose : truth) {
+    const Vector3d& position_m = pose.T_world_camera.translation;
+    if (position_m.cwiseAbs().maxCoeff() <= recording::kMostPosition_m) continue;
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}: the pose at time {} has position ({:g}, {:g}, {:g}) m (allowed {:g} .. {:g})",
+                    source.string(), trajectory::stamp_text(pose.timestamp_ns), position_m.x(),
+                    position_m.y(), position_m.z(), -recording::kMostPosition_m, recording::kMostPosition_m),
+        "remove its row, or subtract an origin from all positions");
+  }
+  return {};
+}
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored);
+}
+
+}  // namespace
+
+Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
+                              const std::filesystem::path& source, std::size_t published_without) {
+  if (auto sane = check_positions(truth, source); !sane) return sane;
+  const std::int64_t first_ns = recording.frames.front().timestamp_ns;
+  const std::int64_t last_ns = recording.frames.back().timestamp_ns;
+  if (truth.front().timestamp_ns > last_ns || truth.back().timestamp_ns < first_ns) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: ground truth (times {} to {}) does not overlap the images (times {} to {})",
+                            source.string(), trajectory::stamp_text(truth.front().timestamp_ns),
+                            trajectory::stamp_text(truth.back().timestamp_ns),
+                            trajectory::stamp_text(first_ns), trajectory::stamp_text(last_ns)),
+                "the truth must be of the same recording and clock, in seconds");
+  }
+  const auto is_uncovered = [&](const recording::FrameEntry& frame) {
+    return !trajectory::interpolate_pose(truth, frame.timestamp_ns, kMaxTruthGap_ns);
+  };
+  const auto uncovered = static_cast<std::size_t>(std::ranges::count_if(recording.frames, is_uncovered));
+  const bool as_published = uncovered <= published_without && is_uncovered(recording.frames.front());
+  if (uncovered > 0) {
+    (as_published ? recording.notes : recording.warnings)
+        .push_back(fmt::format("{}: {} of {} frames have no ground truth around them within {} s",
+                               source.string(), uncovered, recording.frames.size(),
+                               seconds_between(0, kMaxTruthGap_ns)));
+  }
+  recording.ground_truth = std::move(truth);
+  return {};
+}
+
+Result<void> read_ground_truth_beside(const std::filesystem::path& folder, recording::Recording& recording) {
+  const std::filesystem::path file = folder / "groundtruth.txt";
+  if (!is_there(file)) return {};
+  // The published truth of freiburg2_desk repeats a stamp; TUM's own scripts keep the last of such rows.
+  auto truth =
+      trajectory::read_tum_trajectory(file, recording.warnings, trajectory::Duplicates::last_in_order);
+  if (!truth) return tl::unexpected(truth.error());
+  if (std::string first; std::getline(std::ifstream(file), first) && first.starts_with("# ") &&
+                         first.substr(2).starts_with(recording::kPseudoGroundTruth)) {
+    recording.truth_label = recording::kPseudoGroundTruth;
+    recording.notes.push_back(fmt::format("ground truth: {}", recording::kPseudoGroundTruth));
+  }
+  return set_ground_truth(recording, std::move(*truth), file);
+}
+
+Result<std::vector<ImuSample>> read_imu_table(const std::filesystem::path& file, io::TimeUnit unit) {
+  std::vector<ImuSample> samples;
+  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    const auto rate_radps = recording::read_angular_velocity(table, 1, "w");
+    if (!rate_radps) return tl::unexpected(rate_radps.error());
+    const auto force_mps2 = recording::read_specific_force(table, 4, "a");
+    if (!force_mps2) return tl::unexpected(force_mps2.error());
+    samples.push_back({time_ns, *rate_radps, *force_mps2});
+    return {};
+  };
+  const Result<void> done =
+      io::for_each_stamped_row(file, "timestamp wx wy wz ax ay az", io::TimeOrder::increasing, row, unit);
+  if (!done) return tl::unexpected(done.error());
+  return samples;
+}
+
+Result<void> read_imu_beside(const std::filesystem::path& folder, recording::Recording& recording) {
+  const std::filesystem::path file = folder / "imu.csv";
+  if (!is_there(file)) return {};
+  auto samples = read_imu_table(file, io::TimeUnit::nanoseconds);
+  if (!samples) return tl::unexpected(samples.error());
+  recording.imu = std::move(*samples);
+  recording.imu_source = recording::ImuSource::recorded;
+  return {};
+}
+
+Result<void> read_exact_truth_beside(const std::filesystem::path& folder, recording::Recording& recording) {
+  if (const auto mesh = folder / "scene.ply"; is_there(mesh)) recording.truth_mesh_file = mesh;
+  const std::filesystem::path file = folder / "state_groundtruth.csv";
+  if (!is_there(file)) return {};
+  auto states = recording::read_state_truth(file);
+  if (!states) return tl::unexpected(states.error());
+  recording.state_truth = std::move(*states);
+  return {};
+}
+
+void note_simulation(const std::filesystem::path& folder, recording::Recording& recording) {
+  recording.simulated = is_there(folder / "simulation.toml");
+  if (recording.simulated) recording.notes.emplace_back("simulated: simulation.toml says how it was made");
+}
+
+}  // namespace fusebench::reading

@@ -1,0 +1,58 @@
+#include "datasets/recording/read_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace fusebench::recording {
+
+Result<void> check_read_options(const ReadOptions& options) {
+  if (options.depth_units_per_metre &&
+      !(*options.depth_units_per_metre > 0 && std::isfinite(*options.depth_units_per_metre))) {
+    return fail(ErrorCode::configuration,
+                fmt::format("depth_units_per_metre = {} (allowed: above 0)", *options.depth_units_per_metre));
+  }
+  if (!(options.max_difference_s > 0 && options.max_difference_s <= 1)) {
+    return fail(ErrorCode::configuration,
+                fmt::format("max_difference_s = {} (allowed: above 0, up to 1)", options.max_difference_s));
+  }
+  if (!(options.frame_rate_hz >= 1 && options.frame_rate_hz <= 1000)) {
+    return fail(ErrorCode::configuration,
+                fmt::format("frame_rate_hz = {} (allowed: 1 to 1000)", options.frame_rate_hz));
+  }
+  return {};
+}
+
+Result<calibration::RigCalibration> choose_calibration(
+    const std::filesystem::path& folder, const ReadOptions& options,
+    const std::function<Result<calibration::RigCalibration>()>& published, Recording& recording) {
+  Result<std::optional<calibration::RigCalibration>> beside;
+  if (!options.calibration) beside = calibration::read_calibration_beside(folder);
+  if (!beside) return tl::unexpected(beside.error());
+  calibration::RigCalibration calibration;
+  if (options.calibration) {
+    calibration = *options.calibration;
+    recording.notes.push_back(
+        fmt::format("calibration: as given by the user ({})",
+                    calibration.source.empty() ? "no source given" : calibration.source));
+  } else if (*beside) {
+    calibration = std::move(**beside);
+    recording.notes.push_back(
+        fmt::format("calibration: calibration.toml in the recording's folder ({})",
+                    calibration.source.empty() ? "no source given" : calibration.source));
+  } else if (auto known = published()) {
+    calibration = std::move(*known);
+    if (!calibration.source.empty())
+      recording.notes.push_back(fmt::format("calibration: {}", calibration.source));
+  } else if (!options.camera || known.error().code != ErrorCode::configuration) {
+    return known;  // the user's camera takes the place of one that is not known, not of a file that is broken
+  }
+  if (options.camera) {
+    calibration.color = *options.camera;
+    recording.notes.push_back("calibration: the colour camera as given by the user");
+  }
+  if (options.depth_units_per_metre) calibration.depth_units_per_metre = options.depth_units_per_metre;
+  return calibration;
+}
+
+}  // namespace fusebench::recording

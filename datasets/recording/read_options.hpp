@@ -1,0 +1,40 @@
+// What a user may say about a recording that its files do not.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "datasets/calibration/camera_model.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
+#include "datasets/recording/recording.hpp"
+
+namespace fusebench::recording {
+
+/// Each reader takes what its format has a use for.
+struct ReadOptions {
+  std::optional<calibration::RigCalibration>
+      calibration;  ///< takes the place of calibration.toml and of published ones
+  std::optional<calibration::CalibratedCamera>
+      camera;                                   ///< of the colour images; overrides every other calibration
+  std::optional<double> depth_units_per_metre;  ///< value of one metre in the depth images
+  double max_difference_s = 0.02;  ///< between a colour image and its depth image, for formats with two lists
+  bool regular_stamps = true;      ///< remove the jitter of the stamps (see regular_stamps.hpp)
+  double frame_rate_hz = 30;       ///< of recordings without stamps (ICL-NUIM)
+  bool filtered_depth = false;     ///< take the depth that the recording's authors have filtered
+};
+
+/// Errors: configuration (an option out of range).
+[[nodiscard]] Result<void> check_read_options(const ReadOptions& options);
+
+/// The calibration of a recording: the options', else calibration.toml in its folder, else what `published`
+/// gives; the options'
+/// camera and depth scale replace those parts. Where it comes from goes into recording.notes. Errors: those
+/// of `published` (only called when it is needed) and of calibration.toml.
+[[nodiscard]] Result<calibration::RigCalibration> choose_calibration(
+    const std::filesystem::path& folder, const ReadOptions& options,
+    const std::function<Result<calibration::RigCalibration>()>& published, Recording& recording);
+
+}  // namespace fusebench::recording

@@ -1,0 +1,51 @@
+#include "datasets/recording/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/io/fingerprint.hpp"
+
+namespace fusebench::recording {
+
+std::string_view to_string(ImuSource source) {
+  switch (source) {
+    case ImuSource::none:
+      return "none";
+    case ImuSource::recorded:
+      return "recorded";
+    case ImuSource::synthetic:
+      return "synthetic IMU";
+  }
+  return "unknown";
+}
+
+Recording named_recording(const std::filesystem::path& folder, std::string_view format) {
+  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
+  Recording recording;
+  recording.name = (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+  recording.format = format;
+  return recording;
+}
+
+Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end) {
+  const std::size_t count = recording.frames.size();
+  if (begin >= end || end > count) {
+    return fail(ErrorCode::usage,
+                fmt::format("frames = {}:{} (allowed A:B with 0 <= A < B <= {})", begin, end, count),
+                fmt::format("'{}' has {} frames; A:B takes frames A to B-1", recording.name, count));
+  }
+  if (begin == 0 && end == count) return {};
+  const auto first = recording.frames.begin();
+  recording.frames = {first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end)};
+  recording.load_frame = [load_whole = std::move(recording.load_frame), begin](std::size_t frame) {
+    return load_whole(begin + frame);
+  };
+  io::Fingerprint part;
+  part.add(recording.fingerprint);
+  part.add(fmt::format("frames {}:{}", begin, end));
+  recording.fingerprint = part.hex();
+  return {};
+}
+
+}  // namespace fusebench::recording

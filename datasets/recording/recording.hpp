@@ -1,0 +1,78 @@
+// The one interface of all recordings: metadata, lists, and a function that loads one frame.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "core/filter/stamped_state.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
+
+namespace fusebench::recording {
+
+/// Where inertial samples come from; printed in every record and table.
+enum class ImuSource { none, recorded, synthetic };
+[[nodiscard]] std::string_view to_string(ImuSource source);  ///< "none", "recorded", "synthetic IMU"
+
+/// What the first line of a ground truth says that `fusebench smooth` made, and what records say of it then.
+inline constexpr std::string_view kPseudoGroundTruth =
+    "pseudo ground truth: batch estimate of the same recording, not independent";
+
+struct FrameEntry {
+  std::int64_t timestamp_ns = 0;        ///< colour image
+  std::int64_t depth_timestamp_ns = 0;  ///< associated depth image
+  std::int64_t capture_ns = 0;          ///< instant of the colour image: its stamp without jitter
+  std::int64_t depth_capture_ns =
+      0;  ///< instant of the depth image: without jitter, the sensor's delay applied
+  std::filesystem::path color_file;
+  std::filesystem::path depth_file;
+};
+
+/// A sample of an accelerometer that comes without a gyroscope, in its own axes.
+struct AccelerometerSample {
+  std::int64_t timestamp_ns = 0;
+  Vector3d specific_force_mps2 = Vector3d::Zero();
+};
+
+/// An opened recording. All lists are checked and sorted by time when it is opened; images are read on
+/// demand.
+struct Recording {
+  std::string name;         ///< folder name
+  std::string format;       ///< "tum", "icl", "zr300", "eth3d"
+  std::string fingerprint;  ///< content hash of all lists and image files that are used (hex)
+  bool simulated = false;   ///< made by a simulator: its truth and IMU are, too
+  SensorRig rig;            ///< of the undistorted images
+  std::vector<FrameEntry> frames;
+  std::vector<ImuSample> imu;  ///< empty if imu_source is none
+  ImuSource imu_source = ImuSource::none;
+  std::string imu_note;  ///< for a synthetic IMU: how it was made (sensor, seed, fit residuals)
+  std::vector<AccelerometerSample>
+      accelerometer;  ///< TUM's Kinect; not an IMU (no gyroscope), no estimator uses it
+  std::vector<StampedPose>
+      ground_truth;         ///< T_groundtruth_camera: colour camera in the truth's own world; may be empty
+  std::string truth_label;  ///< kPseudoGroundTruth if that is what ground_truth is; else empty
+  std::optional<calibration::RigCalibration> calibration;  ///< as read, before undistortion; of what files
+                                                           ///< say, not of a synthetic IMU
+  std::vector<std::string> notes;     ///< what was done to the data on reading, for the run's log
+  std::vector<std::string> warnings;  ///< things a user should know (unmatched images, gaps)
+  /// Loads, checks, undistorts one frame. Safe to call from several threads. Errors: data_missing,
+  /// data_corrupt.
+  std::function<Result<RgbdFrame>(std::size_t frame)> load_frame;
+  std::vector<filter::StampedState> state_truth;  ///< of the recorded IMU, on the images' clock; may be empty
+  std::filesystem::path truth_mesh_file;  ///< the scene, in the ground truth's world; empty if there is none
+};
+
+/// A recording that knows its name (the folder's) and format, and nothing else yet.
+[[nodiscard]] Recording named_recording(const std::filesystem::path& folder, std::string_view format);
+
+/// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part
+/// of a recording gets its own fingerprint. Errors: usage (an empty range, or one that leaves the recording).
+[[nodiscard]] Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end);
+
+}  // namespace fusebench::recording

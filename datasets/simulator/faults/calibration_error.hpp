@@ -1,0 +1,30 @@
+// A calibration that is wrong about where the colour camera sits on the IMU.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "core/base/error.hpp"
+#include "core/base/geometry.hpp"
+
+namespace fusebench::simulator::faults {
+
+/// What calibration.toml says differs from the truth by this much, in directions from the seed.
+struct CalibrationError {
+  double rotation_deg = 0;  ///< 0 to 45
+  double shift_cm = 0;      ///< 0 to 50
+
+  [[nodiscard]] bool is_zero() const { return rotation_deg == 0 && shift_cm == 0; }
+};
+
+/// DEG:CM, e.g. "1:2". Error usage.
+[[nodiscard]] Result<CalibrationError> parse_calibration_error(std::string_view text);
+
+/// Error configuration: out of range.
+[[nodiscard]] Result<void> check_calibration_error(const CalibrationError& error);
+
+/// The wrong T_imu_camera: turned about an axis, its translation shifted. Without an error, the true one
+/// unchanged.
+[[nodiscard]] SE3 miscalibrated(const SE3& T_imu_camera, const CalibrationError& error, std::uint64_t seed);
+
+}  // namespace fusebench::simulator::faults

@@ -1,0 +1,30 @@
+// Everything that rays can meet: the scene, and what faults put in its place or before it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "datasets/simulator/faults/fault.hpp"
+#include "datasets/simulator/faults/hand.hpp"
+#include "datasets/simulator/render/renderer.hpp"
+
+namespace fusebench::simulator::faults {
+
+struct Scenery {
+  struct MovingHand {
+    Hand hand;
+    render::Renderer surface;
+  };
+
+  /// Holds what the faults need and no more. color: the camera that hands are measured by.
+  Scenery(const scene::SimulatedScene& scene, const PinholeCamera& color,
+          std::span<const SimulatedFault> faults, std::uint64_t seed);
+
+  render::Renderer scene;
+  std::optional<render::Renderer> matt;          ///< its shape in one grey, without light and shade
+  std::vector<std::optional<MovingHand>> hands;  ///< by fault
+};
+
+}  // namespace fusebench::simulator::faults

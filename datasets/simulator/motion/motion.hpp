@@ -1,0 +1,95 @@
+// How a hand carries the simulated camera: smooth paths from a seed, or from a trajectory file
+// (motion_file.hpp), as splines that images and inertial samples are taken from.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "datasets/simulator/motion/motion_heading.hpp"
+#include "datasets/synthetic_imu/pose_spline.hpp"
+
+namespace fusebench::simulator::motion {
+
+enum class MotionPreset {
+  slow,   ///< careful scanning: up to 0.4 m/s and 0.6 rad/s
+  fast,   ///< quick pans, back and forth: up to 2 m/s and 3 rad/s
+  shake,  ///< shaking at 2 to 4 Hz on a slow path: up to 1.2 m/s and 2.5 rad/s
+  sweep,  ///< quick sideways scanning of something near: up to 2 m/s and 1 rad/s
+};
+[[nodiscard]] std::string_view to_string(MotionPreset preset);
+
+struct FrequencyBand {
+  double low_hz = 0;
+  double high_hz = 0;
+};
+
+/// What is asked of a hand-held motion. Speeds are those of the colour camera.
+struct MotionOptions {
+  double peak_speed_mps = 0.4;   ///< reached, and not exceeded, within the recording
+  double peak_rate_radps = 0.6;  ///< the same for the angular speed
+  FrequencyBand position_hz{0.08, 0.30};
+  FrequencyBand rotation_hz{0.06, 0.25};
+  double pan_share = 0;    ///< share of the angular speed that quick pans have, 0 to 1
+  double shake_share = 0;  ///< share of both speeds that shaking has, 0 to 1
+  FrequencyBand shake_hz{2, 4};
+  bool sideways = false;     ///< across the direction of view, which is that of an axis of the world
+  double tremor_m = 1.5e-4;  ///< amplitude of the hand's tremor (6 to 10 Hz), once it moves
+  bool from_rest = true;     ///< still before it moves; otherwise in full motion from the beginning
+  double rest_s = 1.0;       ///< stillness from the first frame on
+  double start_s = 1.0;      ///< from stillness to full motion
+};
+[[nodiscard]] MotionOptions motion_preset(MotionPreset preset);
+
+/// When the motion is needed: the IMU begins before the first frame, and ends after the last one.
+struct MotionSpan {
+  static constexpr std::int64_t kTail_ns = 100'000'000;  ///< how long a motion goes on after the last frame
+
+  std::int64_t begin_ns = 0;
+  std::int64_t first_frame_ns = 0;
+  std::int64_t last_frame_ns = 0;
+};
+
+/// A hand-held motion of the colour camera (T_world_camera, world z up) within the box: sums of sines within
+/// the bands, mostly horizontal, with its roll and pitch small. Peak speeds between the first and the last
+/// frame are met within 1 %. The same arguments give the same motion. Errors: configuration (an option out of
+/// range; a span too short to start from rest; peaks that are not met; a box in which the speed cannot be
+/// reached).
+[[nodiscard]] Result<synthetic_imu::PoseSpline> hand_held_motion(const MotionOptions& options,
+                                                                 const MotionSpan& span,
+                                                                 const Eigen::AlignedBox3d& box,
+                                                                 std::uint64_t seed,
+                                                                 const HeadingTexture& texture = {});
+
+/// The motion of a body that carries the camera: the same control points seen from the body, so that the
+/// camera follows its own spline within micrometres and the body's spline is exact.
+[[nodiscard]] synthetic_imu::PoseSpline body_motion(const synthetic_imu::PoseSpline& camera,
+                                                    const SE3& T_body_camera);
+
+/// Peak speeds of the camera on a moving body, sampled every 5 ms.
+struct PeakSpeeds {
+  double speed_mps = 0;
+  double rate_radps = 0;
+};
+[[nodiscard]] PeakSpeeds peak_speeds(const synthetic_imu::PoseSpline& body, const SE3& T_body_camera,
+                                     std::int64_t begin_ns, std::int64_t end_ns);
+
+/// Time along a path as a function of time in the recording: it stands still, starts smoothly and then runs
+/// at a constant rate, or does so from the beginning.
+struct PathClock {
+  double still_until_s = 0;  ///< after the beginning of the span
+  double start_s = 0;        ///< from still to the full rate; 0: no start
+  double rate = 1;           ///< path seconds a second
+  double offset_s = 0;       ///< path time at the beginning
+
+  [[nodiscard]] double path_s(double since_begin_s) const;
+};
+
+/// A spline whose control points lie on a path (T_world_camera by path time).
+[[nodiscard]] synthetic_imu::PoseSpline spline_along(const std::function<SE3(double path_s)>& path,
+                                                     const PathClock& clock, const MotionSpan& span);
+
+}  // namespace fusebench::simulator::motion

@@ -1,0 +1,210 @@
+#include "datasets/simulator/motion/motion_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "core/io/stamped_rows.hpp"
+#include "core/io/text_table.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "datasets/formats/icl/icl_conventions.hpp"
+
+namespace fusebench::simulator::motion {
+
+namespace {
+
+constexpr double kIclRate_hz = 30;
+// ICL-NUIM's paths are estimates of a hand-held camera that jump by millimetres from frame to frame. Hand
+// motion ends at about 3 Hz; what is above would shake the camera with accelerations of several g.
+constexpr double kIclCutoff_hz = 3;
+constexpr double kFitMargin_s = 0.5;  // beyond what is needed, since a fit is loose at its ends
+
+constexpr std::string_view kMatrixColumns = "index r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz";
+
+/// ICL-NUIM's poses as a camera of this project in a world with z up.
+SE3 from_icl(const SE3& T_icl) {
+  static const Quaterniond kUpright((Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished());  // y down to z up
+  return SE3{kUpright, Vector3d::Zero()} * formats::icl::icl_reflect(T_icl);
+}
+
+Result<std::size_t> count_columns(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()),
+                "give a trajectory file: TUM columns, or one of ICL-NUIM's");
+  }
+  std::string buffer(io::TextTable::kLongestLine + 1, '\0');
+  std::vector<std::string_view> fields;
+  int line = 1;
+  for (; stream.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++line) {
+    io::split_fields(buffer.c_str(), fields);
+    if (!fields.empty() && !fields.front().empty() && fields.front().front() != '#') return fields.size();
+  }
+  if (!stream.eof() && !stream.bad()) {
+    return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: line is longer than {} characters",
+                                                     file.string(), line, io::TextTable::kLongestLine));
+  }
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: holds no pose", file.string()));
+}
+
+Result<Trajectory> read_matrices(const std::filesystem::path& file) {
+  Trajectory poses;
+  const auto row = [&](const io::TextTable& table, std::int64_t index_ns) -> Result<void> {
+    Eigen::Matrix<double, 3, 4, Eigen::RowMajor> matrix;
+    if (auto read = table.numbers(1, {matrix.data(), 12}); !read) return read;
+    const Matrix3d rotation = matrix.leftCols<3>();
+    const double error = (rotation * rotation.transpose() - Matrix3d::Identity()).norm();
+    if (!(error < 1e-3) || rotation.determinant() < 0) {
+      return table.fail_here("the matrix is no rotation (orthonormal within 1e-3, determinant 1)");
+    }
+    poses.push_back({index_ns, {Quaterniond(rotation).normalized(), matrix.col(3)}});
+    return {};
+  };
+  const Result<void> done = io::for_each_stamped_row(file, kMatrixColumns, io::TimeOrder::increasing, row);
+  if (!done) return tl::unexpected(done.error());
+  return poses;
+}
+
+void start_at_zero(Trajectory& poses) {
+  const std::int64_t first_ns = poses.front().timestamp_ns;
+  for (StampedPose& pose : poses) pose.timestamp_ns -= first_ns;
+}
+
+/// Indices were read as seconds.
+void take_indices_as_frames(Trajectory& poses) {
+  for (StampedPose& pose : poses) {
+    pose.timestamp_ns = std::llround(static_cast<double>(pose.timestamp_ns) / kIclRate_hz);
+    pose.T_world_camera = from_icl(pose.T_world_camera);
+  }
+}
+
+PathClock clock_for(const FileMotionOptions& options, double lead_s) {
+  PathClock clock;
+  clock.rate = options.speed;
+  if (options.from_rest) {
+    clock.still_until_s = lead_s + options.rest_s;
+    clock.start_s = options.start_s;
+  }
+  return clock;
+}
+
+/// The part of the path that a span needs, as a spline by path time.
+Result<synthetic_imu::PoseSpline> smooth_path(const FilePath& path, double needed_s) {
+  Trajectory part;
+  for (const StampedPose& pose : path.poses) {
+    if (seconds_between(0, pose.timestamp_ns) <= needed_s + kFitMargin_s) part.push_back(pose);
+  }
+  synthetic_imu::SplineFitOptions fit;
+  fit.cutoff_hz = path.cutoff_hz;
+  // A path is taken as it is: its jitter is no outlier.
+  fit.outlier_position_m = 0.1;
+  fit.outlier_rotation_rad = 0.1;
+  auto fitted = synthetic_imu::fit_pose_spline(part, fit);
+  if (!fitted) return tl::unexpected(fitted.error());
+  return std::move(fitted->spline);
+}
+
+Eigen::AlignedBox3d extent_of(const synthetic_imu::PoseSpline& spline, double heading_rad) {
+  const Eigen::AngleAxisd turn(heading_rad, Vector3d::UnitZ());
+  Eigen::AlignedBox3d extent;
+  for (const Vector3d& point : spline.position_world_m) extent.extend(turn * point);
+  return extent;
+}
+
+/// How much the path must shrink to fit at a heading; 1: not at all.
+double fit_of(const synthetic_imu::PoseSpline& camera, const Eigen::AlignedBox3d& box, double heading_rad) {
+  const Vector3d size_m = extent_of(camera, heading_rad).sizes();
+  return std::min(1.0, box.sizes().cwiseQuotient(size_m.cwiseMax(1e-9)).minCoeff());
+}
+
+/// Turns, shrinks if it must, and moves the path into the box.
+void place_in_box(const Eigen::AlignedBox3d& box, const HeadingTexture& texture, FileMotion& motion) {
+  constexpr int kHeadings = 36;
+  motion.heading_rad = texture.best_turn_rad(motion.camera);
+  motion.shrunk = fit_of(motion.camera, box, motion.heading_rad);
+  for (int i = 0; i < kHeadings; ++i) {
+    const double heading_rad = radians(i * 360.0 / kHeadings);
+    const double fits = fit_of(motion.camera, box, heading_rad);
+    if (fits > motion.shrunk + 1e-9) {
+      motion.shrunk = fits;
+      motion.heading_rad = heading_rad;
+    }
+  }
+  const Quaterniond turn(Eigen::AngleAxisd(motion.heading_rad, Vector3d::UnitZ()));
+  const Vector3d middle = extent_of(motion.camera, motion.heading_rad).center();
+  for (Vector3d& point : motion.camera.position_world_m) {
+    point = box.center() + motion.shrunk * (turn * point - middle);
+  }
+  for (Quaterniond& rotation : motion.camera.rotation_world_body) rotation = (turn * rotation).normalized();
+}
+
+}  // namespace
+
+Result<FilePath> read_file_path(const std::filesystem::path& file) {
+  const auto columns = count_columns(file);
+  if (!columns) return tl::unexpected(columns.error());
+  FilePath path;
+  const bool matrices = *columns == 13;
+  auto poses = matrices ? read_matrices(file) : trajectory::read_tum_trajectory(file, path.warnings);
+  if (!poses) return tl::unexpected(poses.error());
+  if (poses->size() < 4) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: {} poses are too few (at least 4)", file.string(), poses->size()));
+  }
+  start_at_zero(*poses);
+  if (matrices || file.filename().string().find(".gt.freiburg") != std::string::npos) {
+    take_indices_as_frames(*poses);
+    path.cutoff_hz = kIclCutoff_hz;
+  }
+  path.poses = std::move(*poses);
+  return path;
+}
+
+Result<void> check_file_motion(const FileMotionOptions& options) {
+  for (const auto& [name, value, low, high] :
+       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"rest_s", options.rest_s, 0.0, 60.0},
+        std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
+    if (!(value >= low && value <= high)) {
+      return fail(ErrorCode::configuration,
+                  fmt::format("trajectory.{} = {} (allowed {} .. {})", name, value, low, high));
+    }
+  }
+  return {};
+}
+
+double longest_duration_s(const FilePath& path, const FileMotionOptions& options, double lead_s) {
+  const double moving_s = path.length_s() / options.speed;
+  // A start covers half of the path that its time would.
+  const double before_s = options.from_rest ? -options.rest_s - 0.5 * options.start_s : lead_s;
+  return moving_s - before_s - seconds_between(0, MotionSpan::kTail_ns);
+}
+
+Result<FileMotion> file_motion(const FilePath& path, const FileMotionOptions& options, const MotionSpan& span,
+                               const Eigen::AlignedBox3d& box, const HeadingTexture& texture) {
+  if (const auto valid = check_file_motion(options); !valid) return tl::unexpected(valid.error());
+  const double lead_s = seconds_between(span.begin_ns, span.first_frame_ns);
+  const double duration_s = seconds_between(span.first_frame_ns, span.last_frame_ns);
+  const double longest_s = longest_duration_s(path, options, lead_s);
+  if (duration_s > longest_s) {
+    return fail(ErrorCode::configuration,
+                fmt::format("duration_s = {:.3f} is longer than the trajectory (up to {:.3f} at speed {:g})",
+                            duration_s, longest_s, options.speed),
+                "take a shorter recording or a lower speed");
+  }
+  const PathClock clock = clock_for(options, lead_s);
+  const auto smooth = smooth_path(path, clock.path_s(lead_s + duration_s));
+  if (!smooth) return tl::unexpected(smooth.error());
+  const auto pose_at = [&](double path_s) {
+    return smooth->evaluate(std::llround(1e9 * path_s)).T_world_body;
+  };
+  FileMotion motion{spline_along(pose_at, clock, span)};
+  if (!options.in_place) place_in_box(box, texture, motion);
+  return motion;
+}
+
+}  // namespace fusebench::simulator::motion

@@ -1,0 +1,32 @@
+// The directions in which the pixels of a camera look.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/base/image.hpp"
+#include "core/base/parallel.hpp"
+#include "datasets/calibration/camera_model.hpp"
+
+namespace fusebench::simulator::rays {
+
+/// Directions on the plane z = 1 of the camera. With distortion they are solved for at the corners between
+/// pixels and interpolated within a pixel (the error is below 1e-4 pixels for the calibrations in use), so an
+/// image is taken along the distorted rays instead of being resampled.
+class RayField {
+ public:
+  explicit RayField(const PinholeCamera& camera) : camera_(camera) {}
+  RayField(const calibration::CalibratedCamera& camera, const Workers& workers);
+
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+
+  /// x and y of the directions of row v, at (u + offset.x, v + offset.y); offsets within half a pixel where
+  /// there is distortion. The spans have the camera's width.
+  void row(int v, const Vector2d& offset_px, std::span<float> x, std::span<float> y) const;
+
+ private:
+  PinholeCamera camera_;
+  Image<Eigen::Vector2f> corners_;  // (width + 1) x (height + 1); empty without distortion
+};
+
+}  // namespace fusebench::simulator::rays

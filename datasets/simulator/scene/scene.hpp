@@ -1,0 +1,45 @@
+// A scene of textured triangles, as the simulator renders it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/types.hpp"
+#include "datasets/simulator/texture/texture.hpp"
+
+namespace fusebench::simulator::scene {
+
+/// Triangles with materials in the scene's own world: metres, z up. Surfaces are matt: what they send does
+/// not depend on the direction, so a point keeps its brightness while the camera moves (the sensor changes
+/// it, the scene does not).
+struct SimulatedScene {
+  static constexpr std::int32_t kNoTexture = -1;
+
+  Mesh mesh;  ///< vertices, triangles; colors (sRGB, lighting included) are shown where a triangle has no
+              ///< texture
+  std::vector<std::int32_t>
+      triangle_textures;  ///< by triangle: index into textures, or kNoTexture; empty: none
+  std::vector<Eigen::Vector2f>
+      texture_coordinates;  ///< by vertex, in repeats of the texture; empty without textures
+  std::vector<float>
+      light;  ///< by vertex: a texture's reflectance times this is what the surface sends; empty: 1
+  std::vector<texture::Texture> textures;
+
+  /// Where a camera may be: nothing of the scene is inside. For scenes read from files this is a guess
+  /// (read_scene()).
+  Eigen::AlignedBox3d free_space;
+  /// Where the things worth looking at are.
+  Eigen::AlignedBox3d look_at;
+  /// Level direction from the free space to what the scene is about (about z, 0 looks along x); empty: all
+  /// around.
+  std::optional<double> heading_rad;
+};
+
+/// Gives the vertices of textured triangles the colour that they show (mesh.colors), for whoever looks at the
+/// mesh without its textures.
+void color_vertices(SimulatedScene& scene);
+
+}  // namespace fusebench::simulator::scene

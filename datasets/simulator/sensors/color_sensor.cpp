@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/sensors/image_sensors.hpp"
+
+namespace fusebench::simulator::sensors {
+
+namespace {
+
+constexpr std::size_t kRowsPerChunk = 8;
+
+// Purposes that keep the random numbers of one seed apart.
+constexpr std::uint64_t kPixelNoise = 0xC0;
+constexpr std::uint64_t kGainPhase = 0xC1;
+
+/// Grey levels (0 to 255, not rounded) of linear light by table; the error is below 0.01 grey levels.
+class SrgbEncoder {
+ public:
+  SrgbEncoder() {
+    for (std::size_t i = 0; i < grey_.size(); ++i) {
+      grey_[i] = static_cast<float>(255.0 * texture::srgb_from_linear(static_cast<double>(i) / kCells));
+    }
+  }
+  struct Encoded {
+    float grey = 0;
+    float slope = 0;  ///< grey levels per unit of light
+  };
+  [[nodiscard]] Encoded operator()(float light) const {
+    const float at = std::clamp(light, 0.0F, 1.0F) * kCells;
+    const std::size_t cell = std::min(static_cast<std::size_t>(at), grey_.size() - 2);
+    const float step = grey_[cell + 1] - grey_[cell];
+    return {grey_[cell] + (at - static_cast<float>(cell)) * step, step * kCells};
+  }
+
+ private:
+  static constexpr int kCells = 4096;
+  std::array<float, kCells + 1> grey_{};
+};
+
+/// Places within the pixel for the samples of an exposure: a low-discrepancy sequence (Roberts' R2), from
+/// which mean and trend over time are taken out, since they would shift the image and change the length of
+/// its blur.
+std::vector<Vector2d> sample_offsets(int samples) {
+  constexpr double kPlastic = 1.32471795724474602596;
+  std::vector<Vector2d> offsets;
+  Vector2d mean = Vector2d::Zero();
+  Vector2d trend = Vector2d::Zero();
+  double squares = 0;
+  const auto time_of = [&](int i) { return i + 0.5 - 0.5 * samples; };
+  for (int i = 0; i < samples; ++i) {
+    const Vector2d place(0.5 + i / kPlastic, 0.5 + i / (kPlastic * kPlastic));
+    offsets.emplace_back(place.array() - place.array().floor());
+    mean += offsets.back() / samples;
+    trend += time_of(i) * offsets.back();
+    squares += time_of(i) * time_of(i);
+  }
+  if (squares > 0) trend /= squares;
+  for (int i = 0; i < samples; ++i) {
+    const Vector2d centred = offsets[static_cast<std::size_t>(i)] - mean - time_of(i) * trend;
+    offsets[static_cast<std::size_t>(i)] = centred.cwiseMax(-0.5).cwiseMin(0.5);
+  }
+  return offsets;
+}
+
+/// What does not change within an image.
+struct Exposure {
+  const render::Renderer& renderer;
+  const ColorSensor& sensor;
+  const synthetic_imu::PoseSpline& motion;
+  const SE3& T_body_camera;
+  std::int64_t capture_ns;
+  std::uint64_t noise_key;
+  float gain;
+  rays::RayField rays;
+  std::vector<Vector2d> offsets;
+  SrgbEncoder encoder;
+  const MovingThing* before;
+
+  [[nodiscard]] std::int64_t instant_ns(int row, std::size_t sample) const {
+    const double middle = (static_cast<double>(sample) + 0.5) / static_cast<double>(offsets.size()) - 0.5;
+    const auto after_ns = static_cast<std::int64_t>(std::llround(1e9 * sensor.exposure_s * middle));
+    const std::int64_t row_ns =
+        row_time_ns(capture_ns, sensor.camera.timing.color_readout_s, row, sensor.camera.pinhole.height_px);
+    return row_ns + after_ns;
+  }
+
+  [[nodiscard]] SE3 T_world_camera(int row, std::size_t sample) const {
+    return motion.evaluate(instant_ns(row, sample)).T_world_body * T_body_camera;
+  }
+
+  /// The row's light, averaged over the exposure.
+  void integrate(int row, const std::vector<SE3>& poses, std::span<Eigen::Vector3f> light) const {
+    const auto count = static_cast<float>(offsets.size());
+    for (std::size_t s = 0; s < offsets.size(); ++s) {
+      std::optional<render::Foreground> thing;
+      if (before != nullptr)
+        thing.emplace(render::Foreground{before->surface, before->T_thing_camera(instant_ns(row, s))});
+      renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count, light,
+                                thing ? &*thing : nullptr);
+    }
+  }
+
+  /// Vignetting, gain, noise and encoding of one row.
+  void develop(int row, std::span<const Eigen::Vector3f> light, ColorImage& image) const {
+    const double centre_x = 0.5 * (image.width - 1);
+    const double centre_y = 0.5 * (image.height - 1);
+    const double corner2 = centre_x * centre_x + centre_y * centre_y;
+    const double y2 = (row - centre_y) * (row - centre_y);
+    const bool noisy = sensor.read_noise_grey > 0 || sensor.shot_noise > 0;
+    const auto read2 = static_cast<float>(sensor.read_noise_grey * sensor.read_noise_grey);
+    const auto shot2 = static_cast<float>(sensor.shot_noise * sensor.shot_noise);
+    const noise::NormalTable& normal = noise::NormalTable::instance();
+    for (int u = 0; u < image.width; ++u) {
+      const double r2 = ((u - centre_x) * (u - centre_x) + y2) / corner2;
+      const float factor = gain * static_cast<float>(1.0 - sensor.vignetting * r2);
+      std::array<float, 3> draws{};
+      if (noisy) draws = normal.triple(noise::mix_key(noise_key, image.index(u, row)));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float value = factor * light[static_cast<std::size_t>(u)][static_cast<Eigen::Index>(c)];
+        const SrgbEncoder::Encoded at = encoder(value);
+        // Shot noise is that of the light; its slope carries it to grey levels, where one draw serves both.
+        const float variance = read2 + shot2 * std::clamp(value, 0.0F, 1.0F) * at.slope * at.slope;
+        const float grey = at.grey + std::sqrt(variance) * draws[c];
+        image(u, row)[c] = static_cast<std::uint8_t>(std::clamp(grey + 0.5F, 0.0F, 255.0F));
+      }
+    }
+  }
+};
+
+}  // namespace
+
+std::int64_t row_time_ns(std::int64_t capture_ns, double readout_s, int row, int height_px) {
+  if (readout_s == 0 || height_px < 2) return capture_ns;
+  const double fraction = static_cast<double>(row) / (height_px - 1) - 0.5;
+  return capture_ns + static_cast<std::int64_t>(std::llround(1e9 * readout_s * fraction));
+}
+
+double exposure_gain(double drift, std::int64_t capture_ns, std::uint64_t seed) {
+  if (drift == 0) return 1;
+  constexpr std::array<std::array<double, 2>, 3> kPeriodAndShare = {{{3.1, 0.25}, {7.3, 0.35}, {17.0, 0.4}}};
+  const double t = seconds_between(0, capture_ns);
+  double sum = 0;
+  for (std::size_t i = 0; i < kPeriodAndShare.size(); ++i) {
+    const auto [period_s, share] = kPeriodAndShare[i];
+    const double phase = noise::unit_interval(noise::mix_key(noise::mix_key(seed, kGainPhase), i));
+    sum += share * std::sin(2 * std::numbers::pi * (t / period_s + phase));
+  }
+  return 1 + drift * sum;
+}
+
+ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sensor,
+                        const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
+                        std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
+                        const Workers& workers, const MovingThing* before) {
+  const PinholeCamera& camera = sensor.camera.pinhole;
+  check(camera.width_px > 0 && camera.height_px > 0, "a simulated camera has a size");
+  check(sensor.blur_samples >= 1, "an exposure has at least one sample");
+  const Exposure exposure{
+      .renderer = renderer,
+      .sensor = sensor,
+      .motion = motion,
+      .T_body_camera = T_body_camera,
+      .capture_ns = capture_ns,
+      .noise_key = noise::mix_key(noise::mix_key(seed, kPixelNoise), frame),
+      .gain = static_cast<float>(sensor.gain * exposure_gain(sensor.gain_drift, capture_ns, seed)),
+      .rays = rays::RayField(sensor.camera, workers),
+      .offsets = sample_offsets(sensor.blur_samples),
+      .encoder = {},
+      .before = before};
+  ColorImage image(camera.width_px, camera.height_px);
+  const auto rows = static_cast<std::size_t>(camera.height_px);
+  const bool rolling = sensor.camera.timing.color_readout_s != 0;
+  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<SE3> poses(exposure.offsets.size());
+    std::vector<Eigen::Vector3f> light(static_cast<std::size_t>(camera.width_px));
+    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+      if (rolling || row == static_cast<int>(begin)) {
+        for (std::size_t s = 0; s < poses.size(); ++s) poses[s] = exposure.T_world_camera(row, s);
+      }
+      std::ranges::fill(light, Eigen::Vector3f::Zero());
+      if (!sensor.covered) exposure.integrate(row, poses, light);
+      exposure.develop(row, light, image);
+    }
+  });
+  return image;
+}
+
+}  // namespace fusebench::simulator::sensors

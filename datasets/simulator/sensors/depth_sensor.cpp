@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/sensors/image_sensors.hpp"
+#include "datasets/simulator/sensors/noise_depth.hpp"
+
+namespace fusebench::simulator::sensors {
+
+namespace {
+
+constexpr std::uint64_t kDepthNoise = 0xD0;  // keeps the random numbers of one seed apart
+
+std::uint16_t raw_value(float depth_m, double units_per_metre) {
+  const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
+  return units > 0 && units <= std::numeric_limits<std::uint16_t>::max() ? static_cast<std::uint16_t>(units)
+                                                                         : 0;
+}
+
+DepthImage measured_depth(const Image<render::Renderer::Surface>& surfaces, const DepthSensor& sensor,
+                          std::uint64_t key, const Workers& workers) {
+  switch (sensor.noise) {
+    case DepthNoise::handa:
+      return structured_light_depth(surfaces, sensor.camera, key, workers);
+    case DepthNoise::zr300:
+      return active_stereo_depth(surfaces, sensor.camera, key, workers);
+    case DepthNoise::none:
+      break;
+  }
+  DepthImage depth_m(surfaces.width, surfaces.height);
+  std::ranges::transform(surfaces.data, depth_m.data.begin(), &render::Renderer::Surface::depth_m);
+  return depth_m;
+}
+
+/// What the camera sees of a surface whose frame is a function of the time.
+Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const DepthSensor& sensor,
+                                         std::int64_t capture_ns,
+                                         const std::function<SE3(std::int64_t)>& T_surface_camera,
+                                         const Workers& workers) {
+  const int rows = sensor.readout_s == 0 ? 1 : sensor.camera.height_px;
+  render::RowPoses poses;
+  for (int row = 0; row < rows; ++row) {
+    poses.T_world_camera.push_back(
+        T_surface_camera(row_time_ns(capture_ns, sensor.readout_s, row, sensor.camera.height_px)));
+  }
+  Image<render::Renderer::Surface> surfaces;
+  surface.render_surfaces(sensor.camera, poses, workers, surfaces);
+  return surfaces;
+}
+
+/// Keeps the nearer one of each pixel; 0 is nothing.
+void put_before(const Image<render::Renderer::Surface>& nearer, Image<render::Renderer::Surface>& surfaces) {
+  for (std::size_t i = 0; i < surfaces.data.size(); ++i) {
+    const render::Renderer::Surface& a = nearer.data[i];
+    render::Renderer::Surface& b = surfaces.data[i];
+    if (a.depth_m > 0 && (b.depth_m <= 0 || a.depth_m < b.depth_m)) b = a;
+  }
+}
+
+}  // namespace
+
+Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSensor& sensor,
+                                 const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
+                                 std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
+                                 const Workers& workers, const MovingThing* before) {
+  Image<render::Renderer::Surface> surfaces = seen_by(
+      renderer, sensor, capture_ns,
+      [&](std::int64_t t_ns) { return motion.evaluate(t_ns).T_world_body * T_body_camera; }, workers);
+  if (before != nullptr)
+    put_before(seen_by(before->surface, sensor, capture_ns, before->T_thing_camera, workers), surfaces);
+  const DepthImage depth_m =
+      measured_depth(surfaces, sensor, noise::mix_key(noise::mix_key(seed, kDepthNoise), frame), workers);
+  Image<std::uint16_t> raw(depth_m.width, depth_m.height);
+  std::ranges::transform(depth_m.data, raw.data.begin(),
+                         [&](float depth) { return raw_value(depth, sensor.units_per_metre); });
+  return raw;
+}
+
+}  // namespace fusebench::simulator::sensors

@@ -1,0 +1,24 @@
+// What depth sensors make of true depth. Images in metres, 0 where nothing is measured; the same key gives
+// the same noise.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/image.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "datasets/simulator/render/renderer.hpp"
+
+namespace fusebench::simulator::sensors {
+
+/// Structured light, after Handa et al. (ICRA 2014) and Barron & Malik (CVPR 2013); see noise_handa.cpp.
+[[nodiscard]] DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfaces,
+                                                const PinholeCamera& camera, std::uint64_t key,
+                                                const Workers& workers);
+
+/// Active stereo as in the R200 and ZR300; see noise_zr300.cpp.
+[[nodiscard]] DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
+                                             const PinholeCamera& camera, std::uint64_t key,
+                                             const Workers& workers);
+
+}  // namespace fusebench::simulator::sensors

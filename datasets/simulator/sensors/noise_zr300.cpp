@@ -1,0 +1,145 @@
+// Depth by active stereo, for the RealSense R200 and ZR300 (two infrared cameras, a projector of random
+// dots).
+//
+// From Intel's documents: baseline 70 mm and a search over 63 disparities, so nothing nearer than f B / 63 is
+// measured (librealsense v1.12.1, doc/camera_specs.md); matching over a 7 x 7 window, and errors of disparity
+// that are about constant, so that depth noise grows with z^2 (Keselman et al., "Intel RealSense Stereoscopic
+// Depth Cameras", CVPR workshops 2017); raw depth in units of 1 mm (the format, so
+// DepthSensor::units_per_metre).
+//
+// Assumptions of ours: a standard deviation of 0.09 px for the disparity, shared by neighbours over about
+// half the matching window (the field is interpolated from one value each 4 px); disparities in steps of 1/32
+// px; beyond 4 m, where the dots fade, noise grows and measurements fail more and more until nothing is left
+// at 6 m; windows that see a jump of disparity of more than 1.5 px give nothing on the far side of it, and
+// those on surfaces at more than 80 degrees give nothing.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/sensors/noise_depth.hpp"
+
+namespace fusebench::simulator::sensors {
+
+namespace {
+
+constexpr double kBaseline_m = 0.07;
+constexpr float kMostDisparity_px = 63;
+constexpr float kDisparityNoise_px = 0.09F;
+constexpr int kNoiseSpacing_px = 4;
+constexpr float kStepsPerPixel = 32;
+constexpr float kFadeBegin_m = 4;
+constexpr float kFadeEnd_m = 6;
+constexpr int kHalfWindow = 2;  // the outer ring of the 7 x 7 window has little say
+constexpr float kJump_px = 1.5F;
+constexpr float kOcclusion_px = 1;
+constexpr float kLeastCosine = 0.1736F;  // 80 degrees
+
+constexpr std::size_t kRowsPerChunk = 16;
+constexpr std::uint64_t kFieldKey = 3;
+constexpr std::uint64_t kFadeKey = 4;
+
+/// Standard normal everywhere, and smooth over a few pixels: bilinear between independent values, scaled by
+/// the root of the sum of the squared weights.
+class SmoothNoise {
+ public:
+  explicit SmoothNoise(std::uint64_t key) : key_(key) {}
+
+  [[nodiscard]] float at(int u, int v) const {
+    const int column = u / kNoiseSpacing_px;
+    const int row = v / kNoiseSpacing_px;
+    const float fx = static_cast<float>(u % kNoiseSpacing_px) / kNoiseSpacing_px;
+    const float fy = static_cast<float>(v % kNoiseSpacing_px) / kNoiseSpacing_px;
+    const float top = (1 - fx) * knot(column, row) + fx * knot(column + 1, row);
+    const float bottom = (1 - fx) * knot(column, row + 1) + fx * knot(column + 1, row + 1);
+    const float squares = ((1 - fx) * (1 - fx) + fx * fx) * ((1 - fy) * (1 - fy) + fy * fy);
+    return ((1 - fy) * top + fy * bottom) / std::sqrt(squares);
+  }
+
+ private:
+  [[nodiscard]] float knot(int column, int row) const {
+    const auto counter = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column);
+    return noise::NormalTable::instance()(noise::mix_key(key_, counter));
+  }
+  std::uint64_t key_;
+};
+
+/// Where the right camera sees something nearer in place of what the left one sees, or nothing since it is
+/// out of its image. True: the pixel of the row has no partner.
+std::vector<bool> occluded_in_right(const DepthImage& disparity_px, int row) {
+  const auto width = static_cast<std::size_t>(disparity_px.width);
+  std::vector<float> nearest(width, 0.0F);  // by column of the right image
+  const auto partner = [&](int u) {
+    return static_cast<int>(std::lround(static_cast<float>(u) - disparity_px(u, row)));
+  };
+  for (int u = 0; u < disparity_px.width; ++u) {
+    const int right = partner(u);
+    if (right < 0 || disparity_px(u, row) <= 0) continue;
+    float& best = nearest[static_cast<std::size_t>(right)];
+    best = std::max(best, disparity_px(u, row));
+  }
+  std::vector<bool> occluded(width, false);
+  for (int u = 0; u < disparity_px.width; ++u) {
+    const int right = partner(u);
+    occluded[static_cast<std::size_t>(u)] =
+        right < 0 || nearest[static_cast<std::size_t>(right)] > disparity_px(u, row) + kOcclusion_px;
+  }
+  return occluded;
+}
+
+/// Whether the window around a pixel straddles a jump and the pixel lies on the far side.
+bool behind_jump(const DepthImage& disparity_px, int u, int v) {
+  float least = disparity_px(u, v);
+  float most = least;
+  for (int y = std::max(0, v - kHalfWindow); y <= std::min(disparity_px.height - 1, v + kHalfWindow); ++y) {
+    for (int x = std::max(0, u - kHalfWindow); x <= std::min(disparity_px.width - 1, u + kHalfWindow); ++x) {
+      least = std::min(least, disparity_px(x, y));
+      most = std::max(most, disparity_px(x, y));
+    }
+  }
+  return most - least > kJump_px && disparity_px(u, v) - least < most - disparity_px(u, v);
+}
+
+/// 0 up to where the dots begin to fade, 1 where they are gone.
+float faded(float depth_m) {
+  return std::clamp((depth_m - kFadeBegin_m) / (kFadeEnd_m - kFadeBegin_m), 0.0F, 1.0F);
+}
+
+}  // namespace
+
+DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
+                               std::uint64_t key, const Workers& workers) {
+  const auto focal_baseline = static_cast<float>(camera.fx_px * kBaseline_m);
+  DepthImage disparity_px(surfaces.width, surfaces.height);
+  std::ranges::transform(surfaces.data, disparity_px.data.begin(),
+                         [&](const render::Renderer::Surface& surface) {
+                           return surface.depth_m > 0 ? focal_baseline / surface.depth_m : 0.0F;
+                         });
+  const SmoothNoise noise(noise::mix_key(key, kFieldKey));
+  const std::uint64_t fade_key = noise::mix_key(key, kFadeKey);
+  DepthImage depth_m(surfaces.width, surfaces.height);
+  workers.for_chunks(
+      static_cast<std::size_t>(surfaces.height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+        for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+          const std::vector<bool> occluded = occluded_in_right(disparity_px, v);
+          for (int u = 0; u < surfaces.width; ++u) {
+            const render::Renderer::Surface& surface = surfaces(u, v);
+            if (surface.depth_m <= 0 || occluded[static_cast<std::size_t>(u)] ||
+                surface.cos_incidence < kLeastCosine || behind_jump(disparity_px, u, v)) {
+              continue;
+            }
+            const float fade = faded(surface.depth_m);
+            if (noise::unit_interval(noise::mix_key(fade_key, surfaces.index(u, v))) <
+                static_cast<double>(fade))
+              continue;
+            const float exact = disparity_px(u, v) + kDisparityNoise_px * (1 + fade) * noise.at(u, v);
+            const float measured = std::round(kStepsPerPixel * exact) / kStepsPerPixel;
+            if (measured > 0 && measured <= kMostDisparity_px) depth_m(u, v) = focal_baseline / measured;
+          }
+        }
+      });
+  return depth_m;
+}
+
+}  // namespace fusebench::simulator::sensors

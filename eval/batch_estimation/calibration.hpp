@@ -1,0 +1,91 @@
+// Where the camera sits on the IMU and how far their clocks are apart, from a recording of motion.
+//
+// The pipeline runs over the recording with the noise of the IMU exaggerated, so that its poses are what the
+// images say while the IMU only helps to find them; a wrong calibration then hardly pulls them. A batch
+// estimate (core/smoother) of that run gives the calibration. The next round starts from it and exaggerates
+// less, until nothing moves by more than half its standard deviation.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/config/config.hpp"
+#include "core/smoother/batch_estimate.hpp"
+#include "datasets/recording/recording.hpp"
+#include "eval/run/run.hpp"
+
+namespace fusebench::batch_estimation {
+
+struct CalibrationOptions {
+  double rotation_prior_rad = radians(10.0);  ///< standard deviations around the recording's calibration
+  double translation_prior_m = 0.1;
+  double time_offset_prior_s = 0.05;
+  int max_rounds = 3;  ///< 2 or more: the first one is loose on purpose, and never the result
+};
+
+/// A value with its standard deviation.
+template <class Value>
+struct Known {
+  Value value;
+  Value sigma;
+};
+
+/// A direction in which the recording says little more than the prior.
+struct Undetermined {
+  std::string parameter;                  ///< "rotation", "translation" or "time_offset"
+  Vector3d direction = Vector3d::Zero();  ///< unit; of rotations in the camera's axes, else the IMU's
+  double sigma = 0;                       ///< rad, m or s
+};
+
+struct CalibrationRound {
+  double imu_noise_factor = 1;
+  SE3 T_imu_camera;
+  double time_offset_s = 0;
+};
+
+struct CameraImuCalibration {
+  std::size_t frames = 0;
+  std::size_t tracked = 0;
+  SE3 T_imu_camera_before;
+  double time_offset_before_s = 0;  ///< these two: IMU's stamp minus the images', as in calibration.toml
+  SE3 T_imu_camera;
+  double time_offset_s = 0;
+  Matrix6d extrinsic_covariance = Matrix6d::Zero();  ///< rotation (right, camera axes), translation (imu)
+  double time_offset_sigma_s = 0;
+  Vector3d rotation_change_rad = Vector3d::Zero();        ///< Log(before^-1 after), camera axes
+  Known<Vector3d> gyroscope_bias_radps;                   ///< at the middle frame
+  Known<Vector3d> accelerometer_bias_mps2;                ///< the same
+  Vector3d gravity_direction_camera = Vector3d::UnitY();  ///< of the first frame
+  double gravity_sigma_rad = 0;                           ///< in its worst direction
+  double variance_factor = 1;
+  double correlation_factor = 1;
+  double inertial_variance_factor = 1;
+  std::size_t outliers = 0;
+  std::vector<CalibrationRound> rounds;
+  bool converged = false;
+  std::vector<Undetermined> undetermined;
+};
+
+/// The recording's IMU must be there, and the configuration's prior the IMU. Progress is of one round.
+/// Errors: those of measure_motion() and estimate_batch().
+[[nodiscard]] Result<CameraImuCalibration> calibrate(recording::Recording recording,
+                                                     const config::Config& config,
+                                                     const CalibrationOptions& options,
+                                                     const Workers& workers, const run::RunControl& control);
+
+/// What the recording's files said with the new extrinsic and offset, ready for a file. The recording as it
+/// was opened.
+[[nodiscard]] calibration::RigCalibration calibrated_rig(const recording::Recording& recording,
+                                                         const CameraImuCalibration& calibration);
+
+/// For people, and for programs.
+[[nodiscard]] std::string to_text(const CameraImuCalibration& calibration,
+                                  const recording::Recording& recording);
+[[nodiscard]] std::string to_json(const CameraImuCalibration& calibration,
+                                  const recording::Recording& recording);
+
+}  // namespace fusebench::batch_estimation

@@ -1,0 +1,110 @@
+#include "eval/cli/console/console.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+
+namespace fusebench::cli::console {
+
+namespace {
+
+// A signal handler can reach nothing but static storage.
+std::atomic<bool>& stop_flag() {
+  static std::atomic<bool> flag = false;
+  static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+  return flag;
+}
+
+extern "C" void on_stop_signal(int signal) {
+  // After a second one, which a parent may have passed on, the next ends the process at once.
+  if (stop_flag().exchange(true)) std::signal(signal, SIG_DFL);
+}
+
+/// Whether standard output is a pipe that nobody reads any more.
+bool reader_has_left() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+}  // namespace
+
+void prepare_standard_streams() {
+  constexpr std::array kModes = {O_RDONLY, O_RDONLY, O_WRONLY};  // of input, output, errors
+  for (int stream = 0; stream < 3; ++stream) {
+    if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest number that is free, which is this one: those below are open.
+    const int opened = open("/dev/null", kModes[static_cast<std::size_t>(stream)]);
+    if (opened != stream) return;  // no /dev/null: as it was
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void print_error(const Error& error) {
+  print_status(fmt::format("error: {}\n", error.message));
+  if (!error.hint.empty()) print_status(fmt::format("  hint: {}\n", error.hint));
+}
+
+void print_status(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+void print_output(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+bool output_arrived() {
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && std::ferror(stdout) == 0) return true;
+  if (reader_has_left()) {
+    // `| head` has what it wanted: the end that a pipeline expects, without a word.
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
+  print_error({ErrorCode::io, "standard output cannot be written", "is there room where it goes to?"});
+  return false;
+}
+
+void print_progress(std::string_view line) { print_status(fmt::format("{}\n", line)); }
+
+const std::atomic<bool>& stop_requested() { return stop_flag(); }
+
+void install_stop_handler() {
+  stop_flag().store(false);  // also makes the static before a signal can need it
+  std::signal(SIGINT, on_stop_signal);
+  std::signal(SIGTERM, on_stop_signal);
+}
+
+ProgressBar::ProgressBar(std::string title)
+    : title_(std::move(title)), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void ProgressBar::show(std::size_t done, std::size_t total) {
+  if (!terminal_ || total == 0) return;
+  const std::size_t percent = 100 * done / total;
+  if (percent == last_percent_) return;
+  last_percent_ = percent;
+  constexpr std::size_t kWidth = 30;
+  const std::size_t filled = kWidth * done / total;
+  print_status(fmt::format("\r\033[K{} [{}{}] {}/{}", title_, std::string(filled, '#'),
+                           std::string(kWidth - filled, '.'), done, total));
+}
+
+void ProgressBar::clear() {
+  if (terminal_) print_status("\r\033[K");
+}
+
+std::string summary_line(const record::RunRecord& record) {
+  std::string line;
+  if (const auto& aie = record.metrics.aie.value) line += fmt::format("AIE {:.3f}, ", aie->all.aie_grey);
+  if (const auto& ate = record.metrics.ate.value)
+    line += fmt::format("ATE {:.2f} cm, ", 100 * ate->stats.rmse);
+  line +=
+      fmt::format("{}/{} frames, {:.1f} fps", record.frames.tracked, record.frames.total, record.timing.fps);
+  return line;
+}
+
+}  // namespace fusebench::cli::console

@@ -1,0 +1,54 @@
+// What the command line shows: errors and progress on standard error, results on standard output.
+//
+// Nothing that cannot be shown on standard error ends a verb: it is left out, be the disk full, the
+// descriptor closed, or the reader of a pipe gone.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "core/base/error.hpp"
+#include "eval/record/record.hpp"
+
+namespace fusebench::cli::console {
+
+inline constexpr int kExitRunFailed = 4;
+inline constexpr int kExitInterrupted = 130;  ///< 128 + SIGINT, as shells have it
+
+/// First of all in a process. A standard descriptor that the caller closed would be given to the first file
+/// that is opened, and that file then hold what is printed: each is opened on /dev/null instead, standard
+/// output so that writing to it fails. A pipe without a reader is an error of writing, no signal.
+void prepare_standard_streams();
+
+/// "error: <sentence>" and "  hint: ..." on standard error.
+void print_error(const Error& error);
+void print_output(std::string_view text);  ///< standard output
+/// Once, at the end: false, with an error, if standard output could not take all of it (a full disk, a closed
+/// descriptor). Where it is a pipe whose reader has left, the process ends by SIGPIPE.
+[[nodiscard]] bool output_arrived();
+void print_progress(std::string_view line);  ///< a line on standard error
+void print_status(std::string_view text);    ///< on standard error, as it is: of a line that is redrawn
+
+/// Set by Ctrl-C (and SIGTERM) once install_stop_handler() was called; runs check it at each frame.
+[[nodiscard]] const std::atomic<bool>& stop_requested();
+void install_stop_handler();
+
+/// A bar that redraws itself on a terminal, and is silent elsewhere.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string title);
+  void show(std::size_t done, std::size_t total);
+  void clear();
+
+ private:
+  std::string title_;
+  bool terminal_;
+  std::size_t last_percent_ = 101;
+};
+
+/// "AIE 8.123, ATE 2.31 cm, 240/240 frames, 31.2 fps"; what a run without these says instead.
+[[nodiscard]] std::string summary_line(const record::RunRecord& record);
+
+}  // namespace fusebench::cli::console

@@ -1,0 +1,38 @@
+// What an engine shows while it works: one line that is redrawn on a terminal, one line a finished run
+// elsewhere.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/cli/console/console.hpp"
+#include "eval/engine/job_plan.hpp"
+#include "eval/engine/local_engine.hpp"
+
+namespace fusebench::cli::console {
+
+class EngineConsole {
+ public:
+  explicit EngineConsole(std::span<const engine::BatchJob> jobs);
+  [[nodiscard]] engine::EngineControl control();
+  void clear();
+
+ private:
+  void tell(std::size_t index, const engine::BatchOutcome& outcome);
+  void show(const engine::EngineState& state);
+
+  std::span<const engine::BatchJob> jobs_;
+  bool terminal_;
+  std::size_t told_ = 0;
+  std::size_t resumed_ = 0;
+};
+
+/// "3 failed, 12.5 runs/min, 35 min left"
+[[nodiscard]] std::string rate_text(const engine::EngineState& state);
+
+/// Makes the simulated recordings that the jobs need and that are not there.
+[[nodiscard]] Result<void> simulate_missing(const std::vector<engine::BatchJob>& jobs, int threads);
+
+}  // namespace fusebench::cli::console

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <utility>
+
+#include "core/config/variants.hpp"
+#include "eval/batch_estimation/calibration.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/run_request.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/recordings/recording_verbs.hpp"
+#include "eval/run/run.hpp"
+#include "eval/text/text_file.hpp"
+
+namespace fusebench::cli::recordings {
+
+namespace {
+
+struct CalibrateVerbOptions {
+  console::RunRequest request;
+  std::filesystem::path out;
+  double rotation_prior_deg = 10;
+  double translation_prior_cm = 10;
+  double offset_prior_ms = 50;
+  int rounds = 3;
+  bool json = false;
+};
+
+Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
+  auto spec = console::spec_of(options.request);
+  if (!spec) return tl::unexpected(spec.error());
+  if (!config::needs_imu(spec->config.values)) {
+    return fail(ErrorCode::usage,
+                fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.request.variant),
+                "take --variant full: the IMU only helps to find the poses, which are the images' own");
+  }
+  return run::prepare_run(std::move(*spec));
+}
+
+Result<int> run(const CalibrateVerbOptions& options) {
+  const auto prepared = prepare(options);
+  if (!prepared) return tl::unexpected(prepared.error());
+  const recording::Recording& recording = prepared->recording;
+  if (recording.imu_source == recording::ImuSource::synthetic && !options.out.empty()) {
+    return fail(ErrorCode::usage,
+                fmt::format("the IMU of '{}' is made from its ground truth, so that a calibration file would "
+                            "say nothing about any sensor",
+                            recording.name),
+                "a calibration needs recorded inertial samples; without --out the result is only shown");
+  }
+  for (const std::string& warning : recording.warnings)
+    console::print_progress(fmt::format("warning: {}", warning));
+  console::ProgressBar bar(recording.name + " calibrate");
+  const run::RunControl control = {
+      .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
+      .stop = &console::stop_requested()};
+  const batch_estimation::CalibrationOptions how{.rotation_prior_rad = radians(options.rotation_prior_deg),
+                                                 .translation_prior_m = 0.01 * options.translation_prior_cm,
+                                                 .time_offset_prior_s = 1e-3 * options.offset_prior_ms,
+                                                 .max_rounds = options.rounds};
+  const Workers workers(options.request.threads);
+  const auto calibration =
+      batch_estimation::calibrate(recording, prepared->spec.config.values, how, workers, control);
+  bar.clear();
+  if (!calibration) return tl::unexpected(calibration.error());
+  if (!options.out.empty()) {
+    const auto written = text::write_text_file(
+        options.out, calibration::to_toml(batch_estimation::calibrated_rig(recording, *calibration)));
+    if (!written) return tl::unexpected(written.error());
+  }
+  console::print_output(options.json ? batch_estimation::to_json(*calibration, recording)
+                                     : batch_estimation::to_text(*calibration, recording));
+  return 0;
+}
+
+}  // namespace
+
+console::Verb add_calibrate_verb(CLI::App& app) {
+  auto options = std::make_shared<CalibrateVerbOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "calibrate",
+      "Finds from a recording where the camera sits on the IMU and how far their clocks are apart");
+  console::add_run_request(*verb, options->request);
+  verb->add_option("--out", options->out,
+                   "Writes the calibration of all sensors, for --calibration of other verbs or as the "
+                   "recording's calibration.toml")
+      ->type_name("FILE.toml");
+  verb->add_option(
+          "--rotation-prior", options->rotation_prior_deg,
+          "How far off the recording's calibration may be: standard deviation of the rotation, degrees")
+      ->check(CLI::Range(0.01, 90.0))
+      ->type_name("DEG")
+      ->capture_default_str();
+  verb->add_option("--translation-prior", options->translation_prior_cm, "The same of the translation, cm")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->type_name("CM")
+      ->capture_default_str();
+  verb->add_option("--offset-prior", options->offset_prior_ms, "The same of the clocks' offset, ms")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->type_name("MS")
+      ->capture_default_str();
+  verb->add_option("--rounds", options->rounds,
+                   "At most so many runs, each from the last one's calibration; the first is a first guess")
+      ->check(CLI::Range(2, 20))
+      ->type_name("N")
+      ->capture_default_str();
+  console::add_json_flag(*verb, options->json);
+  verb->footer("How to move, what the numbers mean and what they do not: docs/calibration.md.");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace fusebench::cli::recordings

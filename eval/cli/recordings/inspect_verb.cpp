@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "datasets/calibration/recording_catalogue.hpp"
+#include "datasets/inspection/inspection.hpp"
+#include "datasets/open_recording.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/reading_options.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/recordings/recording_verbs.hpp"
+#include "eval/inspection_report/inspection_json.hpp"
+#include "eval/inspection_report/inspection_page.hpp"
+#include "eval/inspection_report/inspection_text.hpp"
+#include "eval/suites/experiment.hpp"
+
+namespace fusebench::cli::recordings {
+
+namespace {
+
+struct InspectVerbOptions {
+  std::string recording;
+  std::filesystem::path data;
+  console::ReadingOptions reading;
+  std::string frames;
+  std::filesystem::path page;
+  int threads = 1;
+  bool json = false;
+};
+
+/// What the user said wrongly is an error as in every verb; what the data are is for the inspection.
+bool is_finding(const Error& error) {
+  return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
+}
+
+Result<recording::Recording> open(const InspectVerbOptions& options, const std::filesystem::path& folder) {
+  const auto window = console::parse_frames(options.frames);
+  if (!window) return tl::unexpected(window.error());
+  const auto how = console::open_options(options.reading);
+  if (!how) return tl::unexpected(how.error());
+  auto recording = datasets::open_recording(folder, *how);
+  if (!recording) return recording;
+  if (*window) {
+    const auto selected = recording::select_frames(*recording, (*window)->begin, (*window)->end);
+    if (!selected) return tl::unexpected(selected.error());
+  }
+  return recording;
+}
+
+tl::unexpected<Error> interrupted() { return fail(ErrorCode::run_failed, "interrupted"); }
+
+/// How many frames the catalogue says there are.
+std::optional<std::size_t> published_frames(const std::filesystem::path& folder) {
+  const calibration::CatalogueEntry* entry = calibration::catalogue_entry_of_folder(folder);
+  if (entry == nullptr || !entry->frames) return std::nullopt;
+  return static_cast<std::size_t>(*entry->frames);
+}
+
+Result<void> write_page(const std::filesystem::path& file, const std::string& html) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << html;
+  stream.close();
+  if (!stream)
+    return fail(ErrorCode::io, fmt::format("{}: cannot be written", file.string()),
+                "choose another place for --page");
+  return {};
+}
+
+int print(const inspection::Inspection& inspection, const InspectVerbOptions& options) {
+  console::print_output(options.json ? inspection_report::to_json(inspection)
+                                     : inspection_report::to_text(inspection));
+  return inspection.count(inspection::Severity::error) > 0 ? exit_code(ErrorCode::data_corrupt) : 0;
+}
+
+Result<int> run(const InspectVerbOptions& options) {
+  const auto folder = suites::find_recording(options.recording, options.data);
+  auto recording = folder.and_then([&](const auto& found) { return open(options, found); });
+  if (!recording && options.json && is_finding(recording.error())) {
+    console::print_error(recording.error());
+    return print(inspection::refused_inspection(options.recording, options.reading.format, recording.error()),
+                 options);
+  }
+  if (!recording) return tl::unexpected(recording.error());
+  // An interrupted inspection ends soon: it loads nothing more.
+  recording->load_frame = [load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
+    if (console::stop_requested()) return interrupted();
+    return load(frame);
+  };
+  const Workers workers(options.threads);
+  inspection::InspectOptions inspect_options;
+  if (options.frames.empty()) inspect_options.expected_frames = published_frames(*folder);
+  const inspection::Inspection inspection = inspection::inspect(*recording, workers, inspect_options);
+  if (console::stop_requested()) return interrupted();
+  if (!options.page.empty()) {
+    const auto written = write_page(options.page, inspection_report::to_page(inspection, *recording));
+    if (!written) return tl::unexpected(written.error());
+  }
+  return print(inspection, options);
+}
+
+}  // namespace
+
+console::Verb add_inspect_verb(CLI::App& app) {
+  auto options = std::make_shared<InspectVerbOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "inspect", "Checks a recording: stamps, images, depth, motion, IMU, calibration and ground truth");
+  verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
+      ->required();
+  verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
+  console::add_reading_options(*verb, options->reading);
+  verb->add_option("--page", options->page, "Writes a page with plots, which needs no network, as well")
+      ->type_name("FILE.html");
+  console::add_threads_option(*verb, options->threads);
+  console::add_data_option(*verb, options->data);
+  console::add_json_flag(*verb, options->json);
+  verb->footer(
+      "Findings are errors (do not trust results on this recording), warnings and notes; docs/inspect.md "
+      "lists\n"
+      "their codes. Exit code 3 if there is an error.");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace fusebench::cli::recordings

@@ -1,0 +1,13 @@
+// Verbs about recordings themselves: what is in them, made ones, and their calibration.
+#pragma once
+
+#include "eval/cli/console/verb.hpp"
+
+namespace fusebench::cli::recordings {
+
+[[nodiscard]] console::Verb add_simulate_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_inspect_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_calibrate_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_smooth_verb(CLI::App& app);
+
+}  // namespace fusebench::cli::recordings

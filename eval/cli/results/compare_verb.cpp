@@ -1,0 +1,83 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/results/result_verbs.hpp"
+#include "eval/compare/comparison.hpp"
+#include "eval/compare/comparison_formats.hpp"
+#include "eval/compare/gates.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/text/text_file.hpp"
+
+namespace fusebench::cli::results {
+
+namespace {
+
+constexpr int kExitGateFailed = 1;
+
+struct CompareOptions {
+  std::filesystem::path base;
+  std::filesystem::path fresh;
+  std::filesystem::path gates;
+  std::filesystem::path confirm;
+  std::filesystem::path out;
+  std::string format = "table";
+  bool all = false;
+};
+
+Result<int> compare(const CompareOptions& options) {
+  const auto format = compare::parse_comparison_format(options.format);
+  if (!format) return tl::unexpected(format.error());
+  const auto gates =
+      options.gates.empty() ? Result<compare::Gates>(compare::Gates()) : compare::read_gates(options.gates);
+  if (!gates) return tl::unexpected(gates.error());
+  const auto base = run_files::find_runs(options.base);
+  if (!base) return tl::unexpected(base.error());
+  const auto fresh = run_files::find_runs(options.fresh);
+  if (!fresh) return tl::unexpected(fresh.error());
+  const auto confirming = options.confirm.empty() ? Result<std::vector<run_files::FoundRun>>()
+                                                  : run_files::find_runs(options.confirm);
+  if (!confirming) return tl::unexpected(confirming.error());
+  const compare::RunComparison comparison = compare::compare_runs(*base, *fresh, *gates, *confirming);
+  const std::string text = compare::render_comparison(comparison, *format, options.all);
+  if (options.out.empty()) {
+    console::print_output(text);
+  } else {
+    if (auto written = text::write_text_file(options.out, text); !written)
+      return tl::unexpected(written.error());
+    console::print_progress(compare::comparison_summary(comparison));
+  }
+  return comparison.passed() ? 0 : kExitGateFailed;
+}
+
+}  // namespace
+
+console::Verb add_compare_verb(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* verb = app.add_subcommand("compare",
+                                      "Compares two folders of runs and fails if something got worse. Exit "
+                                      "code: 0 all gates passed, 1 one failed, 2 "
+                                      "usage or gates, 3 data missing or damaged");
+  verb->add_option("BASE", options->base, "Folder of runs that is the baseline")->required();
+  verb->add_option("NEW", options->fresh, "Folder of runs that is compared with it")->required();
+  verb->add_option("--gates", options->gates, "What may change, and by how much [as in configs/gates.toml]")
+      ->type_name("FILE.toml");
+  verb->add_option("--confirm", options->confirm,
+                   "Runs of NEW made again: what was slower or larger fails only if it is so there, too")
+      ->type_name("DIR");
+  verb->add_option(
+          "--format", options->format,
+          "table, markdown, json, junit (a test case a gate), and the numbers of NEW as gbench (Google "
+          "Benchmark), github-benchmark (customSmallerIsBetter) or openmetrics")
+      ->check(
+          CLI::IsMember({"table", "markdown", "json", "junit", "gbench", "github-benchmark", "openmetrics"}))
+      ->capture_default_str();
+  verb->add_option("--out", options->out, "Writes there instead of standard output")->type_name("FILE");
+  verb->add_flag("--all", options->all, "Shows gates that are unchanged, too (table and markdown)");
+  return {verb, [options] { return compare(*options); }};
+}
+
+}  // namespace fusebench::cli::results

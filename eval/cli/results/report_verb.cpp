@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "eval/aggregate/run_rows.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/results/result_verbs.hpp"
+#include "eval/page/figures.hpp"
+#include "eval/report/results_page.hpp"
+#include "eval/report/sweep_sections.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/text/text_file.hpp"
+
+namespace fusebench::cli::results {
+
+namespace {
+
+struct ReportOptions {
+  std::filesystem::path runs;
+  std::filesystem::path out;
+  std::string title;
+  std::filesystem::path figures;
+  std::string figure_format = "svg";
+};
+
+Result<int> report(const ReportOptions& options) {
+  const auto runs = run_files::find_runs(options.runs);
+  if (!runs) return tl::unexpected(runs.error());
+  std::string title = options.title;
+  if (title.empty())
+    title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
+  report::ResultsPage page = report::results_page(*runs, title);
+  const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
+  if (!rows) return tl::unexpected(rows.error());
+  auto sweep = report::sweep_sections(*rows);
+  const auto after_tables = page.page.sections.begin() + static_cast<std::ptrdiff_t>(page.tables);
+  page.page.sections.insert(after_tables, std::make_move_iterator(sweep.begin()),
+                            std::make_move_iterator(sweep.end()));
+  for (const std::string& warning : page.warnings) console::print_progress("warning: " + warning);
+  const std::string html = page::to_html(page.page);
+  if (auto written = text::write_text_file(options.out, html); !written)
+    return tl::unexpected(written.error());
+  console::print_progress(fmt::format("{}: {} runs, {:.1f} MB", options.out.string(), runs->size(),
+                                      static_cast<double>(html.size()) / 1e6));
+  if (options.figures.empty()) return 0;
+  const auto format = page::parse_figure_format(options.figure_format);
+  if (!format) return tl::unexpected(format.error());
+  const auto figures = page::write_figures(page.page, options.figures, *format);
+  if (!figures) return tl::unexpected(figures.error());
+  console::print_progress(fmt::format("{}: {} figures", options.figures.string(), *figures));
+  return 0;
+}
+
+}  // namespace
+
+console::Verb add_report_verb(CLI::App& app) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "report",
+      "Makes one page of a folder of runs: tables, charts, patches and meshes; it needs no network");
+  verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
+  verb->add_option("--out", options->out, "The page to write")->type_name("FILE.html")->required();
+  verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
+      ->type_name("TEXT");
+  verb->add_option(
+          "--figures", options->figures,
+          "Writes every chart as a file for papers as well, and beside it the script that draws it (gnuplot)")
+      ->type_name("DIR");
+  verb->add_option("--figure-format", options->figure_format, "svg or pdf")
+      ->check(CLI::IsMember({"svg", "pdf"}))
+      ->capture_default_str();
+  return {verb, [options] { return report(*options); }};
+}
+
+}  // namespace fusebench::cli::results

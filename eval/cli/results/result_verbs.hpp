@@ -1,0 +1,12 @@
+// Verbs that show runs and hold them against each other.
+#pragma once
+
+#include "eval/cli/console/verb.hpp"
+
+namespace fusebench::cli::results {
+
+[[nodiscard]] console::Verb add_table_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_report_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_compare_verb(CLI::App& app);
+
+}  // namespace fusebench::cli::results

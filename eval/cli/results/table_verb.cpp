@@ -1,0 +1,55 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/results/result_verbs.hpp"
+#include "eval/tables/paper_table.hpp"
+#include "eval/tables/table.hpp"
+
+namespace fusebench::cli::results {
+
+namespace {
+
+struct TableOptions {
+  std::filesystem::path runs;
+  std::string paper;
+  std::string format = "markdown";
+  bool json = false;
+};
+
+Result<int> table(const TableOptions& options) {
+  const auto format = tables::parse_table_format(options.json ? "json" : options.format);
+  if (!format) return tl::unexpected(format.error());
+  const auto runs = run_files::find_runs(options.runs);
+  if (options.paper.empty()) {
+    if (!runs) return tl::unexpected(runs.error());
+    console::print_output(tables::render_table(tables::table_of(*runs), *format));
+    return 0;
+  }
+  const auto published = tables::published_table(options.paper);
+  if (!published) return tl::unexpected(published.error());
+  if (!runs) return tl::unexpected(runs.error());
+  console::print_output(tables::render_paper_table(tables::paper_table(*published, *runs), *format));
+  return 0;
+}
+
+}  // namespace
+
+console::Verb add_table_verb(CLI::App& app) {
+  auto options = std::make_shared<TableOptions>();
+  CLI::App* verb = app.add_subcommand("table", "Prints the table of a folder of runs");
+  verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
+  verb->add_option("--format", options->format,
+                   "markdown, csv (a line a run), csv-long (a line a number), json or latex")
+      ->check(CLI::IsMember({"markdown", "csv", "csv-long", "json", "latex"}))
+      ->capture_default_str();
+  verb->add_option("--paper", options->paper,
+                   "A published table (table1, ate_tum, ate_icl, surface_icl) beside what was run here")
+      ->type_name("NAME");
+  console::add_json_flag(*verb, options->json);
+  return {verb, [options] { return table(*options); }};
+}
+
+}  // namespace fusebench::cli::results

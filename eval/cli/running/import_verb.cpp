@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/reading_options.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/running/run_verbs.hpp"
+#include "eval/run/imported_run.hpp"
+#include "eval/suites/experiment.hpp"
+
+namespace fusebench::cli::running {
+
+namespace {
+
+struct ImportOptions {
+  std::string name;
+  std::filesystem::path trajectory;
+  std::filesystem::path mesh;
+  std::string trajectory_format;
+  std::string recording;
+  std::filesystem::path data;
+  std::filesystem::path out;
+  console::ReadingOptions reading;
+  std::string frames;
+  std::string imu;
+  int threads = 1;
+};
+
+Result<run::ImportSpec> spec_of(const ImportOptions& options) {
+  run::ImportSpec spec;
+  spec.name = options.name;
+  spec.trajectory = options.trajectory;
+  spec.mesh = options.mesh;
+  if (!options.trajectory_format.empty()) {
+    const auto format = trajectory_files::parse_trajectory_format(options.trajectory_format);
+    if (!format) return tl::unexpected(format.error());
+    spec.format = *format;
+  }
+  const auto folder = suites::find_recording(options.recording, options.data);
+  if (!folder) return tl::unexpected(folder.error());
+  spec.recording = *folder;
+  auto how = console::open_options(options.reading);
+  if (!how) return tl::unexpected(how.error());
+  spec.open = std::move(*how);
+  const auto window = console::parse_frames(options.frames);
+  if (!window) return tl::unexpected(window.error());
+  spec.frames = *window;
+  if (!options.imu.empty()) spec.imu = options.imu == "synthetic" ? "synthetic IMU" : options.imu;
+  spec.threads = options.threads;
+  spec.out = options.out;
+  return spec;
+}
+
+Result<int> import(const ImportOptions& options) {
+  const auto spec = spec_of(options);
+  if (!spec) return tl::unexpected(spec.error());
+  const auto run = run::import_run(*spec);
+  if (!run) return tl::unexpected(run.error());
+  for (const std::string& warning : run->warnings) console::print_progress("warning: " + warning);
+  console::print_progress(fmt::format("{}: {}", run->record.variant, console::summary_line(run->record)));
+  console::print_output(run->folder.string() + "\n");
+  return 0;
+}
+
+}  // namespace
+
+console::Verb add_import_verb(CLI::App& app) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "import", "Puts what another system made of a recording beside our runs, evaluated the same way");
+  verb->add_option("NAME", options->name, "The other system: the run's variant in tables and reports")
+      ->required();
+  verb->add_option("TRAJECTORY", options->trajectory, "Its poses of the colour camera (TUM, KITTI or EuRoC)")
+      ->required();
+  verb->add_option("MESH", options->mesh, "Its model in the world of these poses, .ply or .obj");
+  verb->add_option("--recording", options->recording,
+                   "Folder of the recording, or the name of one under --data")
+      ->type_name("REC")
+      ->required();
+  verb->add_option("--out", options->out, "Folder of results, as of `run` and `bench`")
+      ->type_name("DIR")
+      ->required();
+  verb->add_option("--trajectory-format", options->trajectory_format,
+                   "tum, kitti, euroc or openvins; recognised if not given")
+      ->type_name("NAME");
+  verb->add_option("--imu", options->imu, "What it used: none, recorded or synthetic; said in every table")
+      ->check(CLI::IsMember({"none", "recorded", "synthetic"}));
+  verb->add_option("--frames", options->frames, "It was given only frames A to B-1")->type_name("A:B");
+  console::add_reading_options(*verb, options->reading);
+  console::add_threads_option(*verb, options->threads);
+  console::add_data_option(*verb, options->data);
+  verb->footer("Prints the run's folder. Frames without a pose within 0.02 s count as lost.");
+  return {verb, [options] { return import(*options); }};
+}
+
+}  // namespace fusebench::cli::running

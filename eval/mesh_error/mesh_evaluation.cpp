@@ -1,0 +1,99 @@
+#include "eval/mesh_error/mesh_evaluation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <span>
+
+namespace fusebench::mesh_error {
+
+namespace {
+
+MeshShape shape_of(const PreciseMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return {mesh.vertices.size(), mesh.triangles.size(),
+          mesh.vertices.empty() ? Vector3d(0, 0, 0) : Vector3d(box.sizes())};
+}
+
+/// Millimetres for metres are the usual mistake, and give numbers that look like any others.
+Result<void> check_units(const MeshShape& reconstruction, const MeshShape& truth) {
+  const double ratio = reconstruction.extent_m.norm() / truth.extent_m.norm();
+  if (ratio < kOtherUnit && ratio > 1 / kOtherUnit) return {};
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format("the reconstruction measures {:.4g} m from corner to corner of its box and the truth "
+                  "{:.4g} m: one of them seems not to be in metres",
+                  reconstruction.extent_m.norm(), truth.extent_m.norm()),
+      "`--scale 0.001` takes a reconstruction in millimetres; `--scale 1` says that metres it is");
+}
+
+/// Evenly spread ones: a registration is not worth more.
+std::vector<Vector3d> fewer(std::span<const Vector3d> points) {
+  constexpr std::size_t kEnough = 20'000;
+  const std::size_t step = (points.size() + kEnough - 1) / kEnough;
+  std::vector<Vector3d> taken;
+  for (std::size_t i = 0; i < points.size(); i += step) taken.push_back(points[i]);
+  return taken;
+}
+
+Result<void> check_observed(const MeshComparison& comparison, double least) {
+  const double share =
+      static_cast<double>(comparison.truth_observed()) / static_cast<double>(comparison.truth_samples());
+  if (share >= least) return {};
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("only {:.1f} % of the true surface is observed (at least {:.0f} % are asked for)",
+                          100 * share, 100 * least),
+              "are the truth and the recording's poses in one world? For a recording of a part of the scene, "
+              "--min-observed 0.05 (or less) lowers the limit");
+}
+
+SurfregScore surfreg_of(const PreciseMesh& reconstruction, const PreciseMesh& truth,
+                        const SE3& T_truth_reconstruction, const Workers& workers) {
+  std::vector<Vector3d> vertices_truth;
+  vertices_truth.reserve(reconstruction.vertices.size());
+  for (const Vector3d& vertex : reconstruction.vertices)
+    vertices_truth.push_back(T_truth_reconstruction * vertex);
+  return surfreg_score(vertices_truth, VertexTree(truth.vertices), workers);
+}
+
+}  // namespace
+
+Result<MeshEvaluation> evaluate_mesh(const PreciseMesh& reconstruction, const PreciseMesh& truth,
+                                     const MeshRequest& request, const Workers& workers) {
+  auto comparison = MeshComparison::create(reconstruction, truth, request.views, request.errors, workers);
+  if (!comparison) return tl::unexpected(comparison.error());
+  MeshEvaluation result;
+  result.reconstruction = shape_of(reconstruction);
+  result.truth = shape_of(truth);
+  if (!request.any_size) {
+    if (auto alike = check_units(result.reconstruction, result.truth); !alike)
+      return tl::unexpected(alike.error());
+  }
+  if (request.views) {
+    if (auto enough = check_observed(*comparison, request.least_observed); !enough)
+      return tl::unexpected(enough.error());
+  }
+  trajectory_error::Alignment alignment = request.start;
+  if (request.icp) {
+    const auto moved = register_points(fewer(comparison->reconstruction_points()), comparison->truth(),
+                                       alignment.T_reference_estimate, *request.icp, workers);
+    if (!moved) return tl::unexpected(moved.error());
+    result.icp = *moved;
+    alignment = {"icp", moved->T_surface_points};
+  }
+  result.errors = comparison->evaluate(alignment, workers);
+  if (request.views) result.not_culled = comparison->evaluate(alignment, workers, TruthPart::all);
+  result.reconstruction_samples = comparison->reconstruction_samples();
+  result.truth_samples = comparison->truth_samples();
+  result.truth_observed = comparison->truth_observed();
+  result.surfreg = surfreg_of(reconstruction, truth, alignment.T_reference_estimate, workers);
+  if (request.vertex_errors) {
+    result.vertex_errors_m =
+        distances_m(reconstruction.vertices, alignment.T_reference_estimate, comparison->truth(), workers);
+  }
+  return result;
+}
+
+}  // namespace fusebench::mesh_error

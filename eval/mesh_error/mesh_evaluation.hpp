@@ -1,0 +1,58 @@
+// Two meshes from anywhere, compared as it is asked for.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/mesh_error/surface_registration.hpp"
+#include "eval/mesh_error/vertex_tree.hpp"
+
+namespace fusebench::mesh_error {
+
+struct MeshRequest {
+  MeshErrorOptions errors = {};
+  trajectory_error::Alignment start = {};  ///< of the reconstruction to the truth, before any registration
+  std::optional<RegistrationOptions> icp = {};
+  std::optional<MeshViews> views = {};  ///< from where the truth was seen; absent: all of it counts
+  double least_observed = 0.2;          ///< share of the truth's samples
+  bool any_size = false;                ///< meshes whose sizes differ as units do are compared all the same
+  bool vertex_errors = false;           ///< asks for the distance of each vertex of the reconstruction
+};
+
+/// What a mesh is, in words of size.
+struct MeshShape {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  Vector3d extent_m = Vector3d::Zero();  ///< of the box around its vertices
+};
+
+struct MeshEvaluation {
+  MeshShape reconstruction;
+  MeshShape truth;
+  std::size_t reconstruction_samples = 0;
+  std::size_t truth_samples = 0;
+  std::size_t truth_observed = 0;
+  MeshErrorResult errors;                     ///< completeness of what is observed
+  std::optional<MeshErrorResult> not_culled;  ///< with views: of all of the truth
+  std::optional<RegistrationResult> icp;
+  SurfregScore surfreg;
+  std::vector<double> vertex_errors_m;  ///< if they were asked for
+};
+
+/// Largest of a mesh's extents over the other's, from which on one is not taken for metres.
+inline constexpr double kOtherUnit = 20;
+
+/// Errors data_corrupt: those of MeshComparison::create and register_points; boxes that differ kOtherUnit
+/// times in size; or a truth of which less than least_observed is seen.
+[[nodiscard]] Result<MeshEvaluation> evaluate_mesh(const PreciseMesh& reconstruction,
+                                                   const PreciseMesh& truth, const MeshRequest& request,
+                                                   const Workers& workers);
+
+}  // namespace fusebench::mesh_error

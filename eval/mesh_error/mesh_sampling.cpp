@@ -1,0 +1,75 @@
+#include "eval/mesh_error/mesh_sampling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace fusebench::mesh_error {
+
+namespace {
+
+/// In [0, 1), the same with any library.
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1.0p-53; }
+
+}  // namespace
+
+std::string_view to_string(MeshSamples samples) {
+  return samples == MeshSamples::vertices ? "vertices" : "area";
+}
+
+Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
+  if (mesh.triangles.empty()) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{} has no triangles ({} vertices)", what, mesh.vertices.size()),
+                "distances are measured to surfaces, not to points");
+  }
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vector3d& v = mesh.vertices[i];
+    if (!v.allFinite()) {
+      return fail(ErrorCode::data_corrupt,
+                  fmt::format("{}: vertex {} is not finite ({} {} {})", what, i, v.x(), v.y(), v.z()));
+    }
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const std::uint32_t largest = *std::ranges::max_element(mesh.triangles[i]);
+    if (largest >= mesh.vertices.size()) {
+      return fail(ErrorCode::data_corrupt, fmt::format("{}: triangle {} names vertex {} (there are {})", what,
+                                                       i, largest, mesh.vertices.size()));
+    }
+  }
+  return {};
+}
+
+Result<std::vector<Vector3d>> sample_mesh(const PreciseMesh& mesh, const MeshSampling& sampling) {
+  std::vector<Vector3d> points;
+  if (sampling.from == MeshSamples::vertices) {
+    points = mesh.vertices;
+    return points;
+  }
+  std::vector<double> area_until;
+  double area = 0;
+  const auto corner = [&](std::size_t triangle, std::size_t which) -> Vector3d {
+    return mesh.vertices[mesh.triangles[triangle][which]];
+  };
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    area += 0.5 * (corner(i, 1) - corner(i, 0)).cross(corner(i, 2) - corner(i, 0)).norm();
+    area_until.push_back(area);
+  }
+  if (!(area > 0)) return fail(ErrorCode::data_corrupt, "the mesh has no area to take samples from");
+  std::mt19937_64 random(sampling.seed);
+  for (std::size_t i = 0; i < sampling.count; ++i) {
+    const double at = area * (static_cast<double>(i) + uniform(random)) / static_cast<double>(sampling.count);
+    const auto found = std::ranges::upper_bound(area_until, at);
+    const auto triangle =
+        std::min(static_cast<std::size_t>(found - area_until.begin()), mesh.triangles.size() - 1);
+    const double root = std::sqrt(uniform(random));  // even within the triangle
+    const double share = uniform(random);
+    points.emplace_back((1 - root) * corner(triangle, 0) + root * (1 - share) * corner(triangle, 1) +
+                        root * share * corner(triangle, 2));
+  }
+  return points;
+}
+
+}  // namespace fusebench::mesh_error

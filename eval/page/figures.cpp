@@ -1,0 +1,207 @@
+#include "eval/page/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <iterator>
+#include <set>
+#include <thread>
+
+#include "eval/process/child_processes.hpp"
+#include "eval/text/text_file.hpp"
+
+namespace fusebench::page {
+
+namespace {
+
+// Those of pages, in light.
+constexpr std::array<const char*, 8> kColours = {"#0067a8", "#c8500a", "#00795a", "#a3417f",
+                                                 "#6b6b00", "#6a5acd", "#8c5a3c", "#5f6973"};
+
+/// gnuplot's strings in double quotes; marks of enhanced text are switched off.
+std::string gnuplot_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\' || c == '`') result += '\\';  // it runs what stands between backticks
+    result += c == '\n' ? ' ' : c;
+  }
+  return result + "\"";
+}
+
+std::string terminal(FigureFormat format, bool equal) {
+  const char* const size = equal ? "12cm,11cm" : "14cm,8cm";
+  if (format == FigureFormat::pdf)
+    return fmt::format("set terminal pdfcairo noenhanced size {} font \"Helvetica,10\"\n", size);
+  return fmt::format("set terminal svg noenhanced size {} dynamic font \"Helvetica,12\"\n",
+                     equal ? "480,440" : "560,320");
+}
+
+void add_data(const Chart& chart, std::string& script) {
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    const ChartSeries& series = chart.series[i];
+    auto out = std::back_inserter(script);
+    fmt::format_to(out, "$series{} << END\n", i);
+    for (const Vector2d& p : series.points) fmt::format_to(out, "{:.6g} {:.6g}\n", p.x(), p.y());
+    for (const ChartBox& b : series.boxes) {
+      fmt::format_to(out, "{:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", b.x, b.quartile, b.min, b.max,
+                     b.upper_quartile, b.median);
+    }
+    script += "END\n";
+  }
+}
+
+/// Boxes at one place stand side by side.
+std::string box_places(const Chart& chart, std::size_t place) {
+  std::set<double> places;
+  std::size_t count = 0;
+  for (const ChartSeries& series : chart.series) {
+    for (const ChartBox& box : series.boxes) places.insert(box.x);
+    if (!series.boxes.empty()) ++count;
+  }
+  double gap = 1;
+  for (auto at = places.begin(); at != places.end() && std::next(at) != places.end(); ++at)
+    gap = at == places.begin() ? *std::next(at) - *at : std::min(gap, *std::next(at) - *at);
+  const double width = 0.7 * gap / static_cast<double>(std::max<std::size_t>(count, 1));
+  const double shift = (static_cast<double>(place) - 0.5 * static_cast<double>(count - 1)) * width;
+  return fmt::format("using ($1+{:.6g}):2:3:4:5:({:.6g})", shift, 0.8 * width);
+}
+
+std::string curve(const Chart& chart, std::size_t i) {
+  const ChartSeries& series = chart.series[i];
+  const char* const colour = kColours[series.colour.value_or(i) % kColours.size()];
+  const std::string title = gnuplot_text(series.label);
+  const char* const axes = series.right ? " axes x1y2" : "";
+  switch (series.style) {
+    case SeriesStyle::line:
+      return fmt::format("$series{}{} with lines lw 1.2 lc rgb '{}' title {}", i, axes, colour, title);
+    case SeriesStyle::backdrop:
+      return fmt::format("$series{}{} with lines lw 4 lc rgb '#66{}' title {}", i, axes, colour + 1, title);
+    case SeriesStyle::dots:
+      return fmt::format("$series{}{} with points pt 7 ps 0.3 lc rgb '{}' title {}", i, axes, colour, title);
+    case SeriesStyle::bars:
+      return fmt::format("$series{}{} with histeps lw 1.2 lc rgb '{}' title {}", i, axes, colour, title);
+    case SeriesStyle::boxes: {
+      const std::string places = box_places(chart, i);
+      return fmt::format(
+          "$series{0} {1} with candlesticks whiskerbars 0.5 fs solid 0.25 lc rgb '{2}' title {3}, $series{0} "
+          "{4} with "
+          "candlesticks lw 1.5 lc rgb '{2}' notitle",
+          i, places, colour, title, std::string(places).replace(places.find("2:3:4:5"), 7, "6:6:6:6"));
+    }
+  }
+  return "";
+}
+
+/// Categories side by side, series on one another.
+std::string stacked(const Chart& chart) {
+  std::string script =
+      "set style data histograms\nset style histogram rowstacked\nset boxwidth 0.7\nset style fill solid "
+      "0.9\n";
+  script += "$table << END\n";
+  for (std::size_t row = 0; row < chart.categories.size(); ++row) {
+    script += gnuplot_text(chart.categories[row]);
+    for (const ChartSeries& series : chart.series) {
+      double value = 0;
+      for (const Vector2d& p : series.points) value = p.x() == static_cast<double>(row) ? p.y() : value;
+      script += fmt::format(" {:.6g}", value);
+    }
+    script += '\n';
+  }
+  script += "END\nplot ";
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    script += fmt::format(
+        "{}$table using {}{} lc rgb '{}' title {}", i > 0 ? ", " : "", i + 2, i == 0 ? ":xtic(1)" : "",
+        kColours[chart.series[i].colour.value_or(i) % kColours.size()], gnuplot_text(chart.series[i].label));
+  }
+  return script + "\n";
+}
+
+/// Letters and digits, in lower case; what is between them becomes one '_'.
+std::string slug(std::string_view text) {
+  std::string result;
+  for (const char letter : text) {
+    const auto c = static_cast<unsigned char>(letter);
+    if (std::isalnum(c) != 0) {
+      result += static_cast<char>(std::tolower(c));
+    } else if (!result.empty() && result.back() != '_') {
+      result += '_';
+    }
+  }
+  while (result.ends_with('_')) result.pop_back();
+  return result;
+}
+
+Result<void> run_gnuplot(const std::filesystem::path& script) {
+  // Within the folder, so that the script draws there again for whoever edits it.
+  auto child = process::ChildProcess::start(
+      {"/usr/bin/env", "-C", script.parent_path().string(), "gnuplot", script.filename().string()});
+  if (!child) return tl::unexpected(child.error());
+  std::optional<process::ChildEnd> end;
+  while (!(end = child->poll())) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  if (end->exit_code == 0) return {};
+  constexpr int kNotFound = 127;
+  if (end->exit_code == kNotFound) {
+    return fail(ErrorCode::usage, "figures are drawn by gnuplot, which is not installed",
+                "Debian: apt install gnuplot-nox");
+  }
+  return fail(ErrorCode::internal,
+              fmt::format("{}: gnuplot ended with {}: {}", script.string(), end->how(), end->errors));
+}
+
+}  // namespace
+
+Result<FigureFormat> parse_figure_format(std::string_view text) {
+  if (text == "svg") return FigureFormat::svg;
+  if (text == "pdf") return FigureFormat::pdf;
+  return fail(ErrorCode::usage, fmt::format("unknown figure format '{}'", text), "formats are svg and pdf");
+}
+
+std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFormat format) {
+  std::string script = terminal(format, chart.equal_scale) + "set output " + gnuplot_text(file) + "\n";
+  script += "set key outside top center horizontal\nset grid lc rgb '#d8dde2'\nset tics nomirror\n";
+  script += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text(chart.x_label),
+                        gnuplot_text(chart.left_label));
+  if (!chart.right_label.empty())
+    script += fmt::format("set y2label {}\nset y2tics\n", gnuplot_text(chart.right_label));
+  if (chart.from_zero) script += "set yrange [0:*]\n";
+  if (chart.log_x) script += "set logscale x\n";
+  if (chart.equal_scale) script += "set size ratio -1\nset xtics rotate by 45 right\n";
+  if (!chart.categories.empty()) return script + stacked(chart);
+  add_data(chart, script);
+  script += "plot ";
+  for (std::size_t i = 0; i < chart.series.size(); ++i) script += (i > 0 ? ", " : "") + curve(chart, i);
+  return script + "\n";
+}
+
+Result<std::size_t> write_figures(const Page& page, const std::filesystem::path& folder,
+                                  FigureFormat format) {
+  std::string part;
+  std::set<std::string> names;
+  for (const PageSection& section : page.sections) {
+    if (section.level == 2) part = slug(section.title);
+    const auto* charts = std::get_if<std::vector<Chart>>(&section.content);
+    if (charts == nullptr) continue;
+    for (const Chart& chart : *charts) {
+      std::string name = part + "-" + slug(chart.title);
+      for (int copy = 2; !names.insert(name).second; ++copy)
+        name = fmt::format("{}-{}-{}", part, slug(chart.title), copy);
+      const auto figure = folder / (name + (format == FigureFormat::pdf ? ".pdf" : ".svg"));
+      const auto script = folder / (name + ".gp");
+      if (auto written =
+              text::write_text_file(script, gnuplot_script(chart, figure.filename().string(), format));
+          !written)
+        return tl::unexpected(written.error());
+      if (auto drawn = run_gnuplot(script); !drawn) {
+        std::error_code ignored;
+        std::filesystem::remove(figure, ignored);  // half of it is worth nothing
+        return tl::unexpected(drawn.error());
+      }
+    }
+  }
+  return names.size();
+}
+
+}  // namespace fusebench::page

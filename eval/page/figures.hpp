@@ -1,0 +1,28 @@
+// The charts of a page as files for papers, drawn by gnuplot.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "eval/page/page.hpp"
+
+namespace fusebench::page {
+
+enum class FigureFormat { svg, pdf };
+/// Error usage.
+[[nodiscard]] Result<FigureFormat> parse_figure_format(std::string_view text);
+
+/// A script that draws the chart into a file, with the data within it.
+[[nodiscard]] std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFormat format);
+
+/// Writes each chart as RECORDING-TITLE.svg (or .pdf) into a folder, and beside it the script
+/// RECORDING-TITLE.gp that draws it again, to be edited. Returns how many. Errors: io; usage where gnuplot is
+/// not installed.
+[[nodiscard]] Result<std::size_t> write_figures(const Page& page, const std::filesystem::path& folder,
+                                                FigureFormat format);
+
+}  // namespace fusebench::page

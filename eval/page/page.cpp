@@ -1,0 +1,254 @@
+#include "eval/page/page.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/io/text_table.hpp"
+#include "eval/page/page_assets.hpp"
+#include "eval/text/base64.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/markup_text.hpp"
+
+namespace fusebench::page {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string escaped(std::string_view text) { return text::with_entities(text, "&<>\""); }
+
+/// Six digits say what a chart can show, and halve the file.
+Json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return io::parse_number(fmt::format("{:.6g}", value)).value_or(value);
+}
+
+std::string_view style_name(SeriesStyle style) {
+  switch (style) {
+    case SeriesStyle::dots:
+      return "dots";
+    case SeriesStyle::bars:
+      return "bars";
+    case SeriesStyle::boxes:
+      return "boxes";
+    case SeriesStyle::backdrop:
+      return "backdrop";
+    case SeriesStyle::line:
+      break;
+  }
+  return "line";
+}
+
+Json json_of(const Chart& chart) {
+  Json series = Json::array();
+  for (std::size_t place = 0; place < chart.series.size(); ++place) {
+    const ChartSeries& s = chart.series[place];
+    Json points = Json::array();
+    for (const Vector2d& point : s.points) points.push_back({number(point.x()), number(point.y())});
+    for (const ChartBox& box : s.boxes) {
+      points.push_back({number(box.x), number(box.min), number(box.quartile), number(box.median),
+                        number(box.upper_quartile), number(box.max)});
+    }
+    series.push_back({{"label", s.label},
+                      {"style", style_name(s.style)},
+                      {"colour", s.colour.value_or(place)},
+                      {"right", s.right},
+                      {"points", points}});
+  }
+  return {{"x", chart.x_label},
+          {"left", chart.left_label},
+          {"right", chart.right_label},
+          {"zero", chart.from_zero},
+          {"equal", chart.equal_scale},
+          {"log", chart.log_x},
+          {"categories", chart.categories},
+          {"series", series}};
+}
+
+std::string bytes_text(const void* data, std::size_t size) {
+  const auto* bytes = static_cast<const std::uint8_t*>(data);
+  return text::base64({bytes, size});
+}
+
+std::string colors_text(const std::vector<Rgb>& colors) {
+  return bytes_text(colors.data(), colors.size() * sizeof(Rgb));
+}
+
+Json json_of(const SceneMesh& scene) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& vertex : scene.mesh.vertices) box.extend(vertex);
+  if (box.isEmpty()) box.extend(Vector3d::Zero());
+  constexpr double kSteps = 65'535;
+  std::vector<std::uint16_t> positions;
+  for (const Vector3d& vertex : scene.mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double extent = std::max(box.sizes()[axis], 1e-9);
+      positions.push_back(
+          static_cast<std::uint16_t>(std::lround(kSteps * (vertex[axis] - box.min()[axis]) / extent)));
+    }
+  }
+  return {{"label", scene.label},
+          {"low", {number(box.min().x()), number(box.min().y()), number(box.min().z())}},
+          {"size", {number(box.sizes().x()), number(box.sizes().y()), number(box.sizes().z())}},
+          {"positions", bytes_text(positions.data(), positions.size() * sizeof(std::uint16_t))},
+          {"triangles", bytes_text(scene.mesh.triangles.data(),
+                                   scene.mesh.triangles.size() * sizeof(scene.mesh.triangles[0]))},
+          {"colors", colors_text(scene.mesh.colors)},
+          {"errors", colors_text(scene.error_colors)}};
+}
+
+Json json_of(const PageScene& scene) {
+  Json meshes = Json::array();
+  for (const SceneMesh& mesh : scene.meshes) meshes.push_back(json_of(mesh));
+  return {{"meshes", std::move(meshes)},
+          {"largest_error_m", scene.largest_error_m},
+          {"centre", {number(scene.centre.x()), number(scene.centre.y()), number(scene.centre.z())}},
+          {"radius_m", number(scene.radius_m)},
+          {"up", scene.up}};
+}
+
+/// JSON that can neither end the script element that holds it nor begin another one.
+std::string script_safe(const Json& json) {
+  std::string safe;
+  for (const char c : text::json_text(json, -1)) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string html_of(const PageTable& table) {
+  std::string html = "<div class=\"scroll\"><table>\n";
+  if (!table.header.empty()) {
+    html += "<tr>";
+    for (const std::string& cell : table.header) html += fmt::format("<th>{}</th>", escaped(cell));
+    html += "</tr>\n";
+  }
+  for (const PageTable::Row& row : table.rows) {
+    html += row.style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", row.style);
+    for (const std::string& cell : row.cells) html += fmt::format("<td>{}</td>", escaped(cell));
+    html += "</tr>\n";
+  }
+  return html + "</table></div>\n";
+}
+
+std::string html_of(const std::vector<Chart>& charts, Json& all) {
+  std::string html = "<div class=\"charts\">\n";
+  for (const Chart& chart : charts) {
+    html += fmt::format(
+        "<figure><h3>{}</h3><div class=\"canvas{}\"><canvas id=\"chart-{}\" role=\"img\" "
+        "aria-label=\"{}\"></canvas></div><figcaption>{}</figcaption></figure>\n",
+        escaped(chart.title), chart.equal_scale ? " square" : "", all.size(), escaped(chart.title),
+        escaped(chart.caption));
+    all.push_back(json_of(chart));
+  }
+  return html + "</div>\n";
+}
+
+std::string html_of(const std::vector<PageImage>& images) {
+  std::string html = "<div class=\"images\">\n";
+  for (const PageImage& image : images) {
+    html += fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
+                        escaped(image.caption), image.data_uri);
+  }
+  return html + "</div>\n";
+}
+
+std::string html_of(const PageScene& scene, Json& all) {
+  std::string html = fmt::format("<div class=\"scene\" id=\"scene-{}\"></div>\n", all.size());
+  if (!scene.caption.empty()) html += fmt::format("<p>{}</p>\n", escaped(scene.caption));
+  all.push_back(json_of(scene));
+  return html;
+}
+
+std::string html_of(const std::vector<PageDetails>& list) {
+  std::string html;
+  for (const PageDetails& details : list) {
+    html += fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(details.summary),
+                        html_of(details.table));
+  }
+  return html;
+}
+
+/// What the script draws.
+struct Drawn {
+  Json charts = Json::array();
+  Json scenes = Json::array();
+};
+
+std::string html_of(const PageSection& section, std::size_t place, Drawn& drawn) {
+  std::string html =
+      fmt::format("<h{0} id=\"section-{1}\">{2}</h{0}>\n", section.level, place, escaped(section.title));
+  if (!section.text.empty()) html += fmt::format("<p>{}</p>\n", escaped(section.text));
+  if (const auto* table = std::get_if<PageTable>(&section.content)) return html + html_of(*table);
+  if (const auto* list = std::get_if<std::vector<Chart>>(&section.content))
+    return html + html_of(*list, drawn.charts);
+  if (const auto* scene = std::get_if<PageScene>(&section.content))
+    return html + html_of(*scene, drawn.scenes);
+  if (const auto* details = std::get_if<std::vector<PageDetails>>(&section.content))
+    return html + html_of(*details);
+  return html + html_of(std::get<std::vector<PageImage>>(section.content));
+}
+
+/// Links to the main sections, where there are many.
+std::string contents_of(const Page& page) {
+  constexpr std::size_t kMany = 4;
+  std::string html;
+  std::size_t count = 0;
+  for (std::size_t place = 0; place < page.sections.size(); ++place) {
+    if (page.sections[place].level != 2) continue;
+    html += fmt::format("<a href=\"#section-{}\">{}</a>\n", place, escaped(page.sections[place].title));
+    ++count;
+  }
+  const bool parts = std::ranges::any_of(page.sections, [](const PageSection& s) { return s.level > 2; });
+  return count >= kMany || parts ? "<nav>\n" + html + "</nav>\n" : std::string();
+}
+
+}  // namespace
+
+std::string to_html(const Page& page) {
+  Drawn drawn;
+  std::string body = contents_of(page);
+  for (std::size_t place = 0; place < page.sections.size(); ++place)
+    body += html_of(page.sections[place], place, drawn);
+  if (!drawn.scenes.empty()) {
+    body += fmt::format(
+        "<script type=\"application/json\" "
+        "id=\"scenes\">{}</script>\n<script>{}</script>\n<script>{}</script>\n"
+        "<script>\n{}</script>\n",
+        script_safe(drawn.scenes), scene_library(), scene_controls(), scene_script());
+  }
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{0}</title>\n<style>\n{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p>{1}</p>\n"
+      "<noscript><p>The charts need JavaScript; everything else is here.</p></noscript>\n{3}"
+      "<script type=\"application/json\" id=\"charts\">{4}</script>\n"
+      "<script>{5}</script>\n<script>\n{6}</script>\n</body>\n</html>\n",
+      escaped(page.title), escaped(page.subtitle), page_style(), body, script_safe(drawn.charts),
+      chart_library(), page_script());
+}
+
+std::vector<Vector2d> thinned(const std::vector<Vector2d>& points, std::size_t buckets) {
+  if (points.size() <= 2 * buckets) return points;
+  std::vector<Vector2d> result;
+  for (std::size_t b = 0; b < buckets; ++b) {
+    const auto begin = points.begin() + static_cast<std::ptrdiff_t>(b * points.size() / buckets);
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>((b + 1) * points.size() / buckets);
+    auto [low, high] =
+        std::minmax_element(begin, end, [](const Vector2d& p, const Vector2d& q) { return p.y() < q.y(); });
+    if (high < low) std::swap(low, high);
+    result.push_back(*low);
+    if (low != high) result.push_back(*high);
+  }
+  return result;
+}
+
+}  // namespace fusebench::page

@@ -1,0 +1,116 @@
+// A page of tables, charts and images in one HTML file that needs no network.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/geometry.hpp"
+#include "core/base/image.hpp"
+#include "core/base/types.hpp"
+
+namespace fusebench::page {
+
+struct PageTable {
+  struct Row {
+    std::vector<std::string> cells;
+    std::string style;  ///< "error", "warning", "note" or empty
+  };
+  std::vector<std::string> header;
+  std::vector<Row> rows;
+};
+
+enum class SeriesStyle {
+  line,
+  backdrop,  ///< a wide line beneath the others
+  dots,
+  bars,
+  boxes,
+};
+
+/// What a box of a box plot shows; whiskers reach the extremes.
+struct ChartBox {
+  double x = 0;
+  double min = 0;
+  double quartile = 0;
+  double median = 0;
+  double upper_quartile = 0;
+  double max = 0;
+};
+
+struct ChartSeries {
+  std::string label;  ///< with the unit if the axes' labels do not tell
+  std::vector<Vector2d> points;
+  SeriesStyle style = SeriesStyle::line;
+  bool right = false;                      ///< belongs to the axis on the right
+  std::optional<std::size_t> colour = {};  ///< of the style's; by default the series' place in its chart
+  std::vector<ChartBox> boxes = {};        ///< with SeriesStyle::boxes, in place of points
+};
+
+struct Chart {
+  std::string title;
+  std::string caption;
+  std::string x_label;
+  std::string left_label;
+  std::string right_label;                   ///< empty: no axis on the right
+  bool from_zero = true;                     ///< axes of values begin at zero
+  bool equal_scale = false;                  ///< a metre is as long on either axis
+  bool log_x = false;                        ///< x is positive, and its axis logarithmic
+  std::vector<std::string> categories = {};  ///< of x, which are then 0, 1, ...: bars stand on one another
+  std::vector<ChartSeries> series;
+};
+
+struct PageImage {
+  std::string caption;
+  std::string data_uri;
+};
+
+/// A mesh, ready to be drawn: positions are quantised to 16 bits within its box.
+struct SceneMesh {
+  std::string label;
+  PreciseMesh mesh;               ///< with colors
+  std::vector<Rgb> error_colors;  ///< one a vertex, or none
+};
+
+/// Meshes side by side, turned together.
+struct PageScene {
+  std::string caption;
+  std::vector<SceneMesh> meshes;
+  double largest_error_m = 0;          ///< of the last colour
+  Vector3d centre = Vector3d::Zero();  ///< that is looked at
+  double radius_m = 1;                 ///< of what should be in view around it
+  std::array<double, 3> up = {0, 0, 1};
+};
+
+/// Text that is folded away until it is asked for.
+struct PageDetails {
+  std::string summary;
+  PageTable table;
+};
+
+struct PageSection {
+  std::string title;
+  std::string text;
+  std::variant<PageTable, std::vector<Chart>, std::vector<PageImage>, PageScene, std::vector<PageDetails>>
+      content;
+  int level = 2;  ///< of the heading; level 2 stands in the page's list of contents
+};
+
+struct Page {
+  std::string title;
+  std::string subtitle;
+  std::vector<PageSection> sections;
+};
+
+/// The whole file. Texts are escaped; numbers are written with six digits. The style follows the reader's
+/// light or dark scheme.
+[[nodiscard]] std::string to_html(const Page& page);
+
+/// At most 2 * buckets points: of each of the equal stretches of x the lowest and the highest, so that peaks
+/// stay.
+[[nodiscard]] std::vector<Vector2d> thinned(const std::vector<Vector2d>& points, std::size_t buckets);
+
+}  // namespace fusebench::page

@@ -1,0 +1,251 @@
+#include "eval/record/record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "eval/record/histogram_json.hpp"
+#include "eval/record/record_metrics.hpp"
+#include "eval/text/json_text.hpp"
+
+namespace fusebench::record {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const RecordedRecording& recording) {
+  return {{"name", recording.name},
+          {"format", recording.format},
+          {"data", recording.data},
+          {"frames", recording.frames},
+          {"first_frame", recording.first_frame},
+          {"duration_s", recording.duration_s},
+          {"fingerprint", recording.fingerprint},
+          {"imu", recording.imu},
+          {"imu_note", recording.imu_note},
+          {"truth", recording.truth},
+          {"notes", recording.notes}};
+}
+
+void read(const Json& json, RecordedRecording& recording) {
+  recording.name = json.at("name");
+  recording.format = json.at("format");
+  recording.data = json.at("data");
+  recording.frames = json.at("frames");
+  recording.first_frame = json.at("first_frame");
+  recording.duration_s = json.at("duration_s");
+  recording.fingerprint = json.at("fingerprint");
+  recording.imu = json.at("imu");
+  recording.imu_note = json.at("imu_note");
+  recording.truth = json.value("truth", std::string());
+  recording.notes = json.at("notes").get<std::vector<std::string>>();
+}
+
+Json json_of(const std::vector<RecordedOption>& config) {
+  Json json = Json::object();
+  for (const RecordedOption& option : config) {
+    Json value;
+    std::visit([&](const auto& given) { value = given; }, option.value);
+    json[option.key] = {{"value", value}, {"origin", option.origin}};
+  }
+  return json;
+}
+
+std::vector<RecordedOption> config_of(const Json& json) {
+  std::vector<RecordedOption> config;
+  for (const auto& [key, entry] : json.items()) {
+    const Json& value = entry.at("value");
+    config::OptionValue typed = value.is_boolean()          ? config::OptionValue{value.get<bool>()}
+                                : value.is_number_integer() ? config::OptionValue{value.get<std::int64_t>()}
+                                : value.is_number()         ? config::OptionValue{value.get<double>()}
+                                                            : config::OptionValue{value.get<std::string>()};
+    config.push_back({key, std::move(typed), entry.at("origin")});
+  }
+  return config;
+}
+
+Json json_of(const std::vector<RecordedFile>& files) {
+  Json json = Json::object();
+  for (const RecordedFile& file : files) json[file.name] = {{"bytes", file.bytes}, {"xxh3", file.xxh3}};
+  return json;
+}
+
+/// None in an older record.
+std::vector<RecordedFile> files_of(const Json& json) {
+  std::vector<RecordedFile> files;
+  if (!json.contains("files")) return files;
+  for (const auto& [name, file] : json.at("files").items()) {
+    files.push_back({name, file.at("bytes").get<std::uint64_t>(), file.at("xxh3").get<std::string>()});
+  }
+  return files;
+}
+
+Json json_of(const RecordedTiming& timing) {
+  Json stages = Json::object();
+  for (const auto& [name, milliseconds] : timing.stages_ms) stages[name] = milliseconds;
+  Json json = {{"wall_s", timing.wall_s},
+               {"cpu_s", timing.cpu_s},
+               {"peak_rss_bytes", timing.peak_rss_bytes},
+               {"fps", timing.fps},
+               {"stages_ms", stages}};
+  for (const auto& [name, histogram] : timing.histograms) json["histogram_ms"][name] = json_of(histogram);
+  if (!timing.files.empty()) json["files"] = json_of(timing.files);
+  return json;
+}
+
+void read(const Json& json, RecordedTiming& timing) {
+  timing.wall_s = json.at("wall_s");
+  timing.cpu_s = json.at("cpu_s");
+  timing.peak_rss_bytes = json.at("peak_rss_bytes");
+  timing.fps = json.at("fps");
+  for (const auto& [name, milliseconds] : json.at("stages_ms").items()) {
+    timing.stages_ms.emplace_back(name, milliseconds.get<double>());
+  }
+  timing.files = files_of(json);
+  if (!json.contains("histogram_ms")) return;
+  for (const auto& [name, histogram] : json.at("histogram_ms").items()) {
+    timing.histograms.emplace_back(name, DurationHistogram{});
+    read(histogram, timing.histograms.back().second);
+  }
+}
+
+Json json_of(const RecordedProvenance& provenance) {
+  return {{"version", provenance.version},     {"git", provenance.git},  {"compiler", provenance.compiler},
+          {"flags", provenance.flags},         {"cpu", provenance.cpu},  {"threads", provenance.threads},
+          {"estimator", provenance.estimator}, {"host", provenance.host}};
+}
+
+void read(const Json& json, RecordedProvenance& provenance) {
+  provenance.version = json.at("version");
+  provenance.git = json.at("git");
+  provenance.compiler = json.at("compiler");
+  provenance.flags = json.at("flags");
+  provenance.estimator = json.value("estimator", "");
+  provenance.cpu = json.at("cpu");
+  provenance.threads = json.at("threads");
+  provenance.host = json.at("host");
+}
+
+/// A record of another version of this program: not damaged, but not to be read here.
+struct OtherSchema {
+  int schema = 0;
+};
+
+RunStatus status_of(const std::string& text) {
+  if (const auto status = parse_run_status(text)) return *status;
+  throw std::invalid_argument(fmt::format("status = {} (allowed: ok | lost | failed)", text));
+}
+
+RunRecord record_of(const Json& json) {
+  RunRecord record;
+  record.schema = json.at("schema");
+  if (record.schema != kRecordSchema) throw OtherSchema{record.schema};
+  record.status = status_of(json.at("status"));
+  record.reason = json.at("reason");
+  record.run_id = json.value("run_id", "");
+  record.repetition = json.value("repetition", 1);
+  read(json.at("recording"), record.recording);
+  record.variant = json.at("variant");
+  record.config = config_of(json.at("config"));
+  record.config_hash = json.at("config_hash");
+  read_metrics(json.at("metrics"), record.metrics);
+  const Json& frames = json.at("frames");
+  record.frames = {frames.at("total"), frames.at("tracked"), frames.at("lost")};
+  const Json& model = json.at("model");
+  record.model = {model.at("vertices"), model.at("triangles"), model.at("blocks")};
+  record.files = files_of(json);
+  read(json.at("timing"), record.timing);
+  read(json.at("provenance"), record.provenance);
+  return record;
+}
+
+}  // namespace
+
+std::string_view to_string(RunStatus status) {
+  switch (status) {
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::lost:
+      return "lost";
+    case RunStatus::ok:
+      return "ok";
+  }
+  return "unknown";
+}
+
+std::optional<RunStatus> parse_run_status(std::string_view text) {
+  for (const RunStatus status : {RunStatus::ok, RunStatus::lost, RunStatus::failed}) {
+    if (text == to_string(status)) return status;
+  }
+  return std::nullopt;
+}
+
+std::string to_json(const RunRecord& record) {
+  const Json json = {
+      {"schema", record.schema},
+      {"status", to_string(record.status)},
+      {"reason", record.reason},
+      {"run_id", record.run_id},
+      {"repetition", record.repetition},
+      {"recording", json_of(record.recording)},
+      {"variant", record.variant},
+      {"config_hash", record.config_hash},
+      {"metrics", json_of_metrics(record)},
+      {"frames",
+       {{"total", record.frames.total}, {"tracked", record.frames.tracked}, {"lost", record.frames.lost}}},
+      {"model",
+       {{"vertices", record.model.vertices},
+        {"triangles", record.model.triangles},
+        {"blocks", record.model.blocks}}},
+      {"files", json_of(record.files)},
+      {"config", json_of(record.config)},
+      {"timing", json_of(record.timing)},
+      {"provenance", json_of(record.provenance)}};
+  return text::json_text(json) + "\n";
+}
+
+std::string no_json(std::string_view text, std::size_t byte) {
+  if (text.empty()) return "empty";
+  const std::size_t at = std::min(byte, text.size());
+  const bool ends = byte > text.size();
+  const bool zeros = at > 0 && text[at - 1] == '\0';
+  return fmt::format("not JSON at byte {}{}", at,
+                     zeros  ? " (zeros after a power cut?)"
+                     : ends ? ", where it ends"
+                            : "");
+}
+
+Result<RunRecord> parse_record(std::string_view json, const std::string& name) {
+  try {
+    return record_of(Json::parse(json));
+  } catch (const OtherSchema& other) {
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: schema = {} (this program reads {})", name, other.schema, kRecordSchema),
+                "another version of this program wrote it");
+  } catch (const nlohmann::json::parse_error& error) {
+    return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", name, no_json(json, error.byte)));
+  } catch (const nlohmann::json::exception& error) {
+    // "[json.exception.out_of_range.403] key 'variant' not found"
+    const std::string_view text = error.what();
+    const std::size_t prefix = text.find("] ");
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: {}", name, text.substr(prefix == std::string_view::npos ? 0 : prefix + 2)));
+  } catch (const std::invalid_argument& error) {
+    return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", name, error.what()));
+  }
+}
+
+Result<RunRecord> read_record(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_record(text.str(), file.string());
+}
+
+}  // namespace fusebench::record

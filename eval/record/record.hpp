@@ -1,0 +1,179 @@
+// The record of one run: what was asked, what came out, and what made it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/config/options.hpp"
+#include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/intensity_metrics.hpp"
+#include "eval/metrics/residual_metrics.hpp"
+#include "eval/record/duration_histogram.hpp"
+#include "eval/trajectory_error/trajectory_metrics.hpp"
+
+namespace fusebench::record {
+
+inline constexpr int kRecordSchema = 1;
+
+/// The word for a ground truth that `fusebench smooth` made from the recording itself.
+inline constexpr std::string_view kPseudoTruthWord = "pseudo ground truth";
+
+enum class RunStatus {
+  failed,  ///< ended by an error
+  lost,    ///< too many lost frames in a row
+  ok,
+};
+[[nodiscard]] std::string_view to_string(RunStatus status);
+[[nodiscard]] std::optional<RunStatus> parse_run_status(std::string_view text);
+
+/// A metric's result, or why there is none.
+template <class T>
+struct Outcome {
+  std::optional<T> value;
+  std::string reason = "not computed";
+
+  [[nodiscard]] static Outcome from(Result<T> result) {
+    if (result) return {std::move(*result), {}};
+    return {std::nullopt, result.error().message};
+  }
+};
+
+struct RecordedOption {
+  std::string key;
+  config::OptionValue value;
+  std::string origin;
+};
+
+struct RecordedRecording {
+  std::string name;
+  std::string format;
+  std::string data = "recorded";  ///< or "simulated": with its truth and its IMU made by a simulator
+  std::size_t frames = 0;         ///< that the run was asked to process
+  std::size_t first_frame = 0;
+  double duration_s = 0;  ///< first to last of these frames
+  std::string fingerprint;
+  std::string imu = "none";  ///< that the run used: "none", "recorded", "synthetic IMU"
+  std::string imu_note;
+  /// What trajectories are compared with: "none", "given", kPseudoTruthWord; empty in a record that is older.
+  std::string truth = "none";
+  std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
+};
+
+/// In the order of kStateParts.
+using RecordedNees = std::array<Outcome<metrics::NeesResult>, metrics::kStateParts.size()>;
+
+/// The model against the true scene, under three alignments.
+struct RecordedMesh {
+  mesh_error::MeshSampling reconstruction_sampling;
+  mesh_error::MeshSampling truth_sampling;
+  std::size_t reconstruction_samples = 0;
+  std::size_t truth_samples = 0;
+  std::size_t truth_observed = 0;  ///< those of them that completeness is of
+  std::size_t views = 0;           ///< true poses that observe
+  double min_depth_m = 0;          ///< in which they do
+  double max_depth_m = 0;
+  mesh_error::MeshErrorResult poses;                     ///< by all poses of the trajectory: the main result
+  mesh_error::MeshErrorResult first_camera;              ///< by the true pose of the first camera
+  std::optional<mesh_error::MeshErrorResult> positions;  ///< by ATE's alignment, which sees positions only
+  /// Distance of each vertex to the true surface, aligned by all poses: in mesh.ply, not in the record.
+  std::vector<double> vertex_errors_m;
+};
+
+struct RecordedMetrics {
+  Outcome<trajectory_error::AteResult> ate;
+  Outcome<trajectory_error::RpeResult> rpe_frame;   ///< over one frame
+  Outcome<trajectory_error::RpeResult> rpe_second;  ///< over one second
+  Outcome<metrics::IntensityResult> aie;
+  Outcome<RecordedMesh> mesh;
+  RecordedNees nees;
+  Outcome<metrics::ResidualSummary> residuals;
+};
+
+struct RecordedFrames {
+  std::size_t total = 0;    ///< that the run was asked to process
+  std::size_t tracked = 0;  ///< including the first
+  std::size_t lost = 0;     ///< processed and lost; total - tracked - lost were not reached
+};
+
+struct RecordedModel {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  std::size_t blocks = 0;
+};
+
+/// A file of a run as it was written, beside its record.
+struct RecordedFile {
+  std::string name;  ///< relative to the run's folder, with "/"
+  std::uint64_t bytes = 0;
+  std::string xxh3;  ///< Fingerprint::add_file() of it
+
+  friend bool operator==(const RecordedFile&, const RecordedFile&) = default;
+};
+
+/// Never the same twice.
+struct RecordedTiming {
+  double wall_s = 0;
+  double cpu_s = 0;
+  std::uint64_t peak_rss_bytes = 0;
+  double fps = 0;                                         ///< processed frames / wall_s
+  std::vector<std::pair<std::string, double>> stages_ms;  ///< mean over frames
+  /// stage_histograms() of a profiled run; empty of others.
+  std::vector<std::pair<std::string, DurationHistogram>> histograms = {};
+  std::vector<RecordedFile> files = {};  ///< those that hold times, as frames.csv does
+};
+
+struct RecordedProvenance {
+  std::string version;
+  std::string git;
+  std::string compiler;
+  std::string flags;
+  std::string estimator;  ///< BuildInfo::estimator; empty in older records
+  std::string cpu;
+  int threads = 0;
+  std::string host;
+};
+
+/// Starts as a failed run; becomes good.
+struct RunRecord {
+  int schema = kRecordSchema;
+  RunStatus status = RunStatus::failed;
+  std::string reason = "not run";  ///< empty if ok
+  std::string run_id;  ///< run_identity(): all that the results depend on; empty if that was never known
+  int repetition = 1;  ///< of the same run, for its time
+  RecordedRecording recording;
+  std::string variant;
+  std::vector<RecordedOption> config;  ///< every option, in declaration order
+  std::string config_hash;
+  RecordedMetrics metrics;
+  RecordedFrames frames;
+  RecordedModel model;
+  std::vector<RecordedFile> files;  ///< by name, without those that hold times; empty in older records
+  RecordedTiming timing;
+  RecordedProvenance provenance;
+};
+
+/// JSON with two blanks of indentation. Everything outside `timing` and `provenance` depends on the inputs
+/// alone. Statistics are SI; numbers that do not exist are null, with a reason beside them.
+[[nodiscard]] std::string to_json(const RunRecord& record);
+
+/// What is wrong with a text that the parser took for no JSON at a byte, which it counts from 1: "not JSON at
+/// byte 4097 (zeros after a power cut?)".
+[[nodiscard]] std::string no_json(std::string_view text, std::size_t byte);
+
+/// Errors, with the name (a file, for messages) and what is missing or wrong: data_corrupt; configuration if
+/// it has the schema of another version of this program.
+[[nodiscard]] Result<RunRecord> parse_record(std::string_view json, const std::string& name);
+
+/// Errors: data_missing, and those of parse_record.
+[[nodiscard]] Result<RunRecord> read_record(const std::filesystem::path& file);
+
+}  // namespace fusebench::record

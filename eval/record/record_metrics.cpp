@@ -1,0 +1,300 @@
+#include "eval/record/record_metrics.hpp"
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "eval/mesh_error/mesh_json.hpp"
+#include "eval/metrics/statistics_json.hpp"
+#include "eval/trajectory_error/alignment_json.hpp"
+
+namespace fusebench::record {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// NaN is dumped as null; null is read as NaN.
+double number_at(const Json& json, const char* key) {
+  const Json& value = json.at(key);
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+metrics::Statistics statistics_of(const Json& json) {
+  if (json.is_null()) return {};
+  return {number_at(json, "rmse"),   number_at(json, "mean"),
+          number_at(json, "median"), number_at(json, "std"),
+          number_at(json, "min"),    number_at(json, "max"),
+          number_at(json, "sse"),    json.at("count").get<std::size_t>()};
+}
+
+trajectory_error::Alignment alignment_of(const Json& json) {
+  const auto m = json.at("matrix").get<std::array<double, 16>>();
+  Matrix3d rotation;
+  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  return {json.at("mode"), {Quaterniond(rotation), {m[3], m[7], m[11]}}};
+}
+
+Json json_of(const trajectory_error::AteResult& ate) {
+  return {{"protocol", ate.protocol},
+          {"relation", ate.relation},
+          {"unit", ate.unit},
+          {"pairs", ate.pairs},
+          {"possible", ate.possible},
+          {"coverage", ate.coverage},
+          {"max_difference_s", ate.max_difference_s},
+          {"alignment", trajectory_error::json_of(ate.alignment)},
+          {"stats", metrics::json_of(ate.stats)}};
+}
+
+void read(const Json& json, trajectory_error::AteResult& ate) {
+  ate.protocol = json.at("protocol");
+  ate.relation = json.at("relation");
+  ate.unit = json.at("unit");
+  ate.pairs = json.at("pairs");
+  ate.possible = json.at("possible");
+  ate.coverage = json.at("coverage");
+  ate.max_difference_s = json.at("max_difference_s");
+  ate.alignment = alignment_of(json.at("alignment"));
+  ate.stats = statistics_of(json.at("stats"));
+}
+
+Json json_of(const trajectory_error::RpeResult& rpe) {
+  return {{"protocol", rpe.protocol},
+          {"delta", rpe.delta},
+          {"delta_unit", trajectory_error::to_string(rpe.unit)},
+          {"pairs", rpe.pairs},
+          {"possible", rpe.possible},
+          {"coverage", rpe.coverage},
+          {"max_difference_s", rpe.max_difference_s},
+          {"alignment", trajectory_error::json_of(rpe.alignment)},
+          {"translation", {{"unit", "m"}, {"stats", metrics::json_of(rpe.translation)}}},
+          {"rotation", {{"unit", "rad"}, {"stats", metrics::json_of(rpe.rotation)}}}};
+}
+
+void read(const Json& json, trajectory_error::RpeResult& rpe) {
+  rpe.protocol = json.at("protocol");
+  rpe.delta = json.at("delta");
+  rpe.unit = json.at("delta_unit") == trajectory_error::to_string(trajectory_error::DeltaUnit::frames)
+                 ? trajectory_error::DeltaUnit::frames
+                 : trajectory_error::DeltaUnit::seconds;
+  rpe.pairs = json.at("pairs");
+  rpe.possible = json.at("possible");
+  rpe.coverage = json.at("coverage");
+  rpe.max_difference_s = json.at("max_difference_s");
+  rpe.alignment = alignment_of(json.at("alignment"));
+  rpe.translation = statistics_of(json.at("translation").at("stats"));
+  rpe.rotation = statistics_of(json.at("rotation").at("stats"));
+}
+
+Json json_of(const metrics::IntensitySummary& summary) {
+  return {{"aie", summary.aie_grey},
+          {"rms", summary.rms_grey},
+          {"pixels", summary.pixels},
+          {"frames", summary.frames},
+          {"frames_excluded", summary.frames_excluded},
+          {"stats", metrics::json_of(summary.stats)}};
+}
+
+metrics::IntensitySummary summary_of(const Json& json) {
+  return {number_at(json, "aie"),
+          number_at(json, "rms"),
+          json.at("pixels").get<std::size_t>(),
+          json.at("frames").get<std::size_t>(),
+          json.at("frames_excluded").get<std::size_t>(),
+          statistics_of(json.at("stats"))};
+}
+
+Json json_of(const metrics::IntensityResult& aie) {
+  Json json = {{"protocol", "mean over frames of the mean over visible pixels of tracked patches"},
+               {"unit", "grey levels 0-255"}};
+  json.update(json_of(aie.all));
+  json["accepted"] = json_of(aie.accepted);
+  return json;
+}
+
+void read(const Json& json, metrics::IntensityResult& aie) {
+  aie.all = summary_of(json);
+  aie.accepted = summary_of(json.at("accepted"));
+}
+
+Json json_of(const metrics::NeesResult& nees) {
+  const metrics::NeesBounds bounds = metrics::nees_bounds_95(1, nees.part.dof);
+  return {{"dof", nees.part.dof},        {"frames", nees.stats.count},
+          {"possible", nees.possible},   {"mean", nees.stats.mean},
+          {"median", nees.stats.median}, {"std", nees.stats.std},
+          {"min", nees.stats.min},       {"max", nees.stats.max},
+          {"final", nees.last},          {"final_bounds_95", {bounds.lower, bounds.upper}}};
+}
+
+void read(const Json& json, metrics::NeesResult& nees) {
+  nees.possible = json.at("possible");
+  nees.stats.count = json.at("frames");
+  nees.stats.mean = number_at(json, "mean");
+  nees.stats.median = number_at(json, "median");
+  nees.stats.std = number_at(json, "std");
+  nees.stats.min = number_at(json, "min");
+  nees.stats.max = number_at(json, "max");
+  nees.last = number_at(json, "final");
+}
+
+Json json_of(const metrics::ResidualSummary& summary) {
+  return {{"protocol", "mean over tracked frames; chi2: mean squared whitened residual of a frame"},
+          {"frames", summary.frames},
+          {"chi2_photometric", summary.chi2_photometric},
+          {"chi2_geometric", summary.chi2_geometric},
+          {"patches_tracked", summary.patches_tracked},
+          {"patches_accepted", summary.patches_accepted},
+          {"accepted_share", summary.accepted_share}};
+}
+
+void read(const Json& json, metrics::ResidualSummary& summary) {
+  summary.frames = json.at("frames");
+  summary.chi2_photometric = number_at(json, "chi2_photometric");
+  summary.chi2_geometric = number_at(json, "chi2_geometric");
+  summary.patches_tracked = number_at(json, "patches_tracked");
+  summary.patches_accepted = number_at(json, "patches_accepted");
+  summary.accepted_share = number_at(json, "accepted_share");
+}
+
+mesh_error::MeshDistances distances_of(const Json& json) {
+  if (json.is_null()) return {};
+  return {statistics_of(json), number_at(json, "p90"), number_at(json, "p95")};
+}
+
+mesh_error::MeshErrorResult mesh_error_of(const Json& json) {
+  mesh_error::MeshErrorResult mesh;
+  mesh.alignment = alignment_of(json.at("alignment"));
+  mesh.accuracy = distances_of(json.at("accuracy"));
+  mesh.completeness = distances_of(json.at("completeness"));
+  mesh.chamfer_m = number_at(json, "chamfer_m");
+  for (const Json& at : json.at("thresholds")) {
+    mesh.thresholds.push_back({at.at("tau_m"), at.at("precision"), at.at("recall"), at.at("fscore")});
+  }
+  return mesh;
+}
+
+mesh_error::MeshSampling sampling_of(const Json& json) {
+  const bool vertices = json.at("from") == mesh_error::to_string(mesh_error::MeshSamples::vertices);
+  return {vertices ? mesh_error::MeshSamples::vertices : mesh_error::MeshSamples::area, json.at("count"),
+          json.at("seed")};
+}
+
+Json json_of(const RecordedMesh& mesh) {
+  const double observed = mesh.truth_samples == 0 ? 0.0
+                                                  : static_cast<double>(mesh.truth_observed) /
+                                                        static_cast<double>(mesh.truth_samples);
+  Json json = {
+      {"protocol",
+       "exact distances to triangles; accuracy: reconstruction to truth; completeness: truth that "
+       "the true pose of any tenth frame sees (frustum, range of depth, not occluded) to "
+       "reconstruction; aligned by all poses of the trajectory, and beside it by the first true "
+       "camera and by positions alone"},
+      {"unit", "m"},
+      {"samples",
+       {{"reconstruction", mesh_error::json_of(mesh.reconstruction_sampling, mesh.reconstruction_samples)},
+        {"truth", mesh_error::json_of(mesh.truth_sampling, mesh.truth_samples)}}},
+      {"observed",
+       {{"points", mesh.truth_observed},
+        {"share", observed},
+        {"views", mesh.views},
+        {"min_depth_m", mesh.min_depth_m},
+        {"max_depth_m", mesh.max_depth_m}}}};
+  json.update(mesh_error::json_of(mesh.poses));
+  json["first_camera"] = mesh_error::json_of(mesh.first_camera);
+  json["positions"] = mesh.positions ? mesh_error::json_of(*mesh.positions) : Json(nullptr);
+  return json;
+}
+
+void read(const Json& json, RecordedMesh& mesh) {
+  const Json& samples = json.at("samples");
+  mesh.reconstruction_sampling = sampling_of(samples.at("reconstruction"));
+  mesh.truth_sampling = sampling_of(samples.at("truth"));
+  mesh.reconstruction_samples = samples.at("reconstruction").at("points");
+  mesh.truth_samples = samples.at("truth").at("points");
+  const Json& observed = json.at("observed");
+  mesh.truth_observed = observed.at("points");
+  mesh.views = observed.at("views");
+  mesh.min_depth_m = number_at(observed, "min_depth_m");
+  mesh.max_depth_m = number_at(observed, "max_depth_m");
+  mesh.poses = mesh_error_of(json);
+  mesh.first_camera = mesh_error_of(json.at("first_camera"));
+  if (const Json& positions = json.at("positions"); !positions.is_null()) {
+    mesh.positions = mesh_error_of(positions);
+  }
+}
+
+template <class T>
+Json json_of(const Outcome<T>& outcome) {
+  if (outcome.value) return json_of(*outcome.value);
+  return {{"stats", nullptr}, {"reason", outcome.reason}};
+}
+
+template <class T>
+Outcome<T> outcome_of(const Json& json) {
+  if (json.contains("reason")) return {std::nullopt, json.at("reason")};
+  Outcome<T> outcome{T{}, {}};
+  read(json, *outcome.value);
+  return outcome;
+}
+
+// The reason of what a record of an earlier version does not have.
+constexpr const char* kOlderRecord = "the record is older than this metric";
+
+template <class T>
+Outcome<T> newer_outcome_of(const Json& json, const std::string& key) {
+  if (!json.contains(key)) return {std::nullopt, kOlderRecord};
+  return outcome_of<T>(json.at(key));
+}
+
+Json json_of_nees(const RecordedNees& nees) {
+  Json json = {{"protocol",
+                "(truth - estimate)^T P^-1 (truth - estimate) / dof, of tracked frames after the first; the "
+                "truth is moved by the first camera's true pose; 1 is consistent"}};
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    json[std::string(metrics::kStateParts[i].name)] = json_of(nees[i]);
+  }
+  return json;
+}
+
+RecordedNees nees_of(const Json& metrics) {
+  RecordedNees nees;
+  const Json json = metrics.value("nees", Json::object());
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    nees[i] = newer_outcome_of<metrics::NeesResult>(json, std::string(metrics::kStateParts[i].name));
+    if (nees[i].value) nees[i].value->part = metrics::kStateParts[i];
+  }
+  return nees;
+}
+
+}  // namespace
+
+Json json_of_metrics(const RunRecord& record) {
+  const double share = record.frames.total == 0 ? 0.0
+                                                : static_cast<double>(record.frames.tracked) /
+                                                      static_cast<double>(record.frames.total);
+  return {
+      {"ate", json_of(record.metrics.ate)},
+      {"rpe", {{"frame", json_of(record.metrics.rpe_frame)}, {"second", json_of(record.metrics.rpe_second)}}},
+      {"aie", json_of(record.metrics.aie)},
+      {"mesh", json_of(record.metrics.mesh)},
+      {"nees", json_of_nees(record.metrics.nees)},
+      {"residuals", json_of(record.metrics.residuals)},
+      {"coverage",
+       {{"protocol", "tracked frames / frames of the recording"},
+        {"tracked", record.frames.tracked},
+        {"total", record.frames.total},
+        {"share", share}}}};
+}
+
+void read_metrics(const Json& json, RecordedMetrics& metrics) {
+  metrics.ate = outcome_of<trajectory_error::AteResult>(json.at("ate"));
+  metrics.rpe_frame = outcome_of<trajectory_error::RpeResult>(json.at("rpe").at("frame"));
+  metrics.rpe_second = outcome_of<trajectory_error::RpeResult>(json.at("rpe").at("second"));
+  metrics.aie = outcome_of<metrics::IntensityResult>(json.at("aie"));
+  metrics.mesh = newer_outcome_of<RecordedMesh>(json, "mesh");
+  metrics.nees = nees_of(json);
+  metrics.residuals = newer_outcome_of<metrics::ResidualSummary>(json, "residuals");
+}
+
+}  // namespace fusebench::record

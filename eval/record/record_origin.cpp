@@ -1,0 +1,76 @@
+#include "eval/record/record_origin.hpp"
+
+#include "eval/record/build_info.hpp"
+#include "eval/record/process_meter.hpp"
+#include "eval/record/true_camera.hpp"
+
+namespace fusebench::record {
+
+namespace {
+
+std::string_view truth_word(const recording::Recording& recording) {
+  if (recording.ground_truth.empty()) return "none";
+  return recording.truth_label.empty() ? "given" : kPseudoTruthWord;
+}
+
+}  // namespace
+
+std::vector<std::string> reading_notes(const recording::Recording& recording,
+                                       const std::filesystem::path& folder) {
+  std::string place = folder.string();
+  while (place.size() > 1 && place.ends_with('/')) place.pop_back();
+  const auto placed = [&](const std::string& text) {
+    if (!text.starts_with(place + "/") && !text.starts_with(place + ":")) return text;
+    return recording.name + text.substr(place.size());
+  };
+  std::vector<std::string> notes;
+  for (const std::string& note : recording.notes) notes.push_back(placed(note));
+  for (const std::string& warning : recording.warnings) notes.push_back("warning: " + placed(warning));
+  return notes;
+}
+
+RecordedRecording recorded_recording(const recording::Recording& recording,
+                                     const std::filesystem::path& folder, std::size_t first_frame) {
+  return {.name = recording.name,
+          .format = recording.format,
+          .data = recording.simulated ? "simulated" : "recorded",
+          .frames = recording.frames.size(),
+          .first_frame = first_frame,
+          .duration_s =
+              seconds_between(recording.frames.front().timestamp_ns, recording.frames.back().timestamp_ns),
+          .fingerprint = recording.fingerprint,
+          .imu = std::string(recording::to_string(recording.imu_source)),
+          .imu_note = recording.imu_note,
+          .truth = std::string(truth_word(recording)),
+          .notes = reading_notes(recording, folder)};
+}
+
+RecordedProvenance provenance_here(int threads) {
+  const BuildInfo& build = build_info();
+  return {std::string(build.version),
+          std::string(build.git),
+          std::string(build.compiler),
+          std::string(build.flags),
+          std::string(build.estimator),
+          cpu_model(),
+          threads,
+          host_name()};
+}
+
+std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording) {
+  std::vector<StampAndInstant> stamps;
+  for (const recording::FrameEntry& frame : recording.frames)
+    stamps.emplace_back(frame.timestamp_ns, frame.capture_ns);
+  return stamps;
+}
+
+Trajectory true_trajectory(const recording::Recording& recording, std::span<const StampAndInstant> stamps) {
+  Trajectory truth;
+  for (const auto& [stamp_ns, instant_ns] : stamps) {
+    const auto pose = true_camera(recording, instant_ns);
+    if (pose) truth.push_back({stamp_ns, *pose});
+  }
+  return truth;
+}
+
+}  // namespace fusebench::record

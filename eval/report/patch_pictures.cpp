@@ -1,0 +1,183 @@
+#include "eval/report/patch_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+
+#include "datasets/images/image_files.hpp"
+#include "eval/text/base64.hpp"
+
+namespace fusebench::report {
+
+namespace {
+
+constexpr std::size_t kPatches = 4;
+constexpr int kTile_px = 120;
+constexpr int kGap_px = 8;
+constexpr double kBrightestDifference_grey = 64;
+
+using Pixels = std::vector<run_files::PatchTablePixel>;
+
+/// A patch's key: its upper left pixel in the frame before, by which runs agree.
+using Corner = std::pair<int, int>;
+
+std::map<Corner, Pixels> patches_of(const run_files::PatchTableFrame& frame) {
+  std::map<std::uint32_t, Pixels> by_number;
+  for (const run_files::PatchTablePixel& pixel : frame.pixels) by_number[pixel.patch].push_back(pixel);
+  std::map<Corner, Pixels> patches;
+  for (auto& [number, pixels] : by_number) {
+    Corner corner = {pixels.front().reference_px.x(), pixels.front().reference_px.y()};
+    for (const run_files::PatchTablePixel& p : pixels)
+      corner = {std::min(corner.first, p.reference_px.x()), std::min(corner.second, p.reference_px.y())};
+    patches.emplace(corner, std::move(pixels));
+  }
+  return patches;
+}
+
+double mean_difference(const Pixels& pixels) {
+  double sum = 0;
+  for (const run_files::PatchTablePixel& p : pixels) sum += std::abs(p.reference_grey - p.observed_grey);
+  return sum / static_cast<double>(pixels.size());
+}
+
+/// A square region of an image.
+struct Window {
+  int left = 0;
+  int top = 0;
+  int side = 0;
+};
+
+template <class Place>
+Window window_of(const Pixels& pixels, const Place& place, int margin) {
+  Eigen::AlignedBox2f box;
+  for (const run_files::PatchTablePixel& p : pixels) box.extend(Eigen::Vector2f(place(p)));
+  const int side = static_cast<int>(std::ceil(box.sizes().maxCoeff())) + 1 + 2 * margin;
+  const Eigen::Vector2f center = box.center();
+  return {static_cast<int>(std::lround(center.x())) - side / 2,
+          static_cast<int>(std::lround(center.y())) - side / 2, side};
+}
+
+/// Grey levels at their nearest pixels; the rest keeps the paper's colour.
+template <class Place, class Value>
+cv::Mat splatted(const Pixels& pixels, const Window& window, const Place& place, const Value& value) {
+  constexpr double kPaper = 238;
+  cv::Mat tile(window.side, window.side, CV_8UC1, cv::Scalar(kPaper));
+  for (const run_files::PatchTablePixel& p : pixels) {
+    const Eigen::Vector2f at = place(p);
+    const int x = static_cast<int>(std::lround(at.x())) - window.left;
+    const int y = static_cast<int>(std::lround(at.y())) - window.top;
+    if (x < 0 || y < 0 || x >= window.side || y >= window.side) continue;
+    tile.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(value(p));
+  }
+  return tile;
+}
+
+cv::Mat cut(const GreyImage& image, const Window& window) {
+  cv::Mat tile(window.side, window.side, CV_8UC1, cv::Scalar(0));
+  for (int y = 0; y < window.side; ++y) {
+    for (int x = 0; x < window.side; ++x) {
+      if (image.contains(window.left + x, window.top + y))
+        tile.at<std::uint8_t>(y, x) = image(window.left + x, window.top + y);
+    }
+  }
+  return tile;
+}
+
+std::string picture(const Pixels& pixels, const GreyImage& image) {
+  const auto before = [](const run_files::PatchTablePixel& p) {
+    return Eigen::Vector2f(p.reference_px.cast<float>());
+  };
+  const auto here = [](const run_files::PatchTablePixel& p) { return p.landed_px; };
+  const Window there = window_of(pixels, before, 1);
+  const Window window = window_of(pixels, here, 3);
+  const std::vector<cv::Mat> tiles = {
+      splatted(pixels, there, before, [](const run_files::PatchTablePixel& p) { return p.reference_grey; }),
+      splatted(pixels, window, here, [](const run_files::PatchTablePixel& p) { return p.reference_grey; }),
+      cut(image, window), splatted(pixels, window, here, [](const run_files::PatchTablePixel& p) {
+        return 255 * std::abs(p.reference_grey - p.observed_grey) / kBrightestDifference_grey;
+      })};
+  const int columns = static_cast<int>(tiles.size());
+  ColorImage strip(columns * kTile_px + (columns - 1) * kGap_px, kTile_px, Rgb{255, 255, 255});
+  cv::Mat view(strip.height, strip.width, CV_8UC3, strip.data.data());
+  for (int i = 0; i < columns; ++i) {
+    cv::Mat large;
+    cv::resize(tiles[static_cast<std::size_t>(i)], large, {kTile_px, kTile_px}, 0, 0, cv::INTER_NEAREST);
+    cv::cvtColor(large, view(cv::Rect(i * (kTile_px + kGap_px), 0, kTile_px, kTile_px)), cv::COLOR_GRAY2RGB);
+  }
+  constexpr int kQuality = 92;
+  const auto jpeg = images::encode_jpeg(strip, kQuality);
+  return jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string();
+}
+
+/// The number of a frame that all runs kept, the one with the most motion in the first run.
+std::optional<std::size_t> common_frame(std::span<const LabelledPatches> runs) {
+  std::optional<std::size_t> best;
+  double most_px = -1;
+  for (const run_files::PatchTableFrame& candidate : runs.front().frames) {
+    const bool everywhere = std::ranges::all_of(runs, [&](const LabelledPatches& run) {
+      return std::ranges::find(run.frames, candidate.frame, &run_files::PatchTableFrame::frame) !=
+             run.frames.end();
+    });
+    if (!everywhere || candidate.motion_px <= most_px) continue;
+    best = candidate.frame;
+    most_px = candidate.motion_px;
+  }
+  return best;
+}
+
+}  // namespace
+
+PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
+  PatchPictures result;
+  if (runs.empty()) return result;
+  const auto number = common_frame(runs);
+  if (!number) return result;
+  std::vector<const run_files::PatchTableFrame*> frames;
+  std::vector<std::map<Corner, Pixels>> patches;
+  for (const LabelledPatches& run : runs) {
+    frames.push_back(&*std::ranges::find(run.frames, *number, &run_files::PatchTableFrame::frame));
+    patches.push_back(patches_of(*frames.back()));
+  }
+  std::vector<Corner> common;
+  for (const auto& [corner, pixels] : patches.front()) {
+    if (std::ranges::all_of(patches, [&](const auto& other) { return other.contains(corner); }))
+      common.push_back(corner);
+  }
+  if (common.empty()) return result;
+  result.text = fmt::format(
+      "Frame {}, whose patches moved by {:.1f} px (median). Mean difference over the {} patches that "
+      "all of these runs track:",
+      *number, frames.front()->motion_px, common.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    double sum = 0;
+    for (const Corner& corner : common) sum += mean_difference(patches[i].at(corner));
+    result.text += fmt::format("{} {} {:.2f}", i > 0 ? "," : "", runs[i].label,
+                               sum / static_cast<double>(common.size()));
+  }
+  result.text += fmt::format(
+      " grey levels. From left to right: the patch in the frame before; its grey levels where they are "
+      "expected in "
+      "this frame; what the image has there; the absolute difference (black 0, white {:.0f} grey levels and "
+      "more). "
+      "Gaps are where a patch is stretched, or hidden. Patches are spread over the image, not chosen.",
+      kBrightestDifference_grey);
+  for (std::size_t k = 0; k < std::min(kPatches, common.size()); ++k) {
+    const Corner& corner = common[(2 * k + 1) * common.size() / (2 * std::min(kPatches, common.size()))];
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const Pixels& pixels = patches[i].at(corner);
+      result.images.push_back(
+          {fmt::format("{}: patch at ({}, {}), difference {:.1f} grey levels{}", runs[i].label, corner.first,
+                       corner.second, mean_difference(pixels),
+                       pixels.front().accepted ? "" : " (rejected by the gate)"),
+           picture(pixels, frames[i]->grey)});
+    }
+  }
+  return result;
+}
+
+}  // namespace fusebench::report

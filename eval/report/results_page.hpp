@@ -1,0 +1,24 @@
+// A folder of runs as one page: tables, charts, patches and meshes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "eval/page/page.hpp"
+#include "eval/run_files/found_runs.hpp"
+
+namespace fusebench::report {
+
+struct ResultsPage {
+  page::Page page;
+  std::size_t tables = 0;             ///< of the sections: those before the first recording
+  std::vector<std::string> warnings;  ///< what could not be read and is therefore not shown
+};
+
+/// As many runs as there are; details are thinned so that the page stays within some megabytes. title: shown
+/// at the top.
+[[nodiscard]] ResultsPage results_page(const std::vector<run_files::FoundRun>& runs,
+                                       const std::string& title);
+
+}  // namespace fusebench::report

@@ -1,0 +1,85 @@
+#include "eval/report/run_series.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "core/trajectory/trajectory_file.hpp"
+#include "eval/run_files/record_files.hpp"
+
+namespace fusebench::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Nothing of a trajectory that is not there: a run without truth, or that lost its first frame.
+Trajectory trajectory_of(const run_files::FoundRun& run, const char* name,
+                         std::vector<std::string>& warnings) {
+  const fs::path file = run.folder / name;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return {};
+  if (auto checked = run_files::check_file(run.folder, run.record, name); !checked) {
+    warnings.push_back(fmt::format("{}: {}", run.folder.string(), checked.error().message));
+    return {};
+  }
+  auto read = trajectory::read_tum_trajectory(file, warnings);
+  if (read) return std::move(*read);
+  warnings.push_back(read.error().message);
+  return {};
+}
+
+std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& truth,
+                                   const SE3& T_truth_world) {
+  std::map<std::int64_t, const SE3*> known;
+  for (const StampedPose& pose : truth) known.emplace(pose.timestamp_ns, &pose.T_world_camera);
+  std::vector<ComparedPose> poses;
+  for (const StampedPose& pose : estimate) {
+    ComparedPose both{pose.timestamp_ns, T_truth_world * pose.T_world_camera, {}, 0};
+    if (const auto found = known.find(pose.timestamp_ns); found != known.end()) {
+      both.T_truth_truth = *found->second;
+      both.error_m = (both.T_truth_camera.translation - found->second->translation).norm();
+    }
+    poses.push_back(both);
+  }
+  return poses;
+}
+
+}  // namespace
+
+RunSeries series_of(const run_files::FoundRun& run, std::string label) {
+  RunSeries series;
+  series.run = &run;
+  series.label = std::move(label);
+  std::error_code ignored;
+  const bool imported = run.record.config.empty() && !fs::exists(run.folder / "frames.csv", ignored);
+  Result<std::vector<run_files::FrameTableRow>> frames =
+      imported ? std::vector<run_files::FrameTableRow>()
+               : run_files::read_frame_table(run.folder / "frames.csv");
+  if (frames) {
+    series.frames = std::move(*frames);
+  } else {
+    series.warnings.push_back(frames.error().message);
+  }
+  series.truth = trajectory_of(run, "truth.tum", series.warnings);
+  const Trajectory estimate = trajectory_of(run, "trajectory.tum", series.warnings);
+  if (!estimate.empty()) series.T_first_world = estimate.front().T_world_camera.inverse();
+  if (!series.frames.empty()) {
+    series.start_ns = series.frames.front().timestamp_ns;
+  } else if (!series.truth.empty() || !estimate.empty()) {
+    series.start_ns = (series.truth.empty() ? estimate : series.truth).front().timestamp_ns;
+  }
+  if (fs::exists(run.folder / "nees.csv", ignored)) {
+    auto nees = run_files::read_nees_table(run.folder / "nees.csv");
+    if (nees) series.nees = std::move(*nees);
+    if (!nees) series.warnings.push_back(nees.error().message);
+  }
+  const auto& ate = run.record.metrics.ate.value;
+  series.poses = compared(estimate, ate ? series.truth : Trajectory{},
+                          ate ? ate->alignment.T_reference_estimate : SE3{});
+  return series;
+}
+
+}  // namespace fusebench::report

@@ -1,0 +1,45 @@
+// What a run's files say over time, ready to be drawn.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/frame_table.hpp"
+#include "eval/run_files/nees_table.hpp"
+
+namespace fusebench::report {
+
+/// Where a tracked frame was, and where it should have been.
+struct ComparedPose {
+  std::int64_t timestamp_ns = 0;
+  SE3 T_truth_camera;                ///< of the estimate, aligned as for the ATE
+  std::optional<SE3> T_truth_truth;  ///< of the truth, if it is known then
+  double error_m = 0;                ///< distance of both, if it is
+};
+
+struct RunSeries {
+  const run_files::FoundRun* run = nullptr;
+  std::string label;                             ///< the variant, with the run's name if there are several
+  std::vector<run_files::FrameTableRow> frames;  ///< none of an imported run
+  std::int64_t start_ns = 0;                     ///< of the first frame, or the first pose that is known
+  std::vector<ComparedPose> poses;
+  std::vector<run_files::NeesTableRow> nees;  ///< of simulated recordings, whose states are known
+  Trajectory truth;                           ///< empty: not known
+  SE3 T_first_world;  ///< the first pose of the estimate, in whose frame models are shown
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] double time_s(std::int64_t timestamp_ns) const {
+    return seconds_between(start_ns, timestamp_ns);
+  }
+};
+
+/// Reads frames.csv, trajectory.tum and truth.tum of a run; what is not there or not readable stays empty,
+/// with a warning.
+[[nodiscard]] RunSeries series_of(const run_files::FoundRun& run, std::string label);
+
+}  // namespace fusebench::report

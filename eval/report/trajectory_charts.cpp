@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "eval/report/chart_parts.hpp"
+#include "eval/report/run_charts.hpp"
+
+namespace fusebench::report {
+
+namespace {
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+template <class Value>
+std::vector<Vector2d> of_poses(const RunSeries& run, const Value& value) {
+  std::vector<Vector2d> points;
+  for (const ComparedPose& pose : run.poses) points.push_back(value(pose));
+  return points;
+}
+
+template <class Value>
+std::vector<Vector2d> of_truth(const RunSeries& run, const Value& value) {
+  std::vector<Vector2d> points;
+  for (const StampedPose& pose : run.truth) points.push_back(value(pose));
+  return points;
+}
+
+page::Chart view_chart(std::span<const RunSeries> runs, int across, int along, std::size_t buckets) {
+  const auto name = [](int axis) { return kAxes[static_cast<std::size_t>(axis)]; };
+  page::Chart chart = chart_of(fmt::format("{}-{} view", name(across), name(along)),
+                               fmt::format("{} [m]", name(across)), fmt::format("{} [m]", name(along)));
+  chart.from_zero = false;
+  chart.equal_scale = true;
+  const auto place = [&](const Vector3d& p) { return Vector2d(p[across], p[along]); };
+  if (const RunSeries* run = with_truth(runs)) {
+    chart.series.push_back(
+        {"ground truth",
+         strided(of_truth(*run, [&](const StampedPose& p) { return place(p.T_world_camera.translation); }),
+                 2 * buckets),
+         page::SeriesStyle::backdrop, false, 0});
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto points =
+        of_poses(runs[i], [&](const ComparedPose& p) { return place(p.T_truth_camera.translation); });
+    chart.series.push_back(
+        {runs[i].label, strided(points, 2 * buckets), page::SeriesStyle::line, false, colour_of(i)});
+  }
+  return chart;
+}
+
+page::Chart position_chart(std::span<const RunSeries> runs, int axis, std::size_t buckets) {
+  page::Chart chart = chart_of(fmt::format("Position along {}", kAxes[static_cast<std::size_t>(axis)]),
+                               "time [s]", fmt::format("{} [m]", kAxes[static_cast<std::size_t>(axis)]));
+  chart.from_zero = false;
+  if (const RunSeries* run = with_truth(runs)) {
+    const auto points = of_truth(*run, [&](const StampedPose& p) {
+      return Vector2d(run->time_s(p.timestamp_ns), p.T_world_camera.translation[axis]);
+    });
+    chart.series.push_back(
+        {"ground truth", page::thinned(points, buckets), page::SeriesStyle::backdrop, false, 0});
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto points = of_poses(runs[i], [&](const ComparedPose& p) {
+      return Vector2d(runs[i].time_s(p.timestamp_ns), p.T_truth_camera.translation[axis]);
+    });
+    chart.series.push_back(
+        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, colour_of(i)});
+  }
+  return chart;
+}
+
+}  // namespace
+
+std::vector<page::Chart> view_charts(std::span<const RunSeries> runs, std::size_t buckets) {
+  std::vector<page::Chart> charts;
+  add(charts, view_chart(runs, 0, 1, buckets));
+  add(charts, view_chart(runs, 0, 2, buckets));
+  add(charts, view_chart(runs, 1, 2, buckets));
+  return charts;
+}
+
+std::vector<page::Chart> position_charts(std::span<const RunSeries> runs, std::size_t buckets) {
+  std::vector<page::Chart> charts;
+  for (const int axis : {0, 1, 2}) add(charts, position_chart(runs, axis, buckets));
+  return charts;
+}
+
+}  // namespace fusebench::report

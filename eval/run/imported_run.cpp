@@ -1,0 +1,198 @@
+#include "eval/run/imported_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "core/config/variants.hpp"
+#include "core/io/fingerprint.hpp"
+#include "core/io/staged_folder.hpp"
+#include "core/mesh/mesh_file.hpp"
+#include "core/mesh/ply_file.hpp"
+#include "core/trajectory/association.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "eval/record/record_origin.hpp"
+#include "eval/run/run_evaluation.hpp"
+#include "eval/run_files/record_files.hpp"
+#include "eval/trajectory_files/stamps.hpp"
+
+namespace fusebench::run {
+
+namespace {
+
+constexpr std::int64_t kSameFrame_ns = 20'000'000;
+
+Result<void> check_name(const std::string& name) {
+  const bool letters = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '+';
+  });
+  if (!letters || name.starts_with('.')) {
+    return fail(ErrorCode::usage, fmt::format("'{}' is no name of a system", name),
+                "letters, digits, '-', '_', '+' and '.', as in ORB-SLAM3");
+  }
+  const auto ours =
+      std::ranges::find(config::all_variants(), name, [](const config::Variant& v) { return v.name; });
+  if (ours == config::all_variants().end()) return {};
+  return fail(ErrorCode::usage, fmt::format("{} is a variant of this program", name),
+              "give the imported system a name of its own");
+}
+
+Result<recording::Recording> open(const ImportSpec& spec) {
+  auto recording = datasets::open_recording(spec.recording, spec.open);
+  if (!recording) return recording;
+  if (spec.frames) {
+    if (auto cut = recording::select_frames(*recording, spec.frames->begin, spec.frames->end); !cut)
+      return tl::unexpected(cut.error());
+  }
+  if (recording->frames.empty())
+    return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
+  return recording;
+}
+
+/// Poses without stamps get those of the frames.
+Result<Trajectory> stamped(trajectory_files::LoadedTrajectory loaded, const recording::Recording& recording) {
+  if (loaded.has_stamps()) return std::move(loaded.poses);
+  if (loaded.poses.size() != recording.frames.size()) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{} poses without stamps for {} frames", loaded.poses.size(), recording.frames.size()),
+        "a trajectory with stamps (TUM) may have gaps");
+  }
+  for (std::size_t i = 0; i < loaded.poses.size(); ++i)
+    loaded.poses[i].timestamp_ns = recording.frames[i].timestamp_ns;
+  return std::move(loaded.poses);
+}
+
+/// The poses of frames, with the instants that they are of.
+struct OwnedPoses {
+  Trajectory poses;
+  std::vector<record::StampAndInstant> stamps;
+};
+
+Result<OwnedPoses> poses_of_frames(const Trajectory& poses, const recording::Recording& recording) {
+  std::vector<std::int64_t> frames_ns;
+  for (const recording::FrameEntry& frame : recording.frames) frames_ns.push_back(frame.timestamp_ns);
+  OwnedPoses owned;
+  for (const trajectory::AssociatedPair& pair :
+       trajectory::associate(frames_ns, trajectory_files::stamps_of(poses), kSameFrame_ns, 0)) {
+    const recording::FrameEntry& frame = recording.frames[pair.first];
+    const StampedPose& pose = poses[pair.second];
+    owned.poses.push_back(pose);
+    // The frame's instant may differ from its stamp; the pose's differs as much.
+    owned.stamps.emplace_back(pose.timestamp_ns, pose.timestamp_ns + frame.capture_ns - frame.timestamp_ns);
+  }
+  if (!owned.poses.empty()) return owned;
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format("none of {} poses ({:.3f} to {:.3f} s) belongs to one of {} frames ({:.3f} to {:.3f} s)",
+                  poses.size(), trajectory_files::stamp_seconds(poses.front().timestamp_ns),
+                  trajectory_files::stamp_seconds(poses.back().timestamp_ns), frames_ns.size(),
+                  trajectory_files::stamp_seconds(frames_ns.front()),
+                  trajectory_files::stamp_seconds(frames_ns.back())),
+      "stamps must be those of the colour images, within 0.02 s");
+}
+
+record::RecordedMetrics metrics_of_import(const RunOutput& output, const recording::Recording& recording,
+                                          const Workers& workers) {
+  record::RecordedMetrics metrics = metrics_of(output, recording, config::Config{}, workers);
+  metrics.aie = {std::nullopt, "an imported run says nothing of intensities"};
+  metrics.residuals = {std::nullopt, "an imported run says nothing of residuals"};
+  metrics.nees.fill({std::nullopt, "an imported run has no covariance"});
+  if (output.mesh.vertices.empty()) metrics.mesh = {std::nullopt, "no mesh was imported"};
+  return metrics;
+}
+
+Result<std::string> hash_of(const ImportSpec& spec, trajectory_files::TrajectoryFormat format,
+                            const recording::Recording& recording) {
+  io::Fingerprint identity;
+  for (const auto& file : {spec.trajectory, spec.mesh}) {
+    if (file.empty()) continue;
+    if (auto added = identity.add_file(file); !added) return tl::unexpected(added.error());
+  }
+  identity.add(recording.fingerprint);
+  identity.add(spec.imu);
+  identity.add(trajectory_files::to_string(format));
+  const PinholeCamera& camera = recording.rig.camera;
+  identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
+                           camera.cx_px, camera.cy_px));
+  return identity.hex();
+}
+
+Result<void> write(ImportedRun& run, const RunOutput& output, const Trajectory& truth) {
+  auto folder = io::StagedFolder::create(run.folder);
+  if (!folder) return tl::unexpected(folder.error());
+  if (!output.mesh.vertices.empty()) {
+    if (auto written = mesh::write_ply(output.mesh, folder->file("mesh.ply")); !written) return written;
+  }
+  const std::array<std::pair<std::string_view, std::string>, 3> texts = {
+      {{"trajectory.tum", trajectory::tum_text(output.trajectory)},
+       {"truth.tum", trajectory::tum_text(truth)},
+       {"log.txt", fmt::format("imported: {} of {} frames have a pose\n", run.record.frames.tracked,
+                               run.record.frames.total)}}};
+  for (const auto& [name, text] : texts) {
+    if (text.empty()) continue;  // no truth
+    if (auto written = folder->write(name, text); !written) return written;
+  }
+  return run_files::commit_run(*folder, run.record);
+}
+
+}  // namespace
+
+Result<ImportedRun> import_run(const ImportSpec& spec) {
+  if (auto named = check_name(spec.name); !named) return tl::unexpected(named.error());
+  const auto recording = open(spec);
+  if (!recording) return tl::unexpected(recording.error());
+  ImportedRun run;
+  auto loaded = trajectory_files::load_trajectory(spec.trajectory, spec.format,
+                                                  trajectory::Duplicates::rare_last, run.warnings);
+  if (!loaded) return tl::unexpected(loaded.error());
+  const trajectory_files::TrajectoryFormat format = loaded->format;
+  const auto poses = stamped(std::move(*loaded), *recording);
+  if (!poses) return tl::unexpected(poses.error());
+  const auto owned = poses_of_frames(*poses, *recording);
+  if (!owned) return tl::unexpected(owned.error());
+  const auto hash = hash_of(spec, format, *recording);
+  if (!hash) return tl::unexpected(hash.error());
+  RunOutput output;
+  output.trajectory = owned->poses;
+  for (const auto& [stamp_ns, instant_ns] : owned->stamps) output.states.push_back({instant_ns, {}});
+  if (!spec.mesh.empty()) {
+    const auto mesh = mesh::read_mesh(spec.mesh);
+    if (!mesh) return tl::unexpected(mesh.error());
+    output.mesh = mesh->cast<float>();
+    output.mesh.quality.clear();  // ours is the error of each vertex
+  }
+
+  record::RunRecord& record = run.record;
+  record.status = record::RunStatus::ok;
+  record.reason = "";
+  record.recording =
+      record::recorded_recording(*recording, spec.recording, spec.frames ? spec.frames->begin : 0);
+  record.recording.imu = spec.imu;
+  record.recording.imu_note = "";
+  record.variant = spec.name;
+  record.config_hash = *hash;
+  record.frames.total = recording->frames.size();
+  record.frames.tracked = owned->poses.size();
+  record.frames.lost = record.frames.total - record.frames.tracked;
+  record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
+  record.metrics = metrics_of_import(output, *recording, Workers(spec.threads));
+  if (record.metrics.mesh.value) {
+    const auto& errors_m = record.metrics.mesh.value->vertex_errors_m;
+    output.mesh.quality.assign(errors_m.begin(), errors_m.end());
+  }
+  record.provenance = record::provenance_here(spec.threads);
+  run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
+  std::vector<record::StampAndInstant> stamps = record::frame_stamps(*recording);
+  stamps.insert(stamps.end(), owned->stamps.begin(), owned->stamps.end());
+  const std::set<record::StampAndInstant> in_order(stamps.begin(), stamps.end());
+  stamps.assign(in_order.begin(), in_order.end());
+  if (auto written = write(run, output, record::true_trajectory(*recording, stamps)); !written)
+    return tl::unexpected(written.error());
+  return run;
+}
+
+}  // namespace fusebench::run

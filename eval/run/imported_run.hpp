@@ -1,0 +1,43 @@
+// What another system made of a recording, as a run beside ours.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/open_recording.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run/run.hpp"
+#include "eval/trajectory_files/trajectory_formats.hpp"
+
+namespace fusebench::run {
+
+struct ImportSpec {
+  std::string name;                  ///< of the other system: the run's variant
+  std::filesystem::path trajectory;  ///< its poses of the colour camera
+  std::optional<trajectory_files::TrajectoryFormat> format;
+  std::filesystem::path mesh;  ///< PLY or OBJ, in the world of these poses; may be empty
+  std::filesystem::path recording;
+  datasets::OpenOptions open;
+  std::optional<FrameWindow> frames;
+  std::string imu = "not said";  ///< "none", "recorded" or "synthetic IMU": what it used
+  int threads = 1;
+  std::filesystem::path out;
+};
+
+struct ImportedRun {
+  record::RunRecord record;
+  std::filesystem::path folder;       ///< <out>/<recording>/<name>/<hash8 of the files and the recording>
+  std::vector<std::string> warnings;  ///< of reading the trajectory
+};
+
+/// Evaluates it as a run of ours, and writes record.json, trajectory.tum, truth.tum, mesh.ply and log.txt. A
+/// pose belongs to the frame whose stamp is nearest, within 0.02 s; a frame without one counts as lost. Poses
+/// without stamps (KITTI) must be as many as the frames.
+///
+/// Errors: usage for a name that is a variant of ours or no name of a folder; those of open_recording,
+/// load_trajectory and read_mesh; data_corrupt for poses that belong to no frame; io.
+[[nodiscard]] Result<ImportedRun> import_run(const ImportSpec& spec);
+
+}  // namespace fusebench::run

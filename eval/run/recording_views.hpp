@@ -1,0 +1,24 @@
+// From where a recording saw its scene.
+#pragma once
+
+#include <cstddef>
+
+#include "core/base/error.hpp"
+#include "datasets/recording/recording.hpp"
+#include "eval/mesh_error/mesh_views.hpp"
+
+namespace fusebench::run {
+
+struct RecordedViewOptions {
+  double min_depth_m = 0;
+  double max_depth_m = 0;
+  mesh_error::Culling culling = mesh_error::Culling::occlusion;
+  std::size_t every_frames = 10;  ///< the first frame, and every so many after it
+};
+
+/// The true colour cameras at frames of a recording, where its ground truth has no gap of more than 0.1 s;
+/// with Culling::depth also their depth images. Errors: those of Recording::load_frame.
+[[nodiscard]] Result<mesh_error::MeshViews> recorded_views(const recording::Recording& recording,
+                                                           const RecordedViewOptions& options);
+
+}  // namespace fusebench::run

@@ -1,0 +1,148 @@
+#include "eval/run/run_evaluation.hpp"
+
+#include <fmt/format.h>
+
+#include "core/config/variants.hpp"
+#include "core/mesh/ply_file.hpp"
+#include "eval/record/true_camera.hpp"
+#include "eval/run/recording_views.hpp"
+#include "eval/trajectory_error/pose_alignment.hpp"
+
+namespace fusebench::run {
+
+namespace {
+
+void add_trajectory_metrics(record::RecordedMetrics& metrics, const RunOutput& output,
+                            const recording::Recording& recording) {
+  if (recording.ground_truth.empty()) {
+    metrics.ate.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
+        "the recording has no ground truth";
+    return;
+  }
+  std::vector<std::int64_t> expected;
+  for (const recording::FrameEntry& frame : recording.frames) expected.push_back(frame.timestamp_ns);
+  trajectory_error::AteOptions ate;
+  ate.expected_ns = expected;
+  metrics.ate = record::Outcome<trajectory_error::AteResult>::from(
+      trajectory_error::absolute_trajectory_error(recording.ground_truth, output.trajectory, ate));
+  metrics.rpe_frame = record::Outcome<trajectory_error::RpeResult>::from(
+      trajectory_error::relative_pose_error(recording.ground_truth, output.trajectory,
+                                            {.delta = 1, .unit = trajectory_error::DeltaUnit::frames}));
+  metrics.rpe_second = record::Outcome<trajectory_error::RpeResult>::from(
+      trajectory_error::relative_pose_error(recording.ground_truth, output.trajectory,
+                                            {.delta = 1, .unit = trajectory_error::DeltaUnit::seconds}));
+}
+
+record::RecordedNees nees_of(const RunOutput& output, const recording::Recording& recording,
+                             const config::Config& config) {
+  const auto none = [](const std::string& reason) {
+    record::RecordedNees nees;
+    nees.fill({std::nullopt, reason});
+    return nees;
+  };
+  if (recording.state_truth.empty()) return none("the recording has no true states");
+  if (recording.imu_source == recording::ImuSource::synthetic) {
+    return none("the true states are of the recorded IMU, and the run used a synthetic one");
+  }
+  // Without an inertial prior the body is the camera itself.
+  const SE3& T_imu_camera = recording.rig.T_imu_camera;
+  auto parts = config::needs_imu(config)
+                   ? metrics::consistency(recording.state_truth, output.states, T_imu_camera)
+                   : metrics::consistency(metrics::states_of_camera(recording.state_truth, T_imu_camera),
+                                          output.states, SE3{});
+  if (!parts) return none(parts.error().message);
+  record::RecordedNees nees;
+  for (std::size_t i = 0; i < nees.size(); ++i) {
+    metrics::NeesResult& part = (*parts)[i];
+    if (part.stats.count == 0) {
+      nees[i] = {std::nullopt, fmt::format("the covariance of the {} is singular in all frames: the variant "
+                                           "does not estimate it",
+                                           part.part.name)};
+    } else {
+      nees[i] = {std::move(part), {}};
+    }
+  }
+  return nees;
+}
+
+constexpr std::size_t kReconstructionSamples = 50'000;
+constexpr std::size_t kTruthSamples = 200'000;  // of the whole scene, of which a run may see a corner
+
+/// The tracked cameras of which the true ones at the same instants are known.
+struct KnownCameras {
+  std::vector<SE3> reference;
+  std::vector<SE3> estimate;
+};
+
+KnownCameras known_cameras(const RunOutput& output, const recording::Recording& recording) {
+  KnownCameras cameras;
+  for (std::size_t i = 0; i < output.trajectory.size(); ++i) {
+    const auto pose = record::true_camera(recording, output.states[i].timestamp_ns);
+    if (!pose) continue;
+    cameras.reference.push_back(*pose);
+    cameras.estimate.push_back(output.trajectory[i].T_world_camera);
+  }
+  return cameras;
+}
+
+Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const recording::Recording& recording,
+                                           const record::Outcome<trajectory_error::AteResult>& ate,
+                                           const config::DepthConfig& depth, const Workers& workers) {
+  if (recording.truth_mesh_file.empty()) {
+    return fail(ErrorCode::data_missing, "the recording has no true mesh");
+  }
+  const KnownCameras cameras = known_cameras(output, recording);
+  if (cameras.reference.empty()) {
+    return fail(ErrorCode::data_missing, "no tracked frame has ground truth to align the mesh by");
+  }
+  const auto truth = mesh::read_ply(recording.truth_mesh_file);
+  if (!truth) {
+    // The place of the recording on this disk is not part of its record.
+    return fail(truth.error().code,
+                fmt::format("{} is not a usable mesh", recording.truth_mesh_file.filename().string()));
+  }
+  const auto views = recorded_views(recording, {depth.min_m, depth.max_m});
+  if (!views) return tl::unexpected(views.error());
+  mesh_error::MeshErrorOptions options;
+  options.reconstruction.count = kReconstructionSamples;
+  options.truth.count = kTruthSamples;
+  const PreciseMesh precise = output.mesh.cast<double>();
+  const auto comparison = mesh_error::MeshComparison::create(precise, *truth, *views, options, workers);
+  if (!comparison) return tl::unexpected(comparison.error());
+  const auto aligned = trajectory_error::align_poses(cameras.reference, cameras.estimate);
+  if (!aligned) return tl::unexpected(aligned.error());
+  record::RecordedMesh mesh;
+  mesh.reconstruction_sampling = options.reconstruction;
+  mesh.truth_sampling = options.truth;
+  mesh.reconstruction_samples = comparison->reconstruction_samples();
+  mesh.truth_samples = comparison->truth_samples();
+  mesh.truth_observed = comparison->truth_observed();
+  mesh.views = views->T_truth_camera.size();
+  mesh.min_depth_m = depth.min_m;
+  mesh.max_depth_m = depth.max_m;
+  mesh.poses = comparison->evaluate({"poses", *aligned}, workers);
+  mesh.vertex_errors_m = mesh_error::distances_m(precise.vertices, *aligned, comparison->truth(), workers);
+  // Of the first known one: ICL-NUIM's truth begins with its second image.
+  const SE3 by_first_camera = cameras.reference.front() * cameras.estimate.front().inverse();
+  mesh.first_camera = comparison->evaluate({"first_camera", by_first_camera}, workers);
+  if (ate.value) mesh.positions = comparison->evaluate(ate.value->alignment, workers);
+  return mesh;
+}
+
+}  // namespace
+
+record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Recording& recording,
+                                   const config::Config& config, const Workers& workers) {
+  record::RecordedMetrics metrics;
+  metrics.aie = {output.intensity.result(), {}};
+  if (metrics.aie.value->all.frames == 0) metrics.aie = {std::nullopt, "no frame has tracked pixels"};
+  metrics.residuals = {output.residuals.result(), {}};
+  if (metrics.residuals.value->frames == 0) metrics.residuals = {std::nullopt, "no frame was tracked"};
+  add_trajectory_metrics(metrics, output, recording);
+  metrics.nees = nees_of(output, recording, config);
+  metrics.mesh = record::Outcome<record::RecordedMesh>::from(
+      mesh_error_of(output, recording, metrics.ate, config.depth, workers));
+  return metrics;
+}
+
+}  // namespace fusebench::run

@@ -1,0 +1,32 @@
+// All metrics of one run, from what its frames left behind and what is known of the recording.
+#pragma once
+
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/filter/stamped_state.hpp"
+#include "datasets/recording/recording.hpp"
+#include "eval/metrics/intensity_metrics.hpp"
+#include "eval/metrics/residual_metrics.hpp"
+#include "eval/record/record.hpp"
+
+namespace fusebench::run {
+
+/// What metrics need of a run.
+struct RunOutput {
+  Trajectory trajectory;                        ///< frames that were tracked; a predicted pose is no estimate
+  std::vector<filter::StampedEstimate> states;  ///< of the same frames, at their capture instants
+  metrics::IntensityAccumulator intensity;
+  metrics::ResidualAccumulator residuals;
+  Mesh mesh;  ///< of the model, in world
+};
+
+/// config: of the run; it says what of a true scene its depth could observe, and whether the body that it
+/// estimates is the IMU or the camera.
+[[nodiscard]] record::RecordedMetrics metrics_of(const RunOutput& output,
+                                                 const recording::Recording& recording,
+                                                 const config::Config& config, const Workers& workers);
+
+}  // namespace fusebench::run

@@ -1,0 +1,131 @@
+#include "eval/run_files/found_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "core/config/variants.hpp"
+#include "core/io/staged_folder.hpp"
+#include "eval/run_files/record_files.hpp"
+
+namespace fusebench::run_files {
+
+namespace fs = std::filesystem;
+
+std::size_t variant_rank(const std::string& name) {
+  const auto variants = config::all_variants();
+  const auto found = std::find_if(variants.begin(), variants.end(),
+                                  [&](const config::Variant& v) { return v.name == name; });
+  return static_cast<std::size_t>(found - variants.begin());
+}
+
+namespace {
+
+/// The record of a run that is not whole.
+record::RunRecord failed_record(const fs::path& folder, std::string reason) {
+  const PlaceOfRun place = place_of_run(folder);
+  record::RunRecord record;
+  record.reason = std::move(reason);
+  record.recording.name = place.recording;
+  record.variant = place.variant;
+  return record;
+}
+
+/// The numbers of a run whose files are damaged are not to be trusted; what was asked of it is known.
+void forget_results(record::RunRecord& record, std::string reason) {
+  record.status = record::RunStatus::failed;
+  record.reason = std::move(reason);
+  record.metrics = {};
+  record.frames = {record.frames.total, 0, 0};
+  record.model = {};
+  record.timing = {};
+}
+
+}  // namespace
+
+bool is_engine_folder(const fs::path& folder) {
+  std::error_code error;
+  if (folder.filename() != kEngineFolderName || !fs::is_directory(folder, error)) return false;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path name = entry->path().filename();
+    if (name != "claims" && name != "invocations" && name != "slurm") return false;
+  }
+  return !error;
+}
+
+PlaceOfRun place_of_run(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path run = fs::absolute(folder, ignored).lexically_normal();
+  const fs::path variant = (run.has_filename() ? run : run.parent_path()).parent_path();
+  return {variant.parent_path().filename().string(), variant.filename().string()};
+}
+
+std::optional<FoundRun> found_run(const fs::path& folder) {
+  const fs::path file = folder / "record.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return std::nullopt;
+  auto record = record::read_record(file);
+  if (!record) {
+    const Error& error = record.error();
+    const bool damaged = error.code == ErrorCode::data_corrupt;
+    // The message begins with the file, which the row names already.
+    const std::string problem = error.message.substr(file.string().size() + 2);
+    return FoundRun{
+        folder,
+        failed_record(folder, damaged ? damage_text("record.json", problem) : "record.json: " + problem),
+        damaged ? RunState::damaged : RunState::unreadable};
+  }
+  if (std::string text = changed_size(folder, *record); !text.empty()) {
+    forget_results(*record, std::move(text));
+    return FoundRun{folder, std::move(*record), RunState::damaged};
+  }
+  return FoundRun{folder, std::move(*record)};
+}
+
+Result<std::vector<fs::path>> record_files(const fs::path& runs) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  fs::recursive_directory_iterator entry(runs, error);
+  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) {
+      if (io::is_staged_folder(entry->path()) || is_engine_folder(entry->path()))
+        entry.disable_recursion_pending();
+    } else if (entry->path().filename() == "record.json") {
+      files.push_back(entry->path());
+    }
+  }
+  if (!error) return files;
+  return fail(ErrorCode::data_missing,
+              fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
+}
+
+tl::unexpected<Error> holds_no_runs(const fs::path& runs) {
+  return fail(ErrorCode::data_missing, fmt::format("{}: holds no runs", runs.string()),
+              "`fusebench run` and `fusebench bench` write them to their --out");
+}
+
+Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
+  const auto files = record_files(runs);
+  if (!files) return tl::unexpected(files.error());
+  if (files->empty()) return holds_no_runs(runs);
+  std::vector<FoundRun> found;
+  for (const fs::path& file : *files) {
+    // One that was removed just now is none.
+    if (auto run = found_run(file.parent_path())) found.push_back(std::move(*run));
+  }
+  std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
+    const auto key = [](const FoundRun& run) {
+      return std::tuple(run.record.recording.name, run.record.recording.fingerprint,
+                        variant_rank(run.record.variant), run.record.variant, run.folder.string());
+    };
+    return key(a) < key(b);
+  });
+  return found;
+}
+
+}  // namespace fusebench::run_files

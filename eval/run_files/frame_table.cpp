@@ -1,0 +1,162 @@
+#include "eval/run_files/frame_table.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "core/io/text_table.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "eval/metrics/intensity_metrics.hpp"
+
+namespace fusebench::run_files {
+
+namespace {
+
+/// A cell cannot hold a separator, and no number is an empty cell.
+std::string text_cell(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ';');
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string number_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+}  // namespace
+
+std::string frame_table_header() {
+  std::string header =
+      "frame,timestamp,status,health,reason,patches,patches_tracked,patches_accepted,patches_shrunk,patches_"
+      "extended,"
+      "pixels_photometric,pixels_geometric,aie_grey,aie_pixels,iterations,converged,chi2_photometric,chi2_"
+      "geometric,variance_photometric,variance_geometric,"
+      "speed_mps,angular_speed_radps,blur_px,patch_motion_px,position_sigma_m,rotation_sigma_rad,"
+      "imu_time_offset_s,model_blocks,decode_ms";
+  for (const std::string_view stage : health::kStageNames) header += fmt::format(",{}_ms", stage);
+  return header + "\n";
+}
+
+std::string frame_table_row(std::size_t frame, const health::FrameReport& report, double decode_ms) {
+  const double angular_speed = report.angular_velocity_radps.norm();
+  // Of the longest axis: what a reader wants to know of an ellipsoid.
+  const auto sigma = [&](int offset) {
+    const Matrix3d block = report.estimate.covariance.block<3, 3>(offset, offset);
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(block).eigenvalues().maxCoeff());
+  };
+  std::string row = fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}", frame,
+      trajectory::stamp_text(report.timestamp_ns), health::to_string(report.status),
+      health::to_string(report.health), text_cell(report.reason), report.patches, report.patches_tracked,
+      report.patches_accepted, report.patches_shrunk, report.patches_extended, report.pixels_photometric,
+      report.pixels_geometric, number_cell(metrics::frame_intensity_error(report.pixels.intensity)),
+      report.pixels.intensity.size(), report.iterations, report.converged ? 1 : 0,
+      number_cell(report.chi2_photometric), number_cell(report.chi2_geometric),
+      number_cell(report.variance_photometric), number_cell(report.variance_geometric),
+      number_cell(report.velocity_world_mps.norm()), number_cell(angular_speed), number_cell(report.blur_px),
+      number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)), number_cell(sigma(filter::kRotation)),
+      number_cell(report.estimate.mean.imu_time_offset_s), report.model_blocks, decode_ms);
+  for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
+  return row + "\n";
+}
+
+namespace {
+
+/// Cells may be empty.
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    cells.push_back(line.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+/// Where each column of a table stands.
+class FrameTableColumns {
+ public:
+  explicit FrameTableColumns(std::string_view header) {
+    for (const std::string_view name : cells_of(header)) names_.emplace_back(name);
+  }
+
+  [[nodiscard]] std::size_t size() const { return names_.size(); }
+
+  [[nodiscard]] Result<std::string_view> text(const std::vector<std::string_view>& cells,
+                                              std::string_view name) const {
+    const auto found = std::ranges::find(names_, name);
+    if (found == names_.end()) return fail(ErrorCode::data_corrupt, fmt::format("has no column {}", name));
+    return cells[static_cast<std::size_t>(found - names_.begin())];
+  }
+
+  /// Nothing of an empty cell.
+  [[nodiscard]] Result<std::optional<double>> number(const std::vector<std::string_view>& cells,
+                                                     std::string_view name) const {
+    const auto cell = text(cells, name);
+    if (!cell) return tl::unexpected(cell.error());
+    if (cell->empty()) return std::nullopt;
+    return io::parse_number(*cell).transform([](double value) { return std::optional(value); });
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+Result<FrameTableRow> row_of(const FrameTableColumns& columns, const std::vector<std::string_view>& cells) {
+  FrameTableRow row;
+  const auto stamp = columns.text(cells, "timestamp").and_then([](std::string_view text) {
+    return io::parse_time_ns(text);
+  });
+  if (!stamp) return tl::unexpected(stamp.error());
+  row.timestamp_ns = *stamp;
+  for (const auto& [name, value] : {std::pair{"status", &row.status}, std::pair{"health", &row.health}}) {
+    const auto text = columns.text(cells, name);
+    if (!text) return tl::unexpected(text.error());
+    *value = *text;
+  }
+  const auto aie = columns.number(cells, "aie_grey");
+  if (!aie) return tl::unexpected(aie.error());
+  row.aie_grey = *aie;
+  const std::array<std::pair<const char*, double*>, 6> numbers = {
+      {{"patches_accepted", &row.patches_accepted},
+       {"speed_mps", &row.speed_mps},
+       {"angular_speed_radps", &row.angular_speed_radps},
+       {"blur_px", &row.blur_px},
+       {"patch_motion_px", &row.patch_motion_px},
+       {"position_sigma_m", &row.position_sigma_m}}};
+  for (const auto& [name, value] : numbers) {
+    const auto number = columns.number(cells, name);
+    if (!number) return tl::unexpected(number.error());
+    *value = number->value_or(std::nan(""));
+  }
+  return row;
+}
+
+}  // namespace
+
+Result<std::vector<FrameTableRow>> read_frame_table(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  if (!stream || !std::getline(stream, line))
+    return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read", file.string()));
+  const FrameTableColumns columns(line);
+  std::vector<FrameTableRow> rows;
+  for (std::size_t number = 2; std::getline(stream, line); ++number) {
+    const auto cells = cells_of(line);
+    const auto refuse = [&](std::string_view what) {
+      return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: {}", file.string(), number, what));
+    };
+    if (cells.size() != columns.size())
+      return refuse(fmt::format("{} cells (expected {})", cells.size(), columns.size()));
+    auto row = row_of(columns, cells);
+    if (!row) return refuse(row.error().message);
+    rows.push_back(std::move(*row));
+  }
+  return rows;
+}
+
+}  // namespace fusebench::run_files

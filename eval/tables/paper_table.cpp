@@ -1,0 +1,221 @@
+#include "eval/tables/paper_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "datasets/calibration/recording_catalogue.hpp"
+#include "eval/record/data_labels.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/plain_table.hpp"
+
+namespace fusebench::tables {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kTextColumns = 3;
+
+/// Names that a recording's folder may have.
+std::set<std::string> folder_names(const std::string& recording) {
+  std::set<std::string> names;
+  if (recording.empty()) return names;
+  names.insert(recording);
+  if (const calibration::CatalogueEntry* entry = calibration::find_catalogue_entry(recording)) {
+    for (const std::string& folder : entry->folders)
+      names.insert(std::filesystem::path(folder).filename().string());
+  }
+  return names;
+}
+
+/// A run and its row of the table of results.
+struct Place {
+  const run_files::FoundRun* run = nullptr;
+  const TableRow* row = nullptr;
+};
+
+Place place_of(const std::vector<run_files::FoundRun>& runs, const ResultTable& table,
+               const std::set<std::string>& names, const std::string& variant) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const record::RunRecord& record = runs[i].record;
+    if (record.status == record::RunStatus::ok && record.variant == variant &&
+        names.contains(record.recording.name))
+      return {&runs[i], &table.rows[i]};
+  }
+  return {};
+}
+
+std::optional<double> ratio_of(const std::vector<std::optional<double>>& values) {
+  if (values.size() < 2 || !values.front() || !values.back() || *values.back() == 0) return std::nullopt;
+  return *values.front() / *values.back();
+}
+
+/// What was run here of recordings of these names.
+void add_here(const PublishedTable& published, const std::vector<run_files::FoundRun>& runs,
+              const ResultTable& table, const std::set<std::string>& names, PaperRow& row) {
+  std::vector<std::optional<double>> common;
+  std::set<std::string> data;
+  std::set<std::string> fingerprints;
+  for (const std::string& variant : published.variants) {
+    const Place place = place_of(runs, table, names, variant);
+    row.here.push_back(place.run ? published.value->of(place.run->record) : std::nullopt);
+    common.push_back(place.row ? place.row->aie_common_grey : std::nullopt);
+    if (!place.run) continue;
+    const record::RecordedRecording& recording = place.run->record.recording;
+    fingerprints.insert(recording.fingerprint);
+    const std::string imu = recording.imu == "synthetic IMU" ? ", synthetic IMU" : "";
+    data.insert(fmt::format("{}{}, {} frames", record::data_cell(record::words_of(recording)), imu,
+                            recording.frames));
+  }
+  for (const std::string& words : data) row.data += (row.data.empty() ? "" : "; ") + words;
+  if (!published.ratio) return;
+  row.published_ratio = ratio_of(row.published);
+  if (fingerprints.size() > 1) return;  // of different data, there is no ratio
+  row.here_ratio = ratio_of(row.here);
+  row.common_ratio = ratio_of(common);
+}
+
+bool has_common_ratio(const PublishedTable& table) { return table.ratio && table.value->name == "aie_grey"; }
+
+text::TableCells heading_of(const PublishedTable& table) {
+  text::TableCells cells = {"group", "recording", "run here on"};
+  for (const std::string& system : table.systems) cells.push_back(system + " (published)");
+  if (table.ratio) cells.emplace_back("ratio (published)");
+  for (const std::string& variant : table.variants) cells.push_back(variant + " (here)");
+  if (table.ratio) cells.emplace_back("ratio (here)");
+  if (has_common_ratio(table)) cells.emplace_back("ratio on common pixels (here)");
+  return cells;
+}
+
+text::TableCells cells_of(const PublishedTable& table, const PaperRow& row) {
+  const suites::StudyValue& value = *table.value;
+  text::TableCells cells = {row.group, row.label, row.data.empty() ? "not run" : row.data};
+  for (const auto& number : row.published)
+    cells.push_back(text::number_cell(number, value.shown_factor, value.decimals));
+  if (table.ratio) cells.push_back(text::number_cell(row.published_ratio, 1, 2));
+  for (const auto& number : row.here)
+    cells.push_back(text::number_cell(number, value.shown_factor, value.decimals));
+  if (table.ratio) cells.push_back(text::number_cell(row.here_ratio, 1, 2));
+  if (has_common_ratio(table)) cells.push_back(text::number_cell(row.common_ratio, 1, 2));
+  return cells;
+}
+
+std::vector<std::string> notes_of(const PublishedTable& table) {
+  std::vector<std::string> notes = {
+      fmt::format("{}: {}.", table.title, table.value->label),
+      fmt::format("Published: {}; {}.", table.source,
+                  table.verified ? "read in the source itself" : "NOT verified in the sources"),
+      "Here: run with this program, on the recordings that the column names. Columns of the one and the "
+      "other are "
+      "not of one protocol."};
+  if (!table.note.empty()) notes.push_back(table.note);
+  return notes;
+}
+
+std::string markdown(const PaperTable& table) {
+  std::vector<text::TableCells> lines = {heading_of(table.of)};
+  for (const PaperRow& row : table.rows) lines.push_back(cells_of(table.of, row));
+  std::string text = text::markdown_table(lines, kTextColumns) + "\n";
+  for (const std::string& note : table.notes) text += note + "\n";
+  return text;
+}
+
+std::string latex(const PaperTable& table) {
+  std::string text = text::latex_begin(heading_of(table.of), kTextColumns);
+  for (const PaperRow& row : table.rows) text += text::latex_line(cells_of(table.of, row));
+  text += text::kLatexEnd;
+  for (const std::string& note : table.notes) text += "% " + note + "\n";
+  return text;
+}
+
+std::string csv(const PaperTable& table) {
+  std::string text = "table,value,group,recording,from,verified,system,number\n";
+  for (const PaperRow& row : table.rows) {
+    const auto add = [&](const char* from, bool verified, const std::string& system,
+                         const std::optional<double>& number) {
+      if (!number) return;
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", table.of.name, table.of.value->name,
+                          text::csv_cell(row.group), text::csv_cell(row.label), from, verified,
+                          text::csv_cell(system), *number);
+    };
+    for (std::size_t i = 0; i < row.published.size(); ++i)
+      add("published", table.of.verified, table.of.systems[i], row.published[i]);
+    for (std::size_t i = 0; i < row.here.size(); ++i) add("here", true, table.of.variants[i], row.here[i]);
+  }
+  return text;
+}
+
+std::string json(const PaperTable& table) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  Json rows = Json::array();
+  for (const PaperRow& row : table.rows) {
+    Json published = Json::object();
+    for (std::size_t i = 0; i < row.published.size(); ++i)
+      published[table.of.systems[i]] = number(row.published[i]);
+    Json here = Json::object();
+    for (std::size_t i = 0; i < row.here.size(); ++i) here[table.of.variants[i]] = number(row.here[i]);
+    rows.push_back({{"group", row.group},
+                    {"recording", row.label},
+                    {"published", std::move(published)},
+                    {"published_ratio", number(row.published_ratio)},
+                    {"run_on", row.data},
+                    {"here", std::move(here)},
+                    {"here_ratio", number(row.here_ratio)},
+                    {"here_ratio_common_pixels", number(row.common_ratio)}});
+  }
+  const Json document = {{"table", table.of.name},        {"title", table.of.title},
+                         {"source", table.of.source},     {"verified", table.of.verified},
+                         {"value", table.of.value->name}, {"rows", std::move(rows)},
+                         {"notes", table.notes}};
+  return text::json_text(document) + "\n";
+}
+
+}  // namespace
+
+PaperTable paper_table(const PublishedTable& published, const std::vector<run_files::FoundRun>& runs) {
+  PaperTable table{published, {}, notes_of(published)};
+  const ResultTable results = table_of(runs);
+  std::set<std::string> left;
+  for (const run_files::FoundRun& run : runs) left.insert(run.record.recording.name);
+  for (const PublishedRow& source : published.rows) {
+    PaperRow row{source.group, source.label, {}, source.published, {}, {}, {}, {}};
+    const std::set<std::string> names = folder_names(source.recording);
+    for (const std::string& name : names) left.erase(name);
+    add_here(published, runs, results, names, row);
+    table.rows.push_back(std::move(row));
+  }
+  for (const std::string& name : left) {
+    PaperRow row{"not published",
+                 name,
+                 {},
+                 std::vector<std::optional<double>>(published.systems.size()),
+                 {},
+                 {},
+                 {},
+                 {}};
+    add_here(published, runs, results, {name}, row);
+    if (!row.data.empty()) table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string render_paper_table(const PaperTable& table, TableFormat format) {
+  switch (format) {
+    case TableFormat::markdown:
+      return markdown(table);
+    case TableFormat::csv:
+    case TableFormat::csv_long:
+      return csv(table);
+    case TableFormat::json:
+      return json(table);
+    case TableFormat::latex:
+      return latex(table);
+  }
+  return {};
+}
+
+}  // namespace fusebench::tables

@@ -1,0 +1,41 @@
+// A published table beside what was run here; the two are never in one column.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/run_files/found_runs.hpp"
+#include "eval/tables/published_table.hpp"
+#include "eval/tables/table.hpp"
+
+namespace fusebench::tables {
+
+struct PaperRow {
+  std::string group;
+  std::string label;
+  std::string data;  ///< of what was run here: "recorded", "recorded, synthetic IMU"; empty: nothing was
+  std::vector<std::optional<double>> published;
+  std::vector<std::optional<double>> here;  ///< one a variant
+  std::optional<double> published_ratio;
+  std::optional<double> here_ratio;
+  std::optional<double> common_ratio;  ///< of AIE on common pixels
+};
+
+struct PaperTable {
+  PublishedTable of;
+  std::vector<PaperRow>
+      rows;  ///< the published ones, then recordings that were run here and are not published
+  std::vector<std::string> notes;
+};
+
+/// Runs are found by the folders that the catalogue knows a recording by; of several runs of a variant the
+/// first ok one counts.
+[[nodiscard]] PaperTable paper_table(const PublishedTable& published,
+                                     const std::vector<run_files::FoundRun>& runs);
+
+/// CSV has a line for each number, with "published" or "here" beside it; numbers of CSV and JSON are in the
+/// value's unit.
+[[nodiscard]] std::string render_paper_table(const PaperTable& table, TableFormat format);
+
+}  // namespace fusebench::tables

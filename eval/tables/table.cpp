@@ -1,0 +1,187 @@
+#include "eval/tables/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "core/base/geometry.hpp"
+#include "eval/metrics/intensity_file.hpp"
+#include "eval/metrics/intensity_metrics.hpp"
+#include "eval/record/data_labels.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/record_files.hpp"
+#include "eval/tables/common_pixels.hpp"
+
+namespace fusebench::tables {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+TableRow row_of(const run_files::FoundRun& run) {
+  const record::RunRecord& record = run.record;
+  TableRow row;
+  row.recording = record.recording.name;
+  row.data = record.recording.data;
+  row.imu = record.recording.imu;
+  row.truth = record.recording.truth;
+  row.variant = record.variant;
+  row.run = run.folder.filename().string();
+  row.status = record.status;
+  row.reason = record.reason;
+  if (record.metrics.aie.value) row.aie_grey = finite(record.metrics.aie.value->all.aie_grey);
+  if (record.metrics.ate.value) row.ate_rmse_m = finite(record.metrics.ate.value->stats.rmse);
+  if (record.metrics.rpe_second.value) {
+    row.rpe_second_m = finite(record.metrics.rpe_second.value->translation.rmse);
+    row.rpe_second_rad = finite(record.metrics.rpe_second.value->rotation.rmse);
+  }
+  row.tracked = record.frames.tracked;
+  row.total = record.frames.total;
+  row.vertices = record.model.vertices;
+  if (record.timing.fps > 0) row.fps = record.timing.fps;
+  return row;
+}
+
+/// Whether a run's intensity differences are not those that it wrote; the table says so then.
+bool is_damaged(const run_files::FoundRun& run, ResultTable& table) {
+  constexpr const char* kFile = "intensity.bin";
+  std::error_code ignored;
+  if (!fs::exists(run.folder / kFile, ignored)) return false;  // that is said where it is opened
+  const auto checked = run_files::check_file(run.folder, run.record, kFile);
+  if (checked) return false;
+  table.notes.push_back(fmt::format("{}, {}: left out of AIE common: {}", run.record.recording.name,
+                                    run.record.variant, checked.error().message));
+  return true;
+}
+
+/// Fills the common-pixel column, one recording (by content) at a time.
+void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable& table) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    // An imported run says nothing of intensities.
+    if (runs[i].record.status != record::RunStatus::ok || !runs[i].record.metrics.aie.value) continue;
+    groups[{runs[i].record.recording.name, runs[i].record.recording.fingerprint}].push_back(i);
+  }
+  for (auto& [recording, members] : groups) {
+    if (members.size() < 2) continue;
+    std::erase_if(members, [&](std::size_t member) { return is_damaged(runs[member], table); });
+    if (members.size() < 2) continue;
+    std::vector<fs::path> files;
+    for (const std::size_t member : members) files.push_back(runs[member].folder / "intensity.bin");
+    const auto common = common_pixel_error(files);
+    if (!common) {
+      table.notes.push_back(
+          fmt::format("{}: no AIE on common pixels: {}", recording.first, common.error().message));
+      continue;
+    }
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      table.rows[members[k]].aie_common_grey = finite((*common)[k].aie_grey);
+    }
+    const metrics::IntensitySummary& summary = common->front();
+    table.notes.push_back(fmt::format(
+        "{}: {} runs share {} pixels in {} frames ({} frames have no pixel in common)", recording.first,
+        members.size(), summary.pixels, summary.frames, summary.frames_excluded));
+  }
+}
+
+/// Synthetic or simulated data are never in one mean with others.
+std::vector<TableMean> means_of(const std::vector<TableRow>& rows) {
+  std::vector<TableMean> means;
+  std::vector<std::set<std::string>> recordings;
+  std::vector<std::array<std::size_t, 5>> counts;
+  for (const TableRow& row : rows) {
+    const auto same = [&](const TableMean& m) {
+      return m.data == row.data && m.imu == row.imu && m.truth == row.truth && m.variant == row.variant;
+    };
+    const auto at = static_cast<std::size_t>(std::ranges::find_if(means, same) - means.begin());
+    if (at == means.size()) {
+      means.push_back({row.data, row.imu, row.truth, row.variant, 0, 0, 0, {}});
+      recordings.emplace_back();
+      counts.emplace_back();
+    }
+    TableMean& mean = means[at];
+    recordings[at].insert(row.recording);
+    ++mean.total;
+    if (row.status != record::RunStatus::ok) continue;
+    ++mean.ok;
+    for (std::size_t c = 0; c < table_columns().size(); ++c) {
+      const auto value = table_columns()[c].value;
+      if (!(row.*value)) continue;
+      mean.values.*value = (mean.values.*value).value_or(0) + *(row.*value);
+      ++counts[at][c];
+    }
+  }
+  for (std::size_t at = 0; at < means.size(); ++at) {
+    means[at].recordings = recordings[at].size();
+    for (std::size_t c = 0; c < table_columns().size(); ++c) {
+      auto& value = means[at].values.*(table_columns()[c].value);
+      if (counts[at][c] < means[at].ok) value.reset();
+      if (value) *value /= static_cast<double>(means[at].ok);
+    }
+  }
+  std::erase_if(means, [](const TableMean& mean) { return mean.recordings < 2; });
+  std::ranges::stable_sort(means, {}, [](const TableMean& m) { return run_files::variant_rank(m.variant); });
+  return means;
+}
+
+std::vector<std::string> footer_of(const ResultTable& table) {
+  std::vector<std::string> footer = {
+      "AIE: average intensity error of tracked patches in grey levels (0-255): mean over frames of the mean "
+      "over their "
+      "visible pixels, before any rejection.",
+      "AIE common: the same on the pixels that all ok runs of the recording share (a method cannot gain by "
+      "dropping "
+      "pixels).",
+      "ATE: rmse of positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM). Only "
+      "tracked frames "
+      "have a pose, so read it with the column tracked.",
+      "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
+  if (!table.means.empty()) {
+    footer.push_back(
+        "mean: of the variant's runs that are ok, whose number stands before that of all; over data of one "
+        "kind. "
+        "Means over different recordings do not compare.");
+  }
+  std::vector<record::DataWords> words;
+  for (const TableRow& row : table.rows) words.push_back({row.data, row.imu, row.truth});
+  for (std::string& footnote : record::data_footnotes(words)) footer.push_back(std::move(footnote));
+  return footer;
+}
+
+}  // namespace
+
+ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
+  ResultTable table;
+  for (const run_files::FoundRun& run : runs) {
+    table.rows.push_back(row_of(run));
+    if (run.record.status == record::RunStatus::ok) continue;
+    table.notes.push_back(fmt::format("{}, {}: {}: {}", run.record.recording.name, run.record.variant,
+                                      record::to_string(run.record.status), run.record.reason));
+  }
+  add_common_pixels(runs, table);
+  table.means = means_of(table.rows);
+  table.footer = footer_of(table);
+  return table;
+}
+
+std::span<const TableColumn> table_columns() {
+  static constexpr std::array<TableColumn, 5> kColumns = {
+      {{"aie_grey", "grey", "AIE", 1, 3, &TableValues::aie_grey},
+       {"aie_common_grey", "grey", "AIE common", 1, 3, &TableValues::aie_common_grey},
+       {"ate_rmse_m", "m", "ATE [cm]", 100, 2, &TableValues::ate_rmse_m},
+       {"rpe_1s_m", "m", "RPE [cm/s]", 100, 2, &TableValues::rpe_second_m},
+       {"rpe_1s_rad", "rad", "RPE [deg/s]", kDegreesPerRadian, 2, &TableValues::rpe_second_rad}}};
+  return kColumns;
+}
+
+}  // namespace fusebench::tables

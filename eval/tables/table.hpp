@@ -1,0 +1,88 @@
+// The table of a folder of runs: one row per run, failed and lost ones included.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run_files/found_runs.hpp"
+
+namespace fusebench::tables {
+
+/// Numbers that do not exist are absent, never 0 or NaN.
+struct TableValues {
+  std::optional<double> aie_grey;
+  std::optional<double> aie_common_grey;  ///< on the pixels that all ok runs of this recording share
+  std::optional<double> ate_rmse_m;
+  std::optional<double> rpe_second_m;  ///< rmse over 1 s
+  std::optional<double> rpe_second_rad;
+};
+
+/// What is known of each of them.
+struct TableColumn {
+  const char* key;      ///< of CSV and JSON
+  const char* unit;     ///< of the number
+  const char* heading;  ///< of tables for people, with the unit that they show
+  double shown_factor;
+  int decimals;
+  std::optional<double> TableValues::*value;
+};
+[[nodiscard]] std::span<const TableColumn> table_columns();  ///< in all of them, less is better
+
+/// One run.
+struct TableRow : TableValues {
+  std::string recording;
+  std::string data;   ///< "recorded", "simulated"
+  std::string imu;    ///< "none", "recorded", "synthetic IMU"
+  std::string truth;  ///< "none", "given", kPseudoTruthWord
+  std::string variant;
+  std::string run;  ///< folder name, hash8
+  record::RunStatus status = record::RunStatus::failed;
+  std::string reason;
+  std::size_t tracked = 0;
+  std::size_t total = 0;
+  std::size_t vertices = 0;
+  std::optional<double> fps;
+};
+
+/// Of the runs of a variant on data of one kind.
+struct TableMean {
+  std::string data;
+  std::string imu;
+  std::string truth;
+  std::string variant;
+  std::size_t recordings = 0;  ///< different ones
+  std::size_t ok = 0;
+  std::size_t total = 0;
+  TableValues values;  ///< each over all ok runs; absent where one of them does not have it
+};
+
+struct ResultTable {
+  std::vector<TableRow> rows;       ///< by recording, then variant in the order of all_variants(), then run
+  std::vector<TableMean> means;     ///< where there are several recordings; of one variant after the other
+  std::vector<std::string> notes;   ///< what a reader must know: reasons, runs left out of the common pixels
+  std::vector<std::string> footer;  ///< the protocol of each column
+};
+
+/// Reads the intensity differences beside the records.
+[[nodiscard]] ResultTable table_of(const std::vector<run_files::FoundRun>& runs);
+
+/// The heading, a line a row and then a line a mean, as people see them: cm and degrees.
+[[nodiscard]] std::vector<std::vector<std::string>> table_cells(const ResultTable& table);
+
+enum class TableFormat { markdown, csv, csv_long, json, latex };
+/// Error usage.
+[[nodiscard]] Result<TableFormat> parse_table_format(std::string_view text);
+
+/// Markdown is aligned for a terminal; LaTeX uses booktabs and has the best of each recording in bold; both
+/// show cm and degrees. CSV and JSON are SI with an empty cell or null for what does not exist; csv_long has
+/// a line for each number of each run, and leaves out what does not exist.
+[[nodiscard]] std::string render_table(const ResultTable& table, TableFormat format);
+
+}  // namespace fusebench::tables

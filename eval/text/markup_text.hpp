@@ -1,0 +1,12 @@
+// Text that stays text in HTML, XML and Markdown.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace fusebench::text {
+
+/// The text with an entity (&amp;) in place of each of these characters, which are some of & < > " ' @.
+[[nodiscard]] std::string with_entities(std::string_view text, std::string_view characters);
+
+}  // namespace fusebench::text

@@ -1,0 +1,19 @@
+// Plain-text tables for terminals.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fusebench::text {
+
+/// Lines of cells in columns of equal width, two blanks between them; the last column is not padded.
+[[nodiscard]] std::string aligned_columns(const std::vector<std::vector<std::string>>& lines);
+
+/// "45 s", "35 min", "2.5 h".
+[[nodiscard]] std::string duration_text(double time_s);
+
+/// A text as a cell of a Markdown table.
+[[nodiscard]] std::string markdown_cell(std::string_view text);
+
+}  // namespace fusebench::text

@@ -1,0 +1,62 @@
+// One trajectory against another by a protocol: the numbers, and all that they depend on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/types.hpp"
+#include "eval/metrics/statistics.hpp"
+#include "eval/trajectory_error/alignment.hpp"
+#include "eval/trajectory_error/protocol.hpp"
+#include "eval/trajectory_error/streamed_statistics.hpp"
+
+namespace fusebench::trajectory_error {
+
+/// One kind of error: of poses, of motions, or of segments.
+struct ErrorSeries {
+  std::string relation;  ///< evo's name of it; of segments "translation_percent" or "rotation_deg_per_m"
+  std::string unit;      ///< "m", "%", "rad", "deg", "deg/m", or "" of what has none
+  std::vector<double> errors;
+  std::vector<std::int64_t> at_ns;  ///< of each error: the stamp of the pose, or of the motion's end
+  /// Of more motions than are listed, the errors one by one; `errors` and `at_ns` are then empty.
+  ValueSource streamed;
+  metrics::Statistics stats;
+};
+
+/// Segments of one length.
+struct SegmentRow {
+  double length_m = 0;
+  std::size_t segments = 0;
+  metrics::Statistics translation_m;
+  metrics::Statistics translation_percent;
+  metrics::Statistics rotation_deg;
+  metrics::Statistics rotation_deg_per_m;
+  metrics::Statistics yaw_deg;
+  metrics::Statistics gravity_deg;
+};
+
+struct TrajectoryEvaluation {
+  TrajectoryRequest request;
+  std::size_t reference_poses = 0;
+  std::size_t estimate_poses = 0;
+  std::size_t pairs = 0;             ///< associated poses; of TUM's relative error, motions with ground truth
+  std::size_t possible = 0;          ///< that there could have been
+  double coverage = 0;               ///< pairs / possible
+  Similarity alignment;              ///< reference from estimate
+  std::vector<ErrorSeries> series;   ///< the first is the protocol's own number
+  std::vector<SegmentRow> segments;  ///< where segments are what is compared
+};
+
+/// The same errors in another unit of the kind: mm, cm or km of metres, degrees of radians or the other way
+/// round. Error usage: it is another kind.
+[[nodiscard]] Result<void> change_unit(ErrorSeries& series, const std::string& unit);
+
+/// Errors: configuration for deltas that make no sense, data_corrupt for trajectories that do not match or do
+/// not determine the alignment, and where no motion is left.
+[[nodiscard]] Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
+                                                    const TrajectoryRequest& request);
+
+}  // namespace fusebench::trajectory_error

@@ -1,0 +1,287 @@
+#include "core/filter/iekf.hpp"
+
+#include <ceres/ceres.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/patches/posed_camera.hpp"
+#include "core/prediction/motion_prior.hpp"
+#include "tests/support/scalar_residuals.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace config;
+using namespace filter;
+using namespace prediction;
+using namespace patches;
+
+namespace {
+
+/// A correlated, positive definite covariance in which every state depends on the pose.
+StateMatrix some_covariance(double scale) {
+  StateMatrix root;
+  for (int i = 0; i < kStateSize; ++i) {
+    for (int j = 0; j < kStateSize; ++j)
+      root(i, j) = std::sin(1.0 + 3.0 * i + 7.0 * j) * 0.3 + (i == j ? 1.0 : 0.0);
+  }
+  return scale * root * root.transpose();
+}
+
+FilterState some_state() {
+  FilterState x;
+  x.T_world_imu = {so3_exp({0.2, -0.1, 0.3}), {0.1, -0.7, 0.4}};
+  x.velocity_world_mps = {0.5, -0.2, 0.1};
+  x.gravity_direction_world = Vector3d(0.2, 0.9, -0.4).normalized();
+  return x;
+}
+
+/// A measurement of the position, linear: z = p + noise.
+class PositionMeasurement final : public PoseMeasurement {
+ public:
+  PositionMeasurement(Vector3d z, double sigma) : z_(std::move(z)), information_(1.0 / (sigma * sigma)) {}
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
+    const Vector3d error = poses.T_world_imu_by_model.translation - z_;
+    PoseQuadratic q;
+    q.information.bottomRightCorner<3, 3>().diagonal().setConstant(information_);
+    q.gradient.tail<3>() = information_ * error;
+    q.cost = 0.5 * information_ * error.squaredNorm();
+    return {{}, q};
+  }
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+    return 0.5 * information_ * (poses.T_world_imu_by_model.translation - z_).squaredNorm();
+  }
+  void accept() override {}
+
+ private:
+  Vector3d z_;
+  double information_;
+};
+
+/// The same by stages, which counts what it is asked for.
+class StagedMeasurement final : public PoseMeasurement {
+ public:
+  explicit StagedMeasurement(PositionMeasurement& one) : one_(one) {}
+  [[nodiscard]] int stages() const override { return 3; }
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) override {
+    linearised.push_back(stage);
+    return one_.linearise(poses, stage, gate);
+  }
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step, double fraction) override {
+    return one_.trial_cost(poses, step, fraction);
+  }
+  void accept() override { ++accepted; }
+
+  std::vector<int> linearised;  ///< stages
+  int accepted = 0;
+
+ private:
+  PositionMeasurement& one_;
+};
+
+TEST(Iekf, LinearisesOnceAStepAndOnceMoreForThePosterior) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  PositionMeasurement position({0.13, -0.68, 0.47}, 0.02);
+  StagedMeasurement measurement(position);
+  const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
+  EXPECT_GT(result.iterations, 3);
+  EXPECT_EQ(measurement.accepted, result.iterations);
+  EXPECT_EQ(static_cast<int>(measurement.linearised.size()), result.iterations + 1);
+  EXPECT_TRUE(std::is_sorted(measurement.linearised.begin(), measurement.linearised.end()));
+  EXPECT_EQ(measurement.linearised.front(), 0);
+  EXPECT_EQ(measurement.linearised.back(), 2);
+}
+
+TEST(Iekf, WithoutThePriorInEveryIterationTheMeasurementHasTheLastWord) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const Vector3d z(0.13, -0.68, 0.47);
+  PositionMeasurement measurement(z, 0.2);  // much less certain than the prediction
+  IekfConfig config;
+  config.prior_in_every_iteration = false;
+  config.max_iterations = 200;
+  config.converged_rotation_rad = config.converged_translation_m = 0;
+  const IekfResult result = iekf_update(prior, measurement, config);
+  EXPECT_LT((result.posterior.mean.T_world_imu.translation - z).norm(), 1e-3);
+  config.prior_in_every_iteration = true;
+  const IekfResult weighed = iekf_update(prior, measurement, config);
+  EXPECT_GT((weighed.posterior.mean.T_world_imu.translation - z).norm(), 1e-2);
+}
+
+TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const Vector3d z(0.13, -0.68, 0.47);
+  const double sigma = 0.02;
+  // The textbook update: K = P H^T (H P H^T + U)^-1, d = K (z - h), P+ = (I - K H) P.
+  Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
+  H.block<3, 3>(0, kPosition).setIdentity();
+  const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
+  const Eigen::Matrix<double, kStateSize, 3> K = prior.covariance * H.transpose() * S.inverse();
+  const StateVector delta = K * (z - prior.mean.T_world_imu.translation);
+  const StateMatrix in_chart = (StateMatrix::Identity() - K * H) * prior.covariance;
+  const StateMatrix transport = chart_transport(prior.mean, delta);
+  const StateMatrix expected = transport * in_chart * transport.transpose();
+
+  MeasuredVector far_start;
+  far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300;
+  for (const MeasuredVector& start : {MeasuredVector(MeasuredVector::Zero()), far_start}) {
+    PositionMeasurement measurement(z, sigma);
+    const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT((minus(result.posterior.mean, prior.mean) - delta).norm(), 1e-9);
+    EXPECT_LT((result.posterior.covariance - expected).norm() / expected.norm(), 1e-9);
+  }
+}
+
+TEST(Iekf, WithoutInformationKeepsThePriorToTheLastBit) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  PositionMeasurement nothing(Vector3d::Zero(), 1e30);
+  const IekfResult result = iekf_update(prior, nothing, IekfConfig{});
+  EXPECT_LT(minus(result.posterior.mean, prior.mean).norm(), 1e-15);
+  EXPECT_LT((result.posterior.covariance - prior.covariance).norm(), 1e-15);
+}
+
+TEST(Iekf, AcceptsASingularPrior) {
+  // The first pose is known exactly: its covariance is zero, and no measurement may move it.
+  GaussianState prior{some_state(), StateMatrix::Zero()};
+  prior.covariance.block<3, 3>(kVelocity, kVelocity).setIdentity();
+  PositionMeasurement measurement(Vector3d(5, 5, 5), 0.01);
+  const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
+  EXPECT_EQ((result.posterior.mean.T_world_imu.translation - prior.mean.T_world_imu.translation).norm(), 0.0);
+  EXPECT_TRUE(result.posterior.covariance.allFinite());
+}
+
+/// Points on known planes, seen from an unknown pose: point-to-plane residuals with Huber's loss and some
+/// outliers.
+struct PlaneProblem {
+  std::vector<Vector3d> points_imu, plane_points, normals;
+  double sigma_m = 0.01;
+  double huber_sigmas = 1.345;
+};
+
+PlaneProblem plane_problem(const SE3& T_world_imu_true) {
+  PlaneProblem problem;
+  for (int i = 0; i < 60; ++i) {
+    const Vector3d normal =
+        Vector3d(std::sin(2.1 * i), std::cos(1.3 * i), std::sin(0.7 * i + 1)).normalized();
+    const Vector3d point_world(1.5 * std::sin(0.9 * i), std::cos(2.3 * i), 2 + 0.5 * std::sin(1.7 * i));
+    const double noise_m = 0.01 * std::sin(12.9898 * i) + (i % 9 == 0 ? 0.2 : 0.0);
+    problem.points_imu.push_back(T_world_imu_true.inverse() * (point_world + noise_m * normal));
+    problem.plane_points.push_back(point_world);
+    problem.normals.push_back(normal);
+  }
+  return problem;
+}
+
+class PlaneMeasurement final : public PoseMeasurement {
+ public:
+  explicit PlaneMeasurement(const PlaneProblem& problem) : problem_(problem) {}
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
+    PoseQuadratic q;
+    const PosedCamera posed(testing::small_camera(), poses.T_world_imu_by_model, SE3{});
+    for (std::size_t i = 0; i < problem_.normals.size(); ++i) {
+      const testing::PlaneResidual r = testing::point_to_plane_residual(
+          posed, problem_.points_imu[i], problem_.plane_points[i], problem_.normals[i]);
+      const testing::RobustValue robust = testing::huber(r.value_m / problem_.sigma_m, problem_.huber_sigmas);
+      const double weight = robust.weight / (problem_.sigma_m * problem_.sigma_m);
+      q.information += weight * r.jacobian.transpose() * r.jacobian;
+      q.gradient += weight * r.value_m * r.jacobian.transpose();
+      q.cost += robust.cost;
+    }
+    return {{}, q};
+  }
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+    return linearise(poses, 0, false).cost();
+  }
+  void accept() override {}
+
+ private:
+  const PlaneProblem& problem_;
+};
+
+/// The same cost for Ceres, written apart: |d|^2_P for d in the full chart at the prior, and the planes.
+struct PriorCost {
+  Eigen::Matrix<double, kStateSize, kStateSize> root_information;
+  template <class T>
+  bool operator()(const T* delta, T* residual) const {
+    Eigen::Map<Eigen::Matrix<T, kStateSize, 1>> r(residual);
+    r = root_information.cast<T>() * Eigen::Map<const Eigen::Matrix<T, kStateSize, 1>>(delta);
+    return true;
+  }
+};
+struct PlaneCost {
+  SE3 T_world_imu_prior;
+  Vector3d point_imu, plane_point, normal;
+  double sigma_m;
+  template <class T>
+  bool operator()(const T* delta, T* residual) const {
+    const Eigen::Map<const Eigen::Matrix<T, kStateSize, 1>> d(delta);
+    const Eigen::Matrix<T, 3, 1> phi = d.template segment<3>(kRotation);
+    const T angle = sqrt(phi.squaredNorm() + T(1e-30));
+    const Eigen::Matrix<T, 3, 1> p = point_imu.cast<T>();
+    const Eigen::Matrix<T, 3, 1> axis = phi / angle;
+    const Eigen::Matrix<T, 3, 1> turned =
+        p * cos(angle) + axis.cross(p) * sin(angle) + axis * (axis.dot(p) * (T(1) - cos(angle)));
+    const Eigen::Matrix<T, 3, 1> point_world =
+        T_world_imu_prior.rotation.toRotationMatrix().cast<T>() * turned +
+        T_world_imu_prior.translation.cast<T>() + d.template segment<3>(kPosition);
+    residual[0] = normal.cast<T>().dot(point_world - plane_point.cast<T>()) / T(sigma_m);
+    return true;
+  }
+};
+
+TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
+  GaussianState prior{some_state(), some_covariance(4e-4)};
+  const SE3 truth{prior.mean.T_world_imu.rotation * so3_exp({0.03, -0.05, 0.02}),
+                  prior.mean.T_world_imu.translation + Vector3d(0.04, 0.02, -0.05)};
+  const PlaneProblem planes = plane_problem(truth);
+
+  StateVector delta = StateVector::Zero();
+  ceres::Problem problem;
+  const StateMatrix root = Eigen::LLT<StateMatrix>(prior.covariance.inverse()).matrixU();
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<PriorCost, kStateSize, kStateSize>(new PriorCost{root}), nullptr,
+      delta.data());
+  for (std::size_t i = 0; i < planes.normals.size(); ++i) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PlaneCost, 1, kStateSize>(
+                                 new PlaneCost{prior.mean.T_world_imu, planes.points_imu[i],
+                                               planes.plane_points[i], planes.normals[i], planes.sigma_m}),
+                             new ceres::HuberLoss(planes.huber_sigmas), delta.data());
+  }
+  ceres::Solver::Options options;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-16;
+  options.gradient_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-14;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+
+  IekfConfig config;
+  config.max_iterations = 200;
+  config.converged_rotation_rad = config.converged_translation_m = 1e-12;
+  PlaneMeasurement measurement(planes);
+  const IekfResult result = iekf_update(prior, measurement, config);
+  EXPECT_LT((minus(result.posterior.mean, prior.mean) - delta).norm(), 1e-7);
+  EXPECT_NEAR(result.map_cost_posterior, summary.final_cost, 1e-9 * summary.final_cost);
+  EXPECT_LT(result.map_cost_posterior, result.map_cost_prior);
+}
+
+TEST(Iekf, OneIterationIsThePlainFilterAndFallsShortOfTheOptimum) {
+  GaussianState prior{some_state(), some_covariance(4e-4)};
+  const SE3 truth{prior.mean.T_world_imu.rotation * so3_exp({0.3, -0.2, 0.25}),
+                  prior.mean.T_world_imu.translation + Vector3d(0.04, 0.02, -0.05)};
+  const PlaneProblem planes = plane_problem(truth);
+  IekfConfig single;
+  single.max_iterations = 1;
+  PlaneMeasurement measurement(planes);
+  const IekfResult one = iekf_update(prior, measurement, single);
+  const IekfResult many = iekf_update(prior, measurement, IekfConfig{});
+  EXPECT_EQ(one.iterations, 1);
+  EXPECT_GT(one.map_cost_posterior, many.map_cost_posterior);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,171 @@
+#include "core/filter/pose_anchors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/filter/iekf.hpp"
+
+namespace fusebench {
+
+using namespace config;
+using namespace filter;
+
+namespace {
+
+const SE3 kFrom{so3_exp({0.3, -0.2, 0.5}), {0.4, -0.3, 1.2}};
+const SE3 kTo{so3_exp({-0.1, 0.6, 0.2}), {0.9, 0.2, 0.7}};
+
+TEST(PoseAnchors, TransportEqualsTheErrorOfARigidlyAttachedPose) {
+  Vector6d d;
+  d << 1e-6, -2e-6, 3e-6, 4e-6, 5e-6, -6e-6;
+  const SE3 displaced = pose_plus(kFrom, d);
+  const SE3 T_from_to = kFrom.inverse() * kTo;
+  EXPECT_LT((pose_minus(displaced * T_from_to, kTo) - pose_transport(kTo, kFrom) * d).norm(), 1e-10);
+  EXPECT_LT((pose_transport(kFrom, kTo) * pose_transport(kTo, kFrom) - Matrix6d::Identity()).norm(), 1e-12);
+}
+
+GaussianState known_at(const SE3& T) {
+  GaussianState state;
+  state.mean.T_world_imu = state.mean.T_world_imu_reference = T;
+  state.mean.velocity_world_mps = {0.5, -0.2, 0.1};
+  return state;
+}
+
+/// A pose that errs by an amount in each direction, and nothing else.
+GaussianState uncertain_at(const SE3& T, double variance) {
+  GaussianState state = known_at(T);
+  state.covariance.topLeftCorner<kPoseSize, kPoseSize>().diagonal().setConstant(variance);
+  return state;
+}
+
+TEST(PoseAnchors, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
+  const GaussianState before = uncertain_at(kTo, 1e-4);
+  for (const double share : {0.0, 0.3, 1.0}) {
+    const GaussianState after = cloned_after_fusion(before, {.share = share});
+    const Matrix6d against_model = after.covariance.topLeftCorner<kPoseSize, kPoseSize>();
+    EXPECT_LT((against_model - (1 - share) * (1 - share) * 1e-4 * Matrix6d::Identity()).norm(), 1e-15);
+    const Matrix6d in_world = in_first_camera_world(after).covariance.topLeftCorner<kPoseSize, kPoseSize>();
+    EXPECT_LT((in_world - 1e-4 * Matrix6d::Identity()).norm(), 1e-15) << share;
+  }
+}
+
+TEST(PoseAnchors, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
+  const GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-4), {});
+  const auto combinations = measured_combinations(state.mean);
+  const MeasuredMatrix measured = combinations * state.covariance * combinations.transpose();
+  EXPECT_LT((measured.topLeftCorner<kPoseSize, kPoseSize>()).norm(), 1e-15);
+  EXPECT_NEAR((measured.bottomRightCorner<kPoseSize, kPoseSize>()).trace(), 6e-4, 1e-12);
+}
+
+/// Sees the motion since the reference frame, or the place against the model, with a given error.
+class KnownMeasurement final : public PoseMeasurement {
+ public:
+  KnownMeasurement(SE3 by_reference, SE3 by_model, double sigma_reference, double sigma_model)
+      : by_reference_(by_reference),
+        by_model_(by_model),
+        reference_(information(sigma_reference)),
+        model_(information(sigma_model)) {}
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
+    return {quadratic(poses.T_world_imu_by_reference, by_reference_, reference_),
+            quadratic(poses.T_world_imu_by_model, by_model_, model_)};
+  }
+  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+    return linearise(poses, 0, false).cost();
+  }
+  void accept() override {}
+
+ private:
+  static double information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 0.0; }
+  static PoseQuadratic quadratic(const SE3& at, const SE3& measured, double weight) {
+    const Vector6d error = pose_minus(at, measured);
+    return {weight * Matrix6d::Identity(), weight * error, 0.5 * weight * error.squaredNorm()};
+  }
+  SE3 by_reference_, by_model_;
+  double reference_, model_;
+};
+
+/// Steps of a camera that stands still, seen with noise: against the last frame alone its error grows like a
+/// random walk, against the model it stays; the filter must know both.
+TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
+  constexpr int kRuns = 40, kSteps = 50;
+  constexpr double kSigma = 1e-3;
+  for (const bool by_model : {false, true}) {
+    double squared = 0, claimed = 0;
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal(0.0, kSigma);
+    for (int run = 0; run < kRuns; ++run) {
+      GaussianState state = cloned_after_fusion(known_at(SE3{}), {});
+      SE3 reference_truth;  // where the reference frame truly is
+      for (int step = 0; step < kSteps; ++step) {
+        state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += Matrix6d::Identity();  // it may have moved
+        Vector6d noise;
+        for (int i = 0; i < kPoseSize; ++i) noise[i] = normal(random);
+        // The truth stands still at identity; the patches were cut at the estimate.
+        const SE3 seen = pose_plus(state.mean.T_world_imu_reference * reference_truth.inverse(), noise);
+        KnownMeasurement measurement(seen, pose_plus(SE3{}, noise), by_model ? 0.0 : kSigma,
+                                     by_model ? kSigma : 0.0);
+        state = cloned_after_fusion(iekf_update(state, measurement, IekfConfig{}).posterior, {});
+      }
+      squared += state.mean.T_world_imu.translation.squaredNorm() / kRuns;
+      claimed = in_first_camera_world(state).covariance.block<3, 3>(kPosition, kPosition).trace();
+    }
+    const double expected = 3 * kSigma * kSigma * (by_model ? 1 : kSteps);
+    EXPECT_NEAR(claimed / expected, 1.0, 0.02) << by_model;
+    EXPECT_GT(squared / expected, 0.7) << by_model;
+    EXPECT_LT(squared / expected, 1.4) << by_model;
+  }
+}
+
+TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
+  // Without an anchor in between (an occluded frame is tracked, but nothing is cut from it) the next frame is
+  // compared with the same patches: what was learnt of the reference pose must not count as motion.
+  GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
+  state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
+  Vector6d off;
+  off << 2e-4, -1e-4, 3e-4, 1e-3, -2e-3, 1e-3;
+  const SE3 by_model = pose_plus(kTo, off);
+  KnownMeasurement first(kTo, by_model, 1e-3, 1e-3);
+  state = iekf_update(state, first, IekfConfig{}).posterior;
+  EXPECT_GT(state.mean.reference_offset.norm(), 1e-6);
+
+  // It stands still, and the second image says exactly what the first one said.
+  KnownMeasurement second(kTo, by_model, 1e-3, 1e-3);
+  GaussianState again = iekf_update(state, second, IekfConfig{}).posterior;
+  GaussianState once = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
+  once.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
+  KnownMeasurement both(kTo, by_model, 1e-3 / std::sqrt(2.0), 1e-3 / std::sqrt(2.0));
+  once = iekf_update(once, both, IekfConfig{}).posterior;
+  EXPECT_LT(pose_minus(again.mean.T_world_imu, once.mean.T_world_imu).norm(), 1e-7);
+  EXPECT_LT((again.covariance - once.covariance).norm() / once.covariance.norm(), 1e-3);
+}
+
+TEST(PoseAnchors, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
+  const GaussianState before = uncertain_at(kTo, 1e-4);
+  const GaussianState after = cloned_after_fusion(before, {.share = 0.1, .factor = 5});
+  EXPECT_NEAR(after.covariance(kPosition, kPosition), 0.81e-4, 1e-12);
+  EXPECT_NEAR(after.covariance(kModelPose, kModelPose), 0.01e-4 * 25, 1e-12);
+  EXPECT_NEAR(after.covariance(kModelPose + 3, kModelPose + 3), 0.01e-4 * 25, 1e-12);
+  EXPECT_NEAR(after.covariance(kPosition, kModelPose + 3), 0.9 * 0.1 * 1e-4, 1e-12);
+}
+
+TEST(PoseAnchors, ADisplacedModelTurnsVelocityAndGravity) {
+  // The model turned by a small angle about the pose: what is known against it is turned in the world.
+  GaussianState state = known_at(kTo);
+  state.mean.gravity_direction_world = Vector3d(0.2, 0.9, -0.4).normalized();
+  const double sigma = 1e-3;
+  state.covariance(kModelPose + 1, kModelPose + 1) = sigma * sigma;
+  const StateMatrix world = in_first_camera_world(state).covariance;
+  const Vector3d axis = state.mean.T_world_imu.rotation * Vector3d::UnitY();
+  const Vector3d by_turn = axis.cross(state.mean.velocity_world_mps);
+  EXPECT_LT((world.block<3, 3>(kVelocity, kVelocity) - sigma * sigma * by_turn * by_turn.transpose()).norm(),
+            1e-12);
+  const Vector2d tilt = s2_minus(so3_exp(1e-6 * axis) * state.mean.gravity_direction_world,
+                                 state.mean.gravity_direction_world) /
+                        1e-6;
+  EXPECT_LT((world.block<2, 2>(kGravity, kGravity) - sigma * sigma * tilt * tilt.transpose()).norm(), 1e-11);
+}
+
+}  // namespace
+}  // namespace fusebench

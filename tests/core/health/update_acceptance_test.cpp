@@ -1,0 +1,76 @@
+#include "core/health/update_acceptance.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fusebench {
+
+using namespace config;
+using namespace patches;
+using namespace measurement;
+using namespace health;
+
+namespace {
+
+FrameReport report_with(int accepted, double chi2_photometric) {
+  FrameReport report;
+  report.patches = 40;
+  report.patches_accepted = accepted;
+  report.chi2_photometric = chi2_photometric;
+  return report;
+}
+
+TEST(UpdateAcceptance, TooFewPatchesAreNeverBelieved) {
+  const Config config;
+  const std::string reason = rejection_reason(report_with(config.iekf.min_patches - 1, 1), false, config);
+  EXPECT_NE(reason.find("4 of 40 patches were usable (iekf.min_patches = 5)"), std::string::npos) << reason;
+  EXPECT_EQ(rejection_reason(report_with(config.iekf.min_patches, 1), false, config), "");
+}
+
+TEST(UpdateAcceptance, BadlyFittingPatchesAreNotBelievedAfterAGap) {
+  Config config;
+  const FrameReport wrong = report_with(30, 3);
+  EXPECT_EQ(rejection_reason(wrong, false, config), "");
+  EXPECT_EQ(rejection_reason(report_with(30, 1), true, config), "");
+  EXPECT_NE(rejection_reason(wrong, true, config).find("3.0 times"), std::string::npos);
+  config.terms.relocalisation = false;
+  EXPECT_EQ(rejection_reason(wrong, true, config), "") << "there is nothing better to turn to";
+  config.terms.relocalisation = true;
+  config.terms.photometric_weight = 0;
+  EXPECT_EQ(rejection_reason(wrong, true, config), "");
+}
+
+TEST(UpdateAcceptance, OnlyAcceptedPatchesOfSmallErrorSurvive) {
+  PatchConfig config;
+  std::vector<Patch> patches(3);
+  patches[2].age = 7;
+  std::vector<PatchOutcome> outcomes(3);
+  for (PatchOutcome& outcome : outcomes) outcome.accepted = true;
+  outcomes[0].accepted = false;
+  outcomes[1].mean_error_grey = config.max_mean_error + 1;
+  outcomes[2].centre_px = {12, 34};
+  std::vector<TrackedCentre> survivors(5);
+  find_survivors(patches, outcomes, config, survivors);
+  ASSERT_EQ(survivors.size(), 1U);
+  EXPECT_EQ(survivors[0].pixel_px, Vector2d(12, 34));
+  EXPECT_EQ(survivors[0].age, 8);
+}
+
+TEST(UpdateAcceptance, WhatStaysBeforeTheSceneForASecondIsFused) {
+  OcclusionGate gate;
+  FrameReport report;
+  report.status = FrameStatus::tracked;
+  EXPECT_TRUE(gate.admits(report));
+  report.health = FrameHealth::occluded;
+  for (int frame = 1; frame <= 30; ++frame) EXPECT_FALSE(gate.admits(report)) << frame;
+  EXPECT_TRUE(gate.admits(report));
+  report.health = FrameHealth::good;
+  EXPECT_TRUE(gate.admits(report));
+  report.health = FrameHealth::occluded;
+  EXPECT_FALSE(gate.admits(report)) << "counted from the beginning again";
+  report.health = FrameHealth::good;
+  report.status = FrameStatus::lost;
+  EXPECT_FALSE(gate.admits(report));
+}
+
+}  // namespace
+}  // namespace fusebench

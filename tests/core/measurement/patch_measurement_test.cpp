@@ -1,0 +1,110 @@
+#include "core/measurement/patch_measurement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/image.hpp"
+#include "tests/support/gated_depth.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace config;
+using namespace filter;
+using namespace tsdf;
+using namespace patches;
+using namespace measurement;
+
+namespace {
+
+/// A frame of the room, as tracking sees it.
+struct SeenFrame {
+  SeenFrame(const SE3& T_world_camera, const Config& config)
+      : frame(testing::TexturedRoom{}.render(testing::small_camera(), T_world_camera, 0)) {
+    frame.depth_m = testing::gated_depth(frame.depth_m, config.depth);
+    pyramid = build_pyramid(frame.grey, config.patches.levels);
+  }
+  [[nodiscard]] ObservedFrame observed() const { return {pyramid, frame.depth_m}; }
+
+  RgbdFrame frame;
+  std::vector<GreyImage> pyramid;
+};
+
+/// Patches of the first frame, and two frames to find them in.
+struct Scene {
+  Scene() { rig.camera = testing::small_camera(); }
+
+  [[nodiscard]] std::vector<Patch> cut(int max_count, Deformation deformation) const {
+    TsdfVolume model(config.tsdf);
+    EXPECT_TRUE(model.integrate(first.frame, rig.camera, SE3{}, config.depth, workers).has_value());
+    Config own = config;
+    own.patches.max_count = max_count;
+    own.terms.deformation = deformation;
+    return refresh_patches({first.pyramid, first.frame.depth_m, rig.camera, SE3{}}, model, {}, own, workers);
+  }
+
+  Config config;
+  SensorRig rig;
+  Workers workers{1};
+  SeenFrame first{SE3{}, config};
+  SeenFrame near{{so3_exp({0, 0.004, 0}), {0.004, 0, 0}}, config};
+  SeenFrame aside{{so3_exp({0.01, -0.01, 0}), {-0.02, 0.01, 0}}, config};
+};
+
+void expect_same(const PoseQuadratic& a, const PoseQuadratic& b) {
+  EXPECT_EQ(a.information, b.information);
+  EXPECT_EQ(a.gradient, b.gradient);
+  EXPECT_EQ(a.cost, b.cost);
+}
+
+/// All stages of an update, from where the patches were cut.
+void expect_same(PatchMeasurement& kept, PatchMeasurement& fresh) {
+  const PoseHypothesis still;
+  for (int stage = 0; stage < fresh.stages(); ++stage) {
+    const MeasurementQuadratic a = kept.linearise(still, stage, true);
+    const MeasurementQuadratic b = fresh.linearise(still, stage, true);
+    EXPECT_GT(b.by_reference.cost, 0);
+    expect_same(a.by_reference, b.by_reference);
+    expect_same(a.by_model, b.by_model);
+  }
+  ASSERT_EQ(kept.outcomes().size(), fresh.outcomes().size());
+  for (std::size_t p = 0; p < fresh.outcomes().size(); ++p) {
+    EXPECT_EQ(kept.outcomes()[p].usable_pixels, fresh.outcomes()[p].usable_pixels);
+    EXPECT_EQ(kept.outcomes()[p].accepted, fresh.outcomes()[p].accepted);
+    EXPECT_EQ(kept.outcomes()[p].gain, fresh.outcomes()[p].gain);
+  }
+  EXPECT_EQ(kept.tracked_pixels().intensity.size(), fresh.tracked_pixels().intensity.size());
+}
+
+TEST(PatchMeasurement, NothingOfAnEarlierFrameShows) {
+  const Scene scene;
+  const std::vector<Patch> many = scene.cut(60, Deformation::pixelwise);
+  const std::vector<Patch> rigid = scene.cut(60, Deformation::rigid_square);
+  const std::vector<Patch> few = scene.cut(15, Deformation::pixelwise);
+  ASSERT_GT(many.size(), 2 * few.size());
+  PatchMeasurement kept(scene.config, scene.rig, scene.workers);
+  for (const std::vector<Patch>* patches : {&few, &rigid, &many, &few}) {
+    // Something else before: another frame, a step, another brightness.
+    kept.observe(scene.aside.observed(), rigid, {2.0, 2.0});
+    static_cast<void>(kept.linearise({}, 0, false));
+    static_cast<void>(kept.trial_cost({}, MeasuredVector::Constant(1e-3), 1.0));
+    kept.accept();
+
+    PatchMeasurement fresh(scene.config, scene.rig, scene.workers);
+    kept.observe(scene.near.observed(), *patches, {});
+    fresh.observe(scene.near.observed(), *patches, {});
+    expect_same(kept, fresh);
+  }
+}
+
+TEST(PatchMeasurement, WithoutAFrameThereIsNothingToMeasureBy) {
+  const Scene scene;
+  PatchMeasurement measurement(scene.config, scene.rig, scene.workers);
+  EXPECT_THROW(static_cast<void>(measurement.linearise({}, 0, false)), InternalError);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,218 @@
+#include "core/patches/patch_deformation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <vector>
+
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace simd;
+using namespace config;
+using namespace patches;
+
+namespace {
+
+constexpr int kSize = 10;
+
+/// A patch of one level, cut by hand from a scene that gives the depth at each pixel of the reference camera
+/// (identity).
+template <class DepthAt>
+Patch cut(const Eigen::Vector2i& centre, const DepthAt& depth_at) {
+  const PinholeCamera camera = testing::small_camera();
+  Patch patch;
+  patch.centre_px = centre;
+  patch.levels.resize(1);
+  for (int y = centre.y() - kSize / 2; y < centre.y() + kSize / 2; ++y) {
+    for (int x = centre.x() - kSize / 2; x < centre.x() + kSize / 2; ++x) {
+      PatchPixel pixel;
+      pixel.reference_pixel = static_cast<std::uint32_t>(y * camera.width_px + x);
+      pixel.point_world = camera.back_project(x, y, depth_at(x, y));
+      pixel.normal_world = -Eigen::Vector3f::UnitZ();
+      patch.levels[0].pixels.push_back(pixel);
+    }
+  }
+  return patch;
+}
+
+PosedCamera camera_at(const Vector3d& position_m, const Vector3d& phi_rad = Vector3d::Zero()) {
+  return PosedCamera(testing::small_camera(), SE3{so3_exp(phi_rad), position_m}, SE3{});
+}
+
+/// Two planes: a near one at 1 m left of column 160, a far one at 2 m from there on.
+double two_planes(int x, int) { return x < 160 ? 1.0 : 2.0; }
+/// A plane that leans away to the right.
+double slanted(int x, int y) {
+  const PinholeCamera camera = testing::small_camera();
+  const Vector3d ray = camera.back_project(x, y, 1.0);
+  const Vector3d normal = Vector3d(-0.5, 0.2, -1.0).normalized();
+  return normal.dot(Vector3d(0, 0, 1.5)) / normal.dot(ray);
+}
+
+/// Coordinates of the lanes are relative to here.
+const Vector3d kOrigin(0.3, -0.2, 1.1);
+
+/// Level 0 of patches, warped to a camera.
+LevelLanes warp(std::span<const Patch> patches, const PosedCamera& posed) {
+  LevelLanes lanes;
+  pack(patches, 0, kOrigin, lanes);
+  warp_level(lanes.pixels, lanes.warp_points, PosedLanes(posed, kOrigin), lanes.warped);
+  return lanes;
+}
+LevelLanes warp(const Patch& patch, const PosedCamera& posed) { return warp(std::span(&patch, 1), posed); }
+
+/// One pixel of them.
+struct Pixel {
+  Vector2d pixel_px;
+  bool in_image = false;
+  bool visible = false;
+};
+std::vector<Pixel> pixels_of(const LevelLanes& lanes, std::size_t patch = 0) {
+  std::vector<Pixel> pixels;
+  for (std::size_t group = lanes.first[patch]; group < lanes.first[patch + 1]; ++group) {
+    const WarpedLanes& w = lanes.warped[group];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (lanes.pixels[group].present[lane] == 0) continue;
+      pixels.push_back({{w.x[lane], w.y[lane]}, w.in_image[lane] != 0, w.visible[lane] != 0});
+    }
+  }
+  return pixels;
+}
+
+constexpr double kTolerance_px = 2e-4;  // single precision
+
+TEST(PatchDeformation, PixelwiseFollowsEachPixelsOwnDepth) {
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  const double shift_m = 0.05;
+  const auto warped = pixels_of(warp(patch, camera_at({shift_m, 0, 0})));
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    const int x = static_cast<int>(patch.levels[0].pixels[i].reference_pixel % 320);
+    // Moving right by b moves a point at depth z left by f b / z.
+    EXPECT_NEAR(warped[i].pixel_px.x(), x - 240.0 * shift_m / two_planes(x, 0), kTolerance_px);
+  }
+}
+
+TEST(PatchDeformation, ShrinkTestRemovesTheOccludedFarPlaneAndNothingElse) {
+  // The camera moves left: the near plane slides right over the far one by 12 - 6 = 6 pixels, so that the 5
+  // columns of the far plane vanish behind the near one as far as the patch covers them.
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  LevelLanes lanes = warp(patch, camera_at({-0.05, 0, 0}));
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
+  occlusion.test(lanes.warped, DepthConfig{});
+  const auto warped = pixels_of(lanes);
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    const int x = static_cast<int>(patch.levels[0].pixels[i].reference_pixel % 320);
+    const double landed = x + 240.0 * 0.05 / two_planes(x, 0);
+    // Near columns 155..159 land on 167..171; far columns 160..164 on 166..170.
+    const bool hidden = x >= 160 && landed >= 167.0 - 1e-6 && landed <= 171.0 + 1e-6;
+    EXPECT_EQ(warped[i].visible, !hidden) << "column " << x;
+    EXPECT_TRUE(warped[i].in_image);
+  }
+}
+
+TEST(PatchDeformation, AnOccluderInAnotherPatchCounts) {
+  Patch near = cut({100, 120}, [](int, int) { return 1.0; });
+  Patch far = cut({106, 120}, [](int, int) { return 2.0; });
+  for (Patch* patch : {&near, &far})
+    set_deformation(*patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  const PosedCamera posed = camera_at({-0.05, 0, 0});  // near: +12 px, far: +6 px: the squares coincide
+  const std::vector<Patch> both = {near, far};
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
+  for (int time = 0; time < 2; ++time) {  // it forgets the test before
+    LevelLanes lanes = warp(both, posed);
+    occlusion.test(lanes.warped, DepthConfig{});
+    for (const Pixel& pixel : pixels_of(lanes, 0)) EXPECT_TRUE(pixel.visible);
+    for (const Pixel& pixel : pixels_of(lanes, 1)) EXPECT_FALSE(pixel.visible);
+  }
+  LevelLanes alone = warp(far, posed);
+  occlusion.test(alone.warped, DepthConfig{});
+  for (const Pixel& pixel : pixels_of(alone)) EXPECT_TRUE(pixel.visible);
+}
+
+TEST(PatchDeformation, BackingAwayFromOneSurfaceHidesNothing) {
+  // Pixels of a slanted plane collide when the camera backs off: that is no occlusion.
+  Patch patch = cut({160, 120}, slanted);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  LevelLanes lanes = warp(patch, camera_at({0, 0, -1.5}));
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
+  occlusion.test(lanes.warped, DepthConfig{});
+  for (const Pixel& pixel : pixels_of(lanes)) EXPECT_TRUE(pixel.visible);
+  EXPECT_FALSE(is_extended(lanes.warped, kSize));
+}
+
+TEST(PatchDeformation, ExtendTestSeesTheOpeningGapAndTheApproach) {
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  EXPECT_FALSE(is_extended(warp(patch, camera_at({0, 0, 0})).warped, kSize));
+  EXPECT_FALSE(is_extended(warp(patch, camera_at({0, 0, 0}, {0, 0.02, 0})).warped, kSize)) << "pure rotation";
+  EXPECT_TRUE(is_extended(warp(patch, camera_at({0.05, 0, 0})).warped, kSize)) << "near and far plane part";
+  EXPECT_TRUE(is_extended(warp(patch, camera_at({0, 0, 0.4})).warped, kSize)) << "approach";
+}
+
+TEST(PatchDeformation, MeasuredDepthHidesWhatIsBehindOrGone) {
+  Patch patch = cut({160, 120}, [](int, int) { return 1.5; });
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  DepthImage depth(320, 240, 1.5F);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 158; ++x) depth(x, y) = 1.0F;    // a hand before the left part
+    for (int x = 162; x < 320; ++x) depth(x, y) = 0.0F;  // no measurement on the right
+  }
+  LevelLanes lanes = warp(patch, camera_at({0, 0, 0}));
+  test_measured_occlusion(lanes.warped, depth, 1, 0.05, DepthConfig{});
+  const auto warped = pixels_of(lanes);
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    EXPECT_EQ(warped[i].visible, patch.levels[0].pixels[i].reference_pixel % 320 >= 158);
+  }
+}
+
+TEST(PatchDeformation, AllKindsAgreeWhereTheyMustAndDifferWhereTheyMust) {
+  const PosedCamera sideways = camera_at({0.05, 0.02, 0}, {0.01, -0.02, 0.0});
+  const auto difference = [&](auto depth_at, Deformation a, Deformation b) {
+    Patch first = cut({160, 120}, depth_at);
+    Patch second = cut({160, 120}, depth_at);
+    set_deformation(first, testing::small_camera(), SE3{}, a);
+    set_deformation(second, testing::small_camera(), SE3{}, b);
+    const auto wa = pixels_of(warp(first, sideways));
+    const auto wb = pixels_of(warp(second, sideways));
+    double worst = 0;
+    for (std::size_t i = 0; i < wa.size(); ++i)
+      worst = std::max(worst, (wa[i].pixel_px - wb[i].pixel_px).norm());
+    return worst;
+  };
+  // On a plane, one plane a patch is exact; a rigid square is not; on two planes neither is.
+  EXPECT_LT(difference(slanted, Deformation::pixelwise, Deformation::planar), kTolerance_px);
+  EXPECT_GT(difference(slanted, Deformation::pixelwise, Deformation::rigid_square), 0.1);
+  EXPECT_GT(difference(two_planes, Deformation::pixelwise, Deformation::planar), 0.5);
+  EXPECT_GT(difference(two_planes, Deformation::pixelwise, Deformation::rigid_square), 5.0);
+}
+
+TEST(PatchDeformation, RigidSquareMovesByItsCentreAlone) {
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::rigid_square);
+  const auto warped = pixels_of(warp(patch, camera_at({0.05, 0, 0})));
+  for (std::size_t i = 0; i < warped.size(); ++i) {
+    const auto key = patch.levels[0].pixels[i].reference_pixel;
+    EXPECT_NEAR(warped[i].pixel_px.x(), key % 320 - 240.0 * 0.05 / 2.0,
+                kTolerance_px);  // the centre lies on the far plane
+    EXPECT_NEAR(warped[i].pixel_px.y(), key / 320, kTolerance_px);
+  }
+}
+
+TEST(PatchDeformation, PixelsBehindTheCameraOrOutsideAreNotInTheImage) {
+  Patch patch = cut({160, 120}, [](int, int) { return 1.0; });
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  for (const PosedCamera& posed :
+       {camera_at({0, 0, 1.5}), camera_at({5, 0, 0}), camera_at({0, 0, 0}, {0, 3.1, 0})}) {
+    for (const Pixel& pixel : pixels_of(warp(patch, posed))) EXPECT_FALSE(pixel.in_image);
+  }
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,284 @@
+#include "core/relocalisation/keyframes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "core/base/error.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace relocalisation;
+
+namespace {
+
+using testing::small_camera;
+using testing::TexturedRoom;
+
+RgbdFrame seen_from(const SE3& T_world_camera) {
+  return TexturedRoom{}.render(small_camera(), T_world_camera, 0);
+}
+
+void offer(Keyframes& keyframes, const SE3& T_world_camera, std::int64_t timestamp_ns = 0) {
+  const RgbdFrame frame = seen_from(T_world_camera);
+  keyframes.offer(frame.grey, frame.depth_m, T_world_camera, timestamp_ns);
+}
+
+/// A keyframe in the middle of the room.
+Keyframes one_keyframe(const SE3& T_world_camera = {}) {
+  Keyframes keyframes(small_camera());
+  offer(keyframes, T_world_camera);
+  return keyframes;
+}
+
+GreyImage noise_image() {
+  std::mt19937 random(3);
+  GreyImage grey(320, 240);
+  for (std::uint8_t& level : grey.data) level = static_cast<std::uint8_t>(random() & 255U);
+  return grey;
+}
+
+TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
+  // The world of the poses is not that of the keyframe, so that a mix-up of frames shows.
+  const SE3 T_world_room{so3_exp({0.4, -1.1, 0.7}), {3, -2, 5}};
+  const SE3 T_room_key{so3_exp({0.05, -0.1, 0.02}), {0.05, 0, -0.1}};
+  const RgbdFrame key = seen_from(T_room_key);
+  Keyframes keyframes(small_camera());
+  ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, T_world_room * T_room_key, 0));
+  const double turn_rad = radians(15);
+  const SE3 asides[] = {
+      {Quaterniond::Identity(), Vector3d::Zero()},
+      {so3_exp({0, turn_rad, 0}), {-0.2, 0, 0}},
+      {so3_exp({0, -turn_rad, 0}), {0.14, 0.14, 0}},
+      {so3_exp({turn_rad, 0, 0}), {0, 0, -0.2}},
+      {so3_exp({0, 0, turn_rad}), {0.1, -0.1, 0.14}},
+      {so3_exp({0, 0, radians(100)}), {0.02, 0, 0}},  // upright or on its side
+  };
+  for (const SE3& T_key_query : asides) {
+    const auto found = keyframes.find(seen_from(T_room_key * T_key_query).grey);
+    ASSERT_TRUE(found) << so3_log(T_key_query.rotation).transpose();
+    const SE3 T_world_query = T_world_room * T_room_key * T_key_query;
+    EXPECT_LT((found->T_world_camera.translation - T_world_query.translation).norm(), 0.02);
+    EXPECT_LT(rotation_angle_rad(found->T_world_camera.rotation, T_world_query.rotation), radians(1));
+    EXPECT_LE(found->inliers, found->matches);
+    EXPECT_LT(found->rms_px, 3.0);
+  }
+}
+
+TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
+  // Turned worlds, so that the axes of the covariance matter.
+  const SE3 T_world_room{so3_exp({0, 0, radians(90)}), {1, 2, 3}};
+  const RgbdFrame key = seen_from({});
+  Keyframes plain(small_camera());
+  Keyframes turned(small_camera());
+  plain.offer(key.grey, key.depth_m, SE3{}, 0);
+  turned.offer(key.grey, key.depth_m, T_world_room, 0);
+  const GreyImage query = seen_from({so3_exp({0, 0.1, 0}), {-0.1, 0, 0}}).grey;
+  const auto a = plain.find(query);
+  const auto b = turned.find(query);
+  ASSERT_TRUE(a && b);
+  const Matrix3d R = T_world_room.rotation_matrix();
+  const Matrix6d& cov_a = a->covariance;
+  const Matrix6d& cov_b = b->covariance;
+  const double size = cov_a.norm();
+  EXPECT_LT((cov_b.topLeftCorner<3, 3>() - cov_a.topLeftCorner<3, 3>()).norm(), 1e-9 * size);
+  const Matrix3d turned_position = R * cov_a.bottomRightCorner<3, 3>() * R.transpose();
+  EXPECT_LT((cov_b.bottomRightCorner<3, 3>() - turned_position).norm(), 1e-9 * size);
+  EXPECT_GT((cov_b - cov_a).norm(), 1e-3 * size) << "the axes make no difference: the test is empty";
+}
+
+TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
+  Keyframes keyframes(small_camera());
+  const SE3 front;
+  const SE3 left{so3_exp({0, radians(-80), 0}), Vector3d::Zero()};
+  const SE3 right{so3_exp({0, radians(80), 0}), Vector3d::Zero()};
+  offer(keyframes, front, 10);
+  offer(keyframes, left, 20);
+  offer(keyframes, right, 30);
+  ASSERT_EQ(keyframes.size(), 3U);
+  const SE3 aside{so3_exp({0.03, 0.05, 0}), {0.05, 0, 0}};
+  std::size_t expected = 0;
+  for (const SE3& base : {front, left, right}) {
+    const auto found = keyframes.find(seen_from(base * aside).grey);
+    ASSERT_TRUE(found) << expected;
+    EXPECT_EQ(found->keyframe, expected++);
+  }
+  EXPECT_EQ(keyframes[1].timestamp_ns, 20);
+}
+
+TEST(Keyframes, FindNothingWhereNoneHasBeen) {
+  Keyframes keyframes = one_keyframe();
+  ASSERT_EQ(keyframes.size(), 1U);
+  EXPECT_TRUE(keyframes.find(seen_from({}).grey)) << "else the rest says nothing";
+  const SE3 back{so3_exp({0, radians(180), 0}), Vector3d::Zero()};
+  EXPECT_FALSE(keyframes.find(seen_from(back).grey));
+  const SE3 side{so3_exp({0, radians(100), 0}), Vector3d::Zero()};
+  EXPECT_FALSE(keyframes.find(seen_from(side).grey));
+  EXPECT_FALSE(keyframes.find(GreyImage(320, 240, 0)));
+  EXPECT_FALSE(keyframes.find(GreyImage(320, 240, 140)));
+  EXPECT_FALSE(keyframes.find(noise_image()));
+}
+
+TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
+  // A poster may hang in two rooms: what is seen in one corner of the image tells no pose.
+  Keyframes keyframes = one_keyframe();
+  const GreyImage whole = seen_from({}).grey;
+  GreyImage corner(320, 240, 140);
+  for (int y = 60; y < 180; ++y) {
+    for (int x = 160; x < 300; ++x) corner(x, y) = whole(x, y);
+  }
+  const std::size_t seen = find_place_features(corner, 800).size();
+  ASSERT_GE(seen, 100U) << "it must not be for want of features";
+  EXPECT_FALSE(keyframes.find(corner));
+}
+
+TEST(Keyframes, AnEmptyStoreFindsNothing) {
+  Keyframes keyframes(small_camera());
+  EXPECT_EQ(keyframes.size(), 0U);
+  EXPECT_FALSE(keyframes.find(seen_from({}).grey));
+}
+
+TEST(Keyframes, AStillCameraAddsOneAndAMovingOneMore) {
+  Keyframes still(small_camera());
+  Keyframes moving(small_camera());
+  Keyframes turning(small_camera());
+  Keyframes rolling(small_camera());
+  for (int k = 0; k < 13; ++k) {
+    offer(still, {so3_exp({0, 0.01 * (k % 3), 0}), {0.01 * (k % 2), 0, 0}}, k);
+    offer(moving, {Quaterniond::Identity(), {-0.48 + 0.08 * k, 0, 0}}, k);
+    offer(turning, {so3_exp({0, radians(6.0 * k), 0}), Vector3d::Zero()}, k);
+    offer(rolling, {so3_exp({0, 0, radians(6.0 * k)}), Vector3d::Zero()}, k);
+  }
+  EXPECT_EQ(still.size(), 1U);
+  EXPECT_EQ(moving.size(), 4U) << "0, 0.32, 0.64 and 0.96 m";
+  EXPECT_EQ(turning.size(), 4U) << "0, 24, 48 and 72 degrees";
+  EXPECT_EQ(rolling.size(), 1U);
+}
+
+TEST(Keyframes, OfTheCrowdedOneMakesRoomWhenTheStoreIsFull) {
+  Keyframes keyframes(small_camera(), {0.3, radians(20), 3});
+  const auto turned = [](double degrees) { return SE3{so3_exp({0, radians(degrees), 0}), Vector3d::Zero()}; };
+  offer(keyframes, turned(0), 0);
+  offer(keyframes, turned(60), 1);
+  offer(keyframes, turned(85), 2);
+  ASSERT_EQ(keyframes.size(), 3U);
+  offer(keyframes, turned(-60), 3);
+  ASSERT_EQ(keyframes.size(), 3U);
+  EXPECT_EQ(keyframes[0].timestamp_ns, 0);
+  EXPECT_EQ(keyframes[1].timestamp_ns, 2) << "25 degrees beside the later one, the nearest of all";
+  EXPECT_EQ(keyframes[2].timestamp_ns, 3);
+}
+
+TEST(Keyframes, ASharpFrameTakesThePlaceOfABlurredOne) {
+  const RgbdFrame frame = seen_from({});
+  Keyframes keyframes(small_camera());
+  EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 1, 8.0));
+  EXPECT_FALSE(keyframes.offer(frame.grey, frame.depth_m, {}, 2, 5.0)) << "not much sharper";
+  EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 3, 1.5));
+  EXPECT_FALSE(keyframes.offer(frame.grey, frame.depth_m, {}, 4, 0.0)) << "sharp enough already";
+  ASSERT_EQ(keyframes.size(), 1U);
+  EXPECT_EQ(keyframes[0].timestamp_ns, 3);
+}
+
+TEST(Keyframes, WithoutFeaturesOrDepthAFrameIsNotKept) {
+  const RgbdFrame frame = seen_from({});
+  Keyframes keyframes(small_camera());
+  EXPECT_FALSE(keyframes.offer(GreyImage(320, 240, 90), frame.depth_m, {}, 0));
+  const SE3 aside{Quaterniond::Identity(), {1, 0, 0}};
+  EXPECT_FALSE(keyframes.offer(frame.grey, DepthImage(320, 240), aside, 1));
+  EXPECT_EQ(keyframes.size(), 0U);
+  EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 2)) << "barren frames do not bar others";
+}
+
+TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
+  RgbdFrame frame = seen_from({});
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 160; x < 320; ++x) frame.depth_m(x, y) = 0;
+    for (int x = 100; x < 160; ++x) frame.depth_m(x, y) = 9;  // behind all else
+  }
+  const Landmarks landmarks = landmarks_of(frame.grey, frame.depth_m, small_camera());
+  ASSERT_GT(landmarks.features.size(), 100U);
+  ASSERT_EQ(landmarks.features.size(), landmarks.points_camera.size());
+  for (std::size_t i = 0; i < landmarks.features.size(); ++i) {
+    const Vector2d& pixel_px = landmarks.features[i].pixel_px;
+    EXPECT_LT(pixel_px.x(), 160);
+    EXPECT_GT(std::abs(pixel_px.x() - 99.5), 1.0);
+    EXPECT_LT((small_camera().project(landmarks.points_camera[i]) - pixel_px).norm(), 1e-9);
+  }
+}
+
+TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
+  RgbdFrame frame = seen_from({});
+  frame.grey = noise_image();
+  ASSERT_GT(find_corners(frame.grey).size(), 500U);
+  Keyframes keyframes(small_camera());
+  ASSERT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
+  EXPECT_FALSE(keyframes[0].landmarks);
+  ASSERT_TRUE(keyframes.find(frame.grey));
+  ASSERT_TRUE(keyframes[0].landmarks);
+  const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera());
+  const Landmarks& later = *keyframes[0].landmarks;
+  ASSERT_EQ(later.features.size(), at_once.features.size());
+  for (std::size_t i = 0; i < later.features.size(); ++i) {
+    EXPECT_EQ(later.features[i].descriptor, at_once.features[i].descriptor);
+    EXPECT_LT((later.points_camera[i] - at_once.points_camera[i]).norm(), 3e-4) << "depth is packed";
+  }
+}
+
+TEST(Keyframes, WhereCornersAreFewTheLandmarksDecide) {
+  // A blurred image has corners on coarse levels only.
+  RgbdFrame frame = seen_from({});
+  cv::Mat sharp(240, 320, CV_8UC1, frame.grey.data.data());
+  GreyImage blurred(320, 240);
+  cv::Mat smooth(240, 320, CV_8UC1, blurred.data.data());
+  cv::GaussianBlur(sharp, smooth, {}, 2.5);
+  ASSERT_LT(find_corners(blurred).size(), 120U);
+  Keyframes keyframes(small_camera());
+  EXPECT_TRUE(keyframes.offer(blurred, frame.depth_m, {}, 0));
+  EXPECT_TRUE(keyframes[0].landmarks);
+}
+
+TEST(Keyframes, TheNumberOfThreadsDoesNotShow) {
+  const int before = cv::getNumThreads();
+  const GreyImage query = seen_from({so3_exp({0, 0.1, 0.1}), {-0.1, 0.02, 0}}).grey;
+  const auto bytes = [&](int threads) {
+    cv::setNumThreads(threads);
+    cv::theRNG().state = static_cast<std::uint64_t>(threads);  // nor what others drew
+    Keyframes keyframes = one_keyframe();
+    const auto found = keyframes.find(query);
+    EXPECT_TRUE(found);
+    std::vector<double> numbers;
+    for (const PlaceFeature& f : keyframes[0].landmarks->features) {
+      numbers.insert(numbers.end(), {f.pixel_px.x(), f.pixel_px.y(), f.scale});
+      for (const std::uint64_t word : f.descriptor) {
+        numbers.push_back(static_cast<double>(word >> 32U));
+        numbers.push_back(static_cast<double>(word & 0xFFFFFFFFU));
+      }
+    }
+    const SE3 pose = found ? found->T_world_camera : SE3{};
+    numbers.insert(numbers.end(), {pose.translation.x(), pose.translation.y(), pose.translation.z(),
+                                   pose.rotation.x(), pose.rotation.y(), pose.rotation.z()});
+    return numbers;
+  };
+  const std::vector<double> one = bytes(1);
+  for (const int threads : {1, 2, 4}) {
+    const std::vector<double> other = bytes(threads);
+    ASSERT_EQ(one.size(), other.size());
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0) << threads;
+  }
+  cv::setNumThreads(before);
+}
+
+TEST(Keyframes, ImagesOfAnotherSizeAreAMistakeOfTheProgram) {
+  Keyframes keyframes(small_camera());
+  EXPECT_THROW(keyframes.offer(GreyImage(64, 48), DepthImage(64, 48), {}, 0), InternalError);
+  EXPECT_THROW(static_cast<void>(keyframes.find(GreyImage(64, 48))), InternalError);
+}
+
+}  // namespace
+}  // namespace fusebench

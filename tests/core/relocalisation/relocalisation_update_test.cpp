@@ -1,0 +1,119 @@
+#include "core/relocalisation/relocalisation_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "core/filter/iekf.hpp"
+#include "core/filter/pose_anchors.hpp"
+
+namespace fusebench {
+
+using namespace filter;
+using namespace relocalisation;
+
+namespace {
+
+const SE3 kPredicted{so3_exp({0.3, -0.2, 0.5}), {0.4, -0.3, 1.2}};
+const SE3 kReference{so3_exp({0.2, -0.1, 0.4}), {0.5, -0.3, 1.1}};
+
+/// A filter that has been without images for a while: the error of its position is that of its velocity.
+GaussianState lost_at(const SE3& T_world_imu, double velocity_sigma_mps, double duration_s) {
+  GaussianState state;
+  state.mean.T_world_imu = T_world_imu;
+  state.mean.T_world_imu_reference = {so3_exp({0.1, 0.1, 0.1}), {0.3, -0.2, 1.0}};
+  state.mean.velocity_world_mps = {0.5, -0.2, 0.1};
+  const double variance = velocity_sigma_mps * velocity_sigma_mps;
+  for (int axis = 0; axis < 3; ++axis) {
+    state.covariance(kRotation + axis, kRotation + axis) = 1e-4;
+    state.covariance(kPosition + axis, kPosition + axis) = variance * duration_s * duration_s;
+    state.covariance(kVelocity + axis, kVelocity + axis) = variance;
+    state.covariance(kPosition + axis, kVelocity + axis) = variance * duration_s;
+    state.covariance(kVelocity + axis, kPosition + axis) = variance * duration_s;
+    state.covariance(kGyroscopeBias + axis, kGyroscopeBias + axis) = 1e-6;
+  }
+  return state;
+}
+
+RelocalisedPose place_at(const SE3& T_world_imu, double sigma) {
+  RelocalisedPose place{T_world_imu, kReference};
+  place.covariance = sigma * sigma * Matrix6d::Identity();
+  place.reference_covariance = 1e-6 * Matrix6d::Identity();
+  return place;
+}
+
+TEST(Resumption, AnExactPlaceIsTakenAndTellsTheVelocity) {
+  Vector6d off;
+  off << 0.005, -0.003, 0.004, 0.10, -0.05, 0.02;
+  const SE3 found = pose_plus(kPredicted, off);
+  const GaussianState state = relocalisation_update(lost_at(kPredicted, 0.2, 0.5), place_at(found, 1e-6), {});
+  EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 2e-3);  // the reference may be off by that
+  // The position was wrong because the velocity was, for half a second.
+  EXPECT_LT((state.mean.velocity_world_mps - Vector3d(0.5, -0.2, 0.1) - off.tail<3>() / 0.5).norm(), 1e-4);
+  EXPECT_EQ(state.mean.gyroscope_bias_radps, Vector3d::Zero());
+}
+
+TEST(Resumption, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
+  Vector6d off;
+  off << 0.005, -0.003, 0.004, 0.02, -0.05, 0.02;  // well within the prediction's uncertainty
+  const GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
+  RelocalisedPose place = place_at(pose_plus(kPredicted, off), 0.01);
+  place.reference_covariance.setZero();
+  const GaussianState state = relocalisation_update(prediction, place, {});
+
+  const Matrix6d P = prediction.covariance.topLeftCorner<kPoseSize, kPoseSize>();
+  const Matrix6d expected = P * (P + place.covariance).inverse();
+  EXPECT_LT((pose_minus(state.mean.T_world_imu, kPredicted) - expected * off).norm(), 1e-12);
+  const Matrix6d posterior = P - expected * P;
+  // Up to the turn of the tangent by half a hundredth.
+  const Matrix6d claimed = state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
+  EXPECT_LT((claimed - posterior).norm(), 0.01 * posterior.norm());
+}
+
+TEST(Resumption, ContradictionIsTheInnovationInStandardDeviations) {
+  GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
+  RelocalisedPose place = place_at(kPredicted, 0.01);
+  place.reference_covariance.setZero();
+  EXPECT_NEAR(normalised_innovation(prediction, place), 0.0, 1e-20);
+  Vector6d off = Vector6d::Zero();
+  off[4] = 0.3;  // of sigma 0.1 and 0.01
+  place.T_world_imu = pose_plus(kPredicted, off);
+  EXPECT_NEAR(normalised_innovation(prediction, place), 0.09 / (0.01 + 0.0001) / 6, 1e-9);
+}
+
+TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
+  Vector6d off;
+  off << 0.3, -0.2, 0.4, 2.0, -1.0, 0.5;  // tens of standard deviations
+  const SE3 found = pose_plus(kPredicted, off);
+  const GaussianState state =
+      relocalisation_update(lost_at(kPredicted, 0.01, 0.5), place_at(found, 0.01), {});
+  EXPECT_LT(pose_minus(state.mean.T_world_imu, found).norm(), 0.1);
+  EXPECT_EQ(state.covariance(kGyroscopeBias, kGyroscopeBias), 1e-6);  // not contradicted by a place
+  // Nothing moves like that: how fast it was tells nothing of how fast it is.
+  EXPECT_EQ(state.mean.velocity_world_mps, Vector3d::Zero());
+  EXPECT_NEAR(state.covariance(kVelocity, kVelocity), 1.0, 1e-12);
+}
+
+TEST(Resumption, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
+  const RelocalisedPose place = place_at(kPredicted, 0.001);
+  const GaussianState state = relocalisation_update(lost_at(kPredicted, 0.2, 0.5), place, {});
+  EXPECT_LT(pose_minus(state.mean.T_world_imu_reference, kReference).norm(), 1e-15);
+  EXPECT_EQ(state.mean.reference_offset.norm(), 0);  // the place was where the filter thought
+  // Against that frame the pose is as certain as the match, whatever the frame's own error.
+  const auto combinations = measured_combinations(state.mean);
+  const MeasuredMatrix measured = combinations * state.covariance * combinations.transpose();
+  const Matrix6d by_reference = measured.topLeftCorner<kPoseSize, kPoseSize>();
+  EXPECT_LT(by_reference.trace(), place.covariance.trace());
+  EXPECT_GT(by_reference.trace(), 0.9 * place.covariance.trace());
+  // Against the model that error comes on top.
+  const Matrix6d carried = pose_transport(kPredicted, kReference);
+  const Matrix6d both = place.covariance + carried * place.reference_covariance * carried.transpose();
+  const Matrix6d by_model = measured.bottomRightCorner<kPoseSize, kPoseSize>();
+  EXPECT_GT(by_model.trace(), 0.9 * both.trace());
+  EXPECT_LT(by_model.trace(), both.trace());
+  const Eigen::SelfAdjointEigenSolver<StateMatrix> eigen(state.covariance);
+  EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-15);
+}
+
+}  // namespace
+}  // namespace fusebench

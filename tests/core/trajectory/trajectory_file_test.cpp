@@ -1,0 +1,116 @@
+#include "core/trajectory/trajectory_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+
+using namespace trajectory;
+
+namespace {
+
+class TrajectoryFile : public testing::InTemporaryFolder {
+ protected:
+  Result<Trajectory> read(const std::string& text, Duplicates duplicates = Duplicates::error) {
+    warnings_.clear();
+    return read_tum_trajectory(write(file_.filename(), text), warnings_, duplicates);
+  }
+  std::filesystem::path file_ = folder_ / "trajectory.txt";
+  std::vector<std::string> warnings_;
+};
+
+TEST_F(TrajectoryFile, WritesWhatItReads) {
+  Trajectory path(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    path[i].timestamp_ns = 1305031102175304123 + static_cast<std::int64_t>(i);
+    path[i].T_world_camera = {so3_exp({0.1 / 3.0, -0.7, 0.2 * static_cast<double>(i)}),
+                              {1.0 / 3.0, -1e-17, 12345.678901234567}};
+  }
+  const auto back = read(tum_text(path));
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  ASSERT_EQ(back->size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ((*back)[i].timestamp_ns, path[i].timestamp_ns);
+    EXPECT_EQ((*back)[i].T_world_camera.translation, path[i].T_world_camera.translation);
+    EXPECT_LT(rotation_angle_rad((*back)[i].T_world_camera.rotation, path[i].T_world_camera.rotation), 1e-15);
+  }
+}
+
+TEST_F(TrajectoryFile, StampsHaveNineDecimals) {
+  EXPECT_EQ(stamp_text(1305031102175304123), "1305031102.175304123");
+  EXPECT_EQ(stamp_text(5), "0.000000005");
+  EXPECT_EQ(stamp_text(-1500000000), "-1.500000000");
+}
+
+TEST_F(TrajectoryFile, PublishedTruthMayRepeatAStampButNotRunBackwards) {
+  const auto repeated = read("1.0 0 0 0 0 0 0 1\n2.0 1 0 0 0 0 0 1\n2.0 5 0 0 0 0 0 1\n3.0 2 0 0 0 0 0 1\n",
+                             Duplicates::last_in_order);
+  ASSERT_TRUE(repeated.has_value());
+  ASSERT_EQ(repeated->size(), 3U);
+  EXPECT_EQ((*repeated)[1].T_world_camera.translation.x(), 5.0);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find("1 of 4 rows repeat a stamp"), std::string::npos) << warnings_[0];
+
+  const auto backwards =
+      read("1.0 0 0 0 0 0 0 1\n3.0 1 0 0 0 0 0 1\n2.0 5 0 0 0 0 0 1\n", Duplicates::last_in_order);
+  ASSERT_FALSE(backwards.has_value());
+  EXPECT_NE(backwards.error().message.find(":3: time runs backwards"), std::string::npos);
+}
+
+TEST_F(TrajectoryFile, ErrorsNameTheLine) {
+  const auto expect_line = [&](const std::string& text, int line, std::string_view what) {
+    const auto result = read(text);
+    ASSERT_FALSE(result.has_value()) << text;
+    EXPECT_EQ(result.error().code, ErrorCode::data_corrupt);
+    EXPECT_TRUE(result.error().message.starts_with(file_.string() + ":" + std::to_string(line) + ":"))
+        << result.error().message;
+    EXPECT_NE(result.error().message.find(what), std::string::npos) << result.error().message;
+  };
+  expect_line("# header\n1.0 0 0 0 0 0 0 1\n2.0 0 0 0 0 0 1\n", 3,
+              "expected 8 columns: timestamp tx ty tz qx qy qz qw, got 7");
+  expect_line("1.0 0 0 0 0 0 0 1 9\n", 1, "got 9");
+  expect_line("1.0 0 nan 0 0 0 0 1\n", 1, "ty: expected a finite number");
+  expect_line("1.0 0 0 0 0 0 0 0\n", 1, "quaternion");
+  expect_line("\n1.0 0 0 0x 0 0 0 1\n", 2, "tz: expected a finite number");
+  expect_line("1.0 0 0 0 0 0 0 1\n1.0 1 0 0 0 0 0 1\n", 2, "is the same as that of line 1");
+  expect_line("2.0 0 0 0 0 0 0 1\n1.0 1 0 0 0 0 0 1\n", 2, "time runs backwards by 1 s");
+  expect_line("noon 0 0 0 0 0 0 1\n", 1, "timestamp: expected a time");
+}
+
+TEST_F(TrajectoryFile, SortsAndKeepsTheDuplicateAskedFor) {
+  const std::string text = "2.0 5 0 0 0 0 0 1\n1.0 1 0 0 0 0 0 1\n1.0 2 0 0 0 0 0 2\n";
+  EXPECT_EQ((*read(text, Duplicates::first))[0].T_world_camera.translation.x(), 1);
+  EXPECT_EQ((*read(text, Duplicates::last))[0].T_world_camera.translation.x(), 2);
+  EXPECT_EQ((*read(text, Duplicates::last))[1].T_world_camera.translation.x(), 5);
+}
+
+TEST_F(TrajectoryFile, DisorderIsTold) {
+  ASSERT_TRUE(read("1.0 1 0 0 0 0 0 1\n1.0 2 0 0 0 0 0 1\n", Duplicates::last));
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_EQ(warnings_[0], file_.string() + ":2: 1 of 2 rows repeat a stamp (the last one is kept)");
+  ASSERT_TRUE(read("2.0 1 0 0 0 0 0 1\n1.0 2 0 0 0 0 0 1\n", Duplicates::first));
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find("not in order of time"), std::string::npos) << warnings_[0];
+  ASSERT_TRUE(read("1.0 1 0 0 0 0 0 1\n2.0 2 0 0 0 0 0 1\n", Duplicates::last));
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(TrajectoryFile, QuaternionsAreNormalisedAndLongOnesCounted) {
+  const auto path = read("1 0 0 0 0 0 0 1.0005\n2 0 0 0 0 0 0 0.9\n3 0 0 0 1 1 1 1\n");
+  ASSERT_TRUE(path) << path.error().message;
+  for (const StampedPose& pose : *path) EXPECT_NEAR(pose.T_world_camera.rotation.norm(), 1, 1e-15);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_TRUE(warnings_[0].starts_with(file_.string() + ":2: 2 of 3 quaternions")) << warnings_[0];
+}
+
+TEST_F(TrajectoryFile, MissingAndEmptyFiles) {
+  EXPECT_EQ(read_tum_trajectory(folder_ / "none.txt", warnings_).error().code, ErrorCode::data_missing);
+  const auto empty = read("# only a comment\n");
+  ASSERT_FALSE(empty);
+  EXPECT_EQ(empty.error().code, ErrorCode::data_corrupt);
+  EXPECT_NE(empty.error().message.find("has no rows"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,140 @@
+#include "eval/batch_estimation/calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "eval/batch_estimation/smoothing.hpp"
+#include "tests/support/simulated_run.hpp"
+
+namespace fusebench {
+
+using namespace simd;
+using namespace config;
+using namespace calibration;
+using namespace recording;
+using namespace batch_estimation;
+
+namespace {
+
+/// A recording of the textured room, in memory.
+Recording recording_of(const testing::SimulatedRun& run) {
+  Recording recording;
+  recording.name = "textured room";
+  recording.rig = run.rig;
+  recording.imu = run.imu;
+  recording.imu_source = ImuSource::recorded;
+  recording.calibration = RigCalibration{};
+  recording.calibration->imu = ImuCalibration{run.rig.T_imu_camera, run.rig.imu_noise, 0.002};
+  const auto frames = std::make_shared<std::vector<RgbdFrame>>(run.frames);
+  for (std::size_t k = 0; k < frames->size(); ++k) {
+    FrameEntry entry;
+    entry.timestamp_ns = entry.capture_ns = (*frames)[k].timestamp_ns;
+    recording.frames.push_back(entry);
+    recording.ground_truth.push_back({entry.timestamp_ns, run.T_first_camera[k]});
+  }
+  recording.load_frame = [frames](std::size_t k) -> Result<RgbdFrame> { return (*frames)[k]; };
+  return recording;
+}
+
+constexpr int kFrames = 36;
+
+TEST(Calibration, RecoversWhatWasDisturbed) {
+  const testing::SimulatedRun run = testing::simulate(kFrames);
+  Recording recording = recording_of(run);
+  recording.rig.T_imu_camera.rotation =
+      run.rig.T_imu_camera.rotation * so3_exp(radians(1.0) * Vector3d(0.6, -0.64, 0.48));
+  recording.rig.T_imu_camera.translation += Vector3d(-0.006, 0.0064, 0.0048);
+  for (ImuSample& sample : recording.imu) sample.timestamp_ns += 10'000'000;
+  const Workers workers(1);
+  Config config;
+  config.photometric.noise_grey = 4;  // what is left without noise: resampling
+  const auto found = calibrate(recording, config, {}, workers, {});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  EXPECT_EQ(found->tracked, found->frames);
+
+  // The body turns about one axis: what lies along it must be called undetermined, what lies across be found.
+  const Vector3d axis = Vector3d(0.3, 0.9, -0.4).normalized();
+  const Vector6d error = pose_minus(found->T_imu_camera, run.rig.T_imu_camera);
+  const Vector6d sigma = found->extrinsic_covariance.diagonal().cwiseSqrt();
+  for (int i = 0; i < 6; ++i) EXPECT_LT(std::abs(error[i]), 4 * sigma[i]) << "component " << i;
+  EXPECT_LT(std::abs(found->time_offset_s - 0.012), 4 * found->time_offset_sigma_s);  // 2 ms were told
+  ASSERT_FALSE(found->undetermined.empty());
+  double along = 0;
+  for (const Undetermined& u : found->undetermined)
+    if (u.parameter == "translation") along = std::max(along, std::abs(u.direction.dot(axis)));
+  EXPECT_GT(along, 0.9);
+}
+
+TEST(Calibration, SaysThatAnImuIsMadeOfTheTruth) {
+  Recording recording;
+  EXPECT_EQ(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
+  recording.imu_source = ImuSource::synthetic;
+  EXPECT_NE(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
+}
+
+TEST(Calibration, WritesAFileThatReadsBack) {
+  const testing::SimulatedRun run = testing::simulate(2);
+  const Recording recording = recording_of(run);
+  CameraImuCalibration found;
+  found.frames = 100;
+  found.T_imu_camera = {so3_exp({0.1, -0.2, 0.3}), {0.01, 0.02, 0.03}};
+  found.time_offset_s = 0.0075;
+  const RigCalibration rig = calibrated_rig(recording, found);
+  ASSERT_TRUE(rig.imu.has_value());
+  EXPECT_EQ(rig.imu->T_imu_camera.translation, found.T_imu_camera.translation);
+  EXPECT_EQ(rig.imu->time_offset_s, 0.0075);
+  EXPECT_EQ(rig.imu->noise.gyroscope_radps_sqrthz, run.rig.imu_noise.gyroscope_radps_sqrthz);
+  EXPECT_NE(rig.source.find("100 frames of textured room"), std::string::npos);
+}
+
+TEST(Smoothing, FollowsTheTruthAndIsLabelled) {
+  const testing::SimulatedRun run = testing::simulate(kFrames);
+  const Recording recording = recording_of(run);
+  const Workers workers(1);
+  const auto smoothed = smooth(recording, Config{}, workers, {});
+  ASSERT_TRUE(smoothed.has_value()) << smoothed.error().message;
+  ASSERT_EQ(smoothed->trajectory.size(), run.frames.size());
+  double worst_m = 0;
+  for (std::size_t k = 0; k < smoothed->trajectory.size(); ++k) {
+    const Vector3d error =
+        smoothed->trajectory[k].T_world_camera.translation - run.T_first_camera[k].translation;
+    worst_m = std::max(worst_m, error.norm());
+  }
+  EXPECT_LT(worst_m, 0.02);
+  EXPECT_TRUE(pseudo_truth_text(*smoothed).starts_with("# pseudo ground truth"));
+  const auto document = nlohmann::json::parse(to_json(*smoothed, recording));
+  EXPECT_EQ(document["label"], kPseudoGroundTruth);
+  EXPECT_TRUE(document["against_ground_truth"].contains("smoothed"));
+  EXPECT_TRUE(document["against_ground_truth"].contains("measuring_run"));
+  EXPECT_TRUE(smoothing_remarks(*smoothed).empty());
+}
+
+TEST(Smoothing, SaysWhatToBewareOf) {
+  SmoothedRecording smoothed;
+  smoothed.stamps_ns = {1, 2, 3};
+  smoothed.tracked = 3;
+  smoothed.estimate.rounds = 12;
+  std::vector<std::string> remarks = smoothing_remarks(smoothed);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("still moving after 12 rounds"), std::string::npos) << remarks[0];
+  smoothed.tracked = 2;
+  smoothed.estimate.converged = true;
+  remarks = smoothing_remarks(smoothed);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_NE(remarks[0].find("1 of 3 frames were lost"), std::string::npos) << remarks[0];
+}
+
+/// A truth that was smoothed from the recording is nothing to compare with.
+TEST(Smoothing, DoesNotCompareWithAPseudoTruth) {
+  SmoothedRecording smoothed;
+  smoothed.estimate.frames.resize(1);
+  Recording recording = recording_of(testing::simulate(2));
+  recording.truth_label = kPseudoGroundTruth;
+  EXPECT_FALSE(nlohmann::json::parse(to_json(smoothed, recording)).contains("against_ground_truth"));
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,51 @@
+#include "eval/mesh_error/mesh_clustering.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/test_meshes.hpp"
+
+namespace fusebench {
+
+using namespace mesh_error;
+
+namespace {
+
+TEST(MeshClustering, KeepsTheShapeWithFewerTriangles) {
+  PreciseMesh ball = testing::sphere(1, 60);
+  ball.colors.assign(ball.vertices.size(), Rgb{10, 20, 30});
+  ball.quality.assign(ball.vertices.size(), 0.25F);
+  const PreciseMesh fewer = reduced(ball, 2000);
+  EXPECT_LE(fewer.triangles.size(), 2000U);
+  EXPECT_GT(fewer.triangles.size(), 500U);
+  ASSERT_EQ(fewer.colors.size(), fewer.vertices.size());
+  for (std::size_t i = 0; i < fewer.vertices.size(); ++i) {
+    EXPECT_NEAR(fewer.vertices[i].norm(), 1, 0.02);
+    EXPECT_EQ(fewer.colors[i], (Rgb{10, 20, 30}));
+    EXPECT_FLOAT_EQ(fewer.quality[i], 0.25F);
+  }
+  for (const auto& triangle : fewer.triangles) {
+    for (const std::uint32_t vertex : triangle) ASSERT_LT(vertex, fewer.vertices.size());
+    EXPECT_TRUE(triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0]);
+  }
+}
+
+TEST(MeshClustering, LeavesASmallMeshAlone) {
+  const PreciseMesh ball = testing::sphere(1, 6);
+  EXPECT_EQ(reduced(ball, 1000).vertices, ball.vertices);
+}
+
+TEST(MeshClustering, AveragesWhatIsInACell) {
+  PreciseMesh mesh;
+  mesh.vertices = {{0.1, 0.1, 0.1}, {0.3, 0.1, 0.1}, {1.5, 0, 0}, {0, 1.5, 0}};
+  mesh.colors = {{0, 0, 0}, {100, 50, 10}, {1, 1, 1}, {2, 2, 2}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}};
+  const PreciseMesh merged = clustered(mesh, 1);
+  ASSERT_EQ(merged.vertices.size(), 3U);
+  EXPECT_LT((merged.vertices[0] - Vector3d(0.2, 0.1, 0.1)).norm(), 1e-12);
+  EXPECT_EQ(merged.colors[0], (Rgb{50, 25, 5}));
+  // The first folds up, the last is the second again.
+  EXPECT_EQ(merged.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}}));
+}
+
+}  // namespace
+}  // namespace fusebench

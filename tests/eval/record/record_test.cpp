@@ -1,0 +1,289 @@
+#include "eval/record/record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace fusebench {
+
+using namespace config;
+using namespace metrics;
+using namespace trajectory_error;
+using namespace mesh_error;
+using namespace record;
+
+namespace {
+
+using nlohmann::json;
+
+/// A record in which every number is different and awkward.
+RunRecord sample_record() {
+  RunRecord record;
+  record.status = RunStatus::ok;
+  record.reason.clear();
+  record.recording = {"fr1 \"rpy\"",
+                      "tum",
+                      "simulated",
+                      240,
+                      3,
+                      7.9671,
+                      "00ff",
+                      "synthetic IMU",
+                      "seed 1",
+                      "pseudo ground truth",
+                      {"stamps made \"regular\"", "warning: a gap"}};
+  record.variant = "full";
+  record.config = {{"iekf.max_iterations", std::int64_t{8}, "--set"},
+                   {"depth.max_m", 1.0, "default"},
+                   {"terms.prior", std::string("imu"), "default"},
+                   {"terms.visibility_test", false, "variant dm"}};
+  record.config_hash = "0123456789abcdef";
+  AteResult ate;
+  ate.pairs = 239;
+  ate.possible = 240;
+  ate.coverage = 239.0 / 240.0;
+  ate.max_difference_s = 0.02;
+  ate.alignment = {"se3", {so3_exp({0.1, 0.2, 0.3}), {1.0 / 3.0, 2.0, 3.0}}};
+  const std::vector<double> errors = {0.1, 0.2, 1.0 / 3.0};
+  ate.stats = statistics(errors);
+  record.metrics.ate = {ate, {}};
+  RpeResult rpe;
+  rpe.delta = 1;
+  rpe.unit = DeltaUnit::frames;
+  rpe.translation = rpe.rotation = statistics(errors);
+  record.metrics.rpe_frame = {rpe, {}};
+  record.metrics.rpe_second = {std::nullopt, "shorter than 1 s"};
+  IntensityAccumulator intensity;
+  intensity.add_frame(
+      std::vector<IntensityResidual>{{1, 2.5F, false}, {2, 3.75F, false}});  // nothing accepted
+  record.metrics.aie = {intensity.result(), {}};
+  NeesResult nees;
+  nees.part = kStateParts[1];
+  nees.possible = 239;
+  nees.stats = statistics(errors);
+  nees.last = 0.7;
+  record.metrics.nees[1] = {nees, {}};
+  record.metrics.nees[2] = {std::nullopt, "no truth of it"};
+  RecordedMesh mesh;
+  mesh.truth_sampling = {MeshSamples::vertices, 12, 3};
+  mesh.truth_samples = 40;
+  mesh.truth_observed = 30;
+  mesh.views = 2;
+  mesh.max_depth_m = 4.5;
+  mesh.poses.alignment = {"poses", {so3_exp({0.2, 0.1, -0.3}), {1, 2, 3}}};
+  mesh.poses.accuracy = {statistics(errors), 0.3, 0.32};
+  mesh.poses.thresholds = {{0.01, 0.25, 0.75, 0.375}};
+  mesh.first_camera.chamfer_m = 0.125;
+  record.metrics.mesh = {mesh, {}};
+  ResidualSummary residuals;
+  residuals.chi2_photometric = 0.9;
+  residuals.patches_tracked = 81.5;
+  residuals.frames = 237;
+  record.metrics.residuals = {residuals, {}};
+  record.frames = {240, 238, 2};
+  record.model = {1000, 2000, 30};
+  record.timing = {1.5, 2.5, 123456789, 160.0, {{"decode", 1.25}, {"update", 3.5}}};
+  record.provenance = {"0.1.0", "abc-dirty", "GNU 12.2.0", "-O3", "an estimator", "a cpu", 2, "a host"};
+  return record;
+}
+
+TEST(Record, ReadsBackWhatItWrote) {
+  const std::string text = to_json(sample_record());
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+  EXPECT_EQ(back->status, RunStatus::ok);
+  EXPECT_EQ(back->metrics.ate.value->stats.rmse, sample_record().metrics.ate.value->stats.rmse);
+  EXPECT_EQ(std::get<std::int64_t>(back->config[0].value), 8);
+  EXPECT_EQ(std::get<double>(back->config[1].value), 1.0);
+  EXPECT_FALSE(back->metrics.rpe_second.value.has_value());
+  EXPECT_EQ(back->recording.notes, sample_record().recording.notes);
+  EXPECT_EQ(back->recording.truth, kPseudoTruthWord);
+  EXPECT_EQ(back->metrics.rpe_second.reason, "shorter than 1 s");
+}
+
+TEST(Record, HasTheKeysThatReadersRelyOn) {
+  const json record = json::parse(to_json(sample_record()));
+  for (const char* const path : {"/schema",
+                                 "/status",
+                                 "/reason",
+                                 "/recording/name",
+                                 "/recording/format",
+                                 "/recording/frames",
+                                 "/recording/duration_s",
+                                 "/recording/fingerprint",
+                                 "/recording/imu",
+                                 "/recording/imu_note",
+                                 "/recording/truth",
+                                 "/recording/notes/1",
+                                 "/variant",
+                                 "/config",
+                                 "/config_hash",
+                                 "/metrics/ate/protocol",
+                                 "/metrics/ate/pairs",
+                                 "/metrics/ate/coverage",
+                                 "/metrics/ate/alignment/matrix/15",
+                                 "/metrics/ate/stats/rmse",
+                                 "/metrics/ate/stats/mean",
+                                 "/metrics/ate/stats/median",
+                                 "/metrics/ate/stats/std",
+                                 "/metrics/ate/stats/min",
+                                 "/metrics/ate/stats/max",
+                                 "/metrics/rpe/frame/translation/stats/rmse",
+                                 "/metrics/rpe/frame/rotation/stats/rmse",
+                                 "/metrics/aie/protocol",
+                                 "/metrics/aie/stats/mean",
+                                 "/metrics/aie/pixels",
+                                 "/metrics/mesh/protocol",
+                                 "/metrics/mesh/unit",
+                                 "/metrics/mesh/samples/truth/seed",
+                                 "/metrics/mesh/observed/share",
+                                 "/metrics/mesh/alignment/matrix/15",
+                                 "/metrics/mesh/accuracy/rmse",
+                                 "/metrics/mesh/accuracy/p95",
+                                 "/metrics/mesh/completeness",
+                                 "/metrics/mesh/thresholds/0/fscore",
+                                 "/metrics/mesh/first_camera/chamfer_m",
+                                 "/metrics/mesh/positions",
+                                 "/metrics/nees/protocol",
+                                 "/metrics/nees/position/dof",
+                                 "/metrics/nees/position/frames",
+                                 "/metrics/nees/position/mean",
+                                 "/metrics/nees/position/median",
+                                 "/metrics/nees/position/max",
+                                 "/metrics/nees/position/final",
+                                 "/metrics/nees/position/final_bounds_95/1",
+                                 "/metrics/nees/pose/reason",
+                                 "/metrics/residuals/chi2_photometric",
+                                 "/metrics/residuals/accepted_share",
+                                 "/metrics/coverage/tracked",
+                                 "/frames/total",
+                                 "/frames/tracked",
+                                 "/frames/lost",
+                                 "/timing/wall_s",
+                                 "/timing/cpu_s",
+                                 "/timing/peak_rss_bytes",
+                                 "/timing/fps",
+                                 "/timing/stages_ms/update",
+                                 "/provenance/version",
+                                 "/provenance/git",
+                                 "/provenance/compiler",
+                                 "/provenance/flags",
+                                 "/provenance/cpu",
+                                 "/provenance/threads",
+                                 "/provenance/host"}) {
+    EXPECT_TRUE(record.contains(json::json_pointer(path))) << path;
+  }
+  EXPECT_EQ(record.at("/config/iekf.max_iterations/origin"_json_pointer), "--set");
+}
+
+TEST(Record, OlderRecordsAreStillRead) {
+  json record = json::parse(to_json(sample_record()));
+  record["metrics"].erase("mesh");
+  record["metrics"].erase("nees");
+  record["metrics"].erase("residuals");
+  record["recording"].erase("truth");
+  const auto back = parse_record(record.dump(), "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(back->metrics.nees[1].reason, "the record is older than this metric");
+  EXPECT_EQ(back->metrics.mesh.reason, "the record is older than this metric");
+  EXPECT_EQ(back->metrics.residuals.reason, "the record is older than this metric");
+  EXPECT_EQ(back->metrics.ate.value->pairs, 239U);
+  EXPECT_EQ(back->recording.truth, "");  // nobody knows
+}
+
+TEST(Record, AProfileComesBack) {
+  RunRecord record = sample_record();
+  EXPECT_EQ(to_json(record).find("histogram_ms"), std::string::npos);
+  record.timing.histograms = {{"update", histogram_of({3, 4, 4.5, 20})},
+                              {"frame", histogram_of({1.0 / 3.0})}};
+  const std::string text = to_json(record);
+  for (const char* const path : {"/timing/histogram_ms/update/count", "/timing/histogram_ms/update/min",
+                                 "/timing/histogram_ms/update/median", "/timing/histogram_ms/update/p90",
+                                 "/timing/histogram_ms/update/p99", "/timing/histogram_ms/update/max",
+                                 "/timing/histogram_ms/update/edges/1",
+                                 "/timing/histogram_ms/update/counts/0", "/timing/histogram_ms/frame"}) {
+    EXPECT_TRUE(json::parse(text).contains(json::json_pointer(path))) << path;
+  }
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+  EXPECT_EQ(back->timing.histograms[0].second.counts, record.timing.histograms[0].second.counts);
+  json broken = json::parse(text);
+  broken["timing"]["histogram_ms"]["update"].erase("p90");
+  EXPECT_EQ(parse_record(broken.dump(), "record.json").error().code, ErrorCode::data_corrupt);
+}
+
+TEST(Record, NumbersThatDoNotExistAreNull) {
+  const std::string text = to_json(sample_record());
+  const json record = json::parse(text);
+  EXPECT_TRUE(record.at("/metrics/aie/accepted/aie"_json_pointer).is_null());
+  EXPECT_TRUE(record.at("/metrics/rpe/second/stats"_json_pointer).is_null());
+  EXPECT_EQ(text.find(": nan"), std::string::npos);
+}
+
+TEST(Record, StartsAsAFailure) {
+  const json record = json::parse(to_json(RunRecord{}));
+  EXPECT_EQ(record.at("status"), "failed");
+  EXPECT_EQ(record.at("reason"), "not run");
+  EXPECT_TRUE(record.at("/metrics/ate/stats"_json_pointer).is_null());
+  EXPECT_TRUE(parse_record(to_json(RunRecord{}), "record.json").has_value());
+}
+
+TEST(Record, DamageIsNamed) {
+  const auto message_of = [](const std::string& text) {
+    const auto result = parse_record(text, "a/record.json");
+    EXPECT_FALSE(result.has_value());
+    EXPECT_EQ(result.error().code, ErrorCode::data_corrupt);
+    EXPECT_TRUE(result.error().message.starts_with("a/record.json: ")) << result.error().message;
+    return result.error().message;
+  };
+  json record = json::parse(to_json(sample_record()));
+  message_of("");
+  message_of("[]");
+  message_of(record.dump().substr(0, 500));
+  json without = record;
+  without.erase("status");
+  EXPECT_NE(message_of(without.dump()).find("status"), std::string::npos);
+  json other_type = record;
+  other_type["frames"]["total"] = "many";
+  message_of(other_type.dump());
+  json other_schema = record;
+  other_schema["schema"] = 99;
+  const auto of_another_version = parse_record(other_schema.dump(), "record.json");
+  ASSERT_FALSE(of_another_version.has_value());
+  EXPECT_EQ(of_another_version.error().code, ErrorCode::configuration);
+  EXPECT_EQ(of_another_version.error().message, "record.json: schema = 99 (this program reads 1)");
+}
+
+TEST(Record, DamageOfTheTextIsToldByItsPlace) {
+  const std::string whole = to_json(sample_record());
+  const auto message_of = [](const std::string& text) { return parse_record(text, "r").error().message; };
+  EXPECT_EQ(message_of(""), "r: empty");
+  EXPECT_EQ(message_of(whole.substr(0, 400)), "r: not JSON at byte 400, where it ends");
+  const std::string zeroed = whole.substr(0, 400) + std::string(whole.size() - 400, '\0');
+  EXPECT_EQ(message_of(zeroed), "r: not JSON at byte 401 (zeros after a power cut?)");
+  EXPECT_EQ(message_of("{}"), "r: key 'schema' not found");
+}
+
+TEST(Record, FilesStandWithTheirSizesAndHashes) {
+  RunRecord record = sample_record();
+  record.files = {{"images/1.png", 12, "0f"}, {"mesh.ply", 1ULL << 40U, "ff"}};
+  record.timing.files = {{"frames.csv", 7, "aa"}};
+  const std::string text = to_json(record);
+  const json document = json::parse(text);
+  EXPECT_EQ(document.at("files").at("mesh.ply").at("bytes"), 1ULL << 40U);
+  EXPECT_EQ(document.at("timing").at("files").at("frames.csv").at("xxh3"), "aa");
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(back->files, record.files);
+  EXPECT_EQ(back->timing.files, record.timing.files);
+  json older = document;
+  older.erase("files");
+  older["timing"].erase("files");
+  EXPECT_TRUE(parse_record(older.dump(), "record.json")->files.empty());
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,96 @@
+// The three forms of an inspection: JSON, text, page.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "eval/inspection_report/inspection_json.hpp"
+#include "eval/inspection_report/inspection_page.hpp"
+#include "eval/inspection_report/inspection_text.hpp"
+#include "eval/page/page.hpp"
+#include "tests/datasets/inspection/clean_recording.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench::testing {
+
+using namespace recording;
+using namespace inspection;
+using namespace page;
+using namespace inspection_report;
+
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Inspection small_inspection() { return inspected(clean_recording({.frames = 30, .depth_factor = 5})); }
+
+TEST(InspectionJson, HasTheKeysThatReadersRelyOn) {
+  const auto json = nlohmann::json::parse(to_json(small_inspection()));
+  EXPECT_EQ(json.at("recording"), "clean");
+  EXPECT_EQ(json.at("format"), "memory");
+  EXPECT_EQ(json.at("frames"), 30);
+  EXPECT_EQ(json.at("imu"), "recorded");
+  ASSERT_FALSE(json.at("findings").empty());
+  EXPECT_EQ(json.at("findings")[0].at("severity"), "error");
+  for (const char* key : {"code", "severity", "message", "hint"})
+    EXPECT_TRUE(json.at("findings")[0].at(key).is_string());
+  EXPECT_NEAR(json.at("stamps").at("color").at("rate_hz").get<double>(), 30, 0.01);
+  EXPECT_EQ(json.at("imu_alignment").at("rotation_imu_camera").size(), 3U);
+  EXPECT_FALSE(json.at("reprojection").at("pairs").empty());
+}
+
+TEST(InspectionJson, ARefusedRecordingHasOneFinding) {
+  const Error error{ErrorCode::data_corrupt, "rgb.txt:3: \"quoted\"", "hint"};
+  const auto json = nlohmann::json::parse(to_json(refused_inspection("name", "tum", error)));
+  ASSERT_EQ(json.at("findings").size(), 1U);
+  EXPECT_EQ(json.at("findings")[0].at("code"), "cannot-open");
+  EXPECT_EQ(json.at("findings")[0].at("message"), "rgb.txt:3: \"quoted\"");
+}
+
+TEST(InspectionText, PutsErrorsFirst) {
+  const std::string text = to_text(small_inspection());
+  EXPECT_THAT(text, HasSubstr("clean (memory): 30 frames"));
+  EXPECT_LT(text.find("error    depth"), text.find("note "));
+  EXPECT_THAT(text, HasSubstr("angular speed"));
+}
+
+TEST(InspectionPage, WritesEveryFiniteNumber) {
+  Chart chart;
+  chart.series.push_back({"tiny", {{5e-310, 0.123456789}}});
+  EXPECT_THAT(to_html({"title", "", {{"section", "", std::vector<Chart>{chart}}}}),
+              HasSubstr("e-310,0.123457]"));
+}
+
+TEST(InspectionPage, NeedsNoNetworkAndEscapes) {
+  Recording recording = clean_recording({.frames = 30});
+  recording.name = "<script>&";
+  const std::string page = to_page(inspected(recording), recording);
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;&amp;"));
+  EXPECT_THAT(page, HasSubstr("Chart.js v"));
+  EXPECT_THAT(page, HasSubstr("data:image/jpeg;base64,/9j/"));
+  for (const char* outside : {"src=\"http", "<link", "@import", "url("})
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+  EXPECT_THAT(page, HasSubstr("Linear speed"));
+  EXPECT_EQ(page, to_page(inspected(recording, 1), recording));
+}
+
+TEST(Page, ThinningKeepsPeaks) {
+  std::vector<Vector2d> points;
+  for (int i = 0; i < 10'000; ++i) points.emplace_back(i, i == 4321 ? 9.0 : i == 777 ? -9.0 : 0.0);
+  const auto fewer = thinned(points, 50);
+  EXPECT_LE(fewer.size(), 100U);
+  EXPECT_TRUE(std::ranges::count(fewer, Vector2d(4321, 9)) == 1 &&
+              std::ranges::count(fewer, Vector2d(777, -9)) == 1);
+  EXPECT_TRUE(std::ranges::is_sorted(fewer, {}, [](const Vector2d& p) { return p.x(); }));
+}
+
+TEST(FindingCodes, AreAllInTheDocumentation) {
+  const auto root = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+  const std::string text = read_bytes(root / "docs" / "inspect.md");
+  for (const FindingCode& code : finding_codes()) EXPECT_THAT(text, HasSubstr(std::string(code.code)));
+}
+
+}  // namespace
+}  // namespace fusebench::testing

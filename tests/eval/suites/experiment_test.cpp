@@ -1,0 +1,220 @@
+#include "eval/suites/experiment.hpp"
+
+#include <gtest/gtest.h>
+
+#include "eval/engine/local_engine.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+
+using namespace config;
+using namespace record;
+using namespace run;
+using namespace suites;
+using namespace engine;
+
+namespace {
+
+class SuiteTest : public testing::InTemporaryFolder {
+ protected:
+  Result<Suite> read(const std::string& text) { return read_suite(write("suite.toml", text)); }
+  void expect_error(const std::string& text, const std::string& place, const std::string& part) {
+    const auto suite = read(text);
+    ASSERT_FALSE(suite.has_value()) << text;
+    EXPECT_EQ(suite.error().code, ErrorCode::configuration);
+    EXPECT_NE(suite.error().message.find("suite.toml" + place), std::string::npos) << suite.error().message;
+    EXPECT_NE(suite.error().message.find(part), std::string::npos) << suite.error().message;
+  }
+  void add_recording(const std::string& name) {
+    write(name + "/rgb.txt", "");
+    write(name + "/depth.txt", "");
+  }
+};
+
+constexpr const char* kGood =
+    "name = \"demo\"\nrecordings = [\"a\", \"b\"]\nvariants = [\"full\", \"dm\"]\nimu = \"synthetic\"\n"
+    "[config]\niekf.max_iterations = 7\n";
+
+TEST_F(SuiteTest, ReadsEveryKey) {
+  const auto suite = read(kGood);
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  EXPECT_EQ(suite->name, "demo");
+  ASSERT_EQ(suite->recordings.size(), 2U);
+  EXPECT_EQ(suite->recordings[0].name, "a");
+  EXPECT_EQ(suite->recordings[1].name, "b");
+  EXPECT_EQ(suite->recordings[1].half, "held-out");
+  EXPECT_EQ(suite->variants, (std::vector<std::string>{"full", "dm"}));
+  EXPECT_EQ(suite->imu, ImuChoice::synthetic);
+  const auto config = suite_config(*suite, *find_variant("dm"));
+  ASSERT_TRUE(config.has_value());
+  EXPECT_EQ(config->values.iekf.max_iterations, 7);
+  EXPECT_EQ(config->values.terms.deformation, Deformation::rigid_square);
+  EXPECT_TRUE(config->origin("iekf.max_iterations").ends_with("suite.toml:6"));
+}
+
+TEST_F(SuiteTest, ItsNameIsThatOfAFolder) {
+  const std::vector<std::string> wrong = {"../x", "/tmp/x", "a/b",    "..",
+                                          ".x",   "a b",    "a\\\\b", std::string(201, 'a')};
+  for (const std::string& name : wrong)
+    expect_error("all = true\nname = \"" + name + "\"\nvariants = [\"full\"]\n",
+                 ":2: name = ", "letters, digits, _, - and .");
+  for (const std::string& name : std::vector<std::string>{"x", "my-suite_2.1", std::string(200, 'a')}) {
+    const auto suite = read("name = \"" + name + "\"\nall = true\nvariants = [\"full\"]\n");
+    EXPECT_TRUE(suite.has_value()) << name;
+  }
+}
+
+TEST_F(SuiteTest, ErrorsNameTheLine) {
+  expect_error("name = \"x\"\nvariant = [\"full\"]\n", ":2", "variants");
+  expect_error("name = 3\n", ":1", "text");
+  expect_error("name = \"x\"\nall = true\nvariants = [\"ful\"]\n", ":3", "full");
+  expect_error("name = \"x\"\nall = true\nvariants = [\"full\", \"full\"]\n", ":3", "twice");
+  expect_error("name = \"x\"\nall = true\nvariants = []\n", ":3", "not empty");
+  expect_error("name = \"x\"\nall = 1\nvariants = [\"full\"]\n", ":2", "true or false");
+  expect_error("name = \"x\"\nall = true\nvariants = [\"full\"]\nimu = \"fake\"\n", ":4",
+               "recorded | synthetic");
+  expect_error("name = \"x\"\nall = true\nvariants = [\"full\"]\n[config]\niekf.max_iterations = 900\n", ":5",
+               "1 .. 200");
+  expect_error("name = \"x\"\nall = true\nvariants = [\"full\"]\n[config]\niekf.iterations = 9\n", ":5",
+               "iekf.max_iterations");
+  expect_error("name = \"x\"\nall = true\nvariants = [\"full\"]\n[confg]\n", ":4", "config");
+}
+
+TEST_F(SuiteTest, MissingKeysAreNamed) {
+  expect_error("all = true\nvariants = [\"full\"]\n", "", "name");
+  expect_error("name = \"x\"\nall = true\n", "", "variants");
+  expect_error("name = \"x\"\nvariants = [\"full\"]\n", "", "recordings");
+  expect_error("name = \"x\"\nall = true\nrecordings = [\"a\"]\nvariants = [\"full\"]\n", "", "either");
+}
+
+TEST_F(SuiteTest, RelationsAreCheckedBeforeAnyRun) {
+  expect_error("name = \"x\"\nall = true\nvariants = [\"full\"]\n[config]\ndepth.min_m = 50.0\n", "",
+               "depth.min_m");
+}
+
+TEST_F(SuiteTest, JobsAreInAFixedOrder) {
+  add_recording("data/b");
+  add_recording("data/a");
+  const auto suite = read("name = \"x\"\nall = true\nvariants = [\"no-imu\", \"full\"]\n");
+  ASSERT_TRUE(suite.has_value());
+  BatchOptions options;
+  options.data = folder_ / "data";
+  const auto jobs = plan_batch(*suite, options);
+  ASSERT_TRUE(jobs.has_value()) << jobs.error().message;
+  std::vector<std::string> order;
+  for (const BatchJob& job : jobs->jobs)
+    order.push_back(job.recording.filename().string() + " " + job.variant);
+  EXPECT_EQ(order, (std::vector<std::string>{"a no-imu", "a full", "b no-imu", "b full"}));
+}
+
+TEST_F(SuiteTest, OnlyFiltersJobs) {
+  add_recording("data/fr1_rpy");
+  add_recording("data/fr1_xyz");
+  const auto suite = read("name = \"x\"\nall = true\nvariants = [\"full\", \"dm\"]\n");
+  BatchOptions options;
+  options.data = folder_ / "data";
+  options.only = {"recording=rpy", "variant=dm"};
+  const auto jobs = plan_batch(*suite, options);
+  ASSERT_TRUE(jobs.has_value());
+  ASSERT_EQ(jobs->jobs.size(), 1U);
+  EXPECT_EQ(jobs->jobs[0].variant, "dm");
+  options.only = {"variant=nothing"};
+  EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage);
+  options.only = {"frame=3"};
+  EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage);
+  options.only = {};
+  options.sets = {"iekf.max_iterations=0"};
+  EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::configuration);
+}
+
+TEST_F(SuiteTest, ABrokenRecordingIsAnOutcomeAndARecord) {
+  write("data/freiburg1_broken/rgb.txt", "not a list\n");
+  write("data/freiburg1_broken/depth.txt", "");
+  const auto suite = read("name = \"x\"\nall = true\nvariants = [\"full\", \"dm\"]\nimu = \"synthetic\"\n");
+  BatchOptions options;
+  options.data = folder_ / "data";
+  options.out = folder_ / "out";
+  const auto jobs = plan_batch(*suite, options);
+  ASSERT_TRUE(jobs.has_value());
+  const auto outcomes = run_locally(jobs->jobs, {});
+  ASSERT_TRUE(outcomes.has_value());
+  ASSERT_EQ(outcomes->size(), 2U);
+  for (const BatchOutcome& outcome : *outcomes) {
+    EXPECT_EQ(outcome.status, RunStatus::failed);
+    EXPECT_TRUE(outcome.folder.filename().string().starts_with("not-started-")) << outcome.folder;
+    const auto record = read_record(outcome.folder / "record.json");
+    ASSERT_TRUE(record.has_value()) << record.error().message;
+    EXPECT_EQ(record->reason, outcome.reason);
+    EXPECT_FALSE(record->reason.empty());
+  }
+}
+
+TEST_F(SuiteTest, OfAllOnlyWhatCanBeOpenedIsARow) {
+  // A folder that tells no camera is not this suite's business, one that names it is.
+  write("data/unknown_camera/rgb.txt", "1.0 rgb/1.png\n");
+  write("data/unknown_camera/depth.txt", "1.0 depth/1.png\n");
+  BatchOptions options;
+  options.data = folder_ / "data";
+  options.out = folder_ / "out";
+  for (const auto& [text, skipped] :
+       {std::pair("all = true", true), std::pair("recordings = [\"unknown_camera\"]", false)}) {
+    const auto suite = read(std::string("name = \"x\"\nvariants = [\"no-imu\"]\n") + text + "\n");
+    ASSERT_TRUE(suite.has_value());
+    const auto jobs = plan_batch(*suite, options);
+    ASSERT_TRUE(jobs.has_value());
+    const auto outcomes = run_locally(jobs->jobs, {});
+    ASSERT_TRUE(outcomes.has_value());
+    EXPECT_EQ(outcomes->front().skipped, skipped) << outcomes->front().reason;
+    EXPECT_EQ(std::filesystem::exists(folder_ / "out"), !skipped);
+  }
+}
+
+TEST_F(SuiteTest, RecordingsAreFoundByNameOrFolder) {
+  add_recording("data/fr1_rpy");
+  EXPECT_EQ(*find_recording("fr1_rpy", folder_ / "data"), folder_ / "data" / "fr1_rpy");
+  EXPECT_EQ(find_recording((folder_ / "data" / "fr1_rpy").string() + "/", {})->filename(), "fr1_rpy");
+  const auto missing = find_recording("fr1_rpx", folder_ / "data");
+  ASSERT_FALSE(missing.has_value());
+  EXPECT_EQ(missing.error().code, ErrorCode::data_missing);
+  EXPECT_NE(missing.error().hint.find("fr1_rpy"), std::string::npos);
+  EXPECT_EQ(recordings_under(folder_ / "absent").error().code, ErrorCode::data_missing);
+  std::filesystem::create_directories(folder_ / "empty" / "scene" / "inner");
+  EXPECT_EQ(recordings_under(folder_ / "empty").error().code, ErrorCode::data_missing);
+}
+
+TEST_F(SuiteTest, RecordingsMayLieOneLevelDeeper) {
+  add_recording("data/scene/walk");
+  add_recording("data/plain");
+  add_recording("data/.hidden/walk2");
+  add_recording("data/a/b/too_deep");
+  const std::vector<std::filesystem::path> expected = {folder_ / "data" / "plain",
+                                                       folder_ / "data" / "scene" / "walk"};
+  EXPECT_EQ(recordings_under(folder_ / "data").value(), expected);
+  EXPECT_EQ(find_recording("walk", folder_ / "data").value(), expected[1]);
+  EXPECT_EQ(find_recording("scene/walk", folder_ / "data").value(), expected[1]);
+}
+
+TEST_F(SuiteTest, PublishedRecordingsAreFoundByTheirName) {
+  add_recording("data/rgbd_dataset_freiburg1_desk");
+  EXPECT_EQ(find_recording("fr1_desk", folder_ / "data").value(),
+            folder_ / "data" / "rgbd_dataset_freiburg1_desk");
+  // A folder of that very name goes first.
+  add_recording("data/fr1_desk");
+  EXPECT_EQ(find_recording("fr1_desk", folder_ / "data").value(), folder_ / "data" / "fr1_desk");
+
+  const auto absent = find_recording("fr2_desk", folder_ / "data");
+  ASSERT_FALSE(absent.has_value());
+  EXPECT_EQ(absent.error().code, ErrorCode::data_missing);
+  EXPECT_NE(absent.error().message.find("rgbd_dataset_freiburg2_desk"), std::string::npos)
+      << absent.error().message;
+  EXPECT_NE(absent.error().hint.find("fetch_datasets.sh fr2_desk"), std::string::npos) << absent.error().hint;
+  // No address: the sentence says where it is published.
+  EXPECT_NE(find_recording("dorm1_slow", folder_ / "data").error().hint.find("Google Drive"),
+            std::string::npos);
+  EXPECT_NE(find_recording("fr2_desk", {}).error().message.find("known recording"), std::string::npos);
+  EXPECT_NE(find_recording("fr2_dsk", folder_ / "data").error().hint.find("did you mean fr2_desk"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace fusebench

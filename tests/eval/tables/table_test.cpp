@@ -1,0 +1,249 @@
+#include "eval/tables/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "eval/metrics/intensity_file.hpp"
+#include "tests/support/collected_table.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+
+using namespace metrics;
+using namespace trajectory_error;
+using namespace record;
+using namespace run_files;
+using namespace tables;
+
+namespace {
+
+using testing::collect_table;
+
+class TableTest : public testing::InTemporaryFolder {
+ protected:
+  void add_run(const std::string& variant, RunStatus status, const std::string& reason, double ate_m,
+               const std::vector<IntensityResidual>& pixels, const std::string& hash = "01234567") {
+    RunRecord record;
+    record.status = status;
+    record.reason = reason;
+    record.recording.name = recording_;
+    record.recording.fingerprint = recording_;
+    record.recording.imu = variant == "no-imu" ? "none" : "synthetic IMU";
+    record.variant = variant;
+    record.frames = {240, status == RunStatus::ok ? 240U : 12U, 0};
+    if (status == RunStatus::ok) {
+      AteResult ate;
+      ate.stats = statistics(std::vector<double>{ate_m});
+      record.metrics.ate = {ate, {}};
+      IntensityAccumulator sums;
+      sums.add_frame(pixels);
+      record.metrics.aie = {sums.result(), {}};
+    }
+    const auto run = std::filesystem::path("runs") / recording_ / variant / hash;
+    write(run / "record.json", to_json(record));
+    auto writer = IntensityWriter::create(folder_ / run / "intensity.bin", 640, 480);
+    ASSERT_TRUE(writer && writer->write_frame(1, {}) && writer->write_frame(2, pixels) && writer->finish());
+  }
+
+  std::string recording_ = "fr1_rpy";
+
+  /// full and dm share pixel 5; dm drops the hard pixel 7; no-imu is lost.
+  void add_three_runs() {
+    add_run("no-imu", RunStatus::lost, "lost at frame 12: 3 patches, 5 | needed", 0, {});
+    add_run("full", RunStatus::ok, "", 0.0123, {{5, 2.0F, true}, {7, 10.0F, true}});
+    add_run("dm", RunStatus::ok, "", 0.05, {{5, 3.0F, true}});
+  }
+};
+
+TEST_F(TableTest, RowsAreInTheOrderOfVariantsWithCommonPixels) {
+  add_three_runs();
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  ASSERT_EQ(table->rows.size(), 3U);
+  EXPECT_EQ(table->rows[0].variant, "full");
+  EXPECT_EQ(table->rows[1].variant, "dm");
+  EXPECT_EQ(table->rows[2].variant, "no-imu");
+  EXPECT_DOUBLE_EQ(*table->rows[0].aie_grey, 6.0);
+  EXPECT_DOUBLE_EQ(*table->rows[0].aie_common_grey, 2.0);
+  EXPECT_DOUBLE_EQ(*table->rows[1].aie_common_grey, 3.0);
+  EXPECT_DOUBLE_EQ(*table->rows[0].ate_rmse_m, 0.0123);
+}
+
+TEST_F(TableTest, ALostRunIsARowWithItsReasonAndNoNumbers) {
+  add_three_runs();
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value());
+  const TableRow& lost = table->rows[2];
+  EXPECT_EQ(lost.status, RunStatus::lost);
+  EXPECT_FALSE(lost.ate_rmse_m.has_value());
+  EXPECT_FALSE(lost.aie_common_grey.has_value());
+  EXPECT_EQ(lost.tracked, 12U);
+  const std::string text = render_table(*table, TableFormat::markdown);
+  EXPECT_NE(text.find("2 of 3 runs ok"), std::string::npos) << text;
+  EXPECT_NE(text.find("lost at frame 12"), std::string::npos) << text;
+  EXPECT_NE(text.find("synthetic IMU: made from the ground truth"), std::string::npos) << text;
+}
+
+TEST_F(TableTest, SimulatedDataIsLabelled) {
+  add_run("full", RunStatus::ok, "", 0.0123, {});
+  const auto before = collect_table(folder_ / "runs");
+  ASSERT_TRUE(before.has_value());
+  for (const TableFormat format :
+       {TableFormat::markdown, TableFormat::csv, TableFormat::json, TableFormat::latex})
+    EXPECT_EQ(render_table(*before, format).find("simulated"), std::string::npos);
+  ResultTable table = *before;
+  table.rows[0].data = "simulated";
+  for (const TableFormat format :
+       {TableFormat::markdown, TableFormat::csv, TableFormat::json, TableFormat::latex})
+    EXPECT_NE(render_table(table, format).find("simulated"), std::string::npos);
+}
+
+TEST_F(TableTest, APseudoGroundTruthIsMarkedAndExplained) {
+  RunRecord record;
+  record.recording.name = "walk";
+  for (const char* const truth : {"none", "given"}) {
+    record.recording.truth = truth;
+    write("runs/walk/full/01234567/record.json", to_json(record));
+    const auto without = collect_table(folder_ / "runs");
+    ASSERT_TRUE(without.has_value()) << without.error().message;
+    for (const TableFormat format :
+         {TableFormat::markdown, TableFormat::csv, TableFormat::json, TableFormat::latex})
+      EXPECT_EQ(render_table(*without, format).find("pseudo"), std::string::npos);
+  }
+  record.recording.truth = kPseudoTruthWord;
+  write("runs/walk/full/01234567/record.json", to_json(record));
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  const std::string mark = "recorded, pseudo ground truth";
+  const std::string footnote = "pseudo ground truth: the reference is a batch estimate of the same recording";
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find("| walk      | " + mark + " |"),
+            std::string::npos)
+      << render_table(*table, TableFormat::markdown);
+  EXPECT_NE(render_table(*table, TableFormat::latex).find("& " + mark + " &"), std::string::npos);
+  EXPECT_NE(render_table(*table, TableFormat::csv).find("walk,recorded,none,pseudo ground truth,"),
+            std::string::npos);
+  const auto document = nlohmann::json::parse(render_table(*table, TableFormat::json));
+  EXPECT_EQ(document.at("rows").at(0).at("truth"), kPseudoTruthWord);
+  EXPECT_TRUE(document.at("protocol").back().get<std::string>().starts_with(footnote));
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find(footnote), std::string::npos);
+}
+
+TEST_F(TableTest, MarkdownLinesAreAligned) {
+  add_three_runs();
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::markdown);
+  std::istringstream lines(text);
+  std::size_t width = 0;
+  int rows = 0;
+  for (std::string line; std::getline(lines, line) && line.starts_with("|"); ++rows) {
+    if (rows == 0) width = line.size();
+    EXPECT_EQ(line.size(), width) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 14) << line;
+  }
+  EXPECT_EQ(rows, 5);
+}
+
+TEST_F(TableTest, CsvAndJsonCarryTheSameNumbers) {
+  add_three_runs();
+  const auto table = collect_table(folder_ / "runs");
+  const auto document = nlohmann::json::parse(render_table(*table, TableFormat::json));
+  EXPECT_EQ(document.at("n_ok"), 2);
+  EXPECT_EQ(document.at("n_total"), 3);
+  EXPECT_EQ(document.at("rows").at(0).at("ate_rmse_m"), 0.0123);
+  EXPECT_TRUE(document.at("rows").at(2).at("ate_rmse_m").is_null());
+  std::istringstream lines(render_table(*table, TableFormat::csv));
+  std::string header, full;
+  std::getline(lines, header);
+  std::getline(lines, full);
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(full.begin(), full.end(), ','));
+  EXPECT_NE(full.find(",0.0123,"), std::string::npos) << full;
+}
+
+TEST_F(TableTest, LongCsvHasALineForEachNumber) {
+  add_three_runs();
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::csv_long);
+  EXPECT_NE(text.find("fr1_rpy,recorded,synthetic IMU,none,full,01234567,ok,ate_rmse_m,m,0.0123\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("lost,ate_rmse_m"), std::string::npos) << text;  // does not exist
+  EXPECT_NE(text.find("lost,tracked,frames,12\n"), std::string::npos) << text;
+}
+
+TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
+  add_three_runs();
+  recording_ = "fr1_xyz";
+  add_run("full", RunStatus::ok, "", 0.0277, {{5, 2.0F, true}, {7, 10.0F, true}});
+  add_run("no-imu", RunStatus::ok, "", 0.5, {{5, 2.0F, true}});
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_EQ(table->means.size(), 2U);  // dm ran on one recording
+  EXPECT_EQ(table->means[0].variant, "full");
+  EXPECT_EQ(table->means[0].ok, 2U);
+  EXPECT_DOUBLE_EQ(*table->means[0].values.ate_rmse_m, 0.02);
+  EXPECT_EQ(table->means[1].ok, 1U);
+  EXPECT_EQ(table->means[1].total, 2U);
+  EXPECT_DOUBLE_EQ(*table->means[1].values.ate_rmse_m, 0.5);
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find("| 1/2 ok |"), std::string::npos);
+}
+
+TEST_F(TableTest, LatexHasTheBestOfEachRecordingInBold) {
+  add_three_runs();
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);
+  EXPECT_NE(text.find("& 6.000 & \\textbf{2.000} & \\textbf{1.23} &"), std::string::npos) << text;
+  EXPECT_NE(text.find("& \\textbf{3.000} & 3.000 & 5.00 &"), std::string::npos) << text;
+}
+
+TEST_F(TableTest, LatexEscapesNames) {
+  add_three_runs();
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);
+  EXPECT_NE(text.find("fr1\\_rpy & recorded & synthetic IMU & full & ok"), std::string::npos) << text;
+  EXPECT_NE(text.find("\\toprule"), std::string::npos);
+}
+
+TEST_F(TableTest, TwoRunsOfOneVariantAreToldApart) {
+  add_run("full", RunStatus::ok, "", 0.01, {{5, 2.0F, true}}, "aaaaaaaa");
+  add_run("full", RunStatus::ok, "", 0.02, {{5, 2.0F, true}}, "bbbbbbbb");
+  const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::markdown);
+  EXPECT_NE(text.find("full (aaaaaaaa)"), std::string::npos) << text;
+  EXPECT_NE(text.find("full (bbbbbbbb)"), std::string::npos) << text;
+}
+
+TEST_F(TableTest, DamagedDifferencesCostOnlyTheCommonColumn) {
+  add_three_runs();
+  std::filesystem::resize_file(folder_ / "runs/fr1_rpy/dm/01234567/intensity.bin", 30);
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value());
+  EXPECT_FALSE(table->rows[0].aie_common_grey.has_value());
+  EXPECT_TRUE(table->rows[0].aie_grey.has_value());
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find("intensity.bin"), std::string::npos);
+}
+
+TEST_F(TableTest, AnImportedRunLeavesTheCommonPixelsOfOursAlone) {
+  add_three_runs();
+  RunRecord imported = *read_record(folder_ / "runs/fr1_rpy/full/01234567/record.json");
+  imported.variant = "Other";
+  imported.metrics.aie = {std::nullopt, "says nothing of intensities"};
+  imported.config.clear();
+  write("runs/fr1_rpy/Other/01234567/record.json", to_json(imported));
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_EQ(table->rows.size(), 4U);
+  EXPECT_EQ(table->rows[3].variant, "Other");
+  EXPECT_DOUBLE_EQ(*table->rows[0].aie_common_grey, 2.0);
+  EXPECT_FALSE(table->rows[3].fps.has_value());
+}
+
+TEST_F(TableTest, UnfinishedRunsAreNotRead) {
+  add_three_runs();
+  write("runs/fr1_rpy/full/.01234567.99.tmp/new/record.json", "half");
+  EXPECT_EQ(collect_table(folder_ / "runs")->rows.size(), 3U);
+}
+
+TEST_F(TableTest, ErrorsAreTyped) {
+  EXPECT_EQ(collect_table(folder_ / "absent").error().code, ErrorCode::data_missing);
+  EXPECT_EQ(collect_table(folder_).error().code, ErrorCode::data_missing);
+  EXPECT_EQ(parse_table_format("pdf").error().code, ErrorCode::usage);
+}
+
+}  // namespace
+}  // namespace fusebench

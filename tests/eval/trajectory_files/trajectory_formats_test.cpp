@@ -1,0 +1,128 @@
+#include "eval/trajectory_files/trajectory_formats.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+
+using namespace trajectory;
+using namespace trajectory_files;
+
+namespace {
+
+class TrajectoryFormats : public ::testing::Test {
+ protected:
+  Result<LoadedTrajectory> load(std::string_view text, Duplicates duplicates = Duplicates::none,
+                                std::optional<TrajectoryFormat> format = {}) {
+    const auto file = folder_.path() / "trajectory.txt";
+    std::ofstream(file, std::ios::binary) << text;
+    warnings_.clear();
+    return load_trajectory(file, format, duplicates, warnings_);
+  }
+
+  void expect_refused(std::string_view text, std::string_view part) {
+    const auto loaded = load(text);
+    ASSERT_FALSE(loaded.has_value()) << text;
+    EXPECT_EQ(loaded.error().code, ErrorCode::data_corrupt);
+    EXPECT_NE(loaded.error().message.find(part), std::string::npos) << loaded.error().message;
+  }
+
+  testing::TemporaryFolder folder_;
+  std::vector<std::string> warnings_;
+};
+
+constexpr std::string_view kQuarterTurnKitti =
+    "1 0 0 0 0 1 0 0 0 0 1 0\n"
+    "0 -1 0 1.5 1 0 0 -2 0 0 1 0.25\n";
+
+TEST_F(TrajectoryFormats, ColumnsTellTheFormat) {
+  const auto tum = load("# comment\n\n1305031102.1758 1 2 3 0 0 0 1\n1305031102.2 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(tum.has_value()) << tum.error().message;
+  EXPECT_EQ(tum->format, TrajectoryFormat::tum);
+  EXPECT_EQ(tum->poses[0].timestamp_ns, 1305031102175800000);
+
+  const auto euroc = load("#timestamp [ns], p_x\n1403636579763555584,1,2,3,0.5,-0.5,0.5,0.5\n");
+  ASSERT_TRUE(euroc.has_value()) << euroc.error().message;
+  EXPECT_EQ(euroc->format, TrajectoryFormat::euroc);
+  EXPECT_EQ(euroc->poses[0].timestamp_ns, 1403636579763555584) << "no digit goes through a double";
+  EXPECT_NEAR(euroc->poses[0].T_world_camera.rotation.w(), 0.5, 1e-15) << "w comes first";
+  EXPECT_NEAR(euroc->poses[0].T_world_camera.rotation.x(), -0.5, 1e-15);
+
+  const auto state = load("1403636579763555584,1,2,3,1,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  ASSERT_TRUE(state.has_value()) << state.error().message;
+  EXPECT_EQ(state->format, TrajectoryFormat::euroc);
+
+  const auto kitti = load(kQuarterTurnKitti);
+  ASSERT_TRUE(kitti.has_value()) << kitti.error().message;
+  EXPECT_EQ(kitti->format, TrajectoryFormat::kitti);
+  EXPECT_FALSE(kitti->has_stamps());
+  EXPECT_TRUE(kitti->poses[1].T_world_camera.translation.isApprox(Vector3d(1.5, -2, 0.25)));
+  EXPECT_TRUE((kitti->poses[1].T_world_camera.rotation * Vector3d::UnitX()).isApprox(Vector3d::UnitY()));
+  EXPECT_TRUE(warnings_.empty());
+
+  expect_refused("1 2 3\n", ":1: 3 columns are no trajectory");
+  expect_refused("# nothing\n", "has no rows");
+}
+
+TEST_F(TrajectoryFormats, MatricesBecomeRotationsOrAreRefused) {
+  const auto rounded = load("1.0002 0 0 0 0 1 0 0 0 0 1 0\n");
+  ASSERT_TRUE(rounded.has_value());
+  EXPECT_NEAR(rounded->poses[0].T_world_camera.rotation.norm(), 1.0, 1e-15);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find(":1: rotations are off orthonormal by up to 0.0004"), std::string::npos)
+      << warnings_[0];
+  expect_refused("1.1 0 0 0 0 1 0 0 0 0 1 0\n", ":1: the 3x3 part is no rotation");
+  expect_refused("1 0 0 0 0 1 0 0 0 0 -1 0\n", "determinant -1");
+  expect_refused("0 0 0 0 0 0 0 0 0 0 0 0\n", "no rotation");
+}
+
+TEST_F(TrajectoryFormats, QuaternionsAreNormalisedAndCounted) {
+  const auto loaded = load("1 0 0 0 0 0 0 1.01\n2 0 0 0 0 0 0 1.0001\n");
+  ASSERT_TRUE(loaded.has_value());
+  EXPECT_NEAR(loaded->poses[0].T_world_camera.rotation.norm(), 1.0, 1e-15);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find(":1: 1 of 2 quaternions are off unit length"), std::string::npos)
+      << warnings_[0];
+  expect_refused("1 0 0 0 0 0 0 0\n", ":1: quaternion");
+  expect_refused("1 0 0 0 0 0 0 nan\n", ":1");
+}
+
+TEST_F(TrajectoryFormats, OrderAndRepeatedStamps) {
+  constexpr std::string_view kRepeated = "1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n2 3 0 0 0 0 0 1\n";
+  expect_refused(kRepeated, ":3: the stamp is the same as that of line 2");
+  EXPECT_EQ(load(kRepeated, Duplicates::first)->poses.back().T_world_camera.translation.x(), 2);
+  EXPECT_EQ(load(kRepeated, Duplicates::last)->poses.back().T_world_camera.translation.x(), 3);
+  EXPECT_EQ(load(kRepeated, Duplicates::as_written)->poses.size(), 3U);
+
+  std::string rare = "0 0 0 0 0 0 0 1\n";
+  for (int i = 0; i < 200; ++i) rare += std::to_string(i) + " 1 0 0 0 0 0 1\n";
+  EXPECT_EQ(load(rare, Duplicates::rare_kept)->poses.size(), 201U);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find(":2: 1 of 201 rows repeat a stamp (both are kept)"), std::string::npos);
+  const auto last = load(rare, Duplicates::rare_last);
+  EXPECT_EQ(last->poses.size(), 200U);
+  EXPECT_EQ(last->poses[0].T_world_camera.translation.x(), 1);
+  EXPECT_FALSE(load(kRepeated, Duplicates::rare_kept).has_value()) << "one in three is not rare";
+
+  const auto sorted = load("3 3 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
+  ASSERT_TRUE(sorted.has_value());
+  EXPECT_EQ(sorted->poses.front().timestamp_ns, 1000000000);
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find("not in order of time (sorted)"), std::string::npos);
+}
+
+TEST_F(TrajectoryFormats, TwoTrajectoriesInOneFileAreNotWovenTogether) {
+  std::string text;
+  for (int run = 0; run < 2; ++run) {
+    for (int i = 0; i < 20; ++i) text += std::to_string(i) + (run == 0 ? ".0" : ".5") + " 0 0 0 0 0 0 1\n";
+  }
+  expect_refused(text, ":21: time jumps back by 18.500 s: the file seems to hold 2 trajectories");
+}
+
+}  // namespace
+}  // namespace fusebench
