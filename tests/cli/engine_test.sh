@@ -40,6 +40,8 @@ name = "tiny"
 variants = ["no-imu"]
 keep = "small"
 frames = "0:2"
+[config]
+iekf.min_patches = 1  # so few are in so small images
 [[simulations]]
 name = "tiny"
 format = "tum"

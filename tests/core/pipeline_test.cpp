@@ -224,7 +224,7 @@ TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
 TEST(Pipeline, ADimFirstFrameIsGivenUpForALaterStart) {
   // Enough patches can be cut from it, but the next frame is several times as bright.
   SimulatedRun dim_start = shared_run();
-  dim_start.frames[0].grey = darkened(dim_start.frames[0].grey, 0.2);
+  dim_start.frames[0].grey = darkened(dim_start.frames[0].grey, 0.4);
   auto reports = track(dim_start, config_of("full"));
   const auto start = std::ranges::find_if(reports.begin() + 1, reports.end(), [](const FrameReport& report) {
     return report.status == FrameStatus::initialised;
@@ -266,10 +266,10 @@ TEST(Pipeline, AnAbsurdInertialSampleLosesFramesAndPoisonsNothing) {
         EXPECT_EQ(report.reason.empty(), report.status != FrameStatus::lost);
       }
       EXPECT_EQ(reports[10].status, FrameStatus::lost);
-      if (std::abs(absurd) > 1e10) {  // a smaller one may leave numbers that can be computed with
-        EXPECT_EQ(reports[10].health, FrameHealth::diverged);
-        EXPECT_NE(reports[10].reason.find("not finite"), std::string::npos) << reports[10].reason;
-      }
+      // A smaller one may leave numbers that can be computed with, which readers refuse.
+      if (std::abs(absurd) < 1e10) continue;
+      EXPECT_EQ(reports[10].health, FrameHealth::diverged);
+      EXPECT_NE(reports[10].reason.find("not finite"), std::string::npos) << reports[10].reason;
       EXPECT_NE(reports.back().status, FrameStatus::lost) << reports.back().reason;
       const SE3& truth = disturbed.T_first_camera.back();
       EXPECT_LT((reports.back().T_world_camera.translation - truth.translation).norm(), 0.02);

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "tests/support/expect_close.hpp"
+#include "tests/support/repository.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench::testing {
@@ -36,7 +37,7 @@ class TrajectoryVectors : public ::testing::TestWithParam<VectorSet> {
  protected:
   void SetUp() override {
     if (GetParam() == VectorSet::golden) {
-      folder_ = std::filesystem::path(__FILE__).parent_path().parent_path() / "golden" / "trajectories";
+      folder_ = repository_root() / "tests" / "golden" / "trajectories";
       return;
     }
     const char* const data = std::getenv("FUSEBENCH_DATA");

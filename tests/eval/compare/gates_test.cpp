@@ -1,4 +1,5 @@
 #include "eval/compare/gates.hpp"
+#include "tests/support/repository.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,8 +27,7 @@ std::string refusal(std::string_view text) {
 }
 
 TEST(GatesTest, TheShippedFileHasTheDefaults) {
-  const auto file = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path().parent_path() /
-                    "configs/gates.toml";
+  const auto file = testing::repository_root() / "configs/gates.toml";
   const auto shipped = read_gates(file);
   ASSERT_TRUE(shipped.has_value()) << shipped.error().message;
   const Gates defaults;

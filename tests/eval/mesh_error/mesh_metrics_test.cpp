@@ -9,6 +9,7 @@
 #include "core/mesh/ply_file.hpp"
 #include "eval/mesh_error/vertex_tree.hpp"
 #include "tests/support/expect_close.hpp"
+#include "tests/support/repository.hpp"
 #include "tests/support/test_meshes.hpp"
 
 namespace fusebench {
@@ -23,8 +24,7 @@ using testing::expect_close;
 using testing::sphere;
 using testing::triangle_soup;
 
-const std::filesystem::path kVectors =
-    std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / "golden" / "mesh";
+const std::filesystem::path kVectors = testing::repository_root() / "tests" / "golden" / "mesh";
 
 MeshErrorOptions vertices_only(std::vector<double> thresholds_m = {0.01}) {
   const MeshSampling all{MeshSamples::vertices, 0, 0};

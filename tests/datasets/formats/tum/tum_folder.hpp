@@ -6,6 +6,7 @@
 #include <string>
 
 #include "datasets/images/image_files.hpp"
+#include "tests/support/repository.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench::testing {
@@ -43,7 +44,7 @@ class TumFolder {
 
 /// A recording of the real world, committed: tests/golden/tum_freiburg1_rpy_5frames.
 inline std::filesystem::path golden_tum_folder() {
-  return std::filesystem::path(__FILE__).parent_path().parent_path() / "golden" / "tum_freiburg1_rpy_5frames";
+  return repository_root() / "tests" / "golden" / "tum_freiburg1_rpy_5frames";
 }
 
 }  // namespace fusebench::testing

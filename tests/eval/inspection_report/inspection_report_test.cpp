@@ -10,6 +10,7 @@
 #include "eval/inspection_report/inspection_text.hpp"
 #include "eval/page/page.hpp"
 #include "tests/datasets/inspection/clean_recording.hpp"
+#include "tests/support/repository.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench::testing {
@@ -87,8 +88,7 @@ TEST(Page, ThinningKeepsPeaks) {
 }
 
 TEST(FindingCodes, AreAllInTheDocumentation) {
-  const auto root = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
-  const std::string text = read_bytes(root / "docs" / "inspect.md");
+  const std::string text = read_bytes(testing::repository_root() / "docs" / "inspect.md");
   for (const FindingCode& code : finding_codes()) EXPECT_THAT(text, HasSubstr(std::string(code.code)));
 }
 
