@@ -257,11 +257,9 @@ Mesh extract_mesh(const tsdf::TsdfVolume& volume, double min_weight, const Worke
   mesh.triangles.resize(first_triangle.back());
   const auto colored =
       workers.map_chunks<char>(blocks, kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
-        VertexWriter writer(volume, mesh);
-        bool any = false;
-        for (std::size_t rank = begin; rank < end; ++rank) {
-          any |= writer.write(volume.block_indices()[sorted.slots[rank]], vertices[rank]);
-        }
+        const std::size_t count = end - begin;
+        const bool any = write_vertices(volume, std::span(sorted.slots).subspan(begin, count),
+                                        std::span(vertices).subspan(begin, count), mesh);
         const std::size_t chunk = begin / kBlocksPerChunk;
         std::size_t corner = 3 * first_triangle[chunk];
         surfaces[chunk].for_each_corner([&](std::size_t rank, std::size_t edge) {

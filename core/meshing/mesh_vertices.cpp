@@ -1,6 +1,7 @@
 #include "core/meshing/mesh_vertices.hpp"
 
 #include "core/base/bits.hpp"
+#include "core/meshing/block_surroundings.hpp"
 
 namespace fusebench::meshing {
 namespace {
@@ -19,39 +20,60 @@ bool blend(std::uint32_t low, std::uint32_t high, float share, Rgb& color) {
   return true;
 }
 
+class VertexWriter {
+ public:
+  VertexWriter(const tsdf::TsdfVolume& volume, Mesh& mesh)
+      : voxel_m_(volume.voxel_m()), surroundings_(volume), mesh_(mesh) {}
+
+  // Those of one block. True if any has a colour.
+  bool write(const tsdf::BlockIndex& block, const BlockVertices& vertices) {
+    if (!vertices.any()) return false;
+    surroundings_.load(block);
+    bool colored = false;
+    for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
+      std::size_t vertex = vertices.before[word];
+      for_each_bit(vertices.used[word], [&](std::size_t bit) {
+        const int edge = static_cast<int>(word * 64 + bit);
+        const int offset = edge / 3;
+        const tsdf::VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
+        colored |= write_vertex(block, local, edge % 3, vertex++);
+      });
+    }
+    return colored;
+  }
+
+ private:
+  // The vertex on the edge that leaves a voxel along an axis. True if it has a colour.
+  bool write_vertex(const tsdf::BlockIndex& block, const tsdf::VoxelIndex& local, Eigen::Index axis,
+                    std::size_t vertex) {
+    const tsdf::VoxelIndex index = block * tsdf::kBlockSide + local;
+    const tsdf::VoxelIndex unit = tsdf::VoxelIndex::Unit(axis);
+    const double low_m = surroundings_.distance_m(local);
+    const double share = low_m / (low_m - static_cast<double>(surroundings_.distance_m(local + unit)));
+    const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m_;
+    Vector3d normal =
+        (1.0 - share) * surroundings_.gradient(local) + share * surroundings_.gradient(local + unit);
+    if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
+    mesh_.vertices[vertex] = position.cast<float>();
+    mesh_.normals[vertex] = normal.normalized().cast<float>();
+    return blend(surroundings_.color(local), surroundings_.color(local + unit), static_cast<float>(share),
+                 mesh_.colors[vertex]);
+  }
+
+  double voxel_m_;
+  BlockSurroundings surroundings_;
+  Mesh& mesh_;
+};
+
 }  // namespace
 
-bool VertexWriter::write(const tsdf::BlockIndex& block, const BlockVertices& vertices) {
-  if (!vertices.any()) return false;
-  surroundings_.load(block);
+bool write_vertices(const tsdf::TsdfVolume& volume, std::span<const std::size_t> slots,
+                    std::span<const BlockVertices> vertices, Mesh& mesh) {
+  VertexWriter writer(volume, mesh);
   bool colored = false;
-  for (std::size_t word = 0; word < BlockVertices::kWords; ++word) {
-    std::size_t vertex = vertices.before[word];
-    for_each_bit(vertices.used[word], [&](std::size_t bit) {
-      const int edge = static_cast<int>(word * 64 + bit);
-      const int offset = edge / 3;
-      const tsdf::VoxelIndex local(offset & 7, (offset >> 3) & 7, offset >> 6);
-      colored |= write_vertex(block, local, edge % 3, vertex++);
-    });
-  }
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    colored |= writer.write(volume.block_indices()[slots[i]], vertices[i]);
   return colored;
-}
-
-// The vertex on the edge that leaves a voxel along an axis. True if it has a colour.
-bool VertexWriter::write_vertex(const tsdf::BlockIndex& block, const tsdf::VoxelIndex& local,
-                                Eigen::Index axis, std::size_t vertex) {
-  const tsdf::VoxelIndex index = block * tsdf::kBlockSide + local;
-  const tsdf::VoxelIndex unit = tsdf::VoxelIndex::Unit(axis);
-  const double low_m = surroundings_.distance_m(local);
-  const double share = low_m / (low_m - static_cast<double>(surroundings_.distance_m(local + unit)));
-  const Vector3d position = (index.cast<double>() + share * Vector3d::Unit(axis)) * voxel_m_;
-  Vector3d normal =
-      (1.0 - share) * surroundings_.gradient(local) + share * surroundings_.gradient(local + unit);
-  if (!(normal.norm() > 0.0)) normal = (low_m < 0.0 ? 1.0 : -1.0) * Vector3d::Unit(axis);
-  mesh_.vertices[vertex] = position.cast<float>();
-  mesh_.normals[vertex] = normal.normalized().cast<float>();
-  return blend(surroundings_.color(local), surroundings_.color(local + unit), static_cast<float>(share),
-               mesh_.colors[vertex]);
 }
 
 }  // namespace fusebench::meshing

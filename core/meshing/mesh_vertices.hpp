@@ -6,9 +6,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/base/types.hpp"
-#include "core/meshing/block_surroundings.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::meshing {
@@ -37,22 +37,9 @@ struct BlockVertices {
   }
 };
 
-/// Writes vertices, block by block, into a mesh that has room for them.
-class VertexWriter {
- public:
-  VertexWriter(const tsdf::TsdfVolume& volume, Mesh& mesh)
-      : voxel_m_(volume.voxel_m()), surroundings_(volume), mesh_(mesh) {}
-
-  /// Those of one block. True if any has a colour.
-  bool write(const tsdf::BlockIndex& block, const BlockVertices& vertices);
-
- private:
-  bool write_vertex(const tsdf::BlockIndex& block, const tsdf::VoxelIndex& local, Eigen::Index axis,
-                    std::size_t vertex);
-
-  double voxel_m_;
-  BlockSurroundings surroundings_;
-  Mesh& mesh_;
-};
+/// Writes the vertices of blocks (places among those of the volume, and the numbers of their vertices) into a
+/// mesh that has room for them. True if any has a colour.
+bool write_vertices(const tsdf::TsdfVolume& volume, std::span<const std::size_t> slots,
+                    std::span<const BlockVertices> vertices, Mesh& mesh);
 
 }  // namespace fusebench::meshing

@@ -120,7 +120,9 @@ Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
   }
   std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
     const auto key = [](const FoundRun& run) {
-      return std::tuple(run.record.recording.name, run.record.recording.fingerprint,
+      const std::string& fingerprint = run.record.recording.fingerprint;
+      // An unreadable record has none: after those of its name.
+      return std::tuple(run.record.recording.name, fingerprint.empty(), fingerprint,
                         variant_rank(run.record.variant), run.record.variant, run.folder.string());
     };
     return key(a) < key(b);

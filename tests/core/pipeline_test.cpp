@@ -224,7 +224,7 @@ TEST(Pipeline, StartsAtTheFirstFrameThatCanBeUsed) {
 TEST(Pipeline, ADimFirstFrameIsGivenUpForALaterStart) {
   // Enough patches can be cut from it, but the next frame is several times as bright.
   SimulatedRun dim_start = shared_run();
-  dim_start.frames[0].grey = darkened(dim_start.frames[0].grey, 0.4);
+  dim_start.frames[0].grey = darkened(dim_start.frames[0].grey, 0.5);
   auto reports = track(dim_start, config_of("full"));
   const auto start = std::ranges::find_if(reports.begin() + 1, reports.end(), [](const FrameReport& report) {
     return report.status == FrameStatus::initialised;

@@ -196,7 +196,7 @@ TEST_F(RunRowsTest, ARunThatNeverStartedHasTheOptionsOfItsConfiguration) {
 
 TEST_F(RunRowsTest, UnfinishedRunsAreNotRead) {
   write_record("desk/full/01234567", sample_record("desk", "full", 0.0123));
-  write("runs/desk/full/.89abcdef.99.tmp/record.json", "half");
+  write("runs/desk/full/.89abcdef.99.tmp/new/record.json", "half");
   EXPECT_EQ(rows().size(), 1U);
 }
 
