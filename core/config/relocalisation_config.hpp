@@ -53,9 +53,10 @@ struct RelocalisationConfig {
         "a keyframe with a longer motion blur may be replaced (pixels): beyond, corners move and soften");
     v.number("sharper_factor", self.sharper_factor, 0.0, 1.0,
              "by a frame with less than this share of its blur, so that a replacement is worth the change");
-    v.number("min_landmarks", self.min_landmarks, 1, 100000,
-             "a frame with fewer landmarks is not kept; about twice relocalisation.min_inliers, so that an "
-             "overlap with half of an image still suffices");
+    v.number(
+        "min_landmarks", self.min_landmarks, 1, 100000,
+        "a frame with fewer landmarks is not kept; more than twice relocalisation.min_inliers, so that an "
+        "overlap with half of an image still suffices");
     v.number(
         "plenty_of_corners", self.plenty_of_corners, 1, 100000,
         "a frame with so many corners of full resolution with depth has enough landmarks, which are then "
@@ -164,8 +165,8 @@ struct PlacePoseConfig {
              "the pose is refined by its inliers, which are then found again, so often: the right points of "
              "three noisy ones are not all");
     v.number("steps_per_round", self.steps_per_round, 1, 100,
-             "Gauss-Newton steps of each round, which converge within 5 from a pose that is right to some "
-             "pixels");
+             "Gauss-Newton steps of each round; from a pose that is right to some pixels it converges "
+             "quadratically, so in fewer");
     v.number("huber_px", self.huber_px, 0.01, 1e6,
              "residuals beyond this lose weight (Huber 1964; pixels of the level): one standard deviation of "
              "a corner, as matches have outliers");
