@@ -7,6 +7,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/health/stage_times.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/preprocessing/camera_motion.hpp"
 
@@ -22,13 +23,18 @@ class FramePreparation {
   /// True if rows or depth of the frame are of other instants than the frame, and the variant undoes that.
   [[nodiscard]] bool compensates(const RgbdFrame& frame) const;
 
+  /// True if the frame that was prepared for the predicted motion has to be prepared again for the estimated
+  /// one before it is fused.
+  [[nodiscard]] bool is_outdated(const RgbdFrame& frame, const filter::FilterState& predicted,
+                                 const filter::FilterState& estimated) const;
+
   /// Grey and depth, compensated for the motion (if there is anything to compensate) and gated. Colour has to
   /// wait for prepare_color().
-  void prepare(const RgbdFrame& frame, const filter::FilterState& motion);
+  void prepare(const RgbdFrame& frame, const filter::FilterState& motion, health::StageTimes& stages);
 
   /// Colour of the frame that was prepared last, if it was compensated. Apart, since only frames that are
   /// fused need it.
-  void prepare_color(const RgbdFrame& frame);
+  void prepare_color(const RgbdFrame& frame, health::StageTimes& stages);
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
   [[nodiscard]] const std::vector<GreyImage>& pyramid() const { return pyramid_; }

@@ -38,7 +38,6 @@ struct Pipeline::State final : RestartableEstimator {
   void restart(const std::optional<filter::FilterState>& motion) override;
 
   Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
-  void prepare(const RgbdFrame& frame, const filter::FilterState& motion, health::StageTimes& stages);
   health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
   bool track(const filter::GaussianState& prior, bool after_gap, health::FrameReport& report);
   filter::PoseMeasurement& deform();
@@ -57,7 +56,7 @@ struct Pipeline::State final : RestartableEstimator {
   patches::PatchWorkspace patch_workspace;
   std::optional<Tracking> tracking;                   ///< always there
   std::optional<filter::FilterState> initial_motion;  ///< after a restart
-  RecordingStart start;
+  RecordingStart start{config.initialisation};
 };
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
@@ -73,7 +72,7 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
     keep_moving(frame.capture_ns(), report);
     return report;
   }
-  prepare(frame, predicted->mean, report.stages);
+  preparation.prepare(frame, predicted->mean, report.stages);
 
   report.status = locate(*predicted, report);  // Eqs. 1-5, 15-23
   const bool updated =
@@ -83,10 +82,10 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
   now.timestamp_ns = frame.capture_ns();
   ++now.frames;
 
-  if (now.occlusion_gate.admits(report)) {
+  if (now.occlusion_gate.admits(report, config.health)) {
     const filter::FilterState& state = now.estimate->mean;
-    if (preparation.compensates(frame) && preprocessing::velocity_changed_much(predicted->mean, state))
-      prepare(frame, state, report.stages);
+    if (preparation.is_outdated(frame, predicted->mean, state))
+      preparation.prepare(frame, state, report.stages);
     const Result<void> fused = fuse(frame, report.stages);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(report.stages);  // Sec. 2.3: patch update
@@ -110,12 +109,6 @@ Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
   if (!tracking->estimate) return prediction::initial_state(imu, now_ns, rig, config, initial_motion);
   return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig.imu_noise,
                                    config);
-}
-
-void Pipeline::State::prepare(const RgbdFrame& frame, const filter::FilterState& motion,
-                              health::StageTimes& stages) {
-  const health::StageClock clock(stages, health::Stage::preprocess);
-  preparation.prepare(frame, motion);
 }
 
 health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
@@ -194,10 +187,7 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
 
 /// Sec. 2.3: the depth image goes into the model at the updated pose.
 Result<void> Pipeline::State::fuse(const RgbdFrame& frame, health::StageTimes& stages) {
-  if (preparation.compensates(frame)) {
-    const health::StageClock clock(stages, health::Stage::preprocess);
-    preparation.prepare_color(frame);
-  }
+  preparation.prepare_color(frame, stages);
   const health::StageClock clock(stages, health::Stage::fuse);
   return tracking->model.integrate(preparation.frame(), rig.camera, T_world_camera(), config.depth, workers);
 }
@@ -224,7 +214,7 @@ void Pipeline::State::keep_moving(std::int64_t now_ns, health::FrameReport& repo
   report.health = health::FrameHealth::diverged;
   report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
                               health::to_string(report.health));
-  std::ignore = now.occlusion_gate.admits(report);
+  std::ignore = now.occlusion_gate.admits(report, config.health);
   if (!now.estimate) return;
   now.estimate = prediction::predict_by_constant_velocity(
                      *now.estimate, seconds_between(now.timestamp_ns, now_ns), config.motion)

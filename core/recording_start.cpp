@@ -63,13 +63,12 @@ Result<health::FrameReport> RecordingStart::process_first(const RgbdFrame& frame
 
 /// A frame that is lost although its images are sound does not show what the first one showed.
 bool RecordingStart::is_false_start(const health::FrameReport& report) {
-  constexpr int kMostLostFrames = 5;  // relocalisation has had its chances
   if (report.status != health::FrameStatus::lost) return false;
   const bool sound = report.health != health::FrameHealth::dark &&
                      report.health != health::FrameHealth::diverged &&
                      report.health != health::FrameHealth::short_of_depth &&
                      report.health != health::FrameHealth::short_of_texture;
-  return ++lost_frames_ >= kMostLostFrames && sound;
+  return ++lost_frames_ >= config_.false_start_frames && sound;
 }
 
 }  // namespace fusebench::core

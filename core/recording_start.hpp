@@ -13,6 +13,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
+#include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/health/frame_report.hpp"
 
@@ -36,6 +37,9 @@ class RestartableEstimator {
 
 class RecordingStart {
  public:
+  /// The configuration must outlive it.
+  explicit RecordingStart(const config::InitialisationConfig& config) : config_(config) {}
+
   /// Processes the next frame. One that cannot be the first is lost, and its reason says so. The second one
   /// is processed together with the first one again; its report has the time of all of that. A later start
   /// has the status initialised and a reason: the frames before do not count any more.
@@ -46,6 +50,7 @@ class RecordingStart {
                                                           RestartableEstimator& estimator);
   [[nodiscard]] bool is_false_start(const health::FrameReport& report);
 
+  const config::InitialisationConfig& config_;
   std::optional<RgbdFrame> first_frame_;  ///< until the second one was processed
   bool confirmed_ = false;                ///< a frame was tracked after the first one
   int lost_frames_ = 0;                   ///< since the first one

@@ -5,7 +5,9 @@
 
 namespace fusebench::filter {
 
-/// Mean beyond which a state is of no camera in a room: 10 km, km/s or krad/s (SI units).
+/// Mean beyond which the arithmetic no longer resolves a room: the kernels are of single precision, whose
+/// step is a millimetre at 10 km (2^-10 m from 2^13 m on). Velocities (10 km/s, krad/s) are of no camera
+/// either.
 inline constexpr double kLargestMean = 1e4;
 /// Variance beyond which an update, which takes the difference of two such, no longer resolves a millimetre
 /// in double precision (1e-16 of 1e9 is a third of a millimetre, squared).

@@ -8,15 +8,6 @@ namespace fusebench::health {
 
 namespace {
 
-constexpr double kDarkGrey = 6.0;         // mean of the image; noise and black level of a covered camera
-constexpr double kLeastDepthShare = 0.1;  // of the image; patches need half of their pixels anyway
-// Of the patches in view. Less than half is enough: near surfaces have the strongest corners, so that an
-// object of this size dominates the update once patches are cut from it (a hand before 40 % of the image
-// does).
-constexpr double kCoveredShare = 0.25;
-constexpr int kGradientGrey = 4;  // between neighbours of the coarsest level; above its noise
-constexpr double kLeastTextureShare = 0.01;
-
 double mean_grey(const GreyImage& image) {
   const auto sum = std::accumulate(image.data.begin(), image.data.end(), std::uint64_t{0});
   return static_cast<double>(sum) / static_cast<double>(image.data.size());
@@ -29,13 +20,13 @@ double depth_share(const DepthImage& depth_m) {
 }
 
 /// Share of pixels with a gradient; a coarse level has little noise.
-double texture_share(const GreyImage& image) {
+double texture_share(const GreyImage& image, int gradient_grey) {
   std::size_t textured = 0;
   for (int y = 0; y + 1 < image.height; ++y) {
     for (int x = 0; x + 1 < image.width; ++x) {
       const int dx = image(x + 1, y) - image(x, y);
       const int dy = image(x, y + 1) - image(x, y);
-      textured += dx * dx + dy * dy > kGradientGrey * kGradientGrey ? 1U : 0U;
+      textured += dx * dx + dy * dy > gradient_grey * gradient_grey ? 1U : 0U;
     }
   }
   return static_cast<double>(textured) / static_cast<double>(image.data.size());
@@ -70,7 +61,7 @@ std::string_view to_string(FrameHealth health) {
 FrameHealth judge_health(const measurement::ObservedFrame& frame,
                          std::span<const measurement::PatchOutcome> outcomes, double blur_px,
                          const config::Config& config) {
-  if (mean_grey(frame.pyramid.back()) < kDarkGrey) return FrameHealth::dark;
+  if (mean_grey(frame.pyramid.back()) < config.health.dark_grey) return FrameHealth::dark;
   int in_view = 0, covered = 0, tracked = 0, accepted = 0;
   for (const measurement::PatchOutcome& outcome : outcomes) {
     in_view += outcome.in_view ? 1 : 0;
@@ -78,9 +69,11 @@ FrameHealth judge_health(const measurement::ObservedFrame& frame,
     tracked += outcome.tracked ? 1 : 0;
     accepted += outcome.accepted ? 1 : 0;
   }
-  if (in_view > 0 && covered > kCoveredShare * in_view) return FrameHealth::occluded;
-  if (depth_share(frame.depth_m) < kLeastDepthShare) return FrameHealth::short_of_depth;
-  if (texture_share(frame.pyramid.back()) < kLeastTextureShare) return FrameHealth::short_of_texture;
+  if (in_view > 0 && covered > config.health.covered_share * in_view) return FrameHealth::occluded;
+  if (depth_share(frame.depth_m) < config.health.min_depth_share) return FrameHealth::short_of_depth;
+  if (texture_share(frame.pyramid.back(), config.health.texture_gradient_grey) <
+      config.health.min_texture_share)
+    return FrameHealth::short_of_texture;
   if (tracked > 0 && 2 * accepted < tracked) return FrameHealth::inconsistent;
   if (accepted < config.iekf.min_patches && !outcomes.empty()) return FrameHealth::short_of_patches;
   if (blur_px > config.patches.size_px) return FrameHealth::blurred;

@@ -14,7 +14,7 @@ namespace fusebench::health {
 /// The first that applies, in this order.
 enum class FrameHealth {
   dark,              ///< (nearly) no light: a covered or switched-off camera
-  occluded,          ///< something new stands before a quarter of the patches or more
+  occluded,          ///< something new covers more than health.covered_share of the patches
   short_of_depth,    ///< most of the image has no usable depth
   short_of_texture,  ///< nearly no gradients to track
   inconsistent,      ///< most patches contradict the pose

@@ -5,11 +5,7 @@
 namespace fusebench::health {
 
 bool fails_chi2_gate(const FrameReport& report, const config::Config& config) {
-  // Of well aligned patches it is about 1 at most: photometric.noise_grey is generous, and a lost frame makes
-  // the learnt noise no less than that. Of those on wrong corners it is 3 to 4. How many patches agree says
-  // less: until the noise is learnt, a sensor's depth alone may fail the gate.
-  constexpr double kMostChi2 = 2.5;
-  return config.terms.photometric_weight > 0 && report.chi2_photometric > kMostChi2;
+  return config.terms.photometric_weight > 0 && report.chi2_photometric > config.health.max_chi2_after_gap;
 }
 
 std::string rejection_reason(const FrameReport& report, bool after_gap, const config::Config& config) {
@@ -36,10 +32,9 @@ void find_survivors(std::span<const patches::Patch> patches,
   }
 }
 
-bool OcclusionGate::admits(const FrameReport& report) {
-  constexpr int kMostOccludedFrames = 30;
+bool OcclusionGate::admits(const FrameReport& report, const config::HealthConfig& config) {
   occluded_frames_ = report.health == FrameHealth::occluded ? occluded_frames_ + 1 : 0;
-  const bool clear = occluded_frames_ == 0 || occluded_frames_ > kMostOccludedFrames;
+  const bool clear = occluded_frames_ == 0 || occluded_frames_ > config.max_occluded_frames;
   return clear && report.status != FrameStatus::lost;
 }
 

@@ -11,7 +11,8 @@
 namespace fusebench::health {
 
 /// True if the photometric residuals are too large for the patches to lie where they belong: the mean squared
-/// whitened residual of accepted ones.
+/// whitened residual of accepted ones. How many patches agree says less: until the noise is learnt, a
+/// sensor's depth alone may fail the gate.
 [[nodiscard]] bool fails_chi2_gate(const FrameReport& report, const config::Config& config);
 
 /// Why an update, described in the report, is not believed; empty if it is. after_gap: the prediction may be
@@ -26,11 +27,11 @@ void find_survivors(std::span<const patches::Patch> patches,
                     std::vector<patches::TrackedCentre>& survivors);
 
 /// Keeps what has come to stand before many patches out of the model: it is no part of the scene, and patches
-/// cut from it would lead astray. What stays there for a second is let in.
+/// cut from it would lead astray. What stays there for health.max_occluded_frames is let in.
 class OcclusionGate {
  public:
   /// Called once a frame; true if the frame may be fused.
-  [[nodiscard]] bool admits(const FrameReport& report);
+  [[nodiscard]] bool admits(const FrameReport& report, const config::HealthConfig& config);
 
  private:
   int occluded_frames_ = 0;  ///< in a row

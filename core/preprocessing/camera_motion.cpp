@@ -15,11 +15,11 @@ double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
          exposure_s;
 }
 
-bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now) {
-  constexpr double kTurnRadps = 0.05;  // x 13 ms (half a read-out) x 520 px: a third of a pixel
-  constexpr double kMoveMps = 0.05;
-  return (now.angular_velocity_imu_radps - before.angular_velocity_imu_radps).norm() > kTurnRadps ||
-         (now.velocity_world_mps - before.velocity_world_mps).norm() > kMoveMps;
+bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now,
+                           const config::CompensationConfig& config) {
+  const double turn_radps = (now.angular_velocity_imu_radps - before.angular_velocity_imu_radps).norm();
+  const double move_mps = (now.velocity_world_mps - before.velocity_world_mps).norm();
+  return turn_radps > config.redo_angular_velocity_radps || move_mps > config.redo_velocity_mps;
 }
 
 }  // namespace fusebench::preprocessing

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
+#include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/preprocessing/motion_compensation.hpp"
 
@@ -14,8 +15,8 @@ namespace fusebench::preprocessing {
 [[nodiscard]] double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
                                        double exposure_s);
 
-/// True if a frame that was compensated for the motion before is off by some tenths of a pixel for that of
-/// now.
-[[nodiscard]] bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now);
+/// True if a frame that was compensated for the motion before is off by too much for that of now.
+[[nodiscard]] bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now,
+                                         const config::CompensationConfig& config);
 
 }  // namespace fusebench::preprocessing

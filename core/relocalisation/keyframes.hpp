@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
+#include "core/config/config.hpp"
 #include "core/relocalisation/packed_depth.hpp"
 #include "core/relocalisation/place_features.hpp"
 
@@ -28,7 +29,7 @@ struct Landmarks {
 
 /// The landmarks in a frame; depth in metres, 0 = none.
 [[nodiscard]] Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m,
-                                     const PinholeCamera& camera);
+                                     const PinholeCamera& camera, const config::Config& config);
 
 /// A fused frame that can be found again.
 struct Keyframe {
@@ -38,15 +39,6 @@ struct Keyframe {
   double blur_px = 0;                  ///< as it was offered
   PackedDepth depth;                   ///< as it was offered, to cut patches again
   std::optional<Landmarks> landmarks;  ///< when they were first asked for: most trackers are never lost
-};
-
-/// Which frames are kept.
-struct KeyframeSpacing {
-  /// Things in a room are 1 to 3 m away: a camera that is half as far aside sees them turned by some 5
-  /// degrees, which descriptors hardly notice.
-  double distance_m = 0.3;
-  double angle_rad = radians(20);  ///< between optical axes (ORB is indifferent to turns about them)
-  std::size_t max_count = 60;      ///< 1 MB each at 640x480
 };
 
 /// A pose found by matching.
@@ -65,7 +57,8 @@ struct FoundPlace {
 /// The store.
 class Keyframes {
  public:
-  explicit Keyframes(const PinholeCamera& camera, const KeyframeSpacing& spacing = {});
+  /// The configuration must outlive it.
+  Keyframes(const PinholeCamera& camera, const config::Config& config) : camera_(camera), config_(config) {}
 
   /// Keeps the frame if no kept one shows the place from near, or a much more blurred one does, whose place
   /// it takes, and if it has enough corners or landmarks with depth (> 0). Says whether it did. If the store
@@ -87,7 +80,7 @@ class Keyframes {
   void drop_most_crowded();
 
   PinholeCamera camera_;
-  KeyframeSpacing spacing_;
+  const config::Config& config_;
   std::vector<Keyframe> kept_;              ///< in the order of their offers
   std::optional<SE3> T_world_featureless_;  ///< where the last frame with too few features was
 };

@@ -1,30 +1,24 @@
 #include "core/relocalisation/place_certainty.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 namespace fusebench::relocalisation {
 
 namespace {
 
-constexpr double kMinInlierShare = 0.3;
-constexpr int kMinCells = 5;
-// Standard deviation of the position as a share of the distance of what is seen.
-constexpr double kMaxRelativeSigma = 0.015;
-constexpr int kSpreadCells = 4;  // a side
-
 /// Cells of a grid over the image in which inliers are.
 int occupied_cells(std::span<const SeenPoint> seen, const std::vector<std::size_t>& inliers,
-                   const PinholeCamera& camera) {
-  std::array<bool, kSpreadCells * kSpreadCells> occupied{};
+                   const PinholeCamera& camera, int cells_per_side) {
+  std::vector<bool> occupied(static_cast<std::size_t>(cells_per_side * cells_per_side));
   for (const std::size_t i : inliers) {
     const Vector2d& p = seen[i].pixel_px;
     const int column =
-        std::clamp(static_cast<int>(p.x() * kSpreadCells / camera.width_px), 0, kSpreadCells - 1);
+        std::clamp(static_cast<int>(p.x() * cells_per_side / camera.width_px), 0, cells_per_side - 1);
     const int row =
-        std::clamp(static_cast<int>(p.y() * kSpreadCells / camera.height_px), 0, kSpreadCells - 1);
-    occupied[static_cast<std::size_t>(row * kSpreadCells + column)] = true;
+        std::clamp(static_cast<int>(p.y() * cells_per_side / camera.height_px), 0, cells_per_side - 1);
+    occupied[static_cast<std::size_t>(row * cells_per_side + column)] = true;
   }
   return static_cast<int>(std::count(occupied.begin(), occupied.end(), true));
 }
@@ -39,13 +33,14 @@ double mean_distance_m(std::span<const SeenPoint> seen, const PoseFromPoints& po
 }  // namespace
 
 bool is_certain_place(std::span<const SeenPoint> seen, const PoseFromPoints& pose,
-                      const PinholeCamera& camera) {
+                      const PinholeCamera& camera, const config::RelocalisationConfig& config) {
   const auto inliers = static_cast<double>(pose.inliers.size());
   const double position_sigma_m = std::sqrt(pose.covariance.bottomRightCorner<3, 3>().trace());
-  return pose.inliers.size() >= kMinPlaceInliers &&
-         inliers >= kMinInlierShare * static_cast<double>(seen.size()) &&
-         occupied_cells(seen, pose.inliers, camera) >= kMinCells &&
-         position_sigma_m <= kMaxRelativeSigma * mean_distance_m(seen, pose);
+  return pose.inliers.size() >= static_cast<std::size_t>(config.min_inliers) &&
+         inliers >= config.min_inlier_share * static_cast<double>(seen.size()) &&
+         occupied_cells(seen, pose.inliers, camera, config.spread_cells_per_side) >=
+             config.min_spread_cells &&
+         position_sigma_m <= config.max_relative_position_sigma * mean_distance_m(seen, pose);
 }
 
 }  // namespace fusebench::relocalisation

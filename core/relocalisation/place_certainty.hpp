@@ -7,19 +7,17 @@
 // appearance: gate the pose by the prediction as well.
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 #include "core/base/types.hpp"
+#include "core/config/config.hpp"
 #include "core/relocalisation/pose_from_points.hpp"
 
 namespace fusebench::relocalisation {
 
-inline constexpr std::size_t kMinPlaceInliers = 25;  ///< 1.5 times what another room gave at most
-
 /// True if there are enough inliers, a sufficient share of all matches, spread over the image, and the pose
 /// is well constrained by them.
 [[nodiscard]] bool is_certain_place(std::span<const SeenPoint> seen, const PoseFromPoints& pose,
-                                    const PinholeCamera& camera);
+                                    const PinholeCamera& camera, const config::RelocalisationConfig& config);
 
 }  // namespace fusebench::relocalisation

@@ -11,53 +11,44 @@ namespace fusebench::relocalisation {
 
 namespace {
 
-// Descriptors of the same thing differ in 20 to 60 of 256 bits, those of different things in 128 +- 20.
-constexpr int kMaxDistance = 64;
-// In percent, so that the test is one of integers. 80 is Lowe's (IJCV 2004, Fig. 11).
-constexpr int kMaxRatio_percent = 80;
-// Low, as a lost image is often a blurred one; the strongest corners are taken first all the same.
-constexpr int kFastThreshold = 8;
-constexpr int kLevels = 8;
-constexpr float kLevelFactor = 1.2F;
-// Side of what a descriptor looks at, in pixels of its level.
+// Side of what a descriptor looks at, in pixels of its level: the comparisons of ORB were learnt on patches
+// of this size (Rublee et al. 2011, Sec. 4.3).
 constexpr int kPatch_px = 31;
-// As in ORB-SLAM: a descriptor may look out of the image by some pixels, where it sees a mirror image. Coarse
-// levels would have few corners otherwise.
+// As in ORB-SLAM (EDGE_THRESHOLD): a descriptor may look out of the image by some pixels, where it sees a
+// mirror image. Coarse levels would have few corners otherwise.
 constexpr int kEdge_px = 19;
-// Detected for one taken: the strongest corners of a whole image may all lie on one striped cushion.
-constexpr int kSurplus = 8;
-constexpr int kGridColumns = 8;
-constexpr int kGridRows = 6;
 
 // OpenCV has no read-only view; nothing writes through this one.
 cv::Mat view_of(const GreyImage& grey) {
   return {grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data.data())};
 }
 
-int cell_of(const cv::KeyPoint& corner, const GreyImage& grey) {
-  const int column = static_cast<int>(corner.pt.x) * kGridColumns / grey.width;
-  const int row = static_cast<int>(corner.pt.y) * kGridRows / grey.height;
-  return row * kGridColumns + column;
+std::size_t cell_of(const cv::KeyPoint& corner, const GreyImage& grey,
+                    const config::PlaceFeaturesConfig& config) {
+  const int column = static_cast<int>(corner.pt.x) * config.grid_columns / grey.width;
+  const int row = static_cast<int>(corner.pt.y) * config.grid_rows / grey.height;
+  return static_cast<std::size_t>(row * config.grid_columns + column);
 }
 
 /// First the share of each cell, then the strongest of the rest.
-std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> corners, const GreyImage& grey, int max_count) {
+std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> corners, const GreyImage& grey,
+                                 const config::PlaceFeaturesConfig& config) {
   // A total order: the result must not depend on the detector's own.
   std::sort(corners.begin(), corners.end(), [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
     return std::make_tuple(-a.response, a.octave, a.pt.y, a.pt.x) <
            std::make_tuple(-b.response, b.octave, b.pt.y, b.pt.x);
   });
-  constexpr int kCells = kGridColumns * kGridRows;
-  std::array<int, kCells> in_cell{};
+  const int cells = config.grid_columns * config.grid_rows;
+  std::vector<int> in_cell(static_cast<std::size_t>(cells));
   std::vector<cv::KeyPoint> taken;
   std::vector<cv::KeyPoint> rest;
   for (const cv::KeyPoint& corner : corners) {
-    int& count = in_cell[static_cast<std::size_t>(cell_of(corner, grey))];
-    const bool has_room = count < max_count / kCells;
+    int& count = in_cell[cell_of(corner, grey, config)];
+    const bool has_room = count < config.max_count / cells;
     (has_room ? taken : rest).push_back(corner);
     count += has_room ? 1 : 0;
   }
-  const auto room = static_cast<std::size_t>(std::max(0, max_count)) - taken.size();
+  const auto room = static_cast<std::size_t>(config.max_count) - taken.size();
   rest.resize(std::min(rest.size(), room));
   taken.insert(taken.end(), rest.begin(), rest.end());
   return taken;
@@ -86,22 +77,26 @@ struct Nearest {
       second = std::min(second, distance);
     }
   }
-  [[nodiscard]] bool distinct() const {
-    return first <= kMaxDistance && 100LL * first < static_cast<long long>(kMaxRatio_percent) * second;
+  /// The ratio is in percent, so that the test is one of integers.
+  [[nodiscard]] bool distinct(const config::PlaceFeaturesConfig& config) const {
+    return first <= config.max_descriptor_bits &&
+           100LL * first < static_cast<long long>(config.max_ratio_percent) * second;
   }
 };
 
 }  // namespace
 
-std::vector<PlaceFeature> find_place_features(const GreyImage& grey, int max_count) {
+std::vector<PlaceFeature> find_place_features(const GreyImage& grey,
+                                              const config::PlaceFeaturesConfig& config) {
   if (grey.width <= 2 * kPatch_px || grey.height <= 2 * kPatch_px) return {};
   const cv::Mat view = view_of(grey);
   // The score of FAST is an integer, that of Harris is not.
-  const auto orb = cv::ORB::create(kSurplus * max_count, kLevelFactor, kLevels, kEdge_px, 0, 2,
-                                   cv::ORB::FAST_SCORE, kPatch_px, kFastThreshold);
+  const auto orb =
+      cv::ORB::create(config.detected_per_taken * config.max_count, static_cast<float>(config.level_factor),
+                      config.levels, kEdge_px, 0, 2, cv::ORB::FAST_SCORE, kPatch_px, config.fast_threshold);
   std::vector<cv::KeyPoint> corners;
   orb->detect(view, corners);
-  corners = spread(std::move(corners), grey, max_count);
+  corners = spread(std::move(corners), grey, config);
   cv::Mat descriptors;
   orb->compute(view, corners, descriptors);
 
@@ -116,11 +111,11 @@ std::vector<PlaceFeature> find_place_features(const GreyImage& grey, int max_cou
   return features;
 }
 
-std::vector<Vector2d> find_corners(const GreyImage& grey) {
+std::vector<Vector2d> find_corners(const GreyImage& grey, const config::PlaceFeaturesConfig& config) {
   if (grey.width <= 2 * kPatch_px || grey.height <= 2 * kPatch_px) return {};
   const cv::Rect inside(kEdge_px, kEdge_px, grey.width - 2 * kEdge_px, grey.height - 2 * kEdge_px);
   std::vector<cv::KeyPoint> corners;
-  cv::FAST(view_of(grey)(inside), corners, kFastThreshold, true);
+  cv::FAST(view_of(grey)(inside), corners, config.fast_threshold, true);
   std::vector<Vector2d> corners_px;
   corners_px.reserve(corners.size());
   for (const cv::KeyPoint& corner : corners) {
@@ -137,7 +132,8 @@ int hamming_distance(const OrbDescriptor& a, const OrbDescriptor& b) {
 }
 
 std::vector<FeatureMatch> match_features(std::span<const PlaceFeature> query,
-                                         std::span<const PlaceFeature> known) {
+                                         std::span<const PlaceFeature> known,
+                                         const config::PlaceFeaturesConfig& config) {
   std::vector<Nearest> of_known(known.size());
   std::vector<Nearest> of_query(query.size());
   for (std::size_t q = 0; q < query.size(); ++q) {
@@ -150,7 +146,7 @@ std::vector<FeatureMatch> match_features(std::span<const PlaceFeature> query,
   std::vector<FeatureMatch> matches;
   for (std::size_t q = 0; q < query.size(); ++q) {
     const Nearest& nearest = of_query[q];
-    if (!known.empty() && nearest.distinct() && of_known[nearest.index].index == q)
+    if (!known.empty() && nearest.distinct(config) && of_known[nearest.index].index == q)
       matches.push_back({q, nearest.index});
   }
   return matches;

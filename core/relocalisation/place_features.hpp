@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
+#include "core/config/config.hpp"
 
 namespace fusebench::relocalisation {
 
@@ -25,12 +26,14 @@ struct PlaceFeature {
   OrbDescriptor descriptor{};
 };
 
-/// Up to max_count features, spread over the image: the strongest of each cell of a grid, in the order of
-/// rows, columns and scales.
-[[nodiscard]] std::vector<PlaceFeature> find_place_features(const GreyImage& grey, int max_count);
+/// Up to config.max_count features, spread over the image: the strongest of each cell of a grid, in the order
+/// of rows, columns and scales.
+[[nodiscard]] std::vector<PlaceFeature> find_place_features(const GreyImage& grey,
+                                                            const config::PlaceFeaturesConfig& config);
 
 /// Corners of level 0 alone that could be features: some twentieth of the work of finding those.
-[[nodiscard]] std::vector<Vector2d> find_corners(const GreyImage& grey);
+[[nodiscard]] std::vector<Vector2d> find_corners(const GreyImage& grey,
+                                                 const config::PlaceFeaturesConfig& config);
 
 /// Different bits of two descriptors, 0 to 256.
 [[nodiscard]] int hamming_distance(const OrbDescriptor& a, const OrbDescriptor& b);
@@ -44,6 +47,7 @@ struct FeatureMatch {
 /// Features that are each other's nearest by descriptor, near enough, and clearly nearer than the second
 /// nearest (Lowe's ratio test), in the order of the query's features.
 [[nodiscard]] std::vector<FeatureMatch> match_features(std::span<const PlaceFeature> query,
-                                                       std::span<const PlaceFeature> known);
+                                                       std::span<const PlaceFeature> known,
+                                                       const config::PlaceFeaturesConfig& config);
 
 }  // namespace fusebench::relocalisation

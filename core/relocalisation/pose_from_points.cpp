@@ -12,14 +12,8 @@ namespace fusebench::relocalisation {
 
 namespace {
 
-// Three standard deviations of a corner that is found to a pixel of its level.
-constexpr double kGate = 3.0;
-// Finds three right points of a quarter of right ones with 99.9 %: log(0.001) / log(1 - 0.25^3).
-constexpr int kMaxDraws = 440;
-constexpr double kMissed = 0.001;
+// Twice the three points that determine a pose: as many measurements are left over to tell how well they fit.
 constexpr std::size_t kMinPoints = 6;
-constexpr int kRounds = 3;
-constexpr int kStepsPerRound = 5;
 
 /// SplitMix64 (Steele et al., OOPSLA 2014).
 struct Draws {
@@ -40,7 +34,7 @@ struct Draws {
 
 /// Squared distance of a point to where it is seen, in scales; infinite behind the camera.
 double squared_error(const SeenPoint& seen, const SE3& T_camera_a, const PinholeCamera& camera) {
-  constexpr double kMinDepth_m = 0.01;
+  constexpr double kMinDepth_m = 0.01;  // nearer, the projection runs out of all images
   const Vector3d point_camera = T_camera_a * seen.point_a;
   if (!(point_camera.z() > kMinDepth_m)) return std::numeric_limits<double>::infinity();
   return (camera.project(point_camera) - seen.pixel_px).squaredNorm() / (seen.scale * seen.scale);
@@ -77,48 +71,50 @@ struct Score {
   std::size_t inliers = 0;
 };
 
-Score score_of(std::span<const SeenPoint> seen, const SE3& T_camera_a, const PinholeCamera& camera) {
+Score score_of(std::span<const SeenPoint> seen, const SE3& T_camera_a, const PinholeCamera& camera,
+               double gate_px) {
   Score score{0, 0};
   for (const SeenPoint& s : seen) {
     const double error = squared_error(s, T_camera_a, camera);
-    const bool inlier = error < kGate * kGate;
+    const bool inlier = error < gate_px * gate_px;
     score.inliers += inlier ? 1 : 0;
-    score.cost += inlier ? error : kGate * kGate;
+    score.cost += inlier ? error : gate_px * gate_px;
   }
   return score;
 }
 
 /// Draws that find three inliers of such a share with the wanted certainty.
-int draws_needed(std::size_t inliers, std::size_t count) {
+int draws_needed(std::size_t inliers, std::size_t count, const config::PlacePoseConfig& config) {
   const double share = static_cast<double>(inliers) / static_cast<double>(count);
   const double all_right = share * share * share;
-  if (all_right > 1.0 - kMissed) return 1;
-  if (all_right < 1e-9) return kMaxDraws;
-  return std::min(kMaxDraws, static_cast<int>(std::ceil(std::log(kMissed) / std::log1p(-all_right))));
+  if (all_right > 1.0 - config.failure_probability) return 1;
+  const double draws = std::ceil(std::log(config.failure_probability) / std::log1p(-all_right));
+  return static_cast<int>(std::min(static_cast<double>(config.max_draws), draws));
 }
 
-SE3 best_of_draws(std::span<const SeenPoint> seen, const PinholeCamera& camera) {
+SE3 best_of_draws(std::span<const SeenPoint> seen, const PinholeCamera& camera,
+                  const config::PlacePoseConfig& config) {
   Draws draws;
   SE3 best;
   Score best_score;
-  int needed = kMaxDraws;
+  int needed = config.max_draws;
   for (int draw = 0; draw < needed; ++draw) {
     for (const SE3& pose : poses_of_three(seen, draws.three_below(seen.size()), camera)) {
-      const Score score = score_of(seen, pose, camera);
+      const Score score = score_of(seen, pose, camera, config.inlier_gate_px);
       if (score.cost >= best_score.cost) continue;
       best = pose;
       best_score = score;
-      needed = draws_needed(score.inliers, seen.size());
+      needed = draws_needed(score.inliers, seen.size(), config);
     }
   }
   return best;
 }
 
 std::vector<std::size_t> inliers_of(std::span<const SeenPoint> seen, const SE3& T_camera_a,
-                                    const PinholeCamera& camera) {
+                                    const PinholeCamera& camera, double gate_px) {
   std::vector<std::size_t> inliers;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (squared_error(seen[i], T_camera_a, camera) < kGate * kGate) inliers.push_back(i);
+    if (squared_error(seen[i], T_camera_a, camera) < gate_px * gate_px) inliers.push_back(i);
   }
   return inliers;
 }
@@ -129,9 +125,9 @@ struct NormalEquations {
   Vector6d gradient = Vector6d::Zero();
 };
 
-/// Weights are Huber's with a bound of one scale.
+/// Weights are Huber's, with a bound in scales.
 NormalEquations normal_equations(std::span<const SeenPoint> seen, std::span<const std::size_t> inliers,
-                                 const SE3& T_a_camera, const PinholeCamera& camera) {
+                                 const SE3& T_a_camera, const PinholeCamera& camera, double huber_px) {
   const SE3 T_camera_a = T_a_camera.inverse();
   NormalEquations sum;
   for (const std::size_t i : inliers) {
@@ -143,7 +139,7 @@ NormalEquations normal_equations(std::span<const SeenPoint> seen, std::span<cons
     point_by_pose << hat(point_camera), -Matrix3d::Identity();
     const Eigen::Matrix<double, 2, 6> jacobian =
         camera.projection_jacobian(point_camera) * point_by_pose / s.scale;
-    const double weight = 1.0 / std::max(1.0, residual.norm());
+    const double weight = huber_px / std::max(huber_px, residual.norm());
     sum.information += weight * jacobian.transpose() * jacobian;
     sum.gradient += weight * jacobian.transpose() * residual;
   }
@@ -151,22 +147,24 @@ NormalEquations normal_equations(std::span<const SeenPoint> seen, std::span<cons
 }
 
 SE3 stepped(std::span<const SeenPoint> seen, std::span<const std::size_t> inliers, const SE3& T_a_camera,
-            const PinholeCamera& camera) {
-  const NormalEquations sum = normal_equations(seen, inliers, T_a_camera, camera);
+            const PinholeCamera& camera, double huber_px) {
+  const NormalEquations sum = normal_equations(seen, inliers, T_a_camera, camera, huber_px);
   const Vector6d step = sum.information.ldlt().solve(-sum.gradient);
   if (!step.allFinite()) return T_a_camera;
   return T_a_camera * SE3{so3_exp(step.head<3>()), step.tail<3>()};
 }
 
 /// What is known of the pose, given how far the inliers are off.
-void describe(std::span<const SeenPoint> seen, const PinholeCamera& camera, PoseFromPoints& result) {
+void describe(std::span<const SeenPoint> seen, const PinholeCamera& camera, double huber_px,
+              PoseFromPoints& result) {
   const SE3 T_camera_a = result.T_a_camera.inverse();
   double sum = 0;
   for (const std::size_t i : result.inliers) sum += squared_error(seen[i], T_camera_a, camera);
   const auto count = static_cast<double>(result.inliers.size());
   result.rms_px = std::sqrt(sum / count);
   const double variance = sum / (2 * count - 6);
-  const NormalEquations equations = normal_equations(seen, result.inliers, result.T_a_camera, camera);
+  const NormalEquations equations =
+      normal_equations(seen, result.inliers, result.T_a_camera, camera, huber_px);
   Matrix6d to_frame_a = Matrix6d::Identity();
   to_frame_a.bottomRightCorner<3, 3>() = result.T_a_camera.rotation_matrix();
   const Matrix6d in_camera = variance * equations.information.ldlt().solve(Matrix6d::Identity());
@@ -175,20 +173,21 @@ void describe(std::span<const SeenPoint> seen, const PinholeCamera& camera, Pose
 
 }  // namespace
 
-std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen, const PinholeCamera& camera) {
+std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen, const PinholeCamera& camera,
+                                               const config::PlacePoseConfig& config) {
   if (seen.size() < kMinPoints) return std::nullopt;
   PoseFromPoints result;
-  result.T_a_camera = best_of_draws(seen, camera).inverse();
+  result.T_a_camera = best_of_draws(seen, camera, config).inverse();
   // The right points of three noisy ones are not all: each round finds more.
-  for (int round = 0; round < kRounds; ++round) {
-    result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera);
+  for (int round = 0; round < config.refinement_rounds; ++round) {
+    result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, config.inlier_gate_px);
     if (result.inliers.size() < kMinPoints) return std::nullopt;
-    for (int step = 0; step < kStepsPerRound; ++step)
-      result.T_a_camera = stepped(seen, result.inliers, result.T_a_camera, camera);
+    for (int step = 0; step < config.steps_per_round; ++step)
+      result.T_a_camera = stepped(seen, result.inliers, result.T_a_camera, camera, config.huber_px);
   }
-  result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera);
+  result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, config.inlier_gate_px);
   if (result.inliers.size() < kMinPoints) return std::nullopt;
-  describe(seen, camera, result);
+  describe(seen, camera, config.huber_px, result);
   if (!result.covariance.allFinite()) return std::nullopt;
   return result;
 }

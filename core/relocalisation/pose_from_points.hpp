@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
+#include "core/config/config.hpp"
 
 namespace fusebench::relocalisation {
 
@@ -32,6 +33,7 @@ struct PoseFromPoints {
 /// The pose that most points agree with. Depends on the points and their order alone: the random draws are
 /// the same in each call.
 [[nodiscard]] std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen,
-                                                             const PinholeCamera& camera);
+                                                             const PinholeCamera& camera,
+                                                             const config::PlacePoseConfig& config);
 
 }  // namespace fusebench::relocalisation

@@ -9,16 +9,17 @@ namespace fusebench::relocalisation {
 namespace {
 
 /// The pose of the camera as the filter wants it: of the IMU.
-RelocalisedPose relocalised_pose(const FoundPlace& found, const Keyframe& keyframe, const SE3& T_imu_camera) {
+RelocalisedPose relocalised_pose(const FoundPlace& found, const Keyframe& keyframe, const SE3& T_imu_camera,
+                                 const config::RelocalisationConfig& config) {
   const SE3 T_camera_imu = T_imu_camera.inverse();
   RelocalisedPose pose{found.T_world_camera * T_camera_imu, keyframe.T_world_camera * T_camera_imu};
   const Matrix6d to_imu = filter::pose_transport(pose.T_world_imu, found.T_world_camera);
   pose.covariance = to_imu * found.covariance * to_imu.transpose();
   // Drift of the model since the keyframe was fused into it.
-  constexpr double kRotation_rad = 0.005;
-  constexpr double kPosition_m = 0.005;
-  pose.reference_covariance.diagonal() << Vector3d::Constant(kRotation_rad * kRotation_rad),
-      Vector3d::Constant(kPosition_m * kPosition_m);
+  const double rotation_rad = config.keyframe_rotation_sigma_rad;
+  const double position_m = config.keyframe_position_sigma_m;
+  pose.reference_covariance.diagonal() << Vector3d::Constant(rotation_rad * rotation_rad),
+      Vector3d::Constant(position_m * position_m);
   return pose;
 }
 
@@ -44,11 +45,11 @@ std::optional<RelocalisedReference> Relocalisation::find(const GreyImage& grey,
   const std::optional<FoundPlace> found = keyframes_.find(grey);
   if (!found) return std::nullopt;
   const Keyframe& keyframe = keyframes_[found->keyframe];
-  const RelocalisedPose pose = relocalised_pose(*found, keyframe, rig_.T_imu_camera);
+  const RelocalisedPose pose = relocalised_pose(*found, keyframe, rig_.T_imu_camera, config_.relocalisation);
   // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
   // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
-  constexpr double kMostInnovation = 25;  // five standard deviations, root mean square of six axes
-  if (!(normalised_innovation(prediction, pose) <= kMostInnovation)) return std::nullopt;
+  if (!(normalised_innovation(prediction, pose) <= config_.relocalisation.max_innovation))
+    return std::nullopt;
 
   RelocalisedReference result;
   result.prior = relocalisation_update(prediction, pose, unknown_motion(config_));

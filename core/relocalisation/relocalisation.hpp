@@ -29,7 +29,7 @@ class Relocalisation {
  public:
   /// The references must outlive it.
   Relocalisation(const config::Config& config, const SensorRig& rig)
-      : config_(config), rig_(rig), keyframes_(rig.camera) {}
+      : config_(config), rig_(rig), keyframes_(rig.camera, config) {}
 
   /// Offers a fused frame (motion compensated, depth gated) as one to be found again by.
   void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,

@@ -20,14 +20,22 @@ namespace {
 using testing::BenchScene;
 using testing::bytes_of;
 
+constexpr config::Config kDefaults{};
+
 /// Every view is kept, however near it is to another.
-constexpr KeyframeSpacing kDense{.distance_m = 1e-6, .angle_rad = 1e-6, .max_count = 60};
+constexpr config::Config dense() {
+  config::Config config;
+  config.relocalisation.keyframe_distance_m = 1e-6;
+  config.relocalisation.keyframe_angle_deg = 1e-4;
+  return config;
+}
+constexpr config::Config kDense = dense();
 
 void keyframe_offer(benchmark::State& state) {
   const BenchScene& scene = testing::scene_of(state);
   const testing::FusedView& view = scene.views.back();
   const auto keep = [&] {
-    Keyframes keyframes(scene.camera);
+    Keyframes keyframes(scene.camera, kDefaults);
     const bool kept = keyframes.offer(view.grey, view.depth_m, view.T_world_camera, 0);
     return kept ? std::optional(std::move(keyframes)) : std::nullopt;
   };
@@ -46,7 +54,7 @@ void keyframe_landmarks(benchmark::State& state) {
   const BenchScene& scene = testing::scene_of(state);
   const testing::FusedView& view = scene.views.back();
   // They have the depth that the frame has there.
-  const Landmarks landmarks = landmarks_of(view.grey, view.depth_m, scene.camera);
+  const Landmarks landmarks = landmarks_of(view.grey, view.depth_m, scene.camera, kDefaults);
   for (std::size_t i = 0; i < landmarks.features.size(); ++i) {
     const Vector2d& pixel_px = landmarks.features[i].pixel_px;
     const double depth_m = static_cast<double>(view.depth_m(static_cast<int>(std::lround(pixel_px.x())),
@@ -56,7 +64,8 @@ void keyframe_landmarks(benchmark::State& state) {
       return state.SkipWithError("features are not where the frame has them");
   }
   if (landmarks.features.size() < 100) return state.SkipWithError("the frame has few landmarks");
-  for (auto _ : state) benchmark::DoNotOptimize(landmarks_of(view.grey, view.depth_m, scene.camera));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(landmarks_of(view.grey, view.depth_m, scene.camera, kDefaults));
   const std::size_t pixels = view.grey.data.size();
   testing::report_rates(state, {"pixels", pixels, bytes_of<std::uint8_t>(pixels)});
   state.counters["features"] = static_cast<double>(landmarks.features.size());

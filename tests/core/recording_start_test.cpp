@@ -54,11 +54,13 @@ RgbdFrame frame_at(std::int64_t timestamp_ns, bool dark = false) {
   return frame;
 }
 
+constexpr config::InitialisationConfig kDefaults{};
+
 using Calls = std::vector<std::string>;
 
 TEST(RecordingStart, TheFirstTwoFramesAreProcessedAgainWithTheVelocityOfTheSecond) {
   ScriptedEstimator estimator;
-  RecordingStart start;
+  RecordingStart start(kDefaults);
   EXPECT_EQ(start.process(frame_at(1), estimator)->status, FrameStatus::initialised);
   const auto second = start.process(frame_at(2), estimator);
   EXPECT_EQ(second->status, FrameStatus::tracked);
@@ -70,7 +72,7 @@ TEST(RecordingStart, TheFirstTwoFramesAreProcessedAgainWithTheVelocityOfTheSecon
 
 TEST(RecordingStart, ALostSecondFrameTellsNoVelocity) {
   ScriptedEstimator estimator;
-  RecordingStart start;
+  RecordingStart start(kDefaults);
   ASSERT_TRUE(start.process(frame_at(1), estimator));
   EXPECT_EQ(start.process(frame_at(2, true), estimator)->status, FrameStatus::lost);
   EXPECT_EQ(start.process(frame_at(3), estimator)->status, FrameStatus::tracked);
@@ -79,7 +81,7 @@ TEST(RecordingStart, ALostSecondFrameTellsNoVelocity) {
 
 TEST(RecordingStart, WaitsForAFrameThatCanBeTheFirst) {
   ScriptedEstimator estimator;
-  RecordingStart start;
+  RecordingStart start(kDefaults);
   for (const std::int64_t dark : {1, 2}) {
     const auto report = start.process(frame_at(dark, true), estimator);
     EXPECT_EQ(report->status, FrameStatus::lost);
@@ -93,7 +95,7 @@ TEST(RecordingStart, WaitsForAFrameThatCanBeTheFirst) {
 TEST(RecordingStart, StartsAgainWhereNothingIsTrackedFromTheFirstFrame) {
   ScriptedEstimator estimator;
   estimator.tracks = false;
-  RecordingStart start;
+  RecordingStart start(kDefaults);
   for (const std::int64_t t : {1, 2, 3, 4, 5}) ASSERT_TRUE(start.process(frame_at(t), estimator));
   estimator.calls.clear();
   const auto again = start.process(frame_at(6), estimator);
@@ -104,9 +106,22 @@ TEST(RecordingStart, StartsAgainWhereNothingIsTrackedFromTheFirstFrame) {
   EXPECT_EQ(estimator.calls, (Calls{"6", "restart", "6", "7", "restart at 7", "6", "7"}));
 }
 
+TEST(RecordingStart, HowManyLostFramesMakeAFalseStartIsAnOption) {
+  for (const int frames : {1, 3, 8}) {
+    ScriptedEstimator estimator;
+    estimator.tracks = false;
+    const config::InitialisationConfig config{.false_start_frames = frames};
+    RecordingStart start(config);
+    ASSERT_TRUE(start.process(frame_at(1), estimator));
+    for (int lost = 1; lost < frames; ++lost)
+      EXPECT_EQ(start.process(frame_at(1 + lost), estimator)->status, FrameStatus::lost) << lost;
+    EXPECT_EQ(start.process(frame_at(1 + frames), estimator)->status, FrameStatus::initialised) << frames;
+  }
+}
+
 TEST(RecordingStart, KeepsTheFirstFrameWhileNothingCanBeSeenAndOnceAFrameWasTracked) {
   ScriptedEstimator estimator;
-  RecordingStart start;
+  RecordingStart start(kDefaults);
   ASSERT_TRUE(start.process(frame_at(1), estimator));
   for (std::int64_t t = 2; t < 20; ++t)
     EXPECT_EQ(start.process(frame_at(t, true), estimator)->status, FrameStatus::lost) << t;

@@ -79,6 +79,29 @@ TEST(Options, EveryOptionCanBeChangedAndReadBackAlone) {
   }
 }
 
+TEST(Options, EveryNumberIsReadAtTheEndsOfItsRangeAndRefusedBeyond) {
+  for (const OptionRow& row : describe_options(Config{})) {
+    if (row.type != "number" && row.type != "integer") continue;
+    const std::string low = row.range.substr(0, row.range.find(' '));
+    const std::string high = row.range.substr(row.range.rfind(' ') + 1);
+    Config config;
+    for (const std::string& end : {low, high})
+      EXPECT_TRUE(set_option(config, row.key, parse_option_value(end)).has_value())
+          << row.key << " = " << end;
+    const std::string before = config_hash(config);
+    const auto beyond = [&](const std::string& end, int step) -> OptionValue {
+      if (row.type == "integer") return static_cast<std::int64_t>(std::stoll(end) + step);
+      return std::nextafter(std::stod(end), step * std::numeric_limits<double>::infinity());
+    };
+    for (const OptionValue& value : {beyond(low, -1), beyond(high, 1)}) {
+      const auto refused = set_option(config, row.key, value);
+      ASSERT_FALSE(refused.has_value()) << row.key << " = " << to_toml(value);
+      EXPECT_NE(refused.error().message.find(row.range), std::string::npos) << refused.error().message;
+    }
+    EXPECT_EQ(config_hash(config), before) << row.key << " changed though it was refused";
+  }
+}
+
 TEST(Options, UnknownKeyNamesTheNearest) {
   Config config;
   const auto result = set_option(config, "iekf.max_iteration", std::int64_t{3});
@@ -158,6 +181,25 @@ TEST(Options, RelationsAreChecked) {
   config = Config{};
   config.tsdf.truncation_m = 1.5 * config.tsdf.voxel_m;
   EXPECT_FALSE(check_relations(config).has_value());
+}
+
+TEST(Options, RelationsOfThePlacesAreCheckedAndNamed) {
+  const auto violated = [](const std::string& key, const OptionValue& value) {
+    Config config;
+    EXPECT_TRUE(set_option(config, key, value).has_value()) << key;
+    const auto checked = check_relations(config);
+    return checked ? std::string() : checked.error().message;
+  };
+  EXPECT_TRUE(violated("relocalisation.min_landmarks", std::int64_t{24})
+                  .starts_with("relocalisation.min_landmarks = 24 "));
+  EXPECT_TRUE(violated("relocalisation.plenty_of_corners", std::int64_t{59})
+                  .starts_with("relocalisation.plenty_of_corners = 59 "));
+  EXPECT_TRUE(violated("relocalisation.min_spread_cells", std::int64_t{17})
+                  .starts_with("relocalisation.min_spread_cells = 17 "));
+  EXPECT_TRUE(
+      violated("place_features.max_count", std::int64_t{59}).starts_with("place_features.max_count = 59 "));
+  EXPECT_TRUE(violated("place_features.level_factor", 2.0).starts_with("place_features.level_factor = 2 "));
+  EXPECT_EQ(violated("place_features.levels", std::int64_t{12}), "");
 }
 
 TEST_F(ConfigFile, SetsValuesWithTheirLines) {

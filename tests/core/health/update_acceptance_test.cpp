@@ -39,6 +39,26 @@ TEST(UpdateAcceptance, BadlyFittingPatchesAreNotBelievedAfterAGap) {
   EXPECT_EQ(rejection_reason(wrong, true, config), "");
 }
 
+TEST(UpdateAcceptance, HowBadlyPatchesMayFitIsAnOption) {
+  Config config;
+  config.health.max_chi2_after_gap = 2.9;
+  EXPECT_NE(rejection_reason(report_with(30, 3), true, config), "");
+  config.health.max_chi2_after_gap = 3.1;
+  EXPECT_EQ(rejection_reason(report_with(30, 3), true, config), "");
+}
+
+TEST(UpdateAcceptance, HowLongAnOcclusionIsKeptOutIsAnOption) {
+  FrameReport report;
+  report.status = FrameStatus::tracked;
+  report.health = FrameHealth::occluded;
+  for (const int frames : {0, 3}) {
+    const HealthConfig config{.max_occluded_frames = frames};
+    OcclusionGate gate;
+    for (int frame = 1; frame <= frames; ++frame) EXPECT_FALSE(gate.admits(report, config)) << frame;
+    EXPECT_TRUE(gate.admits(report, config)) << frames;
+  }
+}
+
 TEST(UpdateAcceptance, OnlyAcceptedPatchesOfSmallErrorSurvive) {
   PatchConfig config;
   std::vector<Patch> patches(3);
@@ -56,20 +76,21 @@ TEST(UpdateAcceptance, OnlyAcceptedPatchesOfSmallErrorSurvive) {
 }
 
 TEST(UpdateAcceptance, WhatStaysBeforeTheSceneForASecondIsFused) {
+  const HealthConfig config;
   OcclusionGate gate;
   FrameReport report;
   report.status = FrameStatus::tracked;
-  EXPECT_TRUE(gate.admits(report));
+  EXPECT_TRUE(gate.admits(report, config));
   report.health = FrameHealth::occluded;
-  for (int frame = 1; frame <= 30; ++frame) EXPECT_FALSE(gate.admits(report)) << frame;
-  EXPECT_TRUE(gate.admits(report));
+  for (int frame = 1; frame <= 30; ++frame) EXPECT_FALSE(gate.admits(report, config)) << frame;
+  EXPECT_TRUE(gate.admits(report, config));
   report.health = FrameHealth::good;
-  EXPECT_TRUE(gate.admits(report));
+  EXPECT_TRUE(gate.admits(report, config));
   report.health = FrameHealth::occluded;
-  EXPECT_FALSE(gate.admits(report)) << "counted from the beginning again";
+  EXPECT_FALSE(gate.admits(report, config)) << "counted from the beginning again";
   report.health = FrameHealth::good;
   report.status = FrameStatus::lost;
-  EXPECT_FALSE(gate.admits(report));
+  EXPECT_FALSE(gate.admits(report, config));
 }
 
 }  // namespace

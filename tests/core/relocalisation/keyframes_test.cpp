@@ -17,8 +17,11 @@ using namespace relocalisation;
 
 namespace {
 
+using config::Config;
 using testing::small_camera;
 using testing::TexturedRoom;
+
+constexpr Config kDefaults{};
 
 RgbdFrame seen_from(const SE3& T_world_camera) {
   return TexturedRoom{}.render(small_camera(), T_world_camera, 0);
@@ -31,7 +34,7 @@ void offer(Keyframes& keyframes, const SE3& T_world_camera, std::int64_t timesta
 
 /// A keyframe in the middle of the room.
 Keyframes one_keyframe(const SE3& T_world_camera = {}) {
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   offer(keyframes, T_world_camera);
   return keyframes;
 }
@@ -48,7 +51,7 @@ TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
   const SE3 T_world_room{so3_exp({0.4, -1.1, 0.7}), {3, -2, 5}};
   const SE3 T_room_key{so3_exp({0.05, -0.1, 0.02}), {0.05, 0, -0.1}};
   const RgbdFrame key = seen_from(T_room_key);
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, T_world_room * T_room_key, 0));
   const double turn_rad = radians(15);
   const SE3 asides[] = {
@@ -74,8 +77,8 @@ TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
   // Turned worlds, so that the axes of the covariance matter.
   const SE3 T_world_room{so3_exp({0, 0, radians(90)}), {1, 2, 3}};
   const RgbdFrame key = seen_from({});
-  Keyframes plain(small_camera());
-  Keyframes turned(small_camera());
+  Keyframes plain(small_camera(), kDefaults);
+  Keyframes turned(small_camera(), kDefaults);
   plain.offer(key.grey, key.depth_m, SE3{}, 0);
   turned.offer(key.grey, key.depth_m, T_world_room, 0);
   const GreyImage query = seen_from({so3_exp({0, 0.1, 0}), {-0.1, 0, 0}}).grey;
@@ -93,7 +96,7 @@ TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
 }
 
 TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   const SE3 front;
   const SE3 left{so3_exp({0, radians(-80), 0}), Vector3d::Zero()};
   const SE3 right{so3_exp({0, radians(80), 0}), Vector3d::Zero()};
@@ -132,22 +135,22 @@ TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
   for (int y = 60; y < 180; ++y) {
     for (int x = 160; x < 300; ++x) corner(x, y) = whole(x, y);
   }
-  const std::size_t seen = find_place_features(corner, 800).size();
+  const std::size_t seen = find_place_features(corner, kDefaults.place_features).size();
   ASSERT_GE(seen, 100U) << "it must not be for want of features";
   EXPECT_FALSE(keyframes.find(corner));
 }
 
 TEST(Keyframes, AnEmptyStoreFindsNothing) {
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_EQ(keyframes.size(), 0U);
   EXPECT_FALSE(keyframes.find(seen_from({}).grey));
 }
 
 TEST(Keyframes, AStillCameraAddsOneAndAMovingOneMore) {
-  Keyframes still(small_camera());
-  Keyframes moving(small_camera());
-  Keyframes turning(small_camera());
-  Keyframes rolling(small_camera());
+  Keyframes still(small_camera(), kDefaults);
+  Keyframes moving(small_camera(), kDefaults);
+  Keyframes turning(small_camera(), kDefaults);
+  Keyframes rolling(small_camera(), kDefaults);
   for (int k = 0; k < 13; ++k) {
     offer(still, {so3_exp({0, 0.01 * (k % 3), 0}), {0.01 * (k % 2), 0, 0}}, k);
     offer(moving, {Quaterniond::Identity(), {-0.48 + 0.08 * k, 0, 0}}, k);
@@ -160,8 +163,56 @@ TEST(Keyframes, AStillCameraAddsOneAndAMovingOneMore) {
   EXPECT_EQ(rolling.size(), 1U);
 }
 
+/// How many of seven frames along a line of 0.96 m are kept.
+std::size_t kept_along_a_line(const Config& config) {
+  Keyframes keyframes(small_camera(), config);
+  for (int k = 0; k < 7; ++k) offer(keyframes, {Quaterniond::Identity(), {-0.48 + 0.16 * k, 0, 0}}, k);
+  return keyframes.size();
+}
+
+TEST(Keyframes, TheSpacingDecidesHowManyAreKept) {
+  Config config;
+  EXPECT_EQ(kept_along_a_line(config), 4U) << "every second one, 0.32 m apart";
+  config.relocalisation.keyframe_distance_m = 0.1;
+  EXPECT_EQ(kept_along_a_line(config), 7U);
+  config.relocalisation.keyframe_distance_m = 0.45;
+  EXPECT_EQ(kept_along_a_line(config), 3U) << "every third one, 0.48 m apart";
+  config.relocalisation.keyframe_distance_m = 10;
+  EXPECT_EQ(kept_along_a_line(config), 1U);
+}
+
+TEST(Keyframes, TheAngleBetweenThemDecidesAsWell) {
+  const auto kept = [](double angle_deg) {
+    Config config;
+    config.relocalisation.keyframe_angle_deg = angle_deg;
+    Keyframes keyframes(small_camera(), config);
+    for (int k = 0; k < 5; ++k) offer(keyframes, {so3_exp({0, radians(12.0 * k), 0}), Vector3d::Zero()}, k);
+    return keyframes.size();
+  };
+  EXPECT_EQ(kept(10), 5U);
+  EXPECT_EQ(kept(20), 3U) << "0, 24 and 48 degrees";
+  EXPECT_EQ(kept(90), 1U);
+}
+
+TEST(Keyframes, NothingIsFoundByFewerInliersThanAreAskedFor) {
+  Config config;
+  const RgbdFrame frame = seen_from({});
+  const auto found_with = [&](int min_inliers) {
+    config.relocalisation.min_inliers = min_inliers;
+    Keyframes keyframes(small_camera(), config);
+    EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
+    return keyframes.find(seen_from({so3_exp({0, 0.1, 0}), {-0.1, 0, 0}}).grey);
+  };
+  const auto found = found_with(Config{}.relocalisation.min_inliers);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found_with(found->inliers));
+  EXPECT_FALSE(found_with(found->inliers + 1));
+}
+
 TEST(Keyframes, OfTheCrowdedOneMakesRoomWhenTheStoreIsFull) {
-  Keyframes keyframes(small_camera(), {0.3, radians(20), 3});
+  Config config;
+  config.relocalisation.max_keyframes = 3;
+  Keyframes keyframes(small_camera(), config);
   const auto turned = [](double degrees) { return SE3{so3_exp({0, radians(degrees), 0}), Vector3d::Zero()}; };
   offer(keyframes, turned(0), 0);
   offer(keyframes, turned(60), 1);
@@ -176,7 +227,7 @@ TEST(Keyframes, OfTheCrowdedOneMakesRoomWhenTheStoreIsFull) {
 
 TEST(Keyframes, ASharpFrameTakesThePlaceOfABlurredOne) {
   const RgbdFrame frame = seen_from({});
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 1, 8.0));
   EXPECT_FALSE(keyframes.offer(frame.grey, frame.depth_m, {}, 2, 5.0)) << "not much sharper";
   EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 3, 1.5));
@@ -187,7 +238,7 @@ TEST(Keyframes, ASharpFrameTakesThePlaceOfABlurredOne) {
 
 TEST(Keyframes, WithoutFeaturesOrDepthAFrameIsNotKept) {
   const RgbdFrame frame = seen_from({});
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_FALSE(keyframes.offer(GreyImage(320, 240, 90), frame.depth_m, {}, 0));
   const SE3 aside{Quaterniond::Identity(), {1, 0, 0}};
   EXPECT_FALSE(keyframes.offer(frame.grey, DepthImage(320, 240), aside, 1));
@@ -201,7 +252,7 @@ TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
     for (int x = 160; x < 320; ++x) frame.depth_m(x, y) = 0;
     for (int x = 100; x < 160; ++x) frame.depth_m(x, y) = 9;  // behind all else
   }
-  const Landmarks landmarks = landmarks_of(frame.grey, frame.depth_m, small_camera());
+  const Landmarks landmarks = landmarks_of(frame.grey, frame.depth_m, small_camera(), kDefaults);
   ASSERT_GT(landmarks.features.size(), 100U);
   ASSERT_EQ(landmarks.features.size(), landmarks.points_camera.size());
   for (std::size_t i = 0; i < landmarks.features.size(); ++i) {
@@ -215,13 +266,13 @@ TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
 TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
   RgbdFrame frame = seen_from({});
   frame.grey = noise_image();
-  ASSERT_GT(find_corners(frame.grey).size(), 500U);
-  Keyframes keyframes(small_camera());
+  ASSERT_GT(find_corners(frame.grey, kDefaults.place_features).size(), 500U);
+  Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
   EXPECT_FALSE(keyframes[0].landmarks);
   ASSERT_TRUE(keyframes.find(frame.grey));
   ASSERT_TRUE(keyframes[0].landmarks);
-  const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera());
+  const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera(), kDefaults);
   const Landmarks& later = *keyframes[0].landmarks;
   ASSERT_EQ(later.features.size(), at_once.features.size());
   for (std::size_t i = 0; i < later.features.size(); ++i) {
@@ -237,8 +288,8 @@ TEST(Keyframes, WhereCornersAreFewTheLandmarksDecide) {
   GreyImage blurred(320, 240);
   cv::Mat smooth(240, 320, CV_8UC1, blurred.data.data());
   cv::GaussianBlur(sharp, smooth, {}, 2.5);
-  ASSERT_LT(find_corners(blurred).size(), 120U);
-  Keyframes keyframes(small_camera());
+  ASSERT_LT(find_corners(blurred, kDefaults.place_features).size(), 120U);
+  Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_TRUE(keyframes.offer(blurred, frame.depth_m, {}, 0));
   EXPECT_TRUE(keyframes[0].landmarks);
 }
@@ -275,7 +326,7 @@ TEST(Keyframes, TheNumberOfThreadsDoesNotShow) {
 }
 
 TEST(Keyframes, ImagesOfAnotherSizeAreAMistakeOfTheProgram) {
-  Keyframes keyframes(small_camera());
+  Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_THROW(keyframes.offer(GreyImage(64, 48), DepthImage(64, 48), {}, 0), InternalError);
   EXPECT_THROW(static_cast<void>(keyframes.find(GreyImage(64, 48))), InternalError);
 }

@@ -23,7 +23,7 @@ struct View {
   double distance_m = 2.0;  ///< the world is scaled with it
 };
 
-bool is_certain(const View& view) {
+bool is_certain(const View& view, const config::RelocalisationConfig& config = {}) {
   std::mt19937 random(7);
   const auto uniform = [&](double high) { return std::uniform_real_distribution(0.0, high)(random); };
   std::normal_distribution<double> normal(0, view.noise_px);
@@ -35,8 +35,8 @@ bool is_certain(const View& view) {
     const Vector2d off = i < view.right ? error : Vector2d(0.5 * kCamera.width_px, 20.0 + uniform(100));
     seen.push_back({point, p + off, view.scale});
   }
-  const auto pose = pose_from_points(seen, kCamera);
-  return pose && is_certain_place(seen, *pose, kCamera);
+  const auto pose = pose_from_points(seen, kCamera, config::PlacePoseConfig{});
+  return pose && is_certain_place(seen, *pose, kCamera, config);
 }
 
 TEST(PlaceCertainty, AWholeViewIsCertainAtAnyDistance) {
@@ -47,6 +47,18 @@ TEST(PlaceCertainty, AWholeViewIsCertainAtAnyDistance) {
 }
 
 TEST(PlaceCertainty, FewPointsAreNot) { EXPECT_FALSE(is_certain({.right = 20, .wrong = 0})); }
+
+TEST(PlaceCertainty, HowManyPointsHowFarApartAndWhatShareIsAskedFor) {
+  using config::RelocalisationConfig;
+  EXPECT_TRUE(is_certain({.right = 20, .wrong = 0}, RelocalisationConfig{.min_inliers = 20}));
+  EXPECT_FALSE(is_certain({}, RelocalisationConfig{.min_inliers = 60}));
+  EXPECT_TRUE(is_certain({.right = 40, .wrong = 120}, RelocalisationConfig{.min_inlier_share = 0.2}));
+  EXPECT_FALSE(is_certain({}, RelocalisationConfig{.min_inlier_share = 0.9}));
+  const View corner{.width_px = 300, .height_px = 230, .right = 200, .noise_px = 0.05};
+  EXPECT_TRUE(is_certain(corner, RelocalisationConfig{.min_spread_cells = 4}));
+  EXPECT_TRUE(is_certain(corner, RelocalisationConfig{.spread_cells_per_side = 8}));
+  EXPECT_FALSE(is_certain({}, RelocalisationConfig{.max_relative_position_sigma = 1e-6}));
+}
 
 TEST(PlaceCertainty, ASmallShareIsNot) { EXPECT_FALSE(is_certain({.right = 40, .wrong = 120})); }
 

@@ -15,6 +15,10 @@ using namespace relocalisation;
 
 namespace {
 
+using config::PlaceFeaturesConfig;
+
+constexpr PlaceFeaturesConfig kDefaults{};
+
 GreyImage room_image() { return testing::TexturedRoom{}.render(testing::small_camera(), SE3{}, 0).grey; }
 
 PlaceFeature with_bits(int set_bits) {
@@ -32,7 +36,7 @@ TEST(PlaceFeatures, DistanceCountsTheBitsThatDiffer) {
 
 TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
   const auto match_one = [](const PlaceFeature& query, const std::vector<PlaceFeature>& known) {
-    return match_features(std::vector<PlaceFeature>{query}, known);
+    return match_features(std::vector<PlaceFeature>{query}, known, kDefaults);
   };
   ASSERT_EQ(match_one(with_bits(100), {with_bits(160), with_bits(110)}).size(), 1U);
   EXPECT_EQ(match_one(with_bits(100), {with_bits(160), with_bits(110)}).front().known, 1U);
@@ -42,9 +46,41 @@ TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
   EXPECT_TRUE(match_one(with_bits(100), {}).empty());
   // Both want the only known one; the nearer gets it.
   const std::vector<PlaceFeature> queries{with_bits(120), with_bits(104)};
-  const auto matches = match_features(queries, std::vector<PlaceFeature>{with_bits(100)});
+  const auto matches = match_features(queries, std::vector<PlaceFeature>{with_bits(100)}, kDefaults);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_EQ(matches.front().query, 1U);
+}
+
+TEST(PlaceFeatures, HowNearAndHowDistinctIsAskedFor) {
+  const auto matches = [](int query_bits, const std::vector<PlaceFeature>& known,
+                          const PlaceFeaturesConfig& config) {
+    return match_features(std::vector<PlaceFeature>{with_bits(query_bits)}, known, config).size();
+  };
+  const std::vector<PlaceFeature> far{with_bits(170)};
+  EXPECT_EQ(matches(100, far, {.max_descriptor_bits = 69}), 0U);
+  EXPECT_EQ(matches(100, far, {.max_descriptor_bits = 70}), 1U);
+  const std::vector<PlaceFeature> alike{with_bits(110), with_bits(112)};
+  EXPECT_EQ(matches(100, alike, {.max_ratio_percent = 83}), 0U) << "10 is not below 9.96";
+  EXPECT_EQ(matches(100, alike, {.max_ratio_percent = 84}), 1U) << "10 is below 10.08";
+}
+
+TEST(PlaceFeatures, AHigherThresholdFindsFewerCorners) {
+  const GreyImage grey = room_image();
+  const std::size_t faint = find_corners(grey, {.fast_threshold = 4}).size();
+  const std::size_t usual = find_corners(grey, kDefaults).size();
+  const std::size_t strong = find_corners(grey, {.fast_threshold = 60}).size();
+  EXPECT_GT(faint, usual);
+  EXPECT_GT(usual, strong);
+}
+
+TEST(PlaceFeatures, TheCoarsestScaleFollowsLevelsAndFactor) {
+  const auto coarsest = [grey = room_image()](const PlaceFeaturesConfig& config) {
+    double scale = 0;
+    for (const PlaceFeature& f : find_place_features(grey, config)) scale = std::max(scale, f.scale);
+    return scale;
+  };
+  EXPECT_NEAR(coarsest({.levels = 1}), 1.0, 1e-6);
+  EXPECT_NEAR(coarsest({.levels = 2, .level_factor = 1.5}), 1.5, 1e-6);
 }
 
 TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
@@ -52,16 +88,16 @@ TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
   grey(50, 61) = 200;
   grey(119, 88) = 200;
   grey(5, 5) = 200;  // too close to the border to be described
-  const std::vector<Vector2d> corners_px = find_corners(grey);
+  const std::vector<Vector2d> corners_px = find_corners(grey, kDefaults);
   ASSERT_EQ(corners_px.size(), 2U);
   EXPECT_EQ(corners_px[0], Vector2d(50, 61));
   EXPECT_EQ(corners_px[1], Vector2d(119, 88));
-  EXPECT_TRUE(find_corners(GreyImage(62, 62, 9)).empty());
+  EXPECT_TRUE(find_corners(GreyImage(62, 62, 9), kDefaults).empty());
 }
 
 TEST(PlaceFeatures, AreSpreadInsideAndNoMoreThanAsked) {
   const GreyImage grey = room_image();
-  const auto features = find_place_features(grey, 300);
+  const auto features = find_place_features(grey, PlaceFeaturesConfig{.max_count = 300});
   EXPECT_LE(features.size(), 300U);
   ASSERT_GT(features.size(), 150U);
   std::set<std::pair<int, int>> cells;
@@ -80,7 +116,7 @@ TEST(PlaceFeatures, AFewRichSpotsDoNotTakeAll) {
   for (int y = 0; y < 240; ++y) {
     for (int x = 0; x < 60; ++x) grey(x, y) = static_cast<std::uint8_t>(random() & 255U);
   }
-  const auto features = find_place_features(grey, 240);
+  const auto features = find_place_features(grey, PlaceFeaturesConfig{.max_count = 240});
   const auto right = std::count_if(features.begin(), features.end(),
                                    [](const PlaceFeature& f) { return f.pixel_px.x() > 160; });
   EXPECT_GT(right, 60);
@@ -92,9 +128,9 @@ TEST(PlaceFeatures, AnImageOnItsSideIsRecognised) {
   for (int y = 0; y < upright.height; ++y) {
     for (int x = 0; x < upright.width; ++x) turned(upright.height - 1 - y, x) = upright(x, y);
   }
-  const auto a = find_place_features(upright, 400);
-  const auto b = find_place_features(turned, 400);
-  const auto matches = match_features(a, b);
+  const auto a = find_place_features(upright, PlaceFeaturesConfig{.max_count = 400});
+  const auto b = find_place_features(turned, PlaceFeaturesConfig{.max_count = 400});
+  const auto matches = match_features(a, b, kDefaults);
   int right = 0;
   for (const FeatureMatch& m : matches) {
     const Vector2d& p = a[m.query].pixel_px;
@@ -106,10 +142,10 @@ TEST(PlaceFeatures, AnImageOnItsSideIsRecognised) {
 }
 
 TEST(PlaceFeatures, NothingIsSeenInPlainAndTinyImages) {
-  EXPECT_TRUE(find_place_features(GreyImage(320, 240, 77), 800).empty());
-  EXPECT_TRUE(find_place_features(GreyImage(40, 30, 77), 800).empty());
-  EXPECT_TRUE(find_place_features(GreyImage(), 800).empty());
-  EXPECT_LE(find_place_features(GreyImage(64, 63, 10), 800).size(), 800U);
+  EXPECT_TRUE(find_place_features(GreyImage(320, 240, 77), kDefaults).empty());
+  EXPECT_TRUE(find_place_features(GreyImage(40, 30, 77), kDefaults).empty());
+  EXPECT_TRUE(find_place_features(GreyImage(), kDefaults).empty());
+  EXPECT_LE(find_place_features(GreyImage(64, 63, 10), kDefaults).size(), 800U);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+// Options: the iterated extended Kalman filter.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// The iterated extended Kalman filter (Eqs. 15-23).
+struct IekfConfig {
+  int max_iterations = 10;
+  int coarse_iterations = 2;
+  bool prior_in_every_iteration = true;
+  double converged_rotation_rad = 1e-4;
+  double converged_translation_m = 1e-4;
+  double max_chi2_per_measurement = 9.0;
+  double scatter_prior_freedom = 1.0;
+  double scale_share = 0.2;
+  int min_patches = 5;
+  int max_lost_frames = 30;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("max_iterations", self.max_iterations, 1, 200, "iterations of one update; 1 is the plain EKF");
+    v.number("coarse_iterations", self.coarse_iterations, 0, 100,
+             "of these, at most this many on each coarser pyramid level before the finer ones join");
+    v.flag("prior_in_every_iteration", self.prior_in_every_iteration,
+           "each iteration weighs the distance to the prediction (the MAP estimate, Bell & Cathey 1993); "
+           "false is "
+           "Eq. 22 to the letter, which forgets it after the first one");
+    v.number("converged_rotation_rad", self.converged_rotation_rad, 0.0, 1.0,
+             "converged when the last step rotates less than this");
+    v.number("converged_translation_m", self.converged_translation_m, 0.0, 1.0,
+             "and translates less than this");
+    v.number("max_chi2_per_measurement", self.max_chi2_per_measurement, 0.1, 1e6,
+             "a patch whose mean squared whitened residual exceeds this is rejected");
+    v.number(
+        "scatter_prior_freedom", self.scatter_prior_freedom, 0.0, 1e9,
+        "the variance of the residuals follows how patches disagree; this many degrees of freedom stand for "
+        "the claim before (pixels_per_measurement and the noise), 1e9 for it alone");
+    v.number(
+        "scale_share", self.scale_share, 0.0, 1.0,
+        "the noise of residuals follows what each tracked frame shows by this share (Huber's Proposal 2); 0 "
+        "keeps photometric.noise_grey and the depth noise as they are");
+    v.number("min_patches", self.min_patches, 1, 1000,
+             "with fewer accepted patches the prediction is kept and the frame counts as lost");
+    v.number(
+        "max_lost_frames", self.max_lost_frames, 0, 100000,
+        "more lost frames in a row end the run with status lost; an IMU bridges about a second, after which "
+        "the place can only be found again by relocalisation");
+  }
+};
+
+}  // namespace fusebench::config

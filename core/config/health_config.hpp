@@ -1,0 +1,48 @@
+// Options: when a frame and its update are trusted.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// When a frame is judged unhealthy, its update not believed, or the frame kept out of the model.
+struct HealthConfig {
+  double dark_grey = 6.0;
+  double covered_share = 0.25;
+  double min_depth_share = 0.1;
+  int texture_gradient_grey = 4;
+  double min_texture_share = 0.01;
+  double max_chi2_after_gap = 2.5;
+  int max_occluded_frames = 30;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("dark_grey", self.dark_grey, 0.0, 255.0,
+             "a frame whose mean is below this is dark (grey levels): noise and black level of a covered "
+             "camera stay below");
+    v.number(
+        "covered_share", self.covered_share, 0.0, 1.0,
+        "a frame is occluded if something new covers more than this share of the patches in view; less than "
+        "half, since near surfaces have the strongest corners, so that an object of this size dominates the "
+        "update once patches are cut from it (a hand before 40 % of the image does)");
+    v.number("min_depth_share", self.min_depth_share, 0.0, 1.0,
+             "a frame with usable depth on a smaller share of its pixels is short of depth; low, since the "
+             "patches themselves ask for more (patches.min_valid_fraction)");
+    v.number("texture_gradient_grey", self.texture_gradient_grey, 0, 255,
+             "a pixel of the coarsest pyramid level has texture if its gradient exceeds this (grey levels "
+             "between neighbours), which the noise of that level does not");
+    v.number("min_texture_share", self.min_texture_share, 0.0, 1.0,
+             "a frame with texture on a smaller share of its pixels is short of texture: at 640x480 and 3 "
+             "levels 1 % is 192 pixels, less than two patches");
+    v.number(
+        "max_chi2_after_gap", self.max_chi2_after_gap, 0.1, 1e6,
+        "after a gap an update with a larger mean squared whitened photometric residual is not believed: of "
+        "well aligned patches it is about 1 at most (photometric.noise_grey is generous), of those on wrong "
+        "corners 3 to 4");
+    v.number(
+        "max_occluded_frames", self.max_occluded_frames, 0, 100000,
+        "what covers the scene for more frames in a row than this is let into the model; 30 are a second "
+        "at 30 Hz");
+  }
+};
+
+}  // namespace fusebench::config

@@ -1,0 +1,89 @@
+// Options: the first state, and what predicts the next ones.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// Process noise of the priors. IMU densities come with the recording; here is what comes on top.
+struct MotionConfig {
+  double imu_noise_factor = 1.0;
+  double acceleration_noise_mps2_sqrthz = 1.5;
+  double angular_acceleration_noise_radps2_sqrthz = 3.0;
+  double gravity_noise_rad_sqrthz = 1e-5;
+  double drift_factor = 10.0;
+  double exposure_s = 0.01;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number(
+        "imu_noise_factor", self.imu_noise_factor, 0.01, 1000.0,
+        "factor on the recording's IMU noise densities (>1 absorbs what they leave out, e.g. scale errors)");
+    v.number(
+        "acceleration_noise_mps2_sqrthz", self.acceleration_noise_mps2_sqrthz, 1e-3, 1e3,
+        "constant-velocity prior: white acceleration (m/s^2/sqrt(Hz)); hand-held motion changes its velocity "
+        "by about 0.3 m/s between frames at 30 Hz");
+    v.number(
+        "angular_acceleration_noise_radps2_sqrthz", self.angular_acceleration_noise_radps2_sqrthz, 1e-3, 1e3,
+        "constant-velocity prior: white angular acceleration (rad/s^2/sqrt(Hz)); about 0.5 rad/s a frame");
+    v.number("gravity_noise_rad_sqrthz", self.gravity_noise_rad_sqrthz, 0.0, 1.0,
+             "random walk of the gravity direction against the map (rad/sqrt(Hz)), for the map's slow tilt");
+    v.number(
+        "drift_factor", self.drift_factor, 1.0, 100.0,
+        "the model drifts this much more than independent errors of the frames would make it (standard "
+        "deviations): consecutive frames see the same patches on the same model, so their errors are alike; "
+        "only the reported uncertainty depends on it; chosen so that the NEES of simulated slow runs is near "
+        "1 (1.1 to 1.3; 0.6 to 0.8 under fast motion)");
+    v.number(
+        "exposure_s", self.exposure_s, 0.0, 0.5,
+        "exposure of a colour image, from which motion blur is predicted (seconds; no format records it, "
+        "10 ms is usual indoors)");
+  }
+};
+
+/// The first state.
+struct InitialisationConfig {
+  double window_s = 0.25;
+  double rest_gyroscope_std_radps = 0.02;
+  double rest_accelerometer_std_mps2 = 0.15;
+  double rest_velocity_sigma_mps = 0.02;
+  double moving_velocity_sigma_mps = 1.0;
+  double moving_gravity_sigma_rad = 0.15;
+  double angular_velocity_sigma_radps = 1.5;
+  double gyroscope_bias_sigma_radps = 0.005;
+  double accelerometer_bias_sigma_mps2 = 0.3;
+  double imu_time_offset_sigma_s = 0.01;
+  int false_start_frames = 5;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number(
+        "window_s", self.window_s, 0.02, 10.0,
+        "IMU samples within this time around the first frame give gravity (and the gyroscope bias at rest)");
+    v.number("rest_gyroscope_std_radps", self.rest_gyroscope_std_radps, 0.0, 10.0,
+             "at rest if the gyroscope's standard deviation in the window is below this");
+    v.number("rest_accelerometer_std_mps2", self.rest_accelerometer_std_mps2, 0.0, 100.0,
+             "at rest if the accelerometer's standard deviation in the window is below this as well");
+    v.number("rest_velocity_sigma_mps", self.rest_velocity_sigma_mps, 1e-4, 10.0, "velocity prior at rest");
+    v.number("moving_velocity_sigma_mps", self.moving_velocity_sigma_mps, 1e-3, 10.0,
+             "velocity prior in motion: zero with this standard deviation");
+    v.number("moving_gravity_sigma_rad", self.moving_gravity_sigma_rad, 1e-3, 1.0,
+             "gravity direction prior in motion, where the mean specific force contains acceleration");
+    v.number("angular_velocity_sigma_radps", self.angular_velocity_sigma_radps, 1e-3, 100.0,
+             "angular velocity prior without an IMU: zero with this standard deviation");
+    v.number("gyroscope_bias_sigma_radps", self.gyroscope_bias_sigma_radps, 0.0, 1.0,
+             "gyroscope bias prior (a ZR300's factory offsets are up to 0.004 rad/s); wider, slow drifts of "
+             "the images pass "
+             "for bias");
+    v.number("accelerometer_bias_sigma_mps2", self.accelerometer_bias_sigma_mps2, 0.0, 5.0,
+             "accelerometer bias prior (the raw axes of a ZR300 are off by up to 0.3 m/s^2)");
+    v.number(
+        "imu_time_offset_sigma_s", self.imu_time_offset_sigma_s, 0.0, 0.5,
+        "prior of the offset between the clocks of IMU and camera (7 ms is typical of a ZR300); 0 trusts the "
+        "stamps");
+    v.number("false_start_frames", self.false_start_frames, 1, 1000,
+             "if no frame was tracked yet, a lost frame of sound images starts the run again after so many "
+             "lost ones in all, since the first frame was of no use; a few, so that relocalisation has its "
+             "chances");
+  }
+};
+
+}  // namespace fusebench::config

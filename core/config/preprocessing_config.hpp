@@ -1,0 +1,51 @@
+// Options: what is done to a frame before it is used.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// Which depth measurements are trusted, and how far.
+struct DepthConfig {
+  double min_m = 0.3;
+  double max_m = 5.0;
+  double noise_floor_m = 0.0012;
+  double noise_quadratic_per_m = 0.0019;
+  double noise_offset_m = 0.4;
+  double edge_jump = 0.03;
+  double max_incidence_deg = 75.0;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("min_m", self.min_m, 0.0, 100.0, "depth below this is ignored (metres)");
+    v.number("max_m", self.max_m, 0.01, 100.0, "depth above this is ignored (metres)");
+    v.number(
+        "noise_floor_m", self.noise_floor_m, 1e-5, 1.0,
+        "a in the depth noise sigma(z) = a + b (z - c)^2 (metres; Nguyen et al. 2012 for structured light)");
+    v.number("noise_quadratic_per_m", self.noise_quadratic_per_m, 0.0, 1.0, "b of the depth noise (1/m)");
+    v.number("noise_offset_m", self.noise_offset_m, 0.0, 10.0, "c of the depth noise (metres)");
+    v.number(
+        "edge_jump", self.edge_jump, 0.001, 1.0,
+        "a pixel whose 3x3 neighbourhood jumps by more than this share of its depth is an edge and not used");
+    v.number("max_incidence_deg", self.max_incidence_deg, 10.0, 89.0,
+             "surfaces seen more obliquely than this are not used (degrees between ray and normal)");
+  }
+};
+
+/// When a frame that was compensated for the predicted motion is compensated again for the estimated one.
+struct CompensationConfig {
+  double redo_angular_velocity_radps = 0.05;
+  double redo_velocity_mps = 0.05;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number(
+        "redo_angular_velocity_radps", self.redo_angular_velocity_radps, 0.0, 100.0,
+        "a frame is compensated again before it is fused if the update changed the angular velocity by more "
+        "(rad/s): over half a read-out of 13 ms at a focal length of 520 px that moves a pixel by a third of "
+        "one");
+    v.number(
+        "redo_velocity_mps", self.redo_velocity_mps, 0.0, 100.0,
+        "the same for the velocity (m/s): at 1 m distance it moves a pixel as far as that angular velocity");
+  }
+};
+
+}  // namespace fusebench::config

@@ -1,0 +1,55 @@
+// Options: the terms of the estimator that an ablation switches.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// What predicts the state between frames.
+enum class Prior { imu, constant_velocity };
+constexpr auto option_choices(Prior) {
+  return choices<Prior>({{"imu", Prior::imu}, {"constant_velocity", Prior::constant_velocity}});
+}
+
+/// How a patch changes its shape between frames.
+enum class Deformation { pixelwise, planar, rigid_square };
+constexpr auto option_choices(Deformation) {
+  return choices<Deformation>({{"pixelwise", Deformation::pixelwise},
+                               {"planar", Deformation::planar},
+                               {"rigid_square", Deformation::rigid_square}});
+}
+
+/// The terms of the estimator that an ablation switches.
+struct TermsConfig {
+  Prior prior = Prior::imu;
+  Deformation deformation = Deformation::pixelwise;
+  bool visibility_test = true;
+  bool motion_compensation = true;
+  bool relocalisation = true;
+  double photometric_weight = 1.0;
+  double geometric_weight = 1.0;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.choice("prior", self.prior, "what predicts the state: the IMU (Eqs. 11-14) or constant velocity");
+    v.choice(
+        "deformation", self.deformation,
+        "shape change of patches: each pixel by its own depth (Eqs. 1-2), one plane a patch (Bloesch et al. "
+        "2017), or a rigid square at one depth (the direct method)");
+    v.flag("visibility_test", self.visibility_test,
+           "drop pixels that are occluded in the current frame (the shrink effect, Sec. 2.1.1)");
+    v.flag("motion_compensation", self.motion_compensation,
+           "bring all rows of colour and depth to one instant by the estimated velocity (rolling shutter, "
+           "depth delay; "
+           "not in the paper)");
+    v.flag(
+        "relocalisation", self.relocalisation,
+        "a lost tracker looks for the frame's place among the frames that it fused (ORB features and their "
+        "3D points; Mur-Artal & Tardos 2017; not in the paper)");
+    v.number("photometric_weight", self.photometric_weight, 0.0, 1e3,
+             "factor on the information of the photometric residuals (Eq. 3); 0 switches the term off");
+    v.number("geometric_weight", self.geometric_weight, 0.0, 1e3,
+             "factor on the information of the point-to-plane residuals (Eq. 4); 0 switches the term off");
+  }
+};
+
+}  // namespace fusebench::config

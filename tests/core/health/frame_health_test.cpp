@@ -1,0 +1,76 @@
+#include "core/health/frame_health.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace fusebench {
+
+using namespace config;
+using namespace health;
+using namespace measurement;
+
+namespace {
+
+/// An image of stripes of two grey levels, with depth in its upper part.
+struct Scene {
+  int grey = 100;
+  int contrast_grey = 20;
+  int rows_with_depth = 48;
+
+  [[nodiscard]] FrameHealth judged(const Config& config,
+                                   const std::vector<PatchOutcome>& outcomes = {}) const {
+    GreyImage image(64, 48);
+    DepthImage depth_m(64, 48);
+    for (int y = 0; y < 48; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        image(x, y) = static_cast<std::uint8_t>(grey + (x % 2 == 0 ? contrast_grey : 0));
+        depth_m(x, y) = y < rows_with_depth ? 2.0F : 0.0F;
+      }
+    }
+    const std::vector<GreyImage> pyramid{image};
+    return judge_health({pyramid, depth_m}, outcomes, 0.0, config);
+  }
+};
+
+TEST(FrameHealth, AFrameIsDarkBelowItsGreyLevel) {
+  Config config;
+  const Scene dim{.grey = 8, .contrast_grey = 6};  // 11 in the mean
+  EXPECT_EQ(dim.judged(config), FrameHealth::good);
+  config.health.dark_grey = 12;
+  EXPECT_EQ(dim.judged(config), FrameHealth::dark);
+}
+
+TEST(FrameHealth, HowMuchDepthIsEnough) {
+  Config config;
+  EXPECT_EQ((Scene{.rows_with_depth = 12}).judged(config), FrameHealth::good);
+  EXPECT_EQ((Scene{.rows_with_depth = 4}).judged(config), FrameHealth::short_of_depth);
+  config.health.min_depth_share = 0.5;
+  EXPECT_EQ((Scene{.rows_with_depth = 12}).judged(config), FrameHealth::short_of_depth);
+}
+
+TEST(FrameHealth, WhatCountsAsTexture) {
+  Config config;
+  const Scene faint{.contrast_grey = 5};
+  EXPECT_EQ(faint.judged(config), FrameHealth::good);
+  config.health.texture_gradient_grey = 5;
+  EXPECT_EQ(faint.judged(config), FrameHealth::short_of_texture) << "a gradient has to exceed it";
+  config.health.min_texture_share = 0;
+  EXPECT_EQ(faint.judged(config), FrameHealth::good);
+}
+
+TEST(FrameHealth, HowManyCoveredPatchesAreAnOcclusion) {
+  Config config;
+  std::vector<PatchOutcome> outcomes(10);
+  for (std::size_t p = 0; p < outcomes.size(); ++p) {
+    outcomes[p].in_view = outcomes[p].tracked = outcomes[p].accepted = true;
+    outcomes[p].usable_pixels = 100;
+    if (p < 2) outcomes[p].covered_pixels = 200;
+  }
+  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::good);
+  config.health.covered_share = 0.19;
+  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::occluded);
+}
+
+}  // namespace
+}  // namespace fusebench
