@@ -48,8 +48,8 @@ std::error_code create_parents(const fs::path& path, std::vector<fs::path>& crea
   return error;
 }
 
-/// Tells others that somebody works in the folder; the system lets go of it when the process ends, however it
-/// does. -1 where the file system has no locks, and where somebody else has this one.
+/// Marks the folder as in use; the operating system releases the lock when the process ends for any reason.
+/// -1 where the file system has no locks, or another process holds this one.
 int lock_folder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0 && flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
@@ -169,7 +169,7 @@ Result<void> StagedFolder::commit() {
     std::error_code ignored;
     if (!error) {
       // What was replaced goes once the new one is on the disk.
-      error = sync_places();
+      error = sync_folders();
       fs::remove_all(std::exchange(temporary_, {}), ignored);
       created_.clear();
       if (error) break;
@@ -187,7 +187,7 @@ Result<void> StagedFolder::commit() {
 }
 
 /// The names of the folder, and of those above it that were made for it.
-std::error_code StagedFolder::sync_places() const {
+std::error_code StagedFolder::sync_folders() const {
   std::error_code error = sync_to_disk(folder_of(final_));
   for (auto parent = created_.rbegin(); parent != created_.rend() && !error; ++parent)
     error = sync_to_disk(folder_of(*parent));
@@ -206,7 +206,7 @@ bool is_staged_folder(const fs::path& folder) {
   return !error;
 }
 
-std::error_code remove_whole(const fs::path& folder) {
+std::error_code remove_atomically(const fs::path& folder) {
   std::error_code error;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const fs::path hidden = hidden_sibling(folder, attempt);

@@ -228,7 +228,7 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
                    frame_->pyramid.front(), config_.patches, outcome);
   outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_));
   if (!outcome.accepted) {
-    // Rejected honestly: neither its residuals nor its brightness prior count.
+    // A rejected patch contributes neither its residuals nor its brightness prior.
     state.counts = false;
     state.photometric = {};
     state.geometric = {};
@@ -317,7 +317,7 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
   for (const PatchOutcome& outcome : outcomes_)
     count += outcome.tracked ? static_cast<std::size_t>(outcome.usable_pixels) : 0;
   tracked.intensity.reserve(count);
-  tracked.landings.reserve(count);
+  tracked.warped.reserve(count);
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     if (!outcomes_[p].tracked) continue;
     const auto& pixels = patches_[p].levels.front().pixels;
@@ -330,7 +330,7 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
         const float reference = pixel.intensity;
         tracked.intensity.push_back(
             {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
-        tracked.landings.push_back(
+        tracked.warped.push_back(
             {static_cast<std::uint32_t>(p), {w.x[lane], w.y[lane]}, reference, observed[lane]});
       });
     }

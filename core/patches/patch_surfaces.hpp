@@ -1,5 +1,5 @@
-// The model's surfaces behind the pixels of patches: beside what the camera measured, or along the rays where
-// it measured nothing.
+// The model's surfaces behind the pixels of patches: near the measured depth, or along the ray where there is
+// no measurement.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace fusebench::patches {
 
-/// Finds them, frame after frame in the same memory.
+/// Finds them; buffers are reused from frame to frame.
 class PatchSurfaces {
  public:
   /// One surface a pixel, invalid where there is none; valid until the next call. `first`: number of the
@@ -25,7 +25,7 @@ class PatchSurfaces {
       std::span<const std::size_t> first, const Workers& workers);
 
  private:
-  /// What some patches that are searched one after the other work in.
+  /// Workspace of one chunk of patches.
   struct Beside {
     tsdf::TsdfBrick brick;
     std::vector<raycast::ExpectedSurface> measured;

@@ -103,7 +103,7 @@ void integrate_step(PreintegratedImu& sum, const ImuSample& a, const ImuSample& 
 /// beginning, d/dt_begin R_begin_s = -[w_begin]x R_begin_s, and the end adds what the integrand is there.
 ///
 /// begin and end are smoothed: where a camera moves slowly single samples are mostly noise, the same noise is
-/// in the increments, and an estimate of the offset that trusts them is biased and too sure of itself.
+/// in the increments, and an estimate of the offset that ignores this error is biased and overconfident.
 void differentiate_by_time_offset(PreintegratedImu& sum, const ImuSample& begin, const ImuSample& end) {
   const Matrix3d R = sum.delta_rotation.toRotationMatrix();
   const Vector3d& rate = begin.angular_velocity_radps;

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kRowsPerChunk = 32;  // whole cells of the grids
 /// A border pixel whose motion rounds to hardly more than none is inside.
 constexpr float kRounding_px = 1e-4F;
-/// Where nothing above a pixel tells how deep it is.
-constexpr int kGuessesFromNothing = 3;
+/// Fixed-point iterations where no pixel above gives an initial depth.
+constexpr int kInitialDepthIterations = 3;
 
 using simd::lane_details::byte_of;
 
@@ -80,7 +80,7 @@ class SourceBounds {
   }
 
  private:
-  /// What is not a number lies at the border too: nothing is read outside.
+  /// NaN is clamped to the border too: nothing is read outside.
   static simd::Float8 held(simd::Float8 values, float last) {
     return simd::min(simd::max(simd::Float8{}, values), simd::all_lanes(last));
   }
@@ -119,7 +119,7 @@ class DepthCarrier {
 
   void start(Columns& columns, int row) const {
     columns.inverse_depth = inverse_depth(simd::load(&source_m_.data[source_m_.index(columns.column, row)]));
-    for (int i = 0; i + 1 < kGuessesFromNothing; ++i) std::ignore = depth_m(columns, row);
+    for (int i = 0; i + 1 < kInitialDepthIterations; ++i) std::ignore = depth_m(columns, row);
   }
 
   /// The depth pixel of these columns that their own motion carries to a row, carried there.

@@ -53,7 +53,7 @@ std::array<simd::Float8, Readout::kFromRows> Readout::from_rows(simd::Float8 u, 
   return {x0, x1, x2, y0, y1, y2, at_0.depth_factor, at_1.depth_factor - at_0.depth_factor};
 }
 
-/// The pixel that is carried to (u, v) is sought by carrying guesses of it.
+/// The pixel that is carried to (u, v) is found by fixed-point iteration.
 Readout::Carried Readout::forth(simd::Float8 u, float v, float inverse_depth,
                                 const Eigen::Matrix3f& R) const {
   Carried result;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 namespace fusebench::relocalisation {
 
@@ -15,8 +15,8 @@ namespace {
 /// are.
 filter::StateMatrix motion_inflated(const filter::StateMatrix& covariance, double factor) {
   filter::StateVector scale = filter::StateVector::Ones();
-  for (const auto& [offset, size] :
-       {std::pair{filter::kRotation, 9}, std::pair{filter::kGravity, 2}, std::pair{filter::kAngularVelocity, 3}})
+  for (const auto& [offset, size] : {std::pair{filter::kRotation, 9}, std::pair{filter::kGravity, 2},
+                                     std::pair{filter::kAngularVelocity, 3}})
     scale.segment(offset, size).setConstant(factor);
   return scale.asDiagonal() * covariance * scale.asDiagonal();
 }
@@ -30,7 +30,7 @@ void reset_covariance(filter::StateMatrix& covariance, int offset, double sigma)
 
 /// The prediction with its covariance inflated by the innovation.
 filter::GaussianState inflated(const filter::GaussianState& prediction, double innovation,
-                       const UnknownMotion& unknown) {
+                               const UnknownMotion& unknown) {
   filter::GaussianState state{prediction.mean,
                               motion_inflated(prediction.covariance, std::sqrt(std::max(1.0, innovation)))};
   if (innovation <= kInconsistentInnovation) return state;
@@ -51,8 +51,8 @@ filter::GaussianState with_reference_pose(const filter::GaussianState& state, co
   refer.middleRows<filter::kPoseSize>(filter::kReferencePose).setZero();
   refer.block<filter::kPoseSize, filter::kPoseSize>(filter::kModelPose, filter::kModelPose) = carried;
   filter::GaussianState result{state.mean, filter::symmetrised(refer * state.covariance * refer.transpose())};
-  result.covariance.block<filter::kPoseSize, filter::kPoseSize>(filter::kReferencePose, filter::kReferencePose) =
-      place.reference_covariance;
+  result.covariance.block<filter::kPoseSize, filter::kPoseSize>(
+      filter::kReferencePose, filter::kReferencePose) = place.reference_covariance;
   result.mean.model_offset = carried * state.mean.model_offset;
   result.mean.T_world_imu_reference = place.T_world_imu_reference;
   result.mean.reference_offset.setZero();
@@ -80,7 +80,8 @@ filter::GaussianState relocalisation_update(const filter::GaussianState& predict
   matched.block<filter::kPoseSize, filter::kPoseSize>(0, filter::kReferencePose) =
       -filter::pose_transport(place.T_world_imu, place.T_world_imu_reference);
   const Vector6d innovation = pose_minus(place.T_world_imu, prior.mean.T_world_imu);
-  const Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize> crossed = prior.covariance * matched.transpose();
+  const Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize> crossed =
+      prior.covariance * matched.transpose();
   const Matrix6d expected = matched * crossed + place.covariance;
   const Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize> gain =
       expected.ldlt().solve(crossed.transpose()).transpose();

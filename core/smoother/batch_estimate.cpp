@@ -106,8 +106,8 @@ double leverage(const SparseRowsd& jacobian, Eigen::Index begin, Eigen::Index en
   return sum;
 }
 
-/// J^T J. The last frame's pose and biases meet in no residual, but their covariance is asked for: zeros make
-/// place for it.
+/// J^T J. The last frame's pose and biases appear in no common residual, but their covariance is requested:
+/// zeros make place for it.
 SparseMatrixd information_of(const BatchLinearisation& at) {
   SparseMatrixd information = at.jacobian.transpose() * at.jacobian;
   SparseMatrixd place(information.rows(), information.cols());
@@ -146,7 +146,7 @@ double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_o
       product += residual_of_frame[k]->dot(*residual_of_frame[k - lag]);
       pairs += 1;
     }
-    if (pairs < 8) break;  // too few to say anything
+    if (pairs < 8) break;  // too few for an estimate
     const double correlation = (product / pairs) / (power / count);
     if (!(correlation > kNegligible)) break;
     factor += 2 * correlation;

@@ -18,8 +18,8 @@ constexpr int kPixels = static_cast<int>(simd::kLanes);
 /// The one to take of `stride` in a row (a power of two, 4 at most), another one for the next number: first
 /// those that are far apart (van der Corput 1935).
 int taken_of(int stride, std::uint32_t number) {
-  constexpr std::array<int, 4> kOfFour = {0, 2, 1, 3};
-  return kOfFour[number % kOfFour.size()] * stride / 4;
+  constexpr std::array<int, 4> kBitReversed = {0, 2, 1, 3};
+  return kBitReversed[number % kBitReversed.size()] * stride / 4;
 }
 
 /// What the segments of eight rays do along one axis of the lattice, in units of blocks.
@@ -181,10 +181,10 @@ class PixelSegments {
 void OrderedBlocks::clear() {
   table_.clear();
   blocks_.clear();
-  forget_recent();
+  clear_recent();
 }
 
-void OrderedBlocks::forget_recent() {
+void OrderedBlocks::clear_recent() {
   recent_.fill(BlockIndex::Constant(std::numeric_limits<int>::max()));  // nothing reaches that far
 }
 

@@ -44,7 +44,7 @@ constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would silence
 constexpr Range kWalk{0, 100};
 constexpr Range kReadout{0, 1};
 constexpr Range kOffset{-10, 10};
-constexpr double kMostTranslation_m = 1000;  // between sensors of one rig
+constexpr double kMaxTranslation_m = 1000;  // between sensors of one rig
 
 /// One of the three tables: its entries by key, and what went wrong first.
 class Section {
@@ -123,9 +123,9 @@ class Section {
       report(fmt::format("{}: {} is no rigid transform", entries_.at(key)->place, entries_.at(key)->key),
              fmt::format("a matrix is {}, translation in metres", kRigidTransformRule));
     }
-    if (T && T->translation.cwiseAbs().maxCoeff() > kMostTranslation_m) {
+    if (T && T->translation.cwiseAbs().maxCoeff() > kMaxTranslation_m) {
       report(fmt::format("{}: {} has a translation of {:g} m (allowed up to {} m)", entries_.at(key)->place,
-                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMostTranslation_m),
+                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMaxTranslation_m),
              "translations are in metres");
     }
     return T.value_or(SE3{});
@@ -203,8 +203,8 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
     section.complain("[imu] T_imu_depth needs a depth camera of its own ([depth] with T_color_depth)");
   } else {
     imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
-    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMostTranslation_m)
-      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMostTranslation_m));
+    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMaxTranslation_m)
+      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMaxTranslation_m));
   }
   imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
   imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);

@@ -38,10 +38,10 @@ tl::unexpected<Error> no_library(const std::string& image, Error error) {
 /// A header may claim any size. PNG's compression makes at most 1032 bytes of one, and JPEG's less in
 /// practice, so that memory stays in proportion to the file.
 Result<void> check_claim(const std::filesystem::path& file, const ImageHeader& header) {
-  constexpr std::uintmax_t kMostPerByte = 1032;
+  constexpr std::uintmax_t kMaxPerByte = 1032;
   std::error_code ignored;
   const std::uintmax_t bytes = std::filesystem::file_size(file, ignored);
-  if (header.pixel_bytes / kMostPerByte <= bytes) return {};
+  if (header.pixel_bytes / kMaxPerByte <= bytes) return {};
   return corrupt(file, fmt::format("damaged image (its header claims {}x{} "
                                    "pixels, too many for {} bytes)",
                                    header.width_px, header.height_px, bytes));
@@ -89,7 +89,7 @@ Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout&
 }
 
 /// What the recordings at hand consist of takes the short way; whatever is not as it should be is left to the
-/// library, which knows why.
+/// library, which reports the reason.
 template <class Pixel, class Decode>
 Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
                                   const Layout& layout, std::optional<ImageSize> expected,

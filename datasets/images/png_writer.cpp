@@ -67,7 +67,7 @@ tl::expected<void, std::string> write_png_file(const std::filesystem::path& file
   std::string reason = "not enough memory";
   const Writer writer(reason);
   if (writer.info == nullptr || !write_rows(writer.png, writer.info, output.get(), image)) {
-    // The system knows more than "Write Error".
+    // The error of the operating system is more specific than "Write Error".
     if (std::ferror(output.get()) != 0) return reason_of_system();
     return tl::unexpected(reason);
   }

@@ -11,7 +11,7 @@ namespace fusebench::reading {
 
 namespace {
 
-constexpr std::size_t kMostRows = 10'000;
+constexpr std::size_t kMaxRows = 10'000;
 constexpr std::array kUnits = {io::TimeUnit::seconds, io::TimeUnit::milliseconds, io::TimeUnit::microseconds,
                                io::TimeUnit::nanoseconds};
 
@@ -20,7 +20,7 @@ Result<std::vector<double>> raw_stamps(const std::filesystem::path& file, std::s
   Result<io::TextTable> table = io::TextTable::open(file, columns);
   if (!table) return tl::unexpected(table.error());
   std::vector<double> stamps;
-  while (stamps.size() < kMostRows) {
+  while (stamps.size() < kMaxRows) {
     const Result<bool> got = table->next();
     if (!got) return tl::unexpected(got.error());
     if (!*got) break;

@@ -57,7 +57,7 @@ struct SimulationOptions {
 
   std::vector<faults::SimulatedFault> faults;  ///< of the images
   faults::CalibrationError calibration_error;  ///< what calibration.toml is wrong about
-  double untold_time_offset_s = 0;  ///< added to imu.time_offset_s, and calibration.toml does not say so
+  double untold_time_offset_s = 0;  ///< added to imu.time_offset_s, but not written to calibration.toml
 };
 
 /// The sensors and effects of a layout with the motion of a preset: motion blur, image noise, the depth noise
@@ -89,7 +89,7 @@ struct SimulationReport {
   std::vector<std::string> warnings;
 };
 
-/// What a caller wants to know and to say meanwhile.
+/// Callbacks for progress and cancellation.
 struct SimulationControl {
   std::function<void(std::size_t done, std::size_t total)>
       progress;                             ///< by one thread at a time; may be empty

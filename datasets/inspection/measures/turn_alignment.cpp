@@ -154,10 +154,10 @@ double parabola(const std::vector<Interval>& intervals, const GyroscopeIntegral&
 /// the offsets that are tried next: a fit would shift the clock to share it between two turns.
 void drop_gross(std::vector<Interval>& intervals, const std::vector<double>& residuals, double limit_rad) {
   constexpr double kReach_s = 0.04;
-  constexpr double kMostShare = 0.1;  // more are no faults of single turns
+  constexpr double kMaxShare = 0.1;  // more are no faults of single turns
   const auto is_gross = [&](double residual) { return residual > kGross * limit_rad; };
   const auto count = static_cast<double>(std::ranges::count_if(residuals, is_gross));
-  if (count > kMostShare * static_cast<double>(residuals.size())) return;
+  if (count > kMaxShare * static_cast<double>(residuals.size())) return;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     if (!is_gross(residuals[i])) continue;
     const double begin_s = intervals[i].begin_s - kReach_s, end_s = intervals[i].end_s + kReach_s;
@@ -282,7 +282,7 @@ std::optional<TurnAlignment> align_turns(const CameraTurns& turns, const Gyrosco
   for (const Interval& interval : intervals)
     dt_s += (interval.end_s - interval.begin_s) / static_cast<double>(intervals.size());
   result.intervals = intervals.size();
-  // At an end, the cost may fall further beyond it; the refinement must not wander off either.
+  // At an end, the cost may fall further beyond it; the refinement must stay within the interval.
   const double farthest_s = std::max(std::abs((mirrored ? mirror : proper).offset_s), std::abs(vertex_s));
   result.offset_found = farthest_s < kMaxOffset_s - kOffsetStep_s;
   result.time_offset_s = vertex_s;

@@ -109,9 +109,9 @@ PathClock clock_for(const MotionOptions& options, const MotionSpan& span, const 
 /// within 1 % (by a tremor that is faster than the peak, say).
 Result<synthetic_imu::PoseSpline> scaled_motion(const HandPath& path, const MotionOptions& options,
                                                 const MotionSpan& span, double heading_rad) {
-  constexpr int kMostRounds = 30;
+  constexpr int kMaxRounds = 30;
   constexpr double kTolerance = 2e-3;
-  constexpr double kPromised = 1e-2;
+  constexpr double kPeakTolerance = 1e-2;
   const PathClock clock = clock_for(options, span, path);
   Scale scale{0.5 * options.peak_speed_mps, 0.5 * options.peak_rate_radps, heading_rad};
   for (int round = 0;; ++round) {
@@ -121,8 +121,8 @@ Result<synthetic_imu::PoseSpline> scaled_motion(const HandPath& path, const Moti
     const double position = options.peak_speed_mps / peaks.speed_mps;
     const double angle = options.peak_rate_radps / peaks.rate_radps;
     const double off = std::max(std::abs(position - 1), std::abs(angle - 1));
-    const bool last = round == kMostRounds || !std::isfinite(off);
-    if (off < (last ? kPromised : kTolerance)) return spline;
+    const bool last = round == kMaxRounds || !std::isfinite(off);
+    if (off < (last ? kPeakTolerance : kTolerance)) return spline;
     if (last) {
       return fail(
           ErrorCode::configuration,
@@ -147,7 +147,7 @@ Vector3d mean_forward(const synthetic_imu::PoseSpline& spline) {
 /// Where a path looks, and the weights of its speeds along the axes of the world.
 struct View {
   double heading_rad = 0;
-  std::array<double, 3> weight = HandPath::kHabit;
+  std::array<double, 3> weight = HandPath::kDefaultAxisWeights;
 };
 
 /// unturned: the motion with the path's own heading.
@@ -275,7 +275,7 @@ Result<synthetic_imu::PoseSpline> hand_held_motion(const MotionOptions& options,
                                                    const Eigen::AlignedBox3d& box, std::uint64_t seed,
                                                    const HeadingTexture& texture) {
   if (const auto valid = check_options(options, span); !valid) return tl::unexpected(valid.error());
-  constexpr int kMostTries = 40;
+  constexpr int kMaxTries = 40;
   const double length_s = seconds_between(span.begin_ns, span.last_frame_ns) + kLongestOffset_s + 1;
   const Vector3d room_m = box.sizes();
   Vector3d stretch = Vector3d::Ones();
@@ -283,7 +283,7 @@ Result<synthetic_imu::PoseSpline> hand_held_motion(const MotionOptions& options,
   const auto unturned = scaled_motion(path, options, span, path.mean_yaw_rad());
   if (!unturned) return unturned;
   const View view = choose_view(path, options, *unturned, texture);
-  for (int attempt = 0; attempt < kMostTries; ++attempt) {
+  for (int attempt = 0; attempt < kMaxTries; ++attempt) {
     auto spline = scaled_motion(HandPath(options, seed, stretch, length_s, view.weight), options, span,
                                 view.heading_rad);
     if (!spline) return spline;

@@ -118,9 +118,9 @@ struct Renderer::State {
     }
     // Seen obliquely the square becomes a rectangle; the side of a square of the same area avoids most of the
     // aliasing without blurring along the short side too much.
-    constexpr float kLeastCosine = 0.05F;
+    constexpr float kMinCosine = 0.05F;
     const float texels =
-        footprint_m * at.texels_per_metre / std::sqrt(std::max(kLeastCosine, hit.cos_incidence));
+        footprint_m * at.texels_per_metre / std::sqrt(std::max(kMinCosine, hit.cos_incidence));
     const Eigen::Array4f reflectance =
         textures[static_cast<std::size_t>(at.texture)].sample(at.u.at(hit), at.v.at(hit), texels);
     return at.light.at(hit) * reflectance.head<3>().matrix();
@@ -170,7 +170,7 @@ void Renderer::add_light_of_row(const rays::RayField& rays, int row, const SE3& 
   line.cast(state_->caster, rays, row, T_world_camera, offset_px);
   RowOfRays before(foreground != nullptr ? rays.camera().width_px : 0);
   if (foreground != nullptr)
-    before.cast(foreground->thing.state_->caster, rays, row, foreground->T_thing_camera, offset_px);
+    before.cast(foreground->thing.state_->caster, rays, row, foreground->T_object_camera, offset_px);
   const float footprint = footprint_px / static_cast<float>(rays.camera().fx_px);
   for (std::size_t i = 0; i < light.size(); ++i) {
     const bool hidden = foreground != nullptr && is_nearer(before.hits[i], line.hits[i]);

@@ -203,7 +203,7 @@ void Clutter::creeper(const SE3& T, double length_m) {
 }
 
 /// Returns the width that it took.
-double Clutter::wide_thing(const SE3& T_left, double room_m, double depth_m, double most_height_m) {
+double Clutter::wide_object(const SE3& T_left, double room_m, double depth_m, double most_height_m) {
   const double width = std::min(room_m, any(0.2, 0.38));
   const SE3 T = placed(T_left, {0.5 * width, 0, 0});
   switch (random_.below(5)) {
@@ -228,7 +228,7 @@ double Clutter::wide_thing(const SE3& T_left, double room_m, double depth_m, dou
   return width;
 }
 
-double Clutter::slender_thing(const SE3& T_left, double most_height_m) {
+double Clutter::slender_object(const SE3& T_left, double most_height_m) {
   const double width = any(0.09, 0.13);
   const SE3 T = placed(T_left, {0.5 * width, 0, 0}, any(-0.5, 0.5));
   switch (random_.below(5)) {
@@ -256,12 +256,12 @@ void Clutter::fill_board(const SE3& T, const Vector3d& clear_m) {
   while (half - x > 0.14) {
     const double room_m = half - x - 0.01;
     if (room_m > 0.22 && random_.below(5) < 2) {
-      x += wide_thing(placed(T, {x, -0.02, 0}), room_m, clear_m.y() - 0.08, clear_m.z());
+      x += wide_object(placed(T, {x, -0.02, 0}), room_m, clear_m.y() - 0.08, clear_m.z());
     } else {
       // One before the other, not in line: the far one is seen past the near one.
       const double back_m = 0.06 - 0.5 * clear_m.y();
-      if (random_.below(4) != 0) slender_thing(placed(T, {x, back_m + any(0, 0.05), 0}), clear_m.z());
-      x += slender_thing(placed(T, {x + any(0, 0.03), -back_m - any(0.01, 0.1), 0}), 0.75 * clear_m.z());
+      if (random_.below(4) != 0) slender_object(placed(T, {x, back_m + any(0, 0.05), 0}), clear_m.z());
+      x += slender_object(placed(T, {x + any(0, 0.03), -back_m - any(0.01, 0.1), 0}), 0.75 * clear_m.z());
     }
     x += any(0.0, 0.05);
   }

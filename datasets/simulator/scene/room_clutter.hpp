@@ -41,8 +41,8 @@ class Clutter {
   [[nodiscard]] Paint label(double repeat_m);
   void bar(const Vector3d& from_room, const Vector3d& to_room, double thickness_m, const Paint& paint);
   void leaf(const SE3& T, double length_m);
-  double wide_thing(const SE3& T_left, double room_m, double depth_m, double most_height_m);
-  double slender_thing(const SE3& T_left, double most_height_m);
+  double wide_object(const SE3& T_left, double room_m, double depth_m, double most_height_m);
+  double slender_object(const SE3& T_left, double most_height_m);
   [[nodiscard]] double any(double low, double high) { return random_.uniform(low, high); }
 
   RoomBuilder& builder_;

@@ -66,7 +66,7 @@ class Furnisher {
   void picture(const SE3& T, double width_m, double height_m);  ///< on a wall
   void door(const SE3& T);
   void window(const SE3& T);
-  void small_thing(const SE3& T);  ///< one of the above, up to 0.3 m high and 0.24 m wide
+  void small_object(const SE3& T);  ///< one of the above, up to 0.3 m high and 0.24 m wide
 
  private:
   [[nodiscard]] Paint wood(bool dark) const;

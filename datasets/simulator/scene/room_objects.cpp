@@ -141,7 +141,7 @@ void Furnisher::window(const SE3& T) {
   }
 }
 
-void Furnisher::small_thing(const SE3& T) {
+void Furnisher::small_object(const SE3& T) {
   switch (random_.below(5)) {
     case 0:
       return vase(T);

@@ -1,4 +1,4 @@
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 #include <algorithm>
 
