@@ -38,7 +38,7 @@ Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters) {
   const Matrix6d covariance = scaled_pseudo_inverse(information);
   const Vector6d optimum = -(covariance * gradient);
   // With gradients of variance factor * information, the expected square of a cluster's gradient in the
-  // metric of the covariance is factor times its share, less what the optimum took from it.
+  // metric of the covariance is factor times its share, less the reduction by the optimum itself.
   double scatter = 0, expected = 0, squared_influence = 0;
   for (const filter::PoseQuadratic& cluster : clusters) {
     const Vector6d left = cluster.gradient + cluster.information * optimum;

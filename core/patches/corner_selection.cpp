@@ -40,7 +40,7 @@ std::vector<Corner> detect(const GreyImage& grey, const Grid& grid, const config
     if (patch_fits(grey, pixel, config.size_px))
       corners.push_back({pixel, keypoint.response, grid.cell(pixel)});
   }
-  // A total order: the result must not depend on the detector's own.
+  // A total order: the result must not depend on the order of the detector.
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::make_tuple(-a.score, a.pixel.y(), a.pixel.x()) <
            std::make_tuple(-b.score, b.pixel.y(), b.pixel.x());

@@ -26,15 +26,16 @@ class PatchSurfaces {
 
  private:
   /// Workspace of one chunk of patches.
-  struct Beside {
+  struct Workspace {
     tsdf::TsdfBrick brick;
     std::vector<raycast::ExpectedSurface> measured;
     std::vector<std::size_t> places;
     std::vector<raycast::SurfacePoint> found;
   };
 
-  void find_beside(const raycast::SurfaceSearch& search, std::span<const raycast::ExpectedSurface> pixels,
-                   std::span<const std::size_t> first, const Workers& workers);
+  void find_near_measurements(const raycast::SurfaceSearch& search,
+                              std::span<const raycast::ExpectedSurface> pixels,
+                              std::span<const std::size_t> first, const Workers& workers);
   void find_around(const raycast::SurfaceSearch& search, std::span<const raycast::ExpectedSurface> pixels,
                    const Workers& workers);
   void walk_rays(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
@@ -42,7 +43,7 @@ class PatchSurfaces {
                  const Workers& workers);
 
   std::vector<raycast::SurfacePoint> surfaces_;
-  std::vector<Beside> beside_;  // one a chunk of patches
+  std::vector<Workspace> workspaces_;  // one a chunk of patches
   // Pixels that were not found at once:
   std::vector<std::size_t> places_;
   std::vector<raycast::ExpectedSurface> expected_;

@@ -49,8 +49,8 @@ struct Squares {
     return (patch * levels + level) * area();
   }
 
-  /// How far from what was measured a surface is looked for: one at the far end of what UsableSurface allows
-  /// has more noise than one at the measurement.
+  /// Search distance around the measured depth: a surface at the far limit of UsableSurface has more noise
+  /// than one at the measurement.
   [[nodiscard]] float reach_m(float measured_m) const {
     constexpr float kMargin = 1.5F;
     const double noise_m = preprocessing::depth_sigma_m(static_cast<double>(measured_m), config.depth);
@@ -66,7 +66,7 @@ struct Squares {
 
 /// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
 /// once, since a coarse level's are partly those of a finer one. Where anything was measured in the finest
-/// square, coarse pixels without measured depth are left out: their colour would not be aligned by
+/// square, coarse pixels without measured depth are left out: their colour would not be used
 /// (use_model_depth_in_holes), intensity errors are taken on the finest level, and a ray each is much work
 /// for the few that would find a plane in the next frame.
 void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
@@ -138,7 +138,7 @@ class UsableSurface {
 };
 
 /// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
-/// without any lies in a hole, or the camera has no depth: there the model's surface has to do.
+/// without any lies in a hole, or the camera has no depth: there the model's surface is used.
 void use_model_depth_in_holes(Patch& patch) {
   for (const PatchLevel& level : patch.levels) {
     for (const PatchPixel& pixel : level.pixels) {
@@ -163,7 +163,7 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
     std::vector<PatchPixel>& pixels = patch.levels[l].pixels;
     pixels.clear();
     pixels.reserve(squares.area());
-    // A pixel of a coarse level is a mean over what lies about its own size around it.
+    // A pixel of a coarse level is a mean over an area of about its own size.
     const int reach_px = l == 0 ? 0 : 1 << l;
     for (std::size_t i = 0; i < squares.area(); ++i) {
       const std::int32_t number = work.pixel_of[squares.first(p, l) + i];
@@ -204,7 +204,7 @@ void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
   });
 }
 
-/// Survivors that are still inside and apart from each other, oldest first.
+/// Survivors that are still inside the image and separated from each other, oldest first.
 std::vector<TrackedCentre> select_separated(std::span<const TrackedCentre> survivors,
                                             const ReferenceFrame& frame, const config::PatchConfig& config) {
   std::vector<TrackedCentre> kept;

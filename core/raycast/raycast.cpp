@@ -26,8 +26,8 @@ constexpr int kBlockShift = 3;   // voxels to blocks
 constexpr int kRegionShift = 5;  // voxels to regions
 
 struct Rays : RayLanes {
-  /// How much z-depth a point on the rays has left in the cube with this index along each axis; point and
-  /// cube in units of `side` voxels.
+  /// Remaining z-depth of a point on the rays in the cube with this index along each axis; point and cube in
+  /// units of `side` voxels.
   [[nodiscard]] simd::Float8 z_to_leave(const simd::Points& point, const tsdf::LatticePoints& cube,
                                         simd::Float8 side) const {
     const auto along = [&](simd::Float8 from, simd::Int8 index, simd::Float8 inverse_step) {

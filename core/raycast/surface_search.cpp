@@ -9,8 +9,8 @@ namespace fusebench::raycast {
 
 namespace {
 
-// Beside a measurement a surface is looked for this far along the ray, each way: the noise of the two, and
-// some voxels for what the steps go beyond it.
+// Search distance along the ray on either side of a measurement: the noise of both, and some voxels of margin
+// for the steps.
 constexpr float kReach_sigmas = 2.0F;
 constexpr float kReach_voxels = 2.0F;
 // The gradient at a point needs the voxel before its cell's base and two after it.
@@ -18,8 +18,8 @@ constexpr int kBefore = 1;
 constexpr int kAfter = 2;
 constexpr int kMaxSamples = 10;
 
-// A brick of more voxels than these takes longer to copy than looking for the blocks of each pixel, or does
-// not stay in a core's own cache (256 kB).
+// A larger brick takes longer to copy than looking up the blocks of each pixel, or exceeds the L2 cache (256
+// kB).
 constexpr double kVoxelsPerPixel = 200;
 constexpr double kMaxVoxels = 65536;
 constexpr std::size_t kFewPixels = 32;
@@ -54,18 +54,18 @@ void SurfaceSearch::find(std::span<const ExpectedSurface> pixels, std::span<Surf
   find_in(field_, field_.origin_voxel(), false, pixels, surfaces);
 }
 
-void SurfaceSearch::find_beside(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
-                                std::span<SurfacePoint> surfaces) const {
+void SurfaceSearch::find_near_measurements(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
+                                           std::span<SurfacePoint> surfaces) const {
   if (pixels.empty()) return;
   const Box box = box_around(pixels);
   if (box.voxels() <= kMaxVoxels && box.voxels() <= kVoxelsPerPixel * static_cast<double>(pixels.size())) {
     brick.copy(field_.volume(), box.first, box.last);
     find_in(brick, brick.origin_voxel().cast<double>(), true, pixels, surfaces);
   } else if (pixels.size() > kFewPixels) {
-    // An edge between near and far, or pixels that are far apart: parts of them may do.
+    // An edge between near and far, or pixels that are far apart: the halves are tried separately.
     const std::size_t half = pixels.size() / 2;
-    find_beside(pixels.first(half), brick, surfaces.first(half));
-    find_beside(pixels.subspan(half), brick, surfaces.subspan(half));
+    find_near_measurements(pixels.first(half), brick, surfaces.first(half));
+    find_near_measurements(pixels.subspan(half), brick, surfaces.subspan(half));
   } else {
     find_in(field_, field_.origin_voxel(), true, pixels, surfaces);
   }
@@ -100,7 +100,7 @@ SurfaceSearch::PixelGroup SurfaceSearch::group_of(std::span<const ExpectedSurfac
   return group;
 }
 
-/// The voxels around all parts of rays where a surface is looked for.
+/// The voxels around all parts of rays that are searched.
 SurfaceSearch::Box SurfaceSearch::box_around(std::span<const ExpectedSurface> pixels) const {
   constexpr float kFar = std::numeric_limits<float>::max();
   simd::Points low = {simd::all_lanes(kFar), simd::all_lanes(kFar), simd::all_lanes(kFar)};

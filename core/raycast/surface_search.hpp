@@ -32,8 +32,8 @@ class SurfaceSearch {
 
   /// The same for pixels that lie close together in the image and in depth, and no further from the expected
   /// place than noise explains. `brick`: workspace.
-  void find_beside(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
-                   std::span<SurfacePoint> surfaces) const;
+  void find_near_measurements(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
+                              std::span<SurfacePoint> surfaces) const;
 
  private:
   struct Box;

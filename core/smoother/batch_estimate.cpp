@@ -16,7 +16,7 @@ namespace fusebench::smoother {
 
 namespace {
 
-/// What the visual information is divided by, in two parts.
+/// The two factors that the visual information is divided by.
 struct VisualScale {
   double variance = 1;
   double correlation = 1;
@@ -129,7 +129,7 @@ double squared(const std::vector<double>& residuals, std::size_t begin, std::siz
 /// sequence, Geyer 1992).
 double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_of_frame) {
   constexpr double kNegligible = 0.05;
-  constexpr std::size_t kLongestLag = 30;
+  constexpr std::size_t kMaxLag = 30;
   double power = 0;
   double count = 0;
   for (const auto& r : residual_of_frame) {
@@ -138,7 +138,7 @@ double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_o
     count += 1;
   }
   double factor = 1;
-  for (std::size_t lag = 1; lag <= kLongestLag; ++lag) {
+  for (std::size_t lag = 1; lag <= kMaxLag; ++lag) {
     double product = 0;
     double pairs = 0;
     for (std::size_t k = lag; k < residual_of_frame.size(); ++k) {

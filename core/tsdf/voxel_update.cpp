@@ -14,7 +14,8 @@ using simd::lane_details::byte_of;
 
 static_assert(kBlockSide == simd::kLanes, "a row of a block is one vector");
 
-// What weighs less is nothing: of less, 16 bits keep no eleven digits.
+// Smaller weights are treated as zero: below this, a half-precision number has fewer than eleven significant
+// bits.
 constexpr float kMinWeight = 0x1p-14F;
 constexpr float kMaxColorCount = 255.0F;  // of a byte
 constexpr int kCountByte = 3;
@@ -52,8 +53,8 @@ VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, co
       max_color_count_(std::min(max_weight_, kMaxColorCount)),
       color_rounding_(spread(frame_number)) {}
 
-// A slice at a time, and each step for all of its rows before the next one: which rows matter is known by
-// then, so that a processor need not guess it, and takes no work back.
+// A slice at a time, and each step for all of its rows before the next one: which rows are needed is known by
+// then, so that the branch is not mispredicted.
 void VoxelUpdate::apply(const BlockIndex& index, const BlockVoxels& block) const {
   const Vector3d corner_world = index.cast<double>() * (kBlockSide * voxel_m_);
   const Eigen::Vector3f corner_camera = (T_camera_world_ * corner_world).cast<float>();
@@ -134,7 +135,7 @@ simd::Int8 VoxelUpdate::add_distance(const SeenRow& seen, const BlockVoxels& blo
 }
 
 // The running means of the three channels. A mean moves by less than a level, so that always rounding to the
-// nearest would stop it; rounding up as often as the fraction says lets it go on.
+// nearest would stop it; stochastic rounding by the fraction keeps it moving.
 void VoxelUpdate::add_color(simd::Int8 pixel, simd::Int8 colored, const BlockVoxels& block,
                             std::size_t row) const {
   static_assert(sizeof(Rgb) == 3);

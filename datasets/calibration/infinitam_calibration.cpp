@@ -40,7 +40,7 @@ Result<std::vector<Word>> words_of(const std::filesystem::path& file) {
   return words;
 }
 
-/// Takes the words one after the other and remembers the first thing that was wrong.
+/// Reads words in order and keeps the first error.
 class Blocks {
  public:
   Blocks(std::string file, std::vector<Word> words) : file_(std::move(file)), words_(std::move(words)) {}

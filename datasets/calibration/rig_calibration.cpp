@@ -40,13 +40,13 @@ struct Range {
 constexpr Range kPixels{1e-3, 1e6};
 constexpr Range kCentre{-1e6, 1e6};
 constexpr Range kSize{1, 100'000};
-constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would silence all others
+constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would override all others
 constexpr Range kWalk{0, 100};
 constexpr Range kReadout{0, 1};
 constexpr Range kOffset{-10, 10};
 constexpr double kMaxTranslation_m = 1000;  // between sensors of one rig
 
-/// One of the three tables: its entries by key, and what went wrong first.
+/// One of the three tables: its entries by key, and the first error.
 class Section {
  public:
   Section(const config::TomlDocument& document, std::string name, const std::string& file)
@@ -282,7 +282,7 @@ Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesys
   if (!std::filesystem::exists(file, ignored)) return std::optional<RigCalibration>{};
   auto calibration = read_calibration(file);
   if (calibration) return std::optional<RigCalibration>(std::move(*calibration));
-  // The file is part of the recording, not of what the user asked for.
+  // The file is part of the recording, not of the command line.
   calibration.error().code = ErrorCode::data_corrupt;
   return tl::unexpected(calibration.error());
 }

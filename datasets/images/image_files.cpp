@@ -61,7 +61,7 @@ Result<OpenedImage> open_image(const std::filesystem::path& file) {
   return std::move(*opened);
 }
 
-/// What the caller needs the file to hold.
+/// Requirements of the caller on the file.
 struct Layout {
   int channels = 0;
   SampleType type = SampleType::uint8;
@@ -88,15 +88,15 @@ Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout&
   return image;
 }
 
-/// What the recordings at hand consist of takes the short way; whatever is not as it should be is left to the
-/// library, which reports the reason.
+/// Plain PNGs of recordings take the fast decoder; every other or damaged file is left to the library, which
+/// reports the reason.
 template <class Pixel, class Decode>
 Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
                                   const Layout& layout, std::optional<ImageSize> expected,
                                   const std::optional<io::ContentHash>& opened) {
   ByteBuffer content = content_of(file);
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored)) {  // else its absence is what is wrong
+  if (std::filesystem::exists(file, ignored)) {  // else the missing library is the error
     if (const auto same = check_unchanged(file, content.text(), opened); !same)
       return tl::unexpected(same.error());
   }

@@ -24,7 +24,7 @@ void remember(png_structp png, png_const_charp reason) {
 
 void ignore(png_structp, png_const_charp) {}
 
-/// What the library needs; released in the end.
+/// State of the library; released in the destructor.
 struct Writer {
   explicit Writer(std::string& reason)
       : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, remember, ignore)),

@@ -23,7 +23,7 @@ constexpr double kOffsetError_s = 0.010;
 constexpr double kRotationWarning_rad = radians(2);
 constexpr double kRotationError_rad = radians(5);
 constexpr double kSwapTolerance_rad = radians(20);
-constexpr double kKnown_rad = radians(3);  // the uncertainty of a rotation that is worth telling
+constexpr double kKnown_rad = radians(3);  // largest uncertainty of a rotation that is reported
 constexpr double kSigmas = 4;
 
 struct SignedPermutation {
@@ -210,8 +210,8 @@ struct ComparedTurns {
   [[nodiscard]] bool related() const { return fit && fit->offset_found && fit->explained >= kMinExplained; }
 };
 
-/// With the truth, if there is one without errors. If the IMU does not turn as the truth does, the images
-/// tell which of the two is wrong.
+/// With the truth, if there is one without errors. If the gyroscope disagrees with the truth, the images
+/// decide which of the two is wrong.
 ComparedTurns compare_turns(const recording::Recording& recording, const Workers& workers,
                             const InspectOptions& options, Inspection& out) {
   const measures::GyroscopeIntegral gyroscope(recording.imu);

@@ -101,7 +101,7 @@ Comparison WarpTest::compare(const std::vector<std::optional<measures::WarpResid
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (!base[i] || !other[i]) continue;  // no ground truth: counts for neither reading
     ++count;
-    // A reading must not win by warping most points out of view.
+    // A reading must not improve by warping most points out of view.
     const bool lost = other[i]->overlap < 0.5 * base[i]->overlap || other[i]->points < 50;
     const double ratio =
         lost ? std::log(kLostRatio)

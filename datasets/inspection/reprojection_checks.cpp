@@ -25,7 +25,7 @@ constexpr double kMinShareOfPairs = 0.7;
 constexpr double kCorrectionFactor = 0.88;
 constexpr int kRounds = 3;
 // True poses leave a small part of the residuals of no motion at all; poses of something else leave about as
-// much. That says nothing where the truth itself hardly moves: turn plus baseline over depth.
+// much. The test is not significant where the truth itself hardly moves: turn plus baseline over depth.
 constexpr double kStaticFactor = 1.1;
 constexpr double kMinMotion_rad = radians(3);
 
@@ -188,14 +188,14 @@ void search_misreadings(const recording::Recording& recording, const WarpTest& t
 }
 
 /// Whether something was found that makes the truth disagree with the images.
-bool disagreement_is_explained(const Inspection& out) {
+bool inconsistency_is_explained(const Inspection& out) {
   return std::ranges::any_of(out.findings, [](const Finding& f) {
     return f.severity == Severity::error &&
            (f.code.starts_with("truth-") || f.code == "depth-scale" || f.code == "focal-length");
   });
 }
 
-/// By how much the truth says that the image moves in the median pair.
+/// Image motion of the median pair according to the truth.
 double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m) {
   std::vector<double> motion_rad;
   for (const ReprojectionPair& pair : measured.pairs)
@@ -204,7 +204,7 @@ double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m
 }
 
 void report_inconsistency(const ReprojectionMeasurement& measured, Inspection& out) {
-  if (disagreement_is_explained(out) || !times_are_plausible(out)) return;
+  if (inconsistency_is_explained(out) || !times_are_plausible(out)) return;
   if (measured.static_factor > kStaticFactor) return;
   if (median_motion_rad(measured, out.depth.median_m) < kMinMotion_rad) return;
   out.add("truth-inconsistent", Severity::error,

@@ -28,9 +28,9 @@ constexpr std::int64_t kImuTail_ns = 50'000'000;  // after the last frame, so th
 constexpr double kLongest_s = 3600;
 // With half of the longest read-out, depth is still within the motion, which goes on for
 // MotionSpan::kTail_ns.
-constexpr double kLongestDelay_s = 0.05;
-// A reader that takes a late clock for a true one looks for samples later than there would be otherwise; with
-// the tail above, they are within MotionSpan::kTail_ns.
+constexpr double kMaxDelay_s = 0.05;
+// With an uncalibrated late clock readers need samples beyond the usual end; with the tail above, they are
+// within MotionSpan::kTail_ns.
 constexpr double kMaxUntold_s = 0.04;
 constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate need more than the frames'
 
@@ -55,7 +55,7 @@ Result<void> check_options(const SimulationOptions& o) {
         std::tuple{"imu_rate_hz", o.imu_rate_hz, 50.0, 2000.0},
         std::tuple{"color readout_s", o.rig.color.timing.color_readout_s, 0.0, 0.1},
         std::tuple{"depth readout_s", o.rig.color.timing.depth_readout_s, 0.0, 0.1},
-        std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kLongestDelay_s, kLongestDelay_s},
+        std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kMaxDelay_s, kMaxDelay_s},
         std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0},
         std::tuple{"untold_time_offset_s", o.untold_time_offset_s, -kMaxUntold_s, kMaxUntold_s}}) {
     if (!(value >= low && value <= high)) {
@@ -174,8 +174,8 @@ Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& se
   return layouts::write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
 }
 
-/// Whether the folder holds this very recording already, as whole as its reader can tell. Error usage if it
-/// is anything else.
+/// Whether the folder already holds this recording, complete as far as its reader checks. Error usage if it
+/// holds anything else.
 Result<bool> is_there(const fs::path& folder, const std::string& identity) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return false;
@@ -213,7 +213,7 @@ Result<SimulationOptions> simulation_defaults(layouts::RecordingLayout layout, m
   options.layout = layout;
   options.preset = preset;
   options.motion = motion::motion_preset(preset);
-  // What is near enough to be swept over, with room for it before.
+  // Surfaces near enough for a sweep, with free space before them.
   if (preset == motion::MotionPreset::sweep) options.room = RoomKind::storage;
   options.rig = std::move(*rig);
   options.depth_noise = layouts::describe(layout).depth_noise;

@@ -62,7 +62,7 @@ std::optional<sensors::MovingObject> hand_before(const faults::Scenery& scenery,
                                }};
 }
 
-/// What is the same for all frames.
+/// Data common to all frames.
 struct ImageContext {
   const SimulationOptions& options;
   const CaptureSetup& setup;

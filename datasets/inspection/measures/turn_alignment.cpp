@@ -107,7 +107,7 @@ bool holds_enough(const Fit& fit, std::size_t all) {
 }
 
 /// What a fit leaves unexplained of the turns that it was compared with, 0 to 1. For the search over all
-/// offsets: far offsets compare other parts of the motion, and a still part would be explained by anything.
+/// offsets: far offsets compare other parts of the motion, and a part without motion fits anything.
 double unexplained(const Fit& fit, std::size_t all) {
   return holds_enough(fit, all) ? fit.cost / fit.total : 1;
 }
@@ -219,11 +219,11 @@ double camera_rms(const std::vector<Interval>& intervals) {
 
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
-/// How well all that is fitted together is known: offset, rotation (3), bias (3), scale. The curvature of the
-/// cost would not tell, since the gyroscope's noise bends it as well. So the model is linearised, with the
-/// change of the rate from the gyroscope smoothed over kSmoothing_s; the noise that is left in it would count
-/// as information about the offset and is taken off. What the turns do not tell is known as wide as it is
-/// searched.
+/// Joint uncertainty of all fitted parameters: offset, rotation (3), bias (3), scale. The curvature of the
+/// cost cannot be used, since the noise of the gyroscope contributes to it. So the model is linearised, with
+/// the change of the rate from the gyroscope smoothed over kSmoothing_s; the noise that is left in it would
+/// count as information about the offset and is taken off. A parameter that the data do not determine has the
+/// width of its search interval as uncertainty.
 Matrix8d covariance(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope,
                     const Fit& fit, double offset_s, double variance_rad2) {
   constexpr double kSmoothing_s = 0.15;

@@ -12,7 +12,7 @@ namespace fusebench::simulator::faults {
 
 namespace {
 
-constexpr std::uint64_t kCalibrationError = 0xCE;  // keeps the random numbers of one seed apart
+constexpr std::uint64_t kCalibrationError = 0xCE;  // key of an independent random stream
 
 constexpr double kMax_deg = 45;
 constexpr double kMax_cm = 50;

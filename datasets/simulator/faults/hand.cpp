@@ -11,7 +11,7 @@ namespace fusebench::simulator::faults {
 
 namespace {
 
-constexpr std::uint64_t kHand = 0xFA;  // keeps the random numbers of one seed apart
+constexpr std::uint64_t kHand = 0xFA;  // key of an independent random stream
 
 constexpr double kDistance_m = 0.4;
 constexpr double kDome_m = 0.03;

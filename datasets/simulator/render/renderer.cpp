@@ -22,7 +22,7 @@ struct Linear {
   [[nodiscard]] float at(const rays::RayHit& hit) const { return at_a + hit.u * along_u + hit.v * along_v; }
 };
 
-/// All that shading needs of a textured triangle, in one cache line.
+/// Shading data of a textured triangle, in one cache line.
 struct TriangleShading {
   Linear u;
   Linear v;
@@ -43,7 +43,7 @@ float texel_density(const scene::SimulatedScene& scene, const std::array<std::ui
   return area > 0 ? static_cast<float>(side) * std::sqrt(texture_area / area) : 0.0F;
 }
 
-/// One row of rays in the world, and what they hit.
+/// One row of rays in the world frame, and their hits.
 struct RowOfRays {
   std::vector<float> x;
   std::vector<float> y;
@@ -108,8 +108,7 @@ struct Renderer::State {
     if (plain) copy_colors(scene.mesh);
   }
 
-  /// The light that a hit sends; footprint_m: side of the square at the hit, across the ray, that is
-  /// averaged.
+  /// Radiance of a hit; footprint_m: side of the square at the hit, across the ray, that is averaged.
   [[nodiscard]] Eigen::Vector3f light_of(const rays::RayHit& hit, float footprint_m) const {
     const TriangleShading& at = shading[hit.triangle];
     if (at.texture == scene::SimulatedScene::kNoTexture) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kRowsPerChunk = 8;
 
-// Purposes that keep the random numbers of one seed apart.
+// Keys of independent random streams of one seed.
 constexpr std::uint64_t kPixelNoise = 0xC0;
 constexpr std::uint64_t kGainPhase = 0xC1;
 
@@ -67,7 +67,7 @@ std::vector<Vector2d> sample_offsets(int samples) {
   return offsets;
 }
 
-/// What does not change within an image.
+/// Parameters that are constant within an image.
 struct Exposure {
   const render::Renderer& renderer;
   const ColorSensor& sensor;

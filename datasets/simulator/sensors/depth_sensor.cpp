@@ -11,7 +11,7 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-constexpr std::uint64_t kDepthNoise = 0xD0;  // keeps the random numbers of one seed apart
+constexpr std::uint64_t kDepthNoise = 0xD0;  // key of an independent random stream
 
 std::uint16_t raw_value(float depth_m, double units_per_metre) {
   const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
@@ -50,7 +50,7 @@ Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const 
   return surfaces;
 }
 
-/// Keeps the nearer one of each pixel; 0 is nothing.
+/// Keeps the nearer depth of each pixel; 0 is no measurement.
 void put_before(const Image<render::Renderer::Surface>& nearer, Image<render::Renderer::Surface>& surfaces) {
   for (std::size_t i = 0; i < surfaces.data.size(); ++i) {
     const render::Renderer::Surface& a = nearer.data[i];

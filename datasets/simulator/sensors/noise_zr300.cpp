@@ -65,8 +65,8 @@ class SmoothNoise {
   std::uint64_t key_;
 };
 
-/// Where the right camera sees something nearer in place of what the left one sees, or nothing since it is
-/// out of its image. True: the pixel of the row has no partner.
+/// Occlusion in the right image: true where a nearer surface hides the point of a pixel of the left image
+/// row, or the point is outside the right image.
 std::vector<bool> occluded_in_right(const DepthImage& disparity_px, int row) {
   const auto width = static_cast<std::size_t>(disparity_px.width);
   std::vector<float> nearest(width, 0.0F);  // by column of the right image
