@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/filter/iekf.hpp"
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
 #include "core/frame_preparation.hpp"
 #include "core/measurement/patch_measurement.hpp"

@@ -1,4 +1,4 @@
-// What the estimator carries from frame to frame.
+// The state of the estimator between frames.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 namespace fusebench::core {
 
-/// All that the frames so far have left; whoever begins again makes it anew. Memory that only serves as such
-/// (images, workspaces) is elsewhere.
+/// The complete state of tracking after a frame; a restart replaces it. Buffers without state (images,
+/// workspaces) are elsewhere.
 struct Tracking {
   Tracking(const config::Config& config, const SensorRig& rig)
       : model(config.tsdf), relocalisation(config, rig) {}
@@ -29,7 +29,7 @@ struct Tracking {
   int frames = 0;                                 ///< since the start
   int lost_frames = 0;                            ///< in a row, before the current one
   health::OcclusionGate occlusion_gate;
-  measurement::ResidualScale residual_scale;      ///< what the residuals of the frames so far showed
+  measurement::ResidualScale residual_scale;      ///< noise scale estimated from earlier frames
   std::vector<patches::Patch> patches;            ///< cut from the last fused frame
   std::int64_t reference_ns = 0;                  ///< capture instant of that frame
   std::vector<patches::TrackedCentre> survivors;  ///< where the good patches are in the current frame

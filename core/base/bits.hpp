@@ -1,4 +1,4 @@
-// Sets kept as the bits of a number.
+// Bit sets in an integer.
 #pragma once
 
 #include <bit>

@@ -14,8 +14,8 @@ namespace fusebench::inline base {
 enum class ErrorCode {
   usage,          ///< wrong command line
   configuration,  ///< unknown key, wrong type, out of range
-  data_missing,   ///< a file or folder that is not there
-  data_corrupt,   ///< a file that is there and cannot be trusted
+  data_missing,   ///< a file or folder that does not exist
+  data_corrupt,   ///< a file that exists but is invalid
   run_failed,     ///< a run ended early (lost tracker, allocation failure)
   io,             ///< the output could not be written
   internal,       ///< a bug

@@ -12,7 +12,8 @@
 namespace fusebench::inline base {
 
 /// An array of plain values whose memory is grown by realloc(): for large ones the system moves pages, not
-/// bytes, so that neither time nor twice the memory is spent, and pages that nobody wrote to cost nothing.
+/// bytes, so that neither time nor twice the memory is spent, and pages that were never written take no
+/// memory.
 template <class T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -41,7 +42,7 @@ class GrowingArray {
   [[nodiscard]] T* data() { return values_.get(); }
   [[nodiscard]] const T* data() const { return values_.get(); }
 
-  /// Adds values that are not set. Throws std::bad_alloc.
+  /// Adds uninitialised values. Throws std::bad_alloc.
   void grow_to(std::size_t size) {
     if (size > capacity_) {
       const std::size_t capacity = size + size / 2;

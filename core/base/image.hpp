@@ -21,7 +21,7 @@ struct Image {
         data(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), fill) {}
 
   [[nodiscard]] bool empty() const { return data.empty(); }
-  /// What the pixels are then is not said; memory is kept.
+  /// Pixel values are unspecified afterwards; the allocation is reused.
   void resize(int width_px, int height_px) {
     width = width_px;
     height = height_px;
@@ -54,7 +54,7 @@ struct IntensitySample {
 /// Grey-level pyramid, level 0 = the image, each level half the size (5x5 binomial filter in integer
 /// arithmetic, hence the same on every machine). Pixel (x, y) of level l lies at (x, y) * 2^l of level 0.
 [[nodiscard]] std::vector<GreyImage> build_pyramid(const GreyImage& image, int levels);
-/// The same into memory that is used again.
+/// The same into existing buffers.
 void build_pyramid(const GreyImage& image, int levels, std::vector<GreyImage>& pyramid);
 
 /// Grey image by ITU-R BT.601 weights in integer arithmetic (0.299 R + 0.587 G + 0.114 B).

@@ -1,4 +1,4 @@
-// What the estimator reports of each tracked pixel, and what the intensity metrics take.
+// Intensity residual of each tracked pixel: output of the estimator, input of the intensity metrics.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,10 +16,10 @@ struct IntensityResidual {
   bool accepted = false;      ///< its patch also passed the chi-square gate
 };
 
-/// Where that pixel was found in frame k, and what it is compared with.
-struct PixelLanding {
+/// Where that pixel was warped to in frame k, and what it is compared with.
+struct WarpedPixel {
   std::uint32_t patch = 0;  ///< number of its patch in the frame
-  Eigen::Vector2f landed_px = Eigen::Vector2f::Zero();
+  Eigen::Vector2f warped_px = Eigen::Vector2f::Zero();
   float reference_grey = 0;
   float observed_grey = 0;
 };
@@ -27,7 +27,7 @@ struct PixelLanding {
 /// The same pixels in both lists.
 struct TrackedPixels {
   std::vector<IntensityResidual> intensity;
-  std::vector<PixelLanding> landings;
+  std::vector<WarpedPixel> warped;
 };
 
 }  // namespace fusebench::inline base

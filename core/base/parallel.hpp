@@ -1,6 +1,6 @@
-// Deterministic parallel loops: work is cut into chunks whose size does not depend on the thread count,
-// each chunk writes its own slot, and whoever sums the slots does so in index order. The number of threads
-// therefore never shows in a result.
+// Deterministic parallel loops: work is cut into chunks whose size does not depend on the thread count, each
+// chunk writes its own slot, and the slots are reduced in index order. Results therefore do not depend on the
+// number of threads.
 #pragma once
 
 #include <algorithm>

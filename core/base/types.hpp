@@ -78,10 +78,10 @@ struct SensorTiming {
   double color_readout_s = 0;  ///< between the first and the last row
   double depth_readout_s = 0;  ///< the same for depth
   double depth_delay_s =
-      0;  ///< how much later than its stamp says, relative to colour, depth is taken (readers apply it)
+      0;  ///< delay of the depth image behind its stamp, relative to colour (readers apply it)
 };
 
-/// What the estimator must know of a recording's sensors.
+/// Calibration of a recording's sensors, as the estimator needs it.
 struct SensorRig {
   PinholeCamera camera;
   SensorTiming timing;

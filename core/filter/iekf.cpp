@@ -7,7 +7,8 @@ namespace fusebench::filter {
 
 namespace {
 
-/// One iterate: y, the chart coordinates d = P B^T y, the state there, and what the images are compared at.
+/// One iterate: y, the chart coordinates d = P B^T y, the state there, and the hypothesis of reference and
+/// model pose.
 struct Iterate {
   MeasuredVector y = MeasuredVector::Zero();
   StateVector delta = StateVector::Zero();
@@ -26,7 +27,7 @@ class Update {
         combinations_(measured_combinations(prior.mean)),
         gain_columns_(prior.covariance * combinations_.transpose()),
         measured_covariance_(combinations_ * gain_columns_) {
-    // What an earlier update of the same patches has learnt of the reference pose.
+    // Correction of the reference pose by an earlier update of the same patches.
     known_.head<kPoseSize>() = -pose_transport(prior.mean.T_world_imu, prior.mean.T_world_imu_reference) *
                                prior.mean.reference_offset;
   }
@@ -38,8 +39,8 @@ class Update {
     const int stages = measurement_.stages();
     for (int stage = 0; stage < stages; ++stage) {
       const bool last = stage + 1 == stages;
-      // Coarse stages only bring the estimate into the basin; at least one iteration is left for the real
-      // thing.
+      // Coarse stages only bring the estimate into the basin; at least one iteration is left for the finest
+      // stage.
       const int budget = last ? config_.max_iterations - result.iterations
                               : std::min(config_.coarse_iterations,
                                          config_.max_iterations - result.iterations - (stages - 1 - stage));

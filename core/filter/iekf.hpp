@@ -3,15 +3,15 @@
 //   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
-// every one (iekf.prior_in_every_iteration). A measurement sees two combinations B d of the error state only
-// (pose_anchors.hpp), so the optimum is x_prior (+) P B^T y for some y in R^12: the update iterates on y,
-// never inverts P (which may be singular), and carries velocity, biases and gravity along by their
-// correlations.
+// every one (iekf.prior_in_every_iteration). A measurement depends on two linear combinations B d of the
+// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^12: the update
+// iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity along by
+// their correlations.
 #pragma once
 
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 namespace fusebench::filter {
 
@@ -29,8 +29,8 @@ struct PoseQuadratic {
   }
 };
 
-/// Where the IMU is, if the frame that the patches were cut from, or the model, is where it was thought to
-/// be. The two differ by what the update learns about these.
+/// The pose of the IMU if the reference frame (by_reference) or the model (by_model) is kept at its prior
+/// pose. The two differ by the corrections of these during the update.
 struct PoseHypothesis {
   SE3 T_world_imu_by_reference;
   SE3 T_world_imu_by_model;
@@ -48,8 +48,8 @@ inline constexpr int kMeasuredSize = 2 * kPoseSize;
 using MeasuredVector = Eigen::Matrix<double, kMeasuredSize, 1>;
 using MeasuredMatrix = Eigen::Matrix<double, kMeasuredSize, kMeasuredSize>;
 
-/// What an update needs of a measurement. Nuisance parameters (brightness of patches) are the measurement's
-/// own: it eliminates them in linearise() and moves them along in trial_cost() and accept().
+/// Interface of a measurement to the update. Nuisance parameters (brightness of patches) are internal to the
+/// measurement: it eliminates them in linearise() and moves them along in trial_cost() and accept().
 class PoseMeasurement {
  public:
   PoseMeasurement() = default;
@@ -57,13 +57,13 @@ class PoseMeasurement {
   PoseMeasurement& operator=(const PoseMeasurement&) = delete;
   virtual ~PoseMeasurement() = default;
 
-  /// Number of resolutions, coarse to fine; the last one is the measurement itself.
+  /// Number of resolutions, coarse to fine; the last one is full resolution.
   [[nodiscard]] virtual int stages() const { return 1; }
   /// Fixes associations, visibility and robust weights at the pose (those of an earlier linearisation may
   /// do). `gate`: reject what is inconsistent.
   [[nodiscard]] virtual MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) = 0;
-  /// Cost at other poses with everything that the last linearise() fixed; `step` is the full tangent step
-  /// from there (by reference, then by model), of which `fraction` was taken.
+  /// Cost at other poses with associations and weights of the last linearise(); `step` is the full tangent
+  /// step from there (by reference, then by model), of which `fraction` was taken.
   [[nodiscard]] virtual double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
                                           double fraction) = 0;
   /// The last trial becomes the current estimate.
@@ -72,7 +72,7 @@ class PoseMeasurement {
 
 struct IekfResult {
   GaussianState posterior;
-  PoseQuadratic measurement;  ///< the last linearisation, at the posterior: what the measurement alone says
+  PoseQuadratic measurement;  ///< the last linearisation, at the posterior, without the prior
   int iterations = 0;         ///< accepted steps over all stages
   bool converged = false;     ///< the last step was below both thresholds
   double map_cost_prior = 0;  ///< J at the prediction (last stage only)

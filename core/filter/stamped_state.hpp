@@ -1,4 +1,4 @@
-// States at instants: of a filter, or of a reference.
+// Time-stamped states: estimated, or of a reference.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct StampedState {
   FilterState state;
 };
 
-/// What a filter knows at an instant.
+/// Estimate of a filter at an instant.
 struct StampedEstimate {
   std::int64_t timestamp_ns = 0;
   GaussianState estimate;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 namespace fusebench::health {
 

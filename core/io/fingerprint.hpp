@@ -11,7 +11,7 @@
 
 namespace fusebench::io {
 
-/// Length and 64-bit XXH3 of some bytes: tells whether a file is still what it was.
+/// Length and 64-bit XXH3 of some bytes: detects a changed file.
 struct ContentHash {
   std::uint64_t bytes = 0;
   std::uint64_t xxh3 = 0;

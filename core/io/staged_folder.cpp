@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Others work beside us only now and then, so that a few attempts in a row do not all meet them.
+// Concurrent access is rare and short, so a few retries are enough.
 constexpr int kAttempts = 100;
 
 /// ".<name>.<process>[-<attempt>].tmp" beside a path; the dot keeps it out of listings. Processes of other
@@ -32,7 +32,7 @@ tl::unexpected<Error> io_error(const fs::path& path, const std::error_code& erro
               "choose another folder with --out");
 }
 
-/// The folders above a path that are not there; those that it made are added, outermost first.
+/// The folders above a path that are not there; those that were created are added, outermost first.
 std::error_code create_parents(const fs::path& path, std::vector<fs::path>& created) {
   std::error_code error;
   std::vector<fs::path> missing;
@@ -42,14 +42,14 @@ std::error_code create_parents(const fs::path& path, std::vector<fs::path>& crea
   }
   error.clear();
   for (auto parent = missing.rbegin(); parent != missing.rend() && !error; ++parent) {
-    // Another process may have made it in the meantime: that is not an error, and it is not ours to remove.
+    // Another process may have created it in the meantime: no error, and it must not be removed here.
     if (fs::create_directory(*parent, error)) created.push_back(*parent);
   }
   return error;
 }
 
-/// Tells others that somebody works in the folder; the system lets go of it when the process ends, however it
-/// does. -1 where the file system has no locks, and where somebody else has this one.
+/// Marks the folder as in use; the operating system releases the lock when the process ends for any reason.
+/// -1 where the file system has no locks, or another process holds this one.
 int lock_folder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0 && flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
@@ -59,8 +59,8 @@ int lock_folder(const fs::path& folder) {
   return -1;
 }
 
-/// Onto the disk, so that a power cut keeps it. A file system that cannot do this for a folder says that the
-/// argument is invalid; whatever else it says is an error of the disk.
+/// Syncs to the disk, so that it survives a power failure. EINVAL and ENOTSUP mean that the file system
+/// cannot sync folders and are ignored; any other error is returned.
 std::error_code sync_to_disk(const fs::path& place) {
   const int descriptor = open(place.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return {errno, std::generic_category()};
@@ -83,7 +83,7 @@ std::error_code sync_tree(const fs::path& folder) {
   return error ? error : sync_to_disk(folder);
 }
 
-/// The folder that a path stands in.
+/// The parent folder of a path.
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -123,11 +123,11 @@ Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
     if (!error && fs::create_directory(temporary, error)) {
       folder.temporary_ = temporary;
       folder.lock_ = lock_folder(temporary);
-      // Somebody took the empty folder for one that was left by a dead process, and is removing it.
+      // Another process regards the empty folder as abandoned and is removing it.
       if (folder.lock_ < 0 && errno == EWOULDBLOCK) continue;
       if (fs::create_directory(folder.path(), error)) return folder;
     }
-    // Others may have removed a parent that was theirs, or the folder of this name, just now.
+    // Another process may just have removed a parent that it created, or the folder of this name.
     const bool met_another =
         !error || error == std::errc::no_such_file_or_directory || error == std::errc::file_exists;
     if (!met_another) break;
@@ -168,14 +168,14 @@ Result<void> StagedFolder::commit() {
     fs::rename(path(), final_, error);
     std::error_code ignored;
     if (!error) {
-      // What was replaced goes once the new one is on the disk.
-      error = sync_places();
+      // The replaced folder is removed once the new one is on the disk.
+      error = sync_folders();
       fs::remove_all(std::exchange(temporary_, {}), ignored);
       created_.clear();
       if (error) break;
       return {};
     }
-    // Another one was committed in between. It is replaced in its turn; what it replaced is out of date.
+    // Another one was committed in between. It is replaced as well.
     const bool met_another = error == std::errc::directory_not_empty || error == std::errc::file_exists;
     if (!met_another) {
       fs::rename(old, final_, ignored);  // if there is one
@@ -187,7 +187,7 @@ Result<void> StagedFolder::commit() {
 }
 
 /// The names of the folder, and of those above it that were made for it.
-std::error_code StagedFolder::sync_places() const {
+std::error_code StagedFolder::sync_folders() const {
   std::error_code error = sync_to_disk(folder_of(final_));
   for (auto parent = created_.rbegin(); parent != created_.rend() && !error; ++parent)
     error = sync_to_disk(folder_of(*parent));
@@ -206,7 +206,7 @@ bool is_staged_folder(const fs::path& folder) {
   return !error;
 }
 
-std::error_code remove_whole(const fs::path& folder) {
+std::error_code remove_atomically(const fs::path& folder) {
   std::error_code error;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const fs::path hidden = hidden_sibling(folder, attempt);
@@ -238,7 +238,7 @@ std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
     std::error_code ignored;
     if (lock >= 0 || (unlockable && is_older_than_a_day(folder))) {
       abandoned.push_back(folder);
-      // The lock is held meanwhile, so that whoever has just made the folder learns it.
+      // The lock is held meanwhile, so that a process that has just created the folder notices.
       if (!only_look) fs::remove_all(folder, ignored);
     }
     if (lock >= 0) close(lock);

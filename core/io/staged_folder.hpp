@@ -1,6 +1,6 @@
-// A folder that appears whole or not at all, also after a power cut: it is filled under a temporary name
-// beside its place, written through to the disk, and then renamed. Several for one place, also of other
-// processes and machines, do not disturb each other: the last one that is committed stays.
+// A folder that is written atomically and durably: it is filled under a temporary name beside its
+// destination, synced to the disk, and then renamed. Several writers of one destination, also in other
+// processes and on other machines, do not conflict: the last commit wins.
 #pragma once
 
 #include <filesystem>
@@ -28,13 +28,13 @@ class StagedFolder {
   [[nodiscard]] std::filesystem::path file(std::string_view name) const { return path() / name; }
   /// Writes a whole text file. Error io.
   [[nodiscard]] Result<void> write(std::string_view name, std::string_view text) const;
-  /// Writes every file and folder through to the disk and puts the folder into its place; a folder that is
-  /// there is moved away first and then removed. Error io.
+  /// Syncs every file and folder to the disk and renames the folder to its destination; an existing folder is
+  /// moved away first and then removed. Error io.
   [[nodiscard]] Result<void> commit();
 
  private:
   StagedFolder() = default;
-  [[nodiscard]] std::error_code sync_places() const;
+  [[nodiscard]] std::error_code sync_folders() const;
 
   std::filesystem::path final_;
   // Nobody else's: holds "new" and, on commit, "old", the folder that is replaced. Empty once committed.
@@ -43,13 +43,13 @@ class StagedFolder {
   std::vector<std::filesystem::path> created_;  // parents that were not there before, outermost first
 };
 
-/// Whether a folder is a temporary one of StagedFolder or of remove_whole(): ".<name>.<process>.tmp" or
+/// Whether a folder is a temporary one of StagedFolder or of remove_atomically(): ".<name>.<process>.tmp" or
 /// ".<name>.<process>-<attempt>.tmp" that holds nothing but folders "new" and "old".
 [[nodiscard]] bool is_staged_folder(const std::filesystem::path& folder);
 
-/// Removes a folder whole or not at all: it is moved into a temporary folder beside it first, so that a kill
-/// in the middle leaves no half of it.
-[[nodiscard]] std::error_code remove_whole(const std::filesystem::path& folder);
+/// Removes a folder atomically: it is moved into a temporary folder beside it first, so that a kill in the
+/// middle leaves no half of it.
+[[nodiscard]] std::error_code remove_atomically(const std::filesystem::path& folder);
 
 /// Removes what processes that were killed left of their temporary folders in `parent`: those whose lock
 /// nobody holds. Where a file system has no locks, only those that are older than a day. Returns them, or, if

@@ -8,7 +8,7 @@ namespace fusebench::io {
 
 namespace {
 
-/// Demands an order of the times it is given.
+/// Checks the order of successive times.
 class Clock {
  public:
   explicit Clock(TimeOrder order) : order_(order) {}

@@ -26,7 +26,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// A decimal number taken apart: value = 0.d1 d2 d3 ... * 10^point.
+/// A parsed decimal number: value = 0.d1 d2 d3 ... * 10^point.
 struct Decimal {
   bool negative = false;
   std::string digits;
@@ -73,11 +73,11 @@ bool take_decimal(std::string_view text, Decimal& decimal) {
 }
 
 /// Half of the range, so that the difference of any two times fits as well.
-constexpr std::int64_t kLatestTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
+constexpr std::int64_t kMaxTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
 
 /// value = value * 10 + digit, false beyond the latest time.
 bool append_digit(std::int64_t& value, int digit) {
-  if (value > (kLatestTime_ns - digit) / 10) return false;
+  if (value > (kMaxTime_ns - digit) / 10) return false;
   value = value * 10 + digit;
   return true;
 }
@@ -114,7 +114,7 @@ Result<std::int64_t> parse_time_ns(std::string_view text, TimeUnit unit) {
   std::int64_t value = 0;
   bool fits = true;
   for (int i = 0; i < kept && fits; ++i) fits = append_digit(value, digit(i));
-  if (fits && digit(kept) >= 5) fits = value++ < kLatestTime_ns;
+  if (fits && digit(kept) >= 5) fits = value++ < kMaxTime_ns;
   if (!fits) {
     return fail(ErrorCode::data_corrupt,
                 fmt::format("time '{}' in {} is beyond 146 years (half of what 64-bit nanoseconds hold)",
@@ -195,7 +195,7 @@ std::string TextTable::expectation() const {
 }
 
 Result<bool> TextTable::read_line() {
-  buffer_.resize(kLongestLine + 1);  // getline() also writes a terminator
+  buffer_.resize(kMaxLineLength + 1);  // getline() also writes a terminator
   stream_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   const auto count = static_cast<std::size_t>(stream_.gcount());
   if (stream_.bad()) return fail(ErrorCode::data_corrupt, fmt::format("{}: read error", file_.string()));
@@ -203,7 +203,7 @@ Result<bool> TextTable::read_line() {
     if (count == 0) return false;  // end of the file
     ++line_;
     return fail_here(
-        fmt::format("line is longer than {} characters; expected {}", kLongestLine, expectation()));
+        fmt::format("line is longer than {} characters; expected {}", kMaxLineLength, expectation()));
   }
   ++line_;
   // gcount() includes the line feed that getline() took away, which the last line may lack.

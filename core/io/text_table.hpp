@@ -37,7 +37,7 @@ void split_fields(std::string_view line, std::vector<std::string_view>& fields);
 /// ones may stand in brackets ("timestamp gx gy gz [ax ay az]"), and a row may then do without all of these.
 class TextTable {
  public:
-  static constexpr std::size_t kLongestLine = 1 << 16;  ///< characters; a longer line is not a table
+  static constexpr std::size_t kMaxLineLength = 1 << 16;  ///< characters; a longer line is not a table
 
   /// columns: names, separated by blanks ("timestamp filename"). Errors: data_missing.
   [[nodiscard]] static Result<TextTable> open(const std::filesystem::path& file, std::string_view columns);

@@ -6,7 +6,7 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Information of a prior with that standard deviation; zero sigma pins the value.
+/// Information of a prior with that standard deviation; zero sigma fixes the value.
 double prior_information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 1e18; }
 
 }  // namespace

@@ -20,15 +20,14 @@ struct PatchBrightness {
   Eigen::Matrix<double, 2, filter::kPoseSize> by_pose = Eigen::Matrix<double, 2, filter::kPoseSize>::Zero();
 };
 
-/// No change of brightness is expected, up to the sigmas of the configuration; a sigma of zero pins the
+/// No change of brightness is expected, up to the sigmas of the configuration; a sigma of zero fixes the
 /// value.
 class BrightnessPrior {
  public:
   explicit BrightnessPrior(const config::PhotometricConfig& config);
 
   [[nodiscard]] double cost(const Vector2d& gain_and_offset) const;
-  /// Adds the prior to what the residuals said of brightness, and takes brightness out of what they said of
-  /// the pose.
+  /// Adds the prior to the normal equations of brightness and eliminates brightness from those of the pose.
   void eliminate(PatchBrightness& light, filter::PoseQuadratic& photometric) const;
 
  private:

@@ -12,10 +12,10 @@
 namespace fusebench::measurement {
 
 namespace {
-// Patches a task: fixed, so that the work is cut alike for every number of threads.
+// Patches per task: fixed, so that the chunks do not depend on the number of threads.
 constexpr std::size_t kPatchesPerChunk = 8;
 
-/// A place near the points of the patches.
+/// A local origin near the points of the patches.
 Vector3d origin_of(std::span<const patches::Patch> patches) {
   for (const patches::Patch& patch : patches) {
     for (const patches::PatchLevel& level : patch.levels) {
@@ -25,7 +25,7 @@ Vector3d origin_of(std::span<const patches::Patch> patches) {
   return Vector3d::Zero();
 }
 
-/// A pixel's residual against the patch's grey level at this brightness, and what whitens it.
+/// A pixel's residual against the patch's grey level at this brightness, and its whitening factor.
 struct GreyResidual {
   GreyResidual(const Vector2d& gain_and_offset, double noise_grey)
       : gain(static_cast<float>(gain_and_offset.x())),
@@ -115,7 +115,7 @@ double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*ki
   return variance_factor(patch_scatter(clusters), config_.iekf.scatter_prior_freedom);
 }
 
-/// Levels do not know of each other, and have about as many pixels each.
+/// Levels are independent of each other and have about the same number of pixels.
 void PatchMeasurement::warp_all(const PosedLevels& posed) {
   const bool coarse = finest_ > 0;
   const double tolerance_m = (coarse ? 2.0 : 1.0) * config_.patches.occlusion_distance_m;
@@ -228,7 +228,7 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
                    frame_->pyramid.front(), config_.patches, outcome);
   outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_));
   if (!outcome.accepted) {
-    // Rejected honestly: neither its residuals nor its brightness prior count.
+    // A rejected patch contributes neither its residuals nor its brightness prior.
     state.counts = false;
     state.photometric = {};
     state.geometric = {};
@@ -286,8 +286,8 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
     for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
       const simd::Int8 used = levels_[l].fixed[i].photometric;
       if (!simd::any(used)) continue;
-      // A pixel that leaves the image, or passes behind the camera, keeps counting at the border: leaving
-      // must not pay.
+      // A pixel that leaves the image, or passes behind the camera, keeps its cost at the border: leaving the
+      // image must not lower the cost.
       const simd::Points point = camera.to_camera(lanes.projected(i));
       const simd::Float8 inverse_z =
           1.0F / simd::max(used ? point.z : simd::all_lanes(1.0F), simd::all_lanes(1e-3F));
@@ -317,7 +317,7 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
   for (const PatchOutcome& outcome : outcomes_)
     count += outcome.tracked ? static_cast<std::size_t>(outcome.usable_pixels) : 0;
   tracked.intensity.reserve(count);
-  tracked.landings.reserve(count);
+  tracked.warped.reserve(count);
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     if (!outcomes_[p].tracked) continue;
     const auto& pixels = patches_[p].levels.front().pixels;
@@ -330,7 +330,7 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
         const float reference = pixel.intensity;
         tracked.intensity.push_back(
             {pixel.reference_pixel, std::abs(observed[lane] - reference), outcomes_[p].accepted});
-        tracked.landings.push_back(
+        tracked.warped.push_back(
             {static_cast<std::uint32_t>(p), {w.x[lane], w.y[lane]}, reference, observed[lane]});
       });
     }

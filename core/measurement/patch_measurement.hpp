@@ -1,7 +1,7 @@
 // The measurement of the filter: all patches against one frame. Stacks the photometric (Eq. 3) and
 // point-to-plane (Eq. 4) residuals of all pixels of all patches, whitened and robustly weighted, and reduces
-// them to two 6x6 information forms: colour tells the pose against the reference frame, depth against the
-// model.
+// them to two 6x6 information forms: colour constrains the pose relative to the reference frame, depth the
+// pose relative to the model.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@
 
 namespace fusebench::measurement {
 
-/// The current frame as the measurement sees it.
+/// The current frame: input of the measurement.
 struct ObservedFrame {
   std::span<const GreyImage> pyramid;
   const DepthImage& depth_m;  ///< gated
@@ -33,8 +33,8 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   /// All references must outlive the measurement.
   PatchMeasurement(const config::Config& config, const SensorRig& rig, const Workers& workers);
 
-  /// Begins with a frame, in the memory of the one before; comes before all else. Frame and patches must stay
-  /// as they are until the next one, or until nothing more is asked.
+  /// Sets the frame, reusing the buffers of the one before; must be called before all else. Frame and patches
+  /// must outlive the use of the measurement, unchanged.
   void observe(const ObservedFrame& frame, std::span<const patches::Patch> patches,
                const ResidualScale& scale);
 
@@ -47,7 +47,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
 
   /// One outcome a patch, from the last linearise() (which must have been of the last stage).
   [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
-  /// By what factors the variances of the residuals exceed their claim there (patch_scatter.hpp).
+  /// Ratios of the measured to the nominal variance of the residuals there (patch_scatter.hpp).
   [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
   [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
   /// The level-0 pixels of tracked patches there, by patch.
@@ -104,7 +104,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   std::vector<Level> levels_;
   std::vector<PatchState> states_;
   std::vector<PatchOutcome> outcomes_;
-  double photometric_variance_ = 1;  ///< these two: factors on the claimed variance, by the last linearise()
+  double photometric_variance_ = 1;  ///< these two: factors on the nominal variance, by the last linearise()
   double geometric_variance_ = 1;
 };
 

@@ -48,8 +48,8 @@ bool is_consistent(const PatchOutcome& outcome, const config::Config& config) {
   const double limit = config.iekf.max_chi2_per_measurement;
   const bool photometric = config.terms.photometric_weight <= 0 ||
                            outcome.chi2_photometric <= limit * outcome.photometric_residuals;
-  // Any image explains a patch that is dimmed to nothing: a gain far from 1 is no brightness change but
-  // another scene.
+  // A patch with a gain near 0 fits any image: a gain far from 1 indicates a wrong match rather than a change
+  // of brightness.
   constexpr double kMaxGain = 2.0;
   const bool plausible = outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
   return photometric && plausible &&

@@ -1,4 +1,4 @@
-// What becomes of a patch in a frame: how much of it is seen, and whether it fits.
+// Outcome of tracking a patch in a frame: visibility and consistency.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace fusebench::measurement {
 
-/// What became of one patch at the last linearisation.
+/// Outcome of one patch at the last linearisation.
 struct PatchOutcome {
   bool in_view = false;   ///< at least one pixel inside the image
   bool tracked = false;   ///< enough usable pixels at level 0
@@ -30,16 +30,16 @@ struct PatchOutcome {
   Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
 };
 
-/// Grey levels of an image of level 0 where pixels landed; anything where they are not visible.
+/// Grey levels of a level-0 image at the warped pixels; unspecified where they are not visible.
 [[nodiscard]] simd::Float8 grey_at(const GreyImage& image, const patches::WarpedLanes& warped);
 
 /// How much of a patch is seen: counts, centre, mean error, and whether that is enough to call it tracked.
-/// Pixels, where they landed, and the image are those of level 0.
+/// Pixels, warped positions and image are those of level 0.
 void judge_visibility(std::span<const patches::PixelLanes> pixels,
                       std::span<const patches::WarpedLanes> warped, const GreyImage& image,
                       const config::PatchConfig& config, PatchOutcome& outcome);
 
-/// The chi-square gate, and a plausible gain. Asks for the sums of the residuals and the gain.
+/// The chi-square gate, and a plausible gain. Needs the sums of the residuals and the gain.
 [[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::Config& config);
 
 }  // namespace fusebench::measurement

@@ -10,7 +10,7 @@ namespace {
 
 /// Pseudo-inverse after scaling the diagonal to one, so that radians and metres compare.
 Matrix6d scaled_pseudo_inverse(const Matrix6d& information) {
-  constexpr double kLeastShare = 1e-6;
+  constexpr double kMinShare = 1e-6;
   Vector6d scale = Vector6d::Zero();
   for (int i = 0; i < filter::kPoseSize; ++i) {
     if (information(i, i) > 0) scale[i] = 1.0 / std::sqrt(information(i, i));
@@ -19,7 +19,7 @@ Matrix6d scaled_pseudo_inverse(const Matrix6d& information) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   Vector6d inverse = Vector6d::Zero();
   for (int i = 0; i < filter::kPoseSize; ++i) {
-    if (eigen.eigenvalues()[i] > kLeastShare) inverse[i] = 1.0 / eigen.eigenvalues()[i];
+    if (eigen.eigenvalues()[i] > kMinShare) inverse[i] = 1.0 / eigen.eigenvalues()[i];
   }
   const Matrix6d& vectors = eigen.eigenvectors();
   return scale.asDiagonal() * (vectors * inverse.asDiagonal() * vectors.transpose()) * scale.asDiagonal();
@@ -38,7 +38,7 @@ Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters) {
   const Matrix6d covariance = scaled_pseudo_inverse(information);
   const Vector6d optimum = -(covariance * gradient);
   // With gradients of variance factor * information, the expected square of a cluster's gradient in the
-  // metric of the covariance is factor times its share, less what the optimum took from it.
+  // metric of the covariance is factor times its share, less the reduction by the optimum itself.
   double scatter = 0, expected = 0, squared_influence = 0;
   for (const filter::PoseQuadratic& cluster : clusters) {
     const Vector6d left = cluster.gradient + cluster.information * optimum;
@@ -57,7 +57,7 @@ Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters) {
 double variance_factor(const Scatter& scatter, double prior_freedom) {
   const double freedom = prior_freedom + scatter.freedom;
   if (!(freedom > 0)) return 1.0;
-  return std::max(kLeastVarianceFactor, (prior_freedom + scatter.freedom * scatter.factor) / freedom);
+  return std::max(kMinVarianceFactor, (prior_freedom + scatter.freedom * scatter.factor) / freedom);
 }
 
 }  // namespace fusebench::measurement

@@ -1,4 +1,4 @@
-// How much worse than claimed an estimate from patches is, judged by how patches disagree.
+// Variance factor of an estimate from patches, from the scatter between patches.
 //
 // The pixels of a patch share their errors (blur, calibration, interpolation, a bump of the model), so the
 // information of all pixels as if they were independent is too optimistic, by a factor that differs between
@@ -13,8 +13,8 @@
 
 namespace fusebench::measurement {
 
-/// `factor` is the variance of the gradients of clusters over the one that their information claims (1 if the
-/// claim is right); `freedom` the degrees of freedom that it is known with (0: no clusters).
+/// `factor` is the variance of the gradients of clusters over the one that their information matrix predicts
+/// (1 if the noise model is right); `freedom` the degrees of freedom of this estimate (0: no clusters).
 struct Scatter {
   double factor = 1;
   double freedom = 0;
@@ -23,8 +23,8 @@ struct Scatter {
 /// Clusters without information are left out; so are directions of the pose in which there is none.
 [[nodiscard]] Scatter patch_scatter(std::span<const filter::PoseQuadratic> clusters);
 
-/// No frame is known better than this makes of the claim: identical images have no scatter at all.
-inline constexpr double kLeastVarianceFactor = 1e-3;
+/// Lower bound of the factor: identical images have no scatter at all.
+inline constexpr double kMinVarianceFactor = 1e-3;
 
 /// The mean of a prior factor of 1, which weighs `prior_freedom`, and the measured one.
 [[nodiscard]] double variance_factor(const Scatter& scatter, double prior_freedom);

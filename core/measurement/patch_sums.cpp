@@ -8,7 +8,7 @@ namespace fusebench::measurement {
 
 namespace {
 
-/// Of the largest distance between a point and its measurement: less makes no difference to an association.
+/// Of the largest distance between a point and its measurement: smaller changes keep an association.
 constexpr float kSameShare = 0.1F;
 
 /// Unit normals of the measured surface are compared with the model's without a division: cos >= min_cosine.
@@ -128,7 +128,7 @@ PlanePairs associate(const patches::PosedLanes& camera, const patches::PixelLane
   pairs.valid = surface.valid & within_angle(surface.normal, normal, gates.min_normal_cosine) &
                 (incidence_cosine >= gates.min_incidence_cosine);
   pairs.point_imu = camera.to_imu(measured);
-  // Depth noise acts along the ray; the plane sees its share along the normal.
+  // Depth noise acts along the ray; its component along the normal enters the residual.
   const simd::Float8 along_normal_m = preprocessing::depth_sigma_m(measured_m, gates.depth) * range_m /
                                       (near ? measured_m : simd::all_lanes(1.0F)) * incidence_cosine;
   pairs.sigma_m = gates.noise_scale *

@@ -14,7 +14,7 @@ namespace fusebench::measurement {
 /// A residual's derivative by the tangent of T_world_imu: rotation (rad, IMU frame), position (m, world).
 using JacobianLanes = std::array<simd::Float8, filter::kPoseSize>;
 
-/// What residuals of one kind add up to. Lanes are added in their order at the end.
+/// Normal equations and cost of residuals of one kind. Lanes are added in their order at the end.
 class QuadraticSums {
  public:
   /// weight: of the squared residual in the normal equations; it and the cost are 0 where there is no
@@ -46,7 +46,8 @@ struct RobustLanes {
 };
 [[nodiscard]] RobustLanes huber(simd::Float8 whitened, float k);
 
-/// Derivatives of gain * reference + offset, the brightness of a patch, and how they go with the pose.
+/// Derivatives of gain * reference + offset, the brightness of a patch, and their products with those by the
+/// pose.
 struct BrightnessSums {
   void add(const JacobianLanes& jacobian, simd::Float8 residual, simd::Float8 weight, simd::Float8 intensity);
   [[nodiscard]] Eigen::Matrix2d information() const;
@@ -58,7 +59,7 @@ struct BrightnessSums {
   std::array<JacobianLanes, 2> by_pose_{};
 };
 
-/// Eq. 3: dI/dpose where a point of the camera landed in its image, with the image's slope there.
+/// Eq. 3: dI/dpose where a point in the camera frame projects into the image, with the image's slope there.
 [[nodiscard]] JacobianLanes photometric_jacobian(const patches::PosedLanes& camera,
                                                  const simd::Points& point_camera, simd::Float8 dx,
                                                  simd::Float8 dy);
@@ -94,14 +95,14 @@ struct AssociationGates {
 };
 
 /// Projective association: the measurement at the pixel where each model point lands, if distance, normals
-/// and incidence agree. `before`: the pairs of the same points and image at another pose, or none. They stay
-/// while all eight points land on the pixels that they landed on, as deep as they were to a tenth of the
-/// largest distance: what is measured there is the same, and what decides has hardly changed.
+/// and incidence agree. `before`: the pairs of the same points and image at another pose, or none. They are
+/// reused while all eight points project to the same pixels, with depths unchanged to a tenth of the largest
+/// distance: the measurement is the same and the gates have hardly changed.
 [[nodiscard]] PlanePairs associate(const patches::PosedLanes& camera, const patches::PixelLanes& pixels,
                                    const DepthImage& depth_m, const AssociationGates& gates,
                                    const PlanePairs& before = {});
 
-// Inline: what all pixels of all patches go through.
+// Inline: run for all pixels of all patches.
 
 inline void QuadraticSums::add(const JacobianLanes& jacobian, simd::Float8 residual, simd::Float8 weight,
                                simd::Float8 cost) {

@@ -1,4 +1,4 @@
-// Standard deviations of residuals, learnt from the frames so far. They differ between sensors and scenes
+// Standard deviations of residuals, estimated from earlier frames. They differ between sensors and scenes
 // (noise, texture, blur), and robust weights and the chi-square gate need them.
 #pragma once
 
@@ -16,9 +16,9 @@ struct ResidualScale {
   double geometric = 1;
 };
 
-/// Moves the scale towards what the accepted patches of a frame show, by iekf.scale_share: the one for which
-/// the mean of min(r^2, k |r|) is that of normal residuals (in the manner of Huber's Proposal 2, 1964), so
-/// that outliers count little. Stays within a factor of kMaxScale of the configuration.
+/// Moves the scale towards the estimate from the accepted patches of a frame, by iekf.scale_share: the one
+/// for which the mean of min(r^2, k |r|) is that of normal residuals (in the manner of Huber's Proposal 2,
+/// 1964), so that outliers count little. Stays within a factor of kMaxScale of the configuration.
 [[nodiscard]] ResidualScale followed_scale(const ResidualScale& scale, std::span<const PatchOutcome> outcomes,
                                            const config::Config& config);
 

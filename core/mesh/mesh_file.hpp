@@ -1,4 +1,4 @@
-// Meshes as people keep them: PLY and Wavefront OBJ files.
+// Mesh files: PLY and Wavefront OBJ files.
 #pragma once
 
 #include <filesystem>

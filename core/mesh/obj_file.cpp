@@ -33,7 +33,7 @@ Rgb color_of(const float* channels) {
   return color;
 }
 
-/// In double precision. The library reads floats, and what is not a number as 0.
+/// In double precision. The library reads floats, and invalid numbers as 0.
 Result<std::vector<Vector3d>> read_vertices(const fs::path& file) {
   std::ifstream lines(file);
   std::string line;

@@ -1,4 +1,4 @@
-// Wavefront OBJ in.
+// Reader of Wavefront OBJ files.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// PLY out and in.
+// Writer and reader of PLY files.
 #pragma once
 
 #include <filesystem>

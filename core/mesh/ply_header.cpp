@@ -95,7 +95,7 @@ class HeaderReader {
     const auto is_same = [&](const PlyElement& other) { return other.name == element.name; };
     if (std::ranges::any_of(header_.elements, is_same))
       return reject(fmt::format("element {} is there twice", printable(element.name)));
-    // Each row takes at least a byte: a count beyond that is corrupt, and not worth the memory.
+    // Each row takes at least a byte: a larger count is corrupt and must not be allocated.
     if (element.count > bytes_.size() - rows_) {
       return reject(fmt::format("element {} = {}, but the file has {} bytes", printable(element.name),
                                 element.count, bytes_.size()));

@@ -1,4 +1,4 @@
-// The header of a PLY file: what its data are.
+// The header of a PLY file: layout of its data.
 #pragma once
 
 #include <cstddef>

@@ -21,7 +21,7 @@
 namespace fusebench::mesh {
 namespace {
 
-// Reads one file that lies in memory. Functions return false after they have set error_.
+// Reads one file from memory. Functions return false after they have set error_.
 class PlyReader {
  public:
   PlyReader(std::string file, std::string bytes) : file_(std::move(file)), bytes_(std::move(bytes)) {}
@@ -218,7 +218,7 @@ class PlyReader {
   std::string bytes_;
   std::size_t position_ = 0;  // of the next byte
   std::size_t line_ = 1;      // of ascii data, from 1
-  bool binary_ = false;       // the position is told as a byte
+  bool binary_ = false;       // errors name the byte
   bool big_endian_ = false;
   std::size_t vertex_count_ = 0;
   bool has_normals_ = false;

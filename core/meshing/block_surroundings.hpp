@@ -1,4 +1,4 @@
-// The field in and around one block, side by side.
+// A contiguous copy of the field in and around one block.
 #pragma once
 
 #include <array>

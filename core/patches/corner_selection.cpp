@@ -40,7 +40,7 @@ std::vector<Corner> detect(const GreyImage& grey, const Grid& grid, const config
     if (patch_fits(grey, pixel, config.size_px))
       corners.push_back({pixel, keypoint.response, grid.cell(pixel)});
   }
-  // A total order: the result must not depend on the detector's own.
+  // A total order: the result must not depend on the order of the detector.
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::make_tuple(-a.score, a.pixel.y(), a.pixel.x()) <
            std::make_tuple(-b.score, b.pixel.y(), b.pixel.x());
@@ -77,7 +77,7 @@ std::vector<Eigen::Vector2i> select_corners(const GreyImage& grey, const DepthIm
   std::vector<bool> occupied(cells, false);
   for (const Eigen::Vector2i& p : existing) occupied[static_cast<std::size_t>(grid.cell(p))] = true;
 
-  const auto free_of_others = [&](const Eigen::Vector2i& p) {
+  const auto far_from_others = [&](const Eigen::Vector2i& p) {
     const int reach = config.min_distance_px * config.min_distance_px;
     return std::none_of(taken.begin(), taken.end(),
                         [&](const Eigen::Vector2i& q) { return (p - q).squaredNorm() < reach; });
@@ -88,7 +88,7 @@ std::vector<Eigen::Vector2i> select_corners(const GreyImage& grey, const DepthIm
       if (static_cast<int>(taken.size()) >= config.max_count) break;
       const auto cell = static_cast<std::size_t>(corner.cell);
       if (one_per_cell && occupied[cell]) continue;
-      if (!free_of_others(corner.pixel) || !has_depth(depth_m, corner.pixel, config)) continue;
+      if (!far_from_others(corner.pixel) || !has_depth(depth_m, corner.pixel, config)) continue;
       taken.push_back(corner.pixel);
       occupied[cell] = true;
     }

@@ -1,4 +1,4 @@
-// Where patches go: FAST corners with depth, spread over the image.
+// Selection of patch centres: FAST corners with depth, spread over the image.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace fusebench::patches {
 
-/// New patch centres (pixels of the image) beside the ones that exist, best corner first within each cell of
-/// a grid that has about max_count cells, then the best of the rest. Each keeps min_distance_px to all
-/// others, lies far enough inside the image, and has depth in at least min_valid_fraction of its square.
+/// New patch centres (pixels of the image) in addition to the existing ones, best corner first within each
+/// cell of a grid that has about max_count cells, then the best of the rest. Each keeps min_distance_px to
+/// all others, lies far enough inside the image, and has depth in at least min_valid_fraction of its square.
 [[nodiscard]] std::vector<Eigen::Vector2i> select_corners(const GreyImage& grey, const DepthImage& depth_m,
                                                           std::span<const Eigen::Vector2i> existing,
                                                           const config::PatchConfig& config);

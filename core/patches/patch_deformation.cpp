@@ -21,7 +21,7 @@ Vector2d reference_coordinates(const PatchPixel& pixel, const PinholeCamera& cam
 
 /// The model point nearest to the patch centre at level 0, within one pixel of it.
 std::optional<Vector3d> centre_point_world(const Patch& patch, const PinholeCamera& camera) {
-  double nearest = 2.1;  // squared pixels: the four or eight neighbours of the centre may stand in for it
+  double nearest = 2.1;  // squared pixels: the four or eight neighbours of the centre may replace it
   std::optional<Vector3d> result;
   for (const PatchPixel& pixel : patch.levels.front().pixels) {
     const double distance =
@@ -102,7 +102,7 @@ void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_wor
 
 void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
                 const PosedLanes& camera, std::span<WarpedLanes> warped) {
-  constexpr float kMinDepthM = 0.05F;  // closer points project wildly
+  constexpr float kMinDepthM = 0.05F;  // the projection of closer points is ill-conditioned
   const auto right = static_cast<float>(camera.width_px - 2);
   const auto bottom = static_cast<float>(camera.height_px - 2);
   for (std::size_t i = 0; i < warped.size(); ++i) {
@@ -174,7 +174,7 @@ void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& de
     const simd::Int8 inside = w.visible & (x < right) & (y < bottom);
     const simd::Float8 measured_m =
         simd::gather(depth_m.data.data(), nearest_pixel(x, y, depth_m.width, inside));
-    // No measurement, no verdict.
+    // Without a measurement there is no test.
     const simd::Int8 judged = inside & (measured_m > 0.0F);
     const simd::Float8 allowed_m = simd::max(simd::all_lanes(static_cast<float>(tolerance_m)),
                                              3.0F * preprocessing::depth_sigma_m(measured_m, depth));

@@ -1,5 +1,5 @@
 // Geometry-aware deformation of patches (Sec. 2.1.1): how the pixels of a patch move to another view, which
-// of them are still visible there, and what became of the patch's shape.
+// of them are still visible there, and how the patch's shape changed.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_wor
                      config::Deformation deformation);
 
 /// Projects the pixels of one level of some patches (Eq. 2). `camera` is of that level; visible = in_image
-/// until a test says otherwise. warp_points: as LevelLanes.
+/// until a visibility test clears it. warp_points: as LevelLanes.
 void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
                 const PosedLanes& camera, std::span<WarpedLanes> warped);
 
@@ -36,7 +36,7 @@ class MutualOcclusion {
   std::vector<float> nearest_m_;  ///< by cell; infinite between tests
 };
 
-/// Against what the camera measured: a pixel whose depth differs from the measurement by more than
+/// Visibility test against the measured depth: a pixel whose depth differs from the measurement by more than
 /// tolerance_m is occluded or belongs to a surface that appeared. `scale` = 2^level maps pixels to the depth
 /// image.
 void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& depth_m, int scale,

@@ -38,17 +38,17 @@ void pack(std::span<const Patch> patches, std::size_t level, const Vector3d& ori
   for (const Patch& patch : patches) {
     const auto& [pixels, warp_points] = patch.levels[level];
     for (std::size_t begin = 0; begin < pixels.size(); begin += simd::kLanes) {
-      PixelLanes& eight = lanes.pixels.emplace_back();
+      PixelLanes& group = lanes.pixels.emplace_back();
       if (!warp_points.empty()) lanes.warp_points.emplace_back();
       for (std::size_t lane = 0; lane < simd::kLanes; ++lane) {
         const std::size_t i = std::min(begin + lane, pixels.size() - 1);
         const PatchPixel& pixel = pixels[i];
         const bool present = begin + lane < pixels.size();
-        set(eight.point, lane, (pixel.point_world - origin_world).cast<float>());
-        set(eight.normal, lane, pixel.normal_world);
-        eight.intensity[lane] = pixel.intensity;
-        eight.present[lane] = present ? -1 : 0;
-        eight.depth_confirmed[lane] = present && pixel.depth_confirmed ? -1 : 0;
+        set(group.point, lane, (pixel.point_world - origin_world).cast<float>());
+        set(group.normal, lane, pixel.normal_world);
+        group.intensity[lane] = pixel.intensity;
+        group.present[lane] = present ? -1 : 0;
+        group.depth_confirmed[lane] = present && pixel.depth_confirmed ? -1 : 0;
         if (warp_points.empty()) continue;
         WarpPointLanes& warp = lanes.warp_points.back();
         set(warp.point, lane, (warp_points[i].point_world - origin_world).cast<float>());

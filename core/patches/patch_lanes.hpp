@@ -1,5 +1,6 @@
-// Patches as the update walks them: eight pixels of a patch at a time, single precision, coordinates relative
-// to the camera that the patches were cut with, which keeps them as exact as the measurements are.
+// Patches in the memory layout of the update: eight pixels of a patch at a time, single precision,
+// coordinates relative to the camera that the patches were cut with, so that rounding stays below the noise
+// of the measurements.
 #pragma once
 
 #include <span>

@@ -23,20 +23,20 @@ std::span<const raycast::SurfacePoint> PatchSurfaces::find(
   const std::optional<tsdf::TsdfLanes> field = tsdf::field_in_view(model, camera, T_world_camera, depth);
   if (!field) return surfaces_;
   const raycast::SurfaceSearch search(*field, camera, T_world_camera, depth);
-  find_beside(search, pixels, first, workers);
+  find_near_measurements(search, pixels, first, workers);
   find_around(search, pixels, workers);
   walk_rays(*field, camera, T_world_camera, depth, pixels, workers);
   return surfaces_;
 }
 
-/// Beside what was measured. Patches are independent of each other.
-void PatchSurfaces::find_beside(const raycast::SurfaceSearch& search,
-                                std::span<const raycast::ExpectedSurface> pixels,
-                                std::span<const std::size_t> first, const Workers& workers) {
+/// Local search near the measured depth. Patches are independent of each other.
+void PatchSurfaces::find_near_measurements(const raycast::SurfaceSearch& search,
+                                           std::span<const raycast::ExpectedSurface> pixels,
+                                           std::span<const std::size_t> first, const Workers& workers) {
   const std::size_t patches = first.size() - 1;
-  beside_.resize(std::max(beside_.size(), patches / kPatchesPerChunk + 1));
+  workspaces_.resize(std::max(workspaces_.size(), patches / kPatchesPerChunk + 1));
   workers.for_chunks(patches, kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-    auto& [brick, measured, places, found] = beside_[begin / kPatchesPerChunk];
+    auto& [brick, measured, places, found] = workspaces_[begin / kPatchesPerChunk];
     for (std::size_t p = begin; p < end; ++p) {
       measured.clear();
       places.clear();
@@ -46,13 +46,13 @@ void PatchSurfaces::find_beside(const raycast::SurfaceSearch& search,
         places.push_back(i);
       }
       found.resize(measured.size());
-      search.find_beside(measured, brick, found);
+      search.find_near_measurements(measured, brick, found);
       for (std::size_t i = 0; i < places.size(); ++i) surfaces_[places[i]] = found[i];
     }
   });
 }
 
-/// Further from it, where nothing was found.
+/// A wider search where nothing was found.
 void PatchSurfaces::find_around(const raycast::SurfaceSearch& search,
                                 std::span<const raycast::ExpectedSurface> pixels, const Workers& workers) {
   expected_.clear();
@@ -70,7 +70,7 @@ void PatchSurfaces::find_around(const raycast::SurfaceSearch& search,
   for (std::size_t i = 0; i < places_.size(); ++i) surfaces_[places_[i]] = hits_[i];
 }
 
-/// Around what was measured, or all along the ray where nothing was.
+/// Ray casting around the measured depth, or along the whole ray where there is none.
 void PatchSurfaces::walk_rays(const tsdf::TsdfLanes& field, const PinholeCamera& camera,
                               const SE3& T_world_camera, const config::DepthConfig& depth,
                               std::span<const raycast::ExpectedSurface> pixels, const Workers& workers) {

@@ -1,5 +1,5 @@
-// The model's surfaces behind the pixels of patches: beside what the camera measured, or along the rays where
-// it measured nothing.
+// The model's surfaces behind the pixels of patches: near the measured depth, or along the ray where there is
+// no measurement.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace fusebench::patches {
 
-/// Finds them, frame after frame in the same memory.
+/// Finds them; buffers are reused from frame to frame.
 class PatchSurfaces {
  public:
   /// One surface a pixel, invalid where there is none; valid until the next call. `first`: number of the
@@ -25,16 +25,17 @@ class PatchSurfaces {
       std::span<const std::size_t> first, const Workers& workers);
 
  private:
-  /// What some patches that are searched one after the other work in.
-  struct Beside {
+  /// Workspace of one chunk of patches.
+  struct Workspace {
     tsdf::TsdfBrick brick;
     std::vector<raycast::ExpectedSurface> measured;
     std::vector<std::size_t> places;
     std::vector<raycast::SurfacePoint> found;
   };
 
-  void find_beside(const raycast::SurfaceSearch& search, std::span<const raycast::ExpectedSurface> pixels,
-                   std::span<const std::size_t> first, const Workers& workers);
+  void find_near_measurements(const raycast::SurfaceSearch& search,
+                              std::span<const raycast::ExpectedSurface> pixels,
+                              std::span<const std::size_t> first, const Workers& workers);
   void find_around(const raycast::SurfaceSearch& search, std::span<const raycast::ExpectedSurface> pixels,
                    const Workers& workers);
   void walk_rays(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
@@ -42,7 +43,7 @@ class PatchSurfaces {
                  const Workers& workers);
 
   std::vector<raycast::SurfacePoint> surfaces_;
-  std::vector<Beside> beside_;  // one a chunk of patches
+  std::vector<Workspace> workspaces_;  // one a chunk of patches
   // Pixels that were not found at once:
   std::vector<std::size_t> places_;
   std::vector<raycast::ExpectedSurface> expected_;

@@ -16,9 +16,9 @@ namespace fusebench::patches {
 namespace {
 
 constexpr std::size_t kPatchesPerChunk = 8;
-constexpr std::size_t kMostLevels = 6;  // of patches.levels
+constexpr std::size_t kMaxLevels = 6;  // of patches.levels
 
-/// What walks over all squares of all patches need to know.
+/// Parameters of a loop over all squares of all patches.
 struct Squares {
   /// The first pixel of a square.
   struct Corner {
@@ -49,8 +49,8 @@ struct Squares {
     return (patch * levels + level) * area();
   }
 
-  /// How far from what was measured a surface is looked for: one at the far end of what UsableSurface allows
-  /// has more noise than one at the measurement.
+  /// Search distance around the measured depth: a surface at the far limit of UsableSurface has more noise
+  /// than one at the measurement.
   [[nodiscard]] float reach_m(float measured_m) const {
     constexpr float kMargin = 1.5F;
     const double noise_m = preprocessing::depth_sigma_m(static_cast<double>(measured_m), config.depth);
@@ -66,13 +66,13 @@ struct Squares {
 
 /// Which pixel of level 0 each pixel of the squares of a patch is, from `pixels.size()` on: adds those, each
 /// once, since a coarse level's are partly those of a finer one. Where anything was measured in the finest
-/// square, coarse pixels without measured depth are left out: their colour would not be aligned by
-/// (trust_model_in_holes), intensity errors are taken on the finest level, and a ray each is much work for
-/// the few that would find a plane in the next frame.
+/// square, coarse pixels without measured depth are left out: their colour would not be used
+/// (use_model_depth_in_holes), intensity errors are taken on the finest level, and a ray each is much work
+/// for the few that would find a plane in the next frame.
 void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work) {
   const GreyImage& full = squares.frame.pyramid[0];
   const int size = squares.size_px;
-  std::array<Squares::Corner, kMostLevels> corners;
+  std::array<Squares::Corner, kMaxLevels> corners;
   bool measured = false;  // any pixel of the finest square
   for (std::size_t l = 0; l < squares.levels; ++l) {
     const GreyImage& image = squares.frame.pyramid[l];
@@ -102,7 +102,7 @@ void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work)
   }
 }
 
-/// What the model says of a pixel, if it can stand for what the camera sees there.
+/// The surface of the model behind a pixel, if it is usable there.
 class UsableSurface {
  public:
   UsableSurface(const ReferenceFrame& frame, const config::Config& config)
@@ -138,8 +138,8 @@ class UsableSurface {
 };
 
 /// Where a patch has measured depth, its pixels without are at an edge or in the shadow of one. A patch
-/// without any lies in a hole, or the camera has no depth: there the model's surface has to do.
-void trust_model_in_holes(Patch& patch) {
+/// without any lies in a hole, or the camera has no depth: there the model's surface is used.
+void use_model_depth_in_holes(Patch& patch) {
   for (const PatchLevel& level : patch.levels) {
     for (const PatchPixel& pixel : level.pixels) {
       if (pixel.depth_confirmed) return;
@@ -163,7 +163,7 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
     std::vector<PatchPixel>& pixels = patch.levels[l].pixels;
     pixels.clear();
     pixels.reserve(squares.area());
-    // A pixel of a coarse level is a mean over what lies about its own size around it.
+    // A pixel of a coarse level is a mean over an area of about its own size.
     const int reach_px = l == 0 ? 0 : 1 << l;
     for (std::size_t i = 0; i < squares.area(); ++i) {
       const std::int32_t number = work.pixel_of[squares.first(p, l) + i];
@@ -179,14 +179,14 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
           preprocessing::is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
     }
   }
-  trust_model_in_holes(patch);
+  use_model_depth_in_holes(patch);
 }
 
 /// Patches with the pixels that have a usable surface.
 void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                  std::span<const TrackedCentre> centres, const config::Config& config, const Workers& workers,
                  PatchWorkspace& work, std::vector<Patch>& patches) {
-  check(frame.pyramid.size() <= kMostLevels, "a pyramid has at most six levels");
+  check(frame.pyramid.size() <= kMaxLevels, "a pyramid has at most six levels");
   const Squares squares(centres, frame, config);
   work.pixels.clear();
   work.pixel_of.resize(squares.first(centres.size(), 0));
@@ -204,9 +204,9 @@ void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
   });
 }
 
-/// Survivors that are still inside and apart from each other, oldest first.
-std::vector<TrackedCentre> keep_apart(std::span<const TrackedCentre> survivors, const ReferenceFrame& frame,
-                                      const config::PatchConfig& config) {
+/// Survivors that are still inside the image and separated from each other, oldest first.
+std::vector<TrackedCentre> select_separated(std::span<const TrackedCentre> survivors,
+                                            const ReferenceFrame& frame, const config::PatchConfig& config) {
   std::vector<TrackedCentre> kept;
   // Patches drift towards each other; half the detection distance keeps their squares from overlapping.
   const double reach = std::max(0.5 * config.min_distance_px, static_cast<double>(config.size_px));
@@ -227,7 +227,7 @@ std::vector<TrackedCentre> keep_apart(std::span<const TrackedCentre> survivors, 
 void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                      std::span<const TrackedCentre> survivors, const config::Config& config,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches) {
-  std::vector<TrackedCentre> centres = keep_apart(survivors, frame, config.patches);
+  std::vector<TrackedCentre> centres = select_separated(survivors, frame, config.patches);
   std::vector<Eigen::Vector2i> existing;
   for (const TrackedCentre& c : centres) {
     existing.emplace_back(static_cast<int>(std::lround(c.pixel_px.x())),

@@ -21,10 +21,10 @@ struct PatchPixel {
   float intensity = 0;                                     ///< grey levels, at the patch level
   std::uint32_t reference_pixel =
       0;  ///< v * width + u of its place in the reference frame, level 0 coordinates
-  /// The frame measured depth here as well, of one surface as far as the pixel of its level sees, so that
-  /// colour and depth belong together. At a silhouette a pixel of the near surface may have the depth of the
-  /// far one, which would move it the wrong way: the colour of such pixels is not aligned by (it counts in
-  /// the intensity error all the same).
+  /// The frame measured depth here as well, of one surface over the footprint of the pixel at its level, so
+  /// that colour and depth belong together. At a silhouette a pixel of the near surface may have the depth of
+  /// the far one, which would move it the wrong way: the colour of such pixels is not aligned by (it counts
+  /// in the intensity error all the same).
   bool depth_confirmed = true;
 };
 
@@ -56,13 +56,13 @@ struct ReferenceFrame {
   SE3 T_world_camera;
 };
 
-/// Where a patch of the last frame went in this one.
+/// Position of a patch of the last frame in the current one.
 struct TrackedCentre {
   Vector2d pixel_px = Vector2d::Zero();
   int age = 0;
 };
 
-/// Memory that cutting patches uses again.
+/// Reusable buffers for cutting patches.
 struct PatchWorkspace {
   std::vector<raycast::ExpectedSurface>
       pixels;                      ///< of level 0 that a patch needs at any level, by patch; depth 0 = none

@@ -57,12 +57,12 @@ void integrate_step(PreintegratedImu& sum, const ImuSample& a, const ImuSample& 
   const Matrix3d Jr = so3_right_jacobian(turn);
   const Vector3d force = 0.5 * (R0 * a.specific_force_mps2 + R1 * b.specific_force_mps2);
 
-  // How the mean force moves with a rotation error before and after the step.
+  // Derivative of the mean force by a rotation error before and after the step.
   const Matrix3d force_by_rotation0 = -0.5 * R0 * hat(a.specific_force_mps2);
   const Matrix3d force_by_rotation1 = -0.5 * R1 * hat(b.specific_force_mps2);
   const Matrix3d force_by_noise = -0.5 * (R0 + R1);
 
-  // Bias Jacobians: the chain rule through the very same step.
+  // Bias Jacobians: the chain rule through the same step.
   const Matrix3d rotation1_by_bias = step.transpose() * sum.rotation_by_gyroscope_bias - Jr * dt;
   const Matrix3d force_by_gyroscope_bias =
       force_by_rotation0 * sum.rotation_by_gyroscope_bias + force_by_rotation1 * rotation1_by_bias;
@@ -99,11 +99,11 @@ void integrate_step(PreintegratedImu& sum, const ImuSample& a, const ImuSample& 
   sum.last_step_s = dt;
 }
 
-/// How the increments change when both instants shift together. With R_begin_s the orientation since the
-/// beginning, d/dt_begin R_begin_s = -[w_begin]x R_begin_s, and the end adds what the integrand is there.
+/// Derivative of the increments by a common shift of both instants. With R_begin_s the orientation since the
+/// beginning, d/dt_begin R_begin_s = -[w_begin]x R_begin_s, and the end adds the integrand there.
 ///
 /// begin and end are smoothed: where a camera moves slowly single samples are mostly noise, the same noise is
-/// in the increments, and an estimate of the offset that trusts them is biased and too sure of itself.
+/// in the increments, and an estimate of the offset that ignores this error is biased and overconfident.
 void differentiate_by_time_offset(PreintegratedImu& sum, const ImuSample& begin, const ImuSample& end) {
   const Matrix3d R = sum.delta_rotation.toRotationMatrix();
   const Vector3d& rate = begin.angular_velocity_radps;

@@ -14,7 +14,7 @@ namespace fusebench::prediction {
 
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-/// Motion between two instants as the IMU saw it, with first-order dependence on the biases.
+/// Motion between two instants as measured by the IMU, with first-order dependence on the biases.
 struct PreintegratedImu {
   double duration_s = 0;
   Quaterniond delta_rotation = Quaterniond::Identity();  ///< R_begin_end

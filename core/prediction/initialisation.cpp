@@ -86,13 +86,14 @@ Result<filter::GaussianState> initialise_with_imu(std::span<const ImuSample> sam
       });
   state.mean.angular_velocity_imu_radps = now->angular_velocity_radps - state.mean.gyroscope_bias_radps;
 
-  // The pose is known by definition. Tilt and accelerometer bias cannot be told apart at rest: the direction
-  // of gravity is as uncertain as the bias makes it.
+  // The pose is known by definition. Tilt and accelerometer bias are not separately observable at rest: the
+  // direction of gravity is as uncertain as the bias makes it.
   const double tilt_sigma = config.accelerometer_bias_sigma_mps2 / kGravity_mps2;
   const double rest_bias_sigma = s.gyroscope_std_radps / std::sqrt(static_cast<double>(window.size())) + 1e-4;
   set_variance(state, filter::kVelocity, 3,
                at_rest ? config.rest_velocity_sigma_mps : config.moving_velocity_sigma_mps);
-  set_variance(state, filter::kGyroscopeBias, 3, at_rest ? rest_bias_sigma : config.gyroscope_bias_sigma_radps);
+  set_variance(state, filter::kGyroscopeBias, 3,
+               at_rest ? rest_bias_sigma : config.gyroscope_bias_sigma_radps);
   set_variance(state, filter::kAccelerometerBias, 3, config.accelerometer_bias_sigma_mps2);
   set_variance(state, filter::kGravity, 2,
                at_rest ? tilt_sigma : std::hypot(tilt_sigma, config.moving_gravity_sigma_rad));

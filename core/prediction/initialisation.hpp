@@ -1,5 +1,5 @@
-// The first state: world = first camera frame, gravity from the accelerometer, velocity zero with an honest
-// covariance.
+// The first state: world = first camera frame, gravity from the accelerometer, zero velocity with a
+// covariance that covers a start in motion.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ namespace fusebench::prediction {
 /// Initial state without an IMU: at rest with wide velocity covariances. The "IMU" frame is the camera's.
 [[nodiscard]] filter::GaussianState initialise_without_imu(const config::InitialisationConfig& config);
 
-/// The one of these two that the prior needs. `motion`, if known, gives the velocities; only the means, since
-/// the frames that told them are about to be used as measurements.
+/// Selects one of these two by the configured prior. `motion`, if known, gives the velocities; only the
+/// means, since the frames that they were estimated from are used as measurements next.
 [[nodiscard]] Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples,
                                                           std::int64_t first_frame_ns, const SensorRig& rig,
                                                           const config::Config& config,

@@ -42,7 +42,8 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   F.block<3, 3>(filter::kPosition, filter::kGyroscopeBias) = R * imu.position_by_gyroscope_bias;
   F.block<3, 3>(filter::kPosition, filter::kAccelerometerBias) = R * imu.position_by_accelerometer_bias;
   F.block<3, 2>(filter::kPosition, filter::kGravity) = 0.5 * dt * dt * gravity_by_delta;
-  // The body rate is re-measured: it forgets its past and moves against the bias.
+  // The body rate is re-measured: its previous error is dropped and it is fully correlated with the bias
+  // error.
   F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity).setZero();
   F.block<3, 3>(filter::kAngularVelocity, filter::kGyroscopeBias) = -Matrix3d::Identity();
   F.block<3, 1>(filter::kRotation, filter::kImuTimeOffset) = imu.rotation_by_time_offset;
@@ -57,9 +58,10 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   G.block<3, 3>(filter::kPosition, 6) = R;
   const double factor = square(config.imu_noise_factor);
   filter::StateMatrix Q = factor * (G * imu.covariance * G.transpose());
-  add_random_walk(Q, filter::kGyroscopeBias, 3, config.imu_noise_factor * noise.gyroscope_bias_radps2_sqrthz, dt);
-  add_random_walk(Q, filter::kAccelerometerBias, 3, config.imu_noise_factor * noise.accelerometer_bias_mps3_sqrthz,
+  add_random_walk(Q, filter::kGyroscopeBias, 3, config.imu_noise_factor * noise.gyroscope_bias_radps2_sqrthz,
                   dt);
+  add_random_walk(Q, filter::kAccelerometerBias, 3,
+                  config.imu_noise_factor * noise.accelerometer_bias_mps3_sqrthz, dt);
   add_random_walk(Q, filter::kGravity, 2, config.gravity_noise_rad_sqrthz, dt);
   Q.diagonal().segment<3>(filter::kAngularVelocity).array() +=
       factor * square(noise.gyroscope_radps_sqrthz) / imu.last_step_s;
@@ -94,7 +96,8 @@ Prediction predict_by_constant_velocity(const filter::GaussianState& state, doub
     Q.block<3, 3>(rate, pose).diagonal().setConstant(q * dt * dt / 2.0);
     Q.block<3, 3>(rate, rate).diagonal().setConstant(q * dt);
   };
-  add_white_acceleration(filter::kRotation, filter::kAngularVelocity, config.angular_acceleration_noise_radps2_sqrthz);
+  add_white_acceleration(filter::kRotation, filter::kAngularVelocity,
+                         config.angular_acceleration_noise_radps2_sqrthz);
   add_white_acceleration(filter::kPosition, filter::kVelocity, config.acceleration_noise_mps2_sqrthz);
 
   result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);

@@ -36,9 +36,9 @@ ImuSample smoothed_sample(std::span<const ImuSample> samples, std::int64_t insta
   check(!samples.empty(), "there are samples");
   const std::span<const ImuSample> window = samples_around(samples, instant_ns, half_window_s);
   // A parabola beyond its points, or across a gap, makes noise much larger.
-  constexpr std::ptrdiff_t kLeastOnASide = 2;
+  constexpr std::ptrdiff_t kMinOnASide = 2;
   const auto middle = std::ranges::lower_bound(window, instant_ns, {}, &ImuSample::timestamp_ns);
-  if (middle - window.begin() < kLeastOnASide || window.end() - middle < kLeastOnASide)
+  if (middle - window.begin() < kMinOnASide || window.end() - middle < kMinOnASide)
     return nearest_sample(samples, instant_ns);
   Matrix3d information = Matrix3d::Zero();
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();

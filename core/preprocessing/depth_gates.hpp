@@ -35,8 +35,8 @@ class DepthSigma {
   return DepthSigma(config).at_m(depth_m);
 }
 
-/// Depth without what cannot be trusted: values outside [min, max] and pixels at a depth edge become 0.
-/// Into another image, whose memory is used again.
+/// Depth without unreliable measurements: values outside [min, max] and pixels at a depth edge become 0. Into
+/// another image, whose memory is used again.
 void gate_depth(const DepthImage& depth_m, const config::DepthConfig& config, DepthImage& gated_m);
 
 /// True if there is depth at the pixel and at the eight around it at a distance of reach_px, as far as they

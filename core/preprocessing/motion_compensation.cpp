@@ -16,17 +16,17 @@ namespace fusebench::preprocessing {
 namespace {
 
 constexpr std::size_t kRowsPerChunk = 32;  // whole cells of the grids
-/// A border pixel whose motion rounds to hardly more than none is inside.
+/// Tolerance for border pixels whose motion is within rounding of zero.
 constexpr float kRounding_px = 1e-4F;
-/// Where nothing above a pixel tells how deep it is.
-constexpr int kGuessesFromNothing = 3;
+/// Fixed-point iterations where no pixel above gives an initial depth.
+constexpr int kInitialDepthIterations = 3;
 
 using simd::lane_details::byte_of;
 
 using Bytes [[gnu::vector_size(32)]] = std::uint8_t;  ///< of eight words
 
-/// 1 / depth; 0 where there is no depth, which counts as infinitely far: rotation alone. Nearer than a camera
-/// measures, parabolas lead anywhere.
+/// 1 / depth; 0 where there is no depth, which counts as infinitely far: rotation alone. The parabolas are
+/// not valid nearer than the minimum range of the camera.
 simd::Float8 inverse_depth(simd::Float8 depth_m) {
   constexpr float kNearest_m = 0.1F;
   const simd::Int8 measured = depth_m > 0.0F;
@@ -49,21 +49,21 @@ struct Bilinear {
   }
 };
 
-/// Eight places in an image.
-struct Places {
+/// Eight positions in an image.
+struct ImagePositions {
   simd::Float8 x{};
   simd::Float8 y{};
   simd::Int8 inside{};
 };
 
-/// The image that pixels are looked for in.
+/// The source image.
 class SourceBounds {
  public:
   explicit SourceBounds(const PinholeCamera& camera)
       : last_x_(static_cast<float>(camera.width_px - 1)), last_y_(static_cast<float>(camera.height_px - 1)) {}
 
   /// Displaced from eight pixels of a row; kept inside the image.
-  [[nodiscard]] Places displaced(int column, int row, const Displacement8& by) const {
+  [[nodiscard]] ImagePositions displaced(int column, int row, const Displacement8& by) const {
     const simd::Float8 x = static_cast<float>(column) + simd::kLaneNumber + by.x;
     const simd::Float8 y = static_cast<float>(row) + by.y;
     const simd::Int8 inside = (x >= -kRounding_px) & (x <= last_x_ + kRounding_px) & (y >= -kRounding_px) &
@@ -80,7 +80,7 @@ class SourceBounds {
   }
 
  private:
-  /// What is not a number lies at the border too: nothing is read outside.
+  /// NaN is clamped to the border too: nothing is read outside.
   static simd::Float8 held(simd::Float8 values, float last) {
     return simd::min(simd::max(simd::Float8{}, values), simd::all_lanes(last));
   }
@@ -108,7 +108,7 @@ class DepthCarrier {
         grid_(camera.width_px, camera.height_px,
               [&](simd::Float8 u, float v) { return readout.from_rows(u, v); }) {}
 
-  /// Eight columns, from row to row: what was measured above a pixel is the guess of where it comes from.
+  /// Eight columns, from row to row: the depth found above a pixel is the initial value of its search.
   struct Columns {
     int column = 0;  ///< the first
     DepthGrid::Cell cell;
@@ -119,18 +119,18 @@ class DepthCarrier {
 
   void start(Columns& columns, int row) const {
     columns.inverse_depth = inverse_depth(simd::load(&source_m_.data[source_m_.index(columns.column, row)]));
-    for (int i = 0; i + 1 < kGuessesFromNothing; ++i) std::ignore = depth_m(columns, row);
+    for (int i = 0; i + 1 < kInitialDepthIterations; ++i) std::ignore = depth_m(columns, row);
   }
 
   /// The depth pixel of these columns that their own motion carries to a row, carried there.
   [[nodiscard]] simd::Float8 depth_m(Columns& columns, int row) const {
     const auto rows = static_cast<float>(row % DepthGrid::kRows);
-    const Places from =
+    const ImagePositions from =
         bounds_.displaced(columns.column, row, displacement(columns.cell, rows, columns.inverse_depth));
     const simd::Float8 measured_m = simd::gather(
         source_m_.data.data(), simd::to_int(from.y + 0.5F) * source_m_.width + simd::to_int(from.x + 0.5F));
     const simd::Int8 measured = measured_m > 0.0F;
-    // Across a hole the depth before it stays the best guess, unless it leads out of the image.
+    // Across a hole the depth before it remains the initial value, unless it leads out of the image.
     const simd::Float8 before = from.inside ? columns.inverse_depth : simd::Float8{};
     columns.inverse_depth = measured ? inverse_depth(measured_m) : before;
     const simd::Float8 carried_m =
@@ -145,7 +145,7 @@ class DepthCarrier {
   DepthGrid grid_;
 };
 
-/// Where colour and grey come from, and what is there.
+/// Source positions of colour and grey, and sampling there.
 class ColorSource {
  public:
   ColorSource(const RgbdFrame& source, const PinholeCamera& camera, const Readout& readout)
@@ -157,12 +157,13 @@ class ColorSource {
   [[nodiscard]] ColorGrid::Cell cell(int column, int cell) const { return grid_.cell(column, cell); }
 
   /// Of eight pixels of a row, whose cell this is.
-  [[nodiscard]] Places places(const ColorGrid::Cell& cell, int column, int row, simd::Float8 depth_m) const {
+  [[nodiscard]] ImagePositions places(const ColorGrid::Cell& cell, int column, int row,
+                                      simd::Float8 depth_m) const {
     const auto rows = static_cast<float>(row % ColorGrid::kRows);
     return bounds_.displaced(column, row, displacement(cell, rows, inverse_depth(depth_m)));
   }
 
-  void write_grey(const Places& places, std::uint8_t* target) const {
+  void write_grey(const ImagePositions& places, std::uint8_t* target) const {
     const simd::Int8 upper = upper_left(places);
     const Bilinear mix = shares(places);
     const auto* const bytes = source_.grey.data.data();
@@ -175,7 +176,7 @@ class ColorSource {
     std::memcpy(target, &levels, simd::kLanes);
   }
 
-  void write_color(const Places& places, Rgb* target) const {
+  void write_color(const ImagePositions& places, Rgb* target) const {
     static_assert(sizeof(Rgb) == 3 && std::endian::native == std::endian::little);
     const simd::Int8 upper = upper_left(places);
     const Bilinear mix = shares(places);
@@ -200,10 +201,10 @@ class ColorSource {
   }
 
  private:
-  [[nodiscard]] simd::Int8 upper_left(const Places& places) const {
+  [[nodiscard]] simd::Int8 upper_left(const ImagePositions& places) const {
     return bounds_.top(places.y) * source_.grey.width + bounds_.left(places.x);
   }
-  [[nodiscard]] Bilinear shares(const Places& places) const {
+  [[nodiscard]] Bilinear shares(const ImagePositions& places) const {
     return {places.x - simd::to_float(bounds_.left(places.x)),
             places.y - simd::to_float(bounds_.top(places.y))};
   }
@@ -213,8 +214,8 @@ class ColorSource {
   ColorGrid grid_;
 };
 
-/// Columns side by side that do not wait for each other. Each step is made for all of them before the next
-/// one, so that a processor works on several at once while it waits for memory.
+/// Independent columns, interleaved: each step is done for all of them before the next one, which hides
+/// memory latency.
 constexpr int kGroupsPerTile = 8;
 constexpr int kTileWidth = kGroupsPerTile * static_cast<int>(simd::kLanes);
 
@@ -234,7 +235,7 @@ void compensate_tile(const DepthCarrier& carrier, const ColorSource& colors, int
   std::array<DepthCarrier::Columns, kGroupsPerTile> depth;
   std::array<ColorGrid::Cell, kGroupsPerTile> color;
   std::array<simd::Float8, kGroupsPerTile> carried_m;
-  std::array<Places, kGroupsPerTile> places;
+  std::array<ImagePositions, kGroupsPerTile> places;
   const int width = result.grey.width;
   for (int row = first_row; row < end_row; ++row) {
     if (row % DepthGrid::kRows == 0) {
@@ -249,7 +250,7 @@ void compensate_tile(const DepthCarrier& carrier, const ColorSource& colors, int
                    [&](std::size_t group, int) { carried_m[group] = carrier.depth_m(depth[group], row); });
     for_each_group(first_column, width, [&](std::size_t group, int column) {
       places[group] = colors.places(color[group], column, row, carried_m[group]);
-      // No colour, no use.
+      // Not used without colour.
       simd::store(places[group].inside ? carried_m[group] : simd::Float8{}, &result.depth_m(column, row));
     });
     for_each_group(first_column, width, [&](std::size_t group, int column) {
@@ -262,7 +263,7 @@ void compensate_tile(const DepthCarrier& carrier, const ColorSource& colors, int
 void compensate_tile(const ColorSource& colors, const DepthImage& depth_m, int first_column, int first_row,
                      int end_row, ColorImage& result) {
   std::array<ColorGrid::Cell, kGroupsPerTile> cells;
-  std::array<Places, kGroupsPerTile> places;
+  std::array<ImagePositions, kGroupsPerTile> places;
   for (int row = first_row; row < end_row; ++row) {
     if (row % ColorGrid::kRows == 0) {
       for_each_group(first_column, result.width, [&](std::size_t group, int column) {

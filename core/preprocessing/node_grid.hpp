@@ -1,5 +1,5 @@
-// Numbers that are smooth over an image, known at nodes and linear between them: what takes a hundred
-// operations to compute takes one or two at a pixel.
+// Numbers that are smooth over an image, computed at nodes and interpolated linearly between them: one or two
+// operations a pixel instead of a hundred.
 #pragma once
 
 #include <array>

@@ -6,14 +6,14 @@ namespace fusebench::preprocessing {
 
 namespace {
 
-/// Each iteration leaves as much of the error as the image is stretched: hundredths, of the fastest motion a
+/// Each iteration reduces the error by the stretch of the image: to hundredths, for the fastest motion to a
 /// fifth.
 constexpr int kIterationsForth = 6;
-/// Each leaves what rows are moved by while one row is read: hundredths at most.
+/// Each reduces the error by the motion during the read-out of one row: to hundredths at most.
 constexpr int kIterationsBack = 4;
 
-/// Coefficients of the parabolas through what displacements are for inverse depths of 0, 1 and 2 / m. Those
-/// that do not depend on depth give exactly that.
+/// Coefficients of the parabolas through the displacements for inverse depths of 0, 1 and 2 / m. Those that
+/// do not depend on depth give exactly that.
 std::array<simd::Float8, DisplacementParabola::kCount> parabola_through(const Displacement8& at_0,
                                                                         const Displacement8& at_1,
                                                                         const Displacement8& at_2) {
@@ -53,7 +53,7 @@ std::array<simd::Float8, Readout::kFromRows> Readout::from_rows(simd::Float8 u, 
   return {x0, x1, x2, y0, y1, y2, at_0.depth_factor, at_1.depth_factor - at_0.depth_factor};
 }
 
-/// The pixel that is carried to (u, v) is sought by carrying guesses of it.
+/// The pixel that is carried to (u, v) is found by fixed-point iteration.
 Readout::Carried Readout::forth(simd::Float8 u, float v, float inverse_depth,
                                 const Eigen::Matrix3f& R) const {
   Carried result;
@@ -80,7 +80,7 @@ Displacement8 Readout::back(simd::Float8 u, float v, float inverse_depth, const 
   return result;
 }
 
-/// What the camera turns by until a row is read, or back from there.
+/// Rotation of the camera between the instant of the frame and that of a row, or the inverse.
 Eigen::Matrix3f Readout::turn_until(float v, float sign) const {
   const double time_s = static_cast<double>(sign * times_.at(v));
   return so3_exp(time_s * turn_radps_.cast<double>()).toRotationMatrix().cast<float>();
@@ -109,7 +109,7 @@ simd::Points Readout::shifted(const simd::Points& point, simd::Float8 share) con
 }
 
 /// Displacement from the pixel of a ray to that of where it was carried; none behind the camera. Written as a
-/// difference of rays, so that what stays in place is displaced by exactly nothing.
+/// difference of rays, so that zero motion gives a displacement of exactly zero.
 Displacement8 Readout::between(const simd::Points& ray, const simd::Points& carried) const {
   const simd::Int8 in_front = carried.z > 0.0F;
   const simd::Float8 inverse_z = 1.0F / (in_front ? carried.z : simd::all_lanes(1.0F));

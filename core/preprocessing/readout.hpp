@@ -1,5 +1,4 @@
-// Rows that are read one after the other while the camera moves: what moves where between the instant of a
-// frame and that of a row.
+// Rolling shutter: displacement of pixels between the instant of a frame and the read-out of a row.
 #pragma once
 
 #include <array>

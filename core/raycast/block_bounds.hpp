@@ -1,4 +1,4 @@
-// Where the rays of a camera may meet the model at the earliest.
+// Lower bounds on the depth at which the rays of a camera can meet the model.
 #pragma once
 
 #include "core/base/image.hpp"
@@ -9,8 +9,8 @@
 namespace fusebench::raycast {
 
 /// For each tile of an image, the z-depth of the nearest block of a volume that any of its rays passes, so
-/// that rays need not feel their way through empty space before it. Conservative: blocks count as the spheres
-/// around them, with what interpolation reaches beyond.
+/// that rays can skip the empty space before it. Conservative: blocks count as the spheres around them, with
+/// what interpolation reaches beyond.
 class BlockBounds {
  public:
   /// Numbers of tiles, both included.

@@ -1,4 +1,4 @@
-// Rays of a camera through a field, eight at a time: what they are, and what they meet.
+// Rays of a camera through a field, eight at a time: definition and intersections.
 #pragma once
 
 #include "core/raycast/surface_point.hpp"
@@ -49,8 +49,8 @@ class PixelRays {
   float per_fx_, per_fy_, cx_px_, cy_px_;
 };
 
-/// Where the field is near zero, a step goes this far beyond the zero that it promises: two samples around a
-/// crossing tell it better than many before it.
+/// Where the field is near zero, a step goes this far beyond the zero that it predicts: two samples on either
+/// side of a crossing locate it better than many before it.
 inline constexpr float kBeyond_voxels = 0.75F;
 
 /// Two points of each ray with the surface between them: the field is + in front, - behind. NaN where there
@@ -79,13 +79,13 @@ struct Brackets {
   simd::Float8 back_m{};
 };
 
-/// The field there is as good as zero.
+/// The field there is zero within tolerance.
 [[nodiscard]] inline simd::Int8 is_zero(simd::Float8 distance_m, float voxel_m) {
   constexpr float kZero_voxels = 0.02F;
   return simd::abs(distance_m) < kZero_voxels * voxel_m;
 }
 
-/// What eight rays meet.
+/// Intersections of eight rays with the surface.
 struct Hits {
   simd::Int8 valid{};
   simd::Float8 depth_m{};
@@ -93,7 +93,7 @@ struct Hits {
 };
 
 /// Crossings at these depths, with the gradient of the field there. They go into the surface; a gradient
-/// along the ray is noise at a rim, and no normal.
+/// along the ray is noise at the border of the observed surface, not a normal.
 [[nodiscard]] inline Hits hits_at(simd::Int8 found, simd::Float8 depth_m, const simd::Points& gradient,
                                   const simd::Points& direction) {
   Hits hits;

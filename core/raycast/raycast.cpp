@@ -13,21 +13,21 @@
 namespace fusebench::raycast {
 namespace {
 
-// Seen from the side, the field overstates the distance; a step of less than its value rarely jumps the
-// surface, and where it jumps into the unknown, the walk repeats it in fine steps.
+// Seen from the side, the field overstates the distance; a step of less than its value rarely steps over the
+// surface, and where it steps into unobserved space, the march repeats that stretch in fine steps.
 constexpr float kStepShare = 0.8F;
 constexpr float kFineStep_voxels = 0.5F;
 // The band before a surface is at least two voxels wide.
 constexpr float kUnknownStep_voxels = 1.5F;
-// Further from the surface than this the nearest voxel says enough; from here on the field is interpolated.
+// Further from the surface than this the nearest voxel is accurate enough; nearer, the field is interpolated.
 constexpr float kNear_voxels = 1.75F;
-constexpr int kMostRefinements = 24;
+constexpr int kMaxRefinements = 24;
 constexpr int kBlockShift = 3;   // voxels to blocks
 constexpr int kRegionShift = 5;  // voxels to regions
 
 struct Rays : RayLanes {
-  /// How much z-depth a point on the rays has left in the cube with this index along each axis; point and
-  /// cube in units of `side` voxels.
+  /// Remaining z-depth of a point on the rays in the cube with this index along each axis; point and cube in
+  /// units of `side` voxels.
   [[nodiscard]] simd::Float8 z_to_leave(const simd::Points& point, const tsdf::LatticePoints& cube,
                                         simd::Float8 side) const {
     const auto along = [&](simd::Float8 from, simd::Int8 index, simd::Float8 inverse_step) {
@@ -41,8 +41,8 @@ struct Rays : RayLanes {
   simd::Points inverse;  ///< of the direction
 };
 
-/// Eight rays on their way.
-struct Walk {
+/// State of eight rays that are marched together.
+struct MarchState {
   Rays rays;
   simd::Float8 end_m;
   simd::Float8 z_m;
@@ -50,14 +50,14 @@ struct Walk {
       tsdf::not_a_number();    ///< of the sample before, if it was observed and in front of a surface
   simd::Float8 free_m{};       ///< field there
   simd::Float8 careful_z_m{};  ///< up to here in fine steps
-  simd::Int8 walking{};
+  simd::Int8 active{};
   tsdf::LatticePoints voxel;  ///< nearest to the rays here
   tsdf::TsdfLanes::Location location;
   simd::Float8 nearest_m{};  ///< field of the voxel
   Brackets brackets;
 };
 
-/// Eight pixels, and the part of their rays that is asked for (z-depth).
+/// Eight pixels, and the requested interval of their rays (z-depth).
 struct RequestedRays {
   simd::Float8 u{};
   simd::Float8 v{};
@@ -65,9 +65,9 @@ struct RequestedRays {
   simd::Float8 end_m = simd::all_lanes(std::numeric_limits<float>::infinity());
 };
 
-// Marches along rays of one camera, eight at a time, and several times eight by turns: a processor works on
-// the steps of one while it waits for the memory of another. A ray's result does not depend on those beside
-// it.
+// Marches along rays of one camera, eight at a time, with several such groups interleaved: the processor
+// computes the step of one group while the memory reads of another are pending. A ray's result does not
+// depend on its group.
 class RayMarcher {
  public:
   RayMarcher(const tsdf::TsdfLanes& field, const PinholeCamera& camera, const SE3& T_world_camera,
@@ -80,35 +80,36 @@ class RayMarcher {
         farthest_m_(static_cast<float>(depth.max_m)),
         voxel_m_(static_cast<float>(field.volume().voxel_m())) {}
 
-  static constexpr std::size_t kMostTurns = 8;
+  static constexpr std::size_t kMaxInterleaved = 8;
 
-  /// At most kMostTurns times eight pixels.
+  /// At most kMaxInterleaved groups of eight pixels.
   void march(std::span<const RequestedRays> pixels, std::span<Hits> hits) const {
-    std::array<Walk, kMostTurns> storage;
-    const std::span<Walk> walks = std::span(storage).first(pixels.size());
-    std::array<Walk*, kMostTurns> on_their_way;
+    std::array<MarchState, kMaxInterleaved> storage;
+    const std::span<MarchState> states = std::span(storage).first(pixels.size());
+    std::array<MarchState*, kMaxInterleaved> unfinished;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < walks.size(); ++i) {
-      walks[i] = begin(pixels[i]);
-      if (simd::any(walks[i].walking)) on_their_way[count++] = &walks[i];
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      states[i] = begin(pixels[i]);
+      if (simd::any(states[i].active)) unfinished[count++] = &states[i];
     }
-    // What reads memory that may be far away is done for all before any needs it.
+    // Reads that may miss the cache are issued for all groups before any result is needed.
     while (count > 0) {
-      const std::span<Walk*> active = std::span(on_their_way).first(count);
-      for (Walk* walk : active) locate(*walk);
-      for (Walk* walk : active) walk->nearest_m = field_.distances_m(walk->location);
-      for (Walk* walk : active) step(*walk);
-      const auto arrived = std::remove_if(active.begin(), active.end(),
-                                          [](const Walk* walk) { return !simd::any(walk->walking); });
-      count = static_cast<std::size_t>(arrived - active.begin());
+      const std::span<MarchState*> running = std::span(unfinished).first(count);
+      for (MarchState* state : running) locate(*state);
+      for (MarchState* state : running) state->nearest_m = field_.distances_m(state->location);
+      for (MarchState* state : running) step(*state);
+      const auto finished = std::remove_if(running.begin(), running.end(),
+                                           [](const MarchState* state) { return !simd::any(state->active); });
+      count = static_cast<std::size_t>(finished - running.begin());
     }
-    for (std::size_t i = 0; i < walks.size(); ++i) hits[i] = hits_of(walks[i]);
+    for (std::size_t i = 0; i < states.size(); ++i) hits[i] = hits_of(states[i]);
   }
 
  private:
   [[nodiscard]] Rays rays_of(simd::Float8 u, simd::Float8 v) const {
     Rays rays{pixels_.through(u, v, origin_), {}};
-    // Parallel to a face: it is left after an astronomic way, a number rather than the NaN of 0 * infinity.
+    // Parallel to a face: the distance to leave it is a huge finite number rather than the NaN of 0 *
+    // infinity.
     const auto inverse = [](simd::Float8 step) {
       return step == 0.0F ? simd::all_lanes(1e30F) : 1.0F / step;
     };
@@ -116,38 +117,38 @@ class RayMarcher {
     return rays;
   }
 
-  /// The field along the rays, as far as it matters to the walk.
+  /// The field at the current points of the rays.
   struct Sample {
     simd::Float8 distance_m;  // NaN where it was not observed
     simd::Float8 empty_z_m;   // z-depth without any block, > 0 only where there is none
     simd::Int8 near;          // distance_m was interpolated
   };
 
-  void locate(Walk& walk) const {
+  void locate(MarchState& state) const {
     // Half a voxel more, so that the floor is the nearest voxel.
-    const simd::Points at = walk.rays.at(walk.z_m);
-    walk.voxel = {simd::floor_to_int(at.x + 0.5F), simd::floor_to_int(at.y + 0.5F),
-                  simd::floor_to_int(at.z + 0.5F)};
-    walk.location = field_.locate(walk.voxel);
+    const simd::Points at = state.rays.at(state.z_m);
+    state.voxel = {simd::floor_to_int(at.x + 0.5F), simd::floor_to_int(at.y + 0.5F),
+                   simd::floor_to_int(at.z + 0.5F)};
+    state.location = field_.locate(state.voxel);
   }
 
-  [[nodiscard]] Sample sample(const Walk& walk) const {
-    const simd::Int8 walking = walk.walking;
-    const simd::Points at = walk.rays.at(walk.z_m);
+  [[nodiscard]] Sample sample(const MarchState& state) const {
+    const simd::Int8 active = state.active;
+    const simd::Points at = state.rays.at(state.z_m);
     Sample result;
-    result.distance_m = walk.nearest_m;
+    result.distance_m = state.nearest_m;
     result.empty_z_m = simd::Float8{};
-    const simd::Int8 no_block = walk.location.slot < 0;
-    if (simd::any(no_block & walking)) {
-      const tsdf::LatticePoints& voxel = walk.voxel;
+    const simd::Int8 no_block = state.location.slot < 0;
+    if (simd::any(no_block & active)) {
+      const tsdf::LatticePoints& voxel = state.voxel;
       const simd::Int8 shift =
-          walk.location.no_region ? simd::all_lanes(kRegionShift) : simd::all_lanes(kBlockShift);
-      const simd::Float8 left = walk.rays.z_to_leave({at.x + 0.5F, at.y + 0.5F, at.z + 0.5F},
-                                                     {voxel.x >> shift, voxel.y >> shift, voxel.z >> shift},
-                                                     simd::to_float(simd::all_lanes(1) << shift));
+          state.location.no_region ? simd::all_lanes(kRegionShift) : simd::all_lanes(kBlockShift);
+      const simd::Float8 left = state.rays.z_to_leave({at.x + 0.5F, at.y + 0.5F, at.z + 0.5F},
+                                                      {voxel.x >> shift, voxel.y >> shift, voxel.z >> shift},
+                                                      simd::to_float(simd::all_lanes(1) << shift));
       result.empty_z_m = no_block ? left : simd::Float8{};
     }
-    result.near = (simd::abs(walk.nearest_m) < kNear_voxels * voxel_m_) & walking;
+    result.near = (simd::abs(state.nearest_m) < kNear_voxels * voxel_m_) & active;
     if (simd::any(result.near)) {
       const simd::Float8 interpolated_m = field_.sample(at);
       result.distance_m = result.near ? interpolated_m : result.distance_m;
@@ -155,68 +156,70 @@ class RayMarcher {
     return result;
   }
 
-  [[nodiscard]] Walk begin(const RequestedRays& pixels) const {
-    Walk walk;
-    walk.rays = rays_of(pixels.u, pixels.v);
+  [[nodiscard]] MarchState begin(const RequestedRays& pixels) const {
+    MarchState state;
+    state.rays = rays_of(pixels.u, pixels.v);
     const simd::Float8 begin_m = simd::max(simd::max(pixels.begin_m, bounds_.nearest_m(pixels.u, pixels.v)),
                                            simd::all_lanes(nearest_m_));
-    walk.end_m = simd::min(pixels.end_m, simd::all_lanes(farthest_m_));
-    walk.walking = begin_m <= walk.end_m;
-    walk.z_m = walk.walking ? begin_m : simd::all_lanes(nearest_m_);
-    return walk;
+    state.end_m = simd::min(pixels.end_m, simd::all_lanes(farthest_m_));
+    state.active = begin_m <= state.end_m;
+    state.z_m = state.active ? begin_m : simd::all_lanes(nearest_m_);
+    return state;
   }
 
   /// A step from front to back. Rays stop where the field changes from + to - between two neighbouring
   /// observed samples.
-  void step(Walk& walk) const {
-    const Rays& rays = walk.rays;
+  void step(MarchState& state) const {
+    const Rays& rays = state.rays;
     const simd::Float8 fine_z = kFineStep_voxels * rays.z_per_voxel;
-    const simd::Float8 z_m = walk.z_m;
-    const Sample now = sample(walk);
+    const simd::Float8 z_m = state.z_m;
+    const Sample now = sample(state);
     const simd::Int8 observed = now.distance_m == now.distance_m;
-    const simd::Int8 was_free = walk.free_z_m == walk.free_z_m;
-    const simd::Int8 careful = z_m < walk.careful_z_m;
-    const simd::Int8 crossed = walk.walking & was_free & observed & (now.distance_m < 0.0F);
-    Brackets& brackets = walk.brackets;
-    brackets.front_z_m = crossed ? walk.free_z_m : brackets.front_z_m;
-    brackets.front_m = crossed ? walk.free_m : brackets.front_m;
+    const simd::Int8 was_free = state.free_z_m == state.free_z_m;
+    const simd::Int8 careful = z_m < state.careful_z_m;
+    const simd::Int8 crossed = state.active & was_free & observed & (now.distance_m < 0.0F);
+    Brackets& brackets = state.brackets;
+    brackets.front_z_m = crossed ? state.free_z_m : brackets.front_z_m;
+    brackets.front_m = crossed ? state.free_m : brackets.front_m;
     brackets.back_z_m = crossed ? z_m : brackets.back_z_m;
     brackets.back_m = crossed ? now.distance_m : brackets.back_m;
-    // From free space into the unknown: perhaps a surface was jumped. Once more in fine steps.
-    const simd::Int8 repeat = was_free & ~observed & ~careful & (z_m - walk.free_z_m > 1.01F * fine_z);
+    // From free into unobserved space: a surface may have been stepped over, so repeat in fine steps.
+    const simd::Int8 repeat = was_free & ~observed & ~careful & (z_m - state.free_z_m > 1.01F * fine_z);
     const simd::Int8 give_up = ~observed & careful;
     const simd::Int8 free = observed & (now.distance_m >= 0.0F);
     const simd::Float8 field_z =
         (observed ? simd::abs(now.distance_m) : simd::Float8{}) * (rays.z_per_voxel * (1.0F / voxel_m_));
     const simd::Float8 beyond = field_z + kBeyond_voxels * rays.z_per_voxel;
-    // In the unknown there is nothing to jump until free space is met again, which is wider than this step.
+    // In unobserved space no surface can be missed before free space is met again, which is wider than this
+    // step.
     const simd::Float8 least_z = observed | was_free ? fine_z : kUnknownStep_voxels * rays.z_per_voxel;
     const simd::Float8 plain =
         simd::max(simd::max(least_z, now.empty_z_m), now.near & free ? beyond : kStepShare * field_z);
     const simd::Float8 onward = careful & free ? z_m + fine_z : z_m + plain;
     const simd::Float8 next =
-        repeat ? walk.free_z_m + fine_z : (give_up ? simd::max(walk.careful_z_m, onward) : onward);
-    walk.careful_z_m = repeat ? z_m : walk.careful_z_m;
-    walk.free_z_m = free ? z_m : (repeat ? walk.free_z_m : tsdf::not_a_number());
-    walk.free_m = free ? now.distance_m : walk.free_m;
-    walk.walking &= ~crossed & (next <= walk.end_m);
-    walk.z_m = walk.walking ? next : z_m;
+        repeat ? state.free_z_m + fine_z : (give_up ? simd::max(state.careful_z_m, onward) : onward);
+    state.careful_z_m = repeat ? z_m : state.careful_z_m;
+    state.free_z_m = free ? z_m : (repeat ? state.free_z_m : tsdf::not_a_number());
+    state.free_m = free ? now.distance_m : state.free_m;
+    state.active &= ~crossed & (next <= state.end_m);
+    state.z_m = state.active ? next : z_m;
   }
 
-  [[nodiscard]] Hits hits_of(const Walk& walk) const {
-    const Rays& rays = walk.rays;
-    simd::Int8 found = walk.brackets.front_z_m == walk.brackets.front_z_m;
+  [[nodiscard]] Hits hits_of(const MarchState& state) const {
+    const Rays& rays = state.rays;
+    simd::Int8 found = state.brackets.front_z_m == state.brackets.front_z_m;
     if (!simd::any(found)) return {};
-    const simd::Float8 depth_m = refined(rays, walk.brackets, found);
+    const simd::Float8 depth_m = refined(rays, state.brackets, found);
     const simd::Points gradient = field_.gradient(rays.at(found ? depth_m : simd::all_lanes(nearest_m_)));
     return hits_at(found, depth_m, gradient, rays.direction);
   }
 
   /// The zeros in the brackets: alternates the zero of the chord, which is close where the field is smooth,
-  /// with the middle, which always helps. Removes those from `found` that lie in the unknown.
+  /// with the middle, which always halves the bracket. Removes those from `found` that lie in unobserved
+  /// space.
   [[nodiscard]] simd::Float8 refined(const Rays& rays, Brackets bracket, simd::Int8& found) const {
     simd::Int8 open = found & ~bracket.are_narrow(rays.z_per_voxel);
-    for (int i = 0; i < kMostRefinements && simd::any(open); ++i) {
+    for (int i = 0; i < kMaxRefinements && simd::any(open); ++i) {
       const simd::Float8 z_m = i % 2 == 0 ? bracket.zero_of_chord() : bracket.middle();
       const simd::Float8 distance_m = field_.sample(rays.at(open ? z_m : simd::all_lanes(nearest_m_)));
       const simd::Int8 unknown = open & (distance_m != distance_m);
@@ -237,7 +240,7 @@ class RayMarcher {
   float voxel_m_;
 };
 
-constexpr std::size_t kPixelsPerTurn = RayMarcher::kMostTurns * simd::kLanes;
+constexpr std::size_t kPixelsPerBatch = RayMarcher::kMaxInterleaved * simd::kLanes;
 
 }  // namespace
 
@@ -246,17 +249,17 @@ void raycast_pixels(const tsdf::TsdfLanes& field, const PinholeCamera& camera, c
                     const Workers& workers, std::vector<SurfacePoint>& points) {
   points.resize(pixels.size());
   const RayMarcher marcher(field, camera, T_world_camera, depth);
-  workers.for_chunks(pixels.size(), kPixelsPerTurn, [&](std::size_t begin, std::size_t end) {
-    std::array<RequestedRays, RayMarcher::kMostTurns> lanes;
-    std::array<Hits, RayMarcher::kMostTurns> hits;
-    for (std::size_t i = begin; i < begin + kPixelsPerTurn; ++i) {
+  workers.for_chunks(pixels.size(), kPixelsPerBatch, [&](std::size_t begin, std::size_t end) {
+    std::array<RequestedRays, RayMarcher::kMaxInterleaved> lanes;
+    std::array<Hits, RayMarcher::kMaxInterleaved> hits;
+    for (std::size_t i = begin; i < begin + kPixelsPerBatch; ++i) {
       const PixelRay& pixel = pixels[std::min(i, end - 1)];
-      RequestedRays& eight = lanes[(i - begin) / simd::kLanes];
+      RequestedRays& group = lanes[(i - begin) / simd::kLanes];
       const std::size_t lane = (i - begin) % simd::kLanes;
-      eight.u[lane] = static_cast<float>(pixel.u_px);
-      eight.v[lane] = static_cast<float>(pixel.v_px);
-      eight.begin_m[lane] = pixel.begin_m;
-      eight.end_m[lane] = pixel.end_m;
+      group.u[lane] = static_cast<float>(pixel.u_px);
+      group.v[lane] = static_cast<float>(pixel.v_px);
+      group.begin_m[lane] = pixel.begin_m;
+      group.end_m[lane] = pixel.end_m;
     }
     marcher.march(lanes, hits);
     for (std::size_t i = begin; i < end; ++i) {

@@ -12,7 +12,7 @@
 
 namespace fusebench::raycast {
 
-/// A pixel, and the part of its ray that is asked for (z-depth, metres; depth.min_m and max_m hold as well).
+/// A pixel, and the requested interval of its ray (z-depth, metres; depth.min_m and max_m hold as well).
 struct PixelRay {
   double u_px = 0;
   double v_px = 0;

@@ -9,19 +9,19 @@ namespace fusebench::raycast {
 
 namespace {
 
-// Beside a measurement a surface is looked for this far along the ray, each way: the noise of the two, and
-// some voxels for what the steps go beyond it.
+// Search distance along the ray on either side of a measurement: the noise of both, and some voxels of margin
+// for the steps.
 constexpr float kReach_sigmas = 2.0F;
 constexpr float kReach_voxels = 2.0F;
 // The gradient at a point needs the voxel before its cell's base and two after it.
 constexpr int kBefore = 1;
 constexpr int kAfter = 2;
-constexpr int kMostSamples = 10;
+constexpr int kMaxSamples = 10;
 
-// A brick of more voxels than these takes longer to copy than looking for the blocks of each pixel, or does
-// not stay in a core's own cache (256 kB).
+// A larger brick takes longer to copy than looking up the blocks of each pixel, or exceeds the L2 cache (256
+// kB).
 constexpr double kVoxelsPerPixel = 200;
-constexpr double kMostVoxels = 65536;
+constexpr double kMaxVoxels = 65536;
 constexpr std::size_t kFewPixels = 32;
 
 }  // namespace
@@ -35,7 +35,7 @@ struct SurfaceSearch::Box {
 };
 
 /// Eight pixels; lanes beyond the last one repeat it.
-struct SurfaceSearch::Eight {
+struct SurfaceSearch::PixelGroup {
   simd::Float8 u_px;
   simd::Float8 v_px;
   simd::Float8 depth_m;
@@ -54,18 +54,18 @@ void SurfaceSearch::find(std::span<const ExpectedSurface> pixels, std::span<Surf
   find_in(field_, field_.origin_voxel(), false, pixels, surfaces);
 }
 
-void SurfaceSearch::find_beside(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
-                                std::span<SurfacePoint> surfaces) const {
+void SurfaceSearch::find_near_measurements(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
+                                           std::span<SurfacePoint> surfaces) const {
   if (pixels.empty()) return;
   const Box box = box_around(pixels);
-  if (box.voxels() <= kMostVoxels && box.voxels() <= kVoxelsPerPixel * static_cast<double>(pixels.size())) {
+  if (box.voxels() <= kMaxVoxels && box.voxels() <= kVoxelsPerPixel * static_cast<double>(pixels.size())) {
     brick.copy(field_.volume(), box.first, box.last);
     find_in(brick, brick.origin_voxel().cast<double>(), true, pixels, surfaces);
   } else if (pixels.size() > kFewPixels) {
-    // An edge between near and far, or pixels that are far apart: parts of them may do.
+    // An edge between near and far, or pixels that are far apart: the halves are tried separately.
     const std::size_t half = pixels.size() / 2;
-    find_beside(pixels.first(half), brick, surfaces.first(half));
-    find_beside(pixels.subspan(half), brick, surfaces.subspan(half));
+    find_near_measurements(pixels.first(half), brick, surfaces.first(half));
+    find_near_measurements(pixels.subspan(half), brick, surfaces.subspan(half));
   } else {
     find_in(field_, field_.origin_voxel(), true, pixels, surfaces);
   }
@@ -76,40 +76,40 @@ void SurfaceSearch::find_in(const Field& field, const Vector3d& field_origin_vox
                             std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const {
   const Eigen::Vector3f origin = (camera_voxel_ - field_origin_voxel).cast<float>();
   for (std::size_t begin = 0; begin < pixels.size(); begin += simd::kLanes) {
-    const Hits hits = search(eight_of(pixels, begin, beside), origin, field);
+    const Hits hits = search(group_of(pixels, begin, beside), origin, field);
     const std::size_t count = std::min(simd::kLanes, pixels.size() - begin);
     for (std::size_t lane = 0; lane < count; ++lane) surfaces[begin + lane] = surface_point(hits, lane);
   }
 }
 
-SurfaceSearch::Eight SurfaceSearch::eight_of(std::span<const ExpectedSurface> pixels, std::size_t begin,
-                                             bool beside) const {
-  Eight eight{};
+SurfaceSearch::PixelGroup SurfaceSearch::group_of(std::span<const ExpectedSurface> pixels, std::size_t begin,
+                                                  bool beside) const {
+  PixelGroup group{};
   for (std::size_t lane = 0; lane < simd::kLanes; ++lane) {
     const ExpectedSurface& pixel = pixels[std::min(begin + lane, pixels.size() - 1)];
-    eight.u_px[lane] = pixel.u_px;
-    eight.v_px[lane] = pixel.v_px;
-    eight.depth_m[lane] = pixel.depth_m;
-    eight.reach_m[lane] = pixel.reach_m;
+    group.u_px[lane] = pixel.u_px;
+    group.v_px[lane] = pixel.v_px;
+    group.depth_m[lane] = pixel.depth_m;
+    group.reach_m[lane] = pixel.reach_m;
   }
   if (beside) {
     const simd::Float8 noise_m =
-        kReach_sigmas * preprocessing::depth_sigma_m(eight.depth_m, depth_) + kReach_voxels * voxel_m_;
-    eight.reach_m = simd::min(eight.reach_m, noise_m);
+        kReach_sigmas * preprocessing::depth_sigma_m(group.depth_m, depth_) + kReach_voxels * voxel_m_;
+    group.reach_m = simd::min(group.reach_m, noise_m);
   }
-  return eight;
+  return group;
 }
 
-/// The voxels around all parts of rays where a surface is looked for.
+/// The voxels around all parts of rays that are searched.
 SurfaceSearch::Box SurfaceSearch::box_around(std::span<const ExpectedSurface> pixels) const {
   constexpr float kFar = std::numeric_limits<float>::max();
   simd::Points low = {simd::all_lanes(kFar), simd::all_lanes(kFar), simd::all_lanes(kFar)};
   simd::Points high = {simd::all_lanes(-kFar), simd::all_lanes(-kFar), simd::all_lanes(-kFar)};
   for (std::size_t begin = 0; begin < pixels.size(); begin += simd::kLanes) {
-    const Eight eight = eight_of(pixels, begin, true);
-    const RayLanes rays = rays_.through(eight.u_px, eight.v_px, Eigen::Vector3f::Zero());
+    const PixelGroup group = group_of(pixels, begin, true);
+    const RayLanes rays = rays_.through(group.u_px, group.v_px, Eigen::Vector3f::Zero());
     for (const simd::Points& p :
-         {rays.at(eight.depth_m - eight.reach_m), rays.at(eight.depth_m + eight.reach_m)}) {
+         {rays.at(group.depth_m - group.reach_m), rays.at(group.depth_m + group.reach_m)}) {
       low = {simd::min(low.x, p.x), simd::min(low.y, p.y), simd::min(low.z, p.z)};
       high = {simd::max(high.x, p.x), simd::max(high.y, p.y), simd::max(high.z, p.z)};
     }
@@ -125,20 +125,20 @@ SurfaceSearch::Box SurfaceSearch::box_around(std::span<const ExpectedSurface> pi
 }
 
 template <class Field>
-Hits SurfaceSearch::search(const Eight& eight, const Eigen::Vector3f& origin, const Field& field) const {
-  const RayLanes rays = rays_.through(eight.u_px, eight.v_px, origin);
+Hits SurfaceSearch::search(const PixelGroup& group, const Eigen::Vector3f& origin, const Field& field) const {
+  const RayLanes rays = rays_.through(group.u_px, group.v_px, origin);
   const simd::Float8 begin_m =
-      simd::max(eight.depth_m - eight.reach_m, simd::all_lanes(static_cast<float>(depth_.min_m)));
+      simd::max(group.depth_m - group.reach_m, simd::all_lanes(static_cast<float>(depth_.min_m)));
   const simd::Float8 end_m =
-      simd::min(eight.depth_m + eight.reach_m, simd::all_lanes(static_cast<float>(depth_.max_m)));
+      simd::min(group.depth_m + group.reach_m, simd::all_lanes(static_cast<float>(depth_.max_m)));
   const simd::Float8 z_per_metre = rays.z_per_voxel * (1.0F / voxel_m_);
   Brackets bracket;
-  simd::Float8 z_m = eight.depth_m;
-  simd::Float8 crossing_m = eight.depth_m;
+  simd::Float8 z_m = group.depth_m;
+  simd::Float8 crossing_m = group.depth_m;
   simd::Int8 found{};
   simd::Int8 open = (z_m >= begin_m) & (z_m <= end_m);
   simd::Int8 halve{};  // the middle of the bracket is next, after the zero of its chord
-  for (int i = 0; i < kMostSamples && simd::any(open); ++i) {
+  for (int i = 0; i < kMaxSamples && simd::any(open); ++i) {
     const simd::Float8 distance_m = field.sample(rays.at(z_m));
     open &= distance_m == distance_m;
     const simd::Int8 front = open & (distance_m >= 0.0F);

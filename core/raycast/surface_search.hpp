@@ -1,5 +1,5 @@
 // The model's surface where a camera has measured one: a few steps from the measurement to the zero of the
-// field beside it, instead of a walk along the ray.
+// field beside it, instead of marching along the ray.
 #pragma once
 
 #include <cstddef>
@@ -26,25 +26,26 @@ class SurfaceSearch {
                 const config::DepthConfig& depth);
 
   /// The zero of the trilinear field that the field at the expected place leads to, to a fiftieth of a voxel,
-  /// with the normal there. Where it leads to none within reach, or into the unknown, the result is invalid:
-  /// then the ray has to be walked (raycast_pixels).
+  /// with the normal there. Where there is none within reach, or the search leaves observed space, the result
+  /// is invalid: then the ray has to be marched (raycast_pixels).
   void find(std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const;
 
   /// The same for pixels that lie close together in the image and in depth, and no further from the expected
-  /// place than noise explains. `brick`: memory to work in.
-  void find_beside(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
-                   std::span<SurfacePoint> surfaces) const;
+  /// place than noise explains. `brick`: workspace.
+  void find_near_measurements(std::span<const ExpectedSurface> pixels, tsdf::TsdfBrick& brick,
+                              std::span<SurfacePoint> surfaces) const;
 
  private:
   struct Box;
-  struct Eight;
+  struct PixelGroup;
 
   template <class Field>
   void find_in(const Field& field, const Vector3d& field_origin_voxel, bool beside,
                std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const;
   template <class Field>
-  [[nodiscard]] Hits search(const Eight& eight, const Eigen::Vector3f& origin, const Field& field) const;
-  [[nodiscard]] Eight eight_of(std::span<const ExpectedSurface> pixels, std::size_t begin, bool beside) const;
+  [[nodiscard]] Hits search(const PixelGroup& group, const Eigen::Vector3f& origin, const Field& field) const;
+  [[nodiscard]] PixelGroup group_of(std::span<const ExpectedSurface> pixels, std::size_t begin,
+                                    bool beside) const;
   [[nodiscard]] Box box_around(std::span<const ExpectedSurface> pixels) const;
 
   const tsdf::TsdfLanes& field_;

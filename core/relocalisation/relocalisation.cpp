@@ -1,6 +1,6 @@
 #include "core/relocalisation/relocalisation.hpp"
 
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
 #include "core/relocalisation/relocalisation_update.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 namespace fusebench::relocalisation {
 

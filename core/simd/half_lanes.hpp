@@ -47,7 +47,7 @@ struct Pairs {
   Float8 second;
 };
 
-/// values[at] and values[at + 1] by lane, for the price of one.
+/// values[at] and values[at + 1] by lane, with one load each.
 [[nodiscard]] inline Pairs gather_pairs(const Half* values, Int8 at) {
 #ifdef FUSEBENCH_HAS_HALF_INSTRUCTIONS
   const __m256i words =

@@ -55,7 +55,7 @@ namespace lane_details {
 }  // namespace lane_details
 
 /// Cubic convolution (Keys 1981, a = -1/2) with the exact derivative of the interpolant. A bilinear sample is
-/// blurred by as much as it lies between pixels, which draws an alignment towards whole pixels; this one
+/// blurred depending on its sub-pixel position, which biases an alignment towards whole pixels; this one
 /// hardly is. Needs 1 <= x <= width - 2 (same for y) in all lanes.
 [[nodiscard]] inline IntensityLanes sample_bicubic(const GreyImage& image, Float8 x, Float8 y) {
   using namespace lane_details;

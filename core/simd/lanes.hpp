@@ -64,8 +64,8 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
   return std::bit_cast<Float8>(std::bit_cast<Int8>(values) & 0x7FFFFFFF);
 }
 
-/// a * b + c, rounded once, which is faster as well; said where it is meant, since compilers are told not to
-/// choose (-ffp-contract=off).
+/// a * b + c, rounded once, which is faster as well; always explicit, since compilers may not contract on
+/// their own (-ffp-contract=off).
 [[nodiscard]] inline Float8 multiply_add(Float8 a, Float8 b, Float8 c) {
 #if defined(__AVX2__) && defined(__FMA__)
   return std::bit_cast<Float8>(
@@ -122,8 +122,8 @@ inline constexpr Float8 kLaneNumber = {0, 1, 2, 3, 4, 5, 6, 7};
 #endif
 }
 
-/// The four bytes from bytes[at] on, by lane, the first one the lowest; what lies beyond the last of the
-/// `count` >= 4 bytes means nothing.
+/// The four bytes from bytes[at] on, by lane, the first one the lowest; bytes beyond the last of the `count`
+/// >= 4 are unspecified.
 [[nodiscard]] inline Int8 gather_bytes(const std::uint8_t* bytes, std::size_t count, Int8 at) {
   // Words of four bytes: the last one ends with the bytes, and what it begins too early is shifted out.
   const auto last = static_cast<std::int32_t>(count) - 4;

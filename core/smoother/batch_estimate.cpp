@@ -16,7 +16,7 @@ namespace fusebench::smoother {
 
 namespace {
 
-/// What the visual information is divided by, in two parts.
+/// The two factors that the visual information is divided by.
 struct VisualScale {
   double variance = 1;
   double correlation = 1;
@@ -106,8 +106,8 @@ double leverage(const SparseRowsd& jacobian, Eigen::Index begin, Eigen::Index en
   return sum;
 }
 
-/// J^T J. The last frame's pose and biases meet in no residual, but their covariance is asked for: zeros make
-/// place for it.
+/// J^T J. The last frame's pose and biases appear in no common residual, but their covariance is requested:
+/// zeros make place for it.
 SparseMatrixd information_of(const BatchLinearisation& at) {
   SparseMatrixd information = at.jacobian.transpose() * at.jacobian;
   SparseMatrixd place(information.rows(), information.cols());
@@ -129,7 +129,7 @@ double squared(const std::vector<double>& residuals, std::size_t begin, std::siz
 /// sequence, Geyer 1992).
 double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_of_frame) {
   constexpr double kNegligible = 0.05;
-  constexpr std::size_t kLongestLag = 30;
+  constexpr std::size_t kMaxLag = 30;
   double power = 0;
   double count = 0;
   for (const auto& r : residual_of_frame) {
@@ -138,7 +138,7 @@ double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_o
     count += 1;
   }
   double factor = 1;
-  for (std::size_t lag = 1; lag <= kLongestLag; ++lag) {
+  for (std::size_t lag = 1; lag <= kMaxLag; ++lag) {
     double product = 0;
     double pairs = 0;
     for (std::size_t k = lag; k < residual_of_frame.size(); ++k) {
@@ -146,7 +146,7 @@ double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_o
       product += residual_of_frame[k]->dot(*residual_of_frame[k - lag]);
       pairs += 1;
     }
-    if (pairs < 8) break;  // too few to say anything
+    if (pairs < 8) break;  // too few for an estimate
     const double correlation = (product / pairs) / (power / count);
     if (!(correlation > kNegligible)) break;
     factor += 2 * correlation;

@@ -1,13 +1,13 @@
 // All poses, velocities and biases of a recording at once, and if asked for the calibration of camera and
-// IMU, from inertial samples and from what images said of the motion between frames: a maximum a posteriori
+// IMU, from inertial samples and relative camera motions measured by the images: a maximum a posteriori
 // estimate.
 //
 // World is the camera of the first frame: the first pose is fixed. Unknowns of a frame: pose and velocity of
 // the IMU, biases. Common unknowns: the direction of gravity, T_imu_camera, and the offset of the IMU's
-// clock. Samples are integrated again with each new offset and bias until nothing moves.
+// clock. Samples are integrated again with each new offset and bias until convergence.
 //
-// The scale of what the images say is not known (the filter counts correlated pixels as few measurements),
-// and errors of neighbouring frames have one cause. So the visual information is divided by
+// The noise scale of the visual motions is not known (the filter counts correlated pixels as few
+// measurements), and errors of neighbouring frames are correlated. So the visual information is divided by
 //
 //   variance factor     sum of squared visual residuals / their redundancy (Helmert), times
 //   correlation factor  1 + 2 sum of their autocorrelation over frames, up to the first lag below 0.05:
@@ -77,7 +77,7 @@ struct BatchEstimate {
   BatchCommonMatrix common_covariance = BatchCommonMatrix::Zero();  ///< what is held fixed has zeros
   double variance_factor = 1;
   double correlation_factor = 1;
-  double inertial_variance_factor = 1;  ///< 1 if the noise of the IMU is what it is said to be
+  double inertial_variance_factor = 1;  ///< 1 if the specified noise of the IMU is right
   std::size_t outliers = 0;             ///< images beyond outlier_sigmas
   int rounds = 0;
   bool converged = false;

@@ -118,7 +118,7 @@ void BatchProblem::add_priors() {
       Vector3d::Constant(options_.accelerometer_bias_sigma_mps2);
   rest_.push_back(problem_.AddResidualBlock(vector_prior<6>(Vector6d::Zero(), bias_sigma), nullptr,
                                             x.bias.front().data()));
-  // Nobody moves a camera faster; it only matters where the images say nothing.
+  // Upper bound on camera speed; it only matters where there is no visual measurement.
   rest_.push_back(problem_.AddResidualBlock(vector_prior<3>(Vector3d::Zero(), Vector3d::Constant(10.0)),
                                             nullptr, x.velocity_world_mps.front().data()));
   if (options_.rotation_prior_rad > 0) {

@@ -6,16 +6,16 @@
 
 namespace fusebench::smoother {
 
-SeenPose seen_pose(const health::PoseEvidence& evidence, const SE3& T_imu_camera) {
-  constexpr double kLeastInformation = 1.0;  // 1 rad, 1 m
+VisualPose visual_pose(const health::PoseEvidence& evidence, const SE3& T_imu_camera) {
+  constexpr double kMinInformation = 1.0;  // 1 rad, 1 m
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(evidence.quadratic.information);
   Vector6d step = Vector6d::Zero();
   Matrix6d covariance = Matrix6d::Zero();
   for (int i = 0; i < 6; ++i) {
     const double information = eigen.eigenvalues()[i];
     const Vector6d direction = eigen.eigenvectors().col(i);
-    covariance += direction * direction.transpose() / std::max(information, kLeastInformation);
-    if (information > kLeastInformation)
+    covariance += direction * direction.transpose() / std::max(information, kMinInformation);
+    if (information > kMinInformation)
       step -= direction * direction.dot(evidence.quadratic.gradient) / information;
   }
   const SE3 T_world_imu{(evidence.T_world_imu.rotation * so3_exp(step.head<3>())).normalized(),
@@ -27,7 +27,7 @@ SeenPose seen_pose(const health::PoseEvidence& evidence, const SE3& T_imu_camera
   return {T_world_imu * T_imu_camera, camera_by_imu * covariance * camera_by_imu.transpose()};
 }
 
-RelativeCameraMotion motion_between(const SeenPose& reference, const SeenPose& camera) {
+RelativeCameraMotion motion_between(const VisualPose& reference, const VisualPose& camera) {
   RelativeCameraMotion motion;
   motion.T_reference_camera = reference.T_world_camera.inverse() * camera.T_world_camera;
   const Matrix3d R_reference_world = reference.T_world_camera.rotation_matrix().transpose();

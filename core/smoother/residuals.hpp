@@ -83,7 +83,7 @@ struct InertialResidual {
   }
 };
 
-/// Biases walk at random.
+/// Random walk of the biases.
 struct BiasWalkResidual {
   double gyroscope_sigma;      ///< of the step
   double accelerometer_sigma;  ///< the same
@@ -98,7 +98,7 @@ struct BiasWalkResidual {
   }
 };
 
-/// What images say about the motion of the camera between two frames.
+/// Relative camera motion measured by the images.
 struct VisualResidual {
   SE3 T_reference_camera;  ///< as measured
   Matrix6d whitening;
@@ -124,7 +124,7 @@ struct VisualResidual {
   }
 };
 
-/// A rotation is about what one knew before.
+/// Gaussian prior on a rotation.
 struct RotationPrior {
   Quaterniond expected;
   double sigma_rad;
@@ -137,7 +137,7 @@ struct RotationPrior {
   }
 };
 
-/// So is a vector, component by component.
+/// Gaussian prior on a vector, component by component.
 template <int Size>
 struct VectorPrior {
   Eigen::Matrix<double, Size, 1> expected;

@@ -35,7 +35,7 @@ void SelectedInverse::fill_column(Eigen::Index column) {
   std::vector<double> sum(factor.size(), 0.0);
   for (SparseIndex k = begin; k < end; ++k) {
     SparseIndex at =
-        outer[inner[k]];  // walks down column inner[k], whose rows contain those of this column below
+        outer[inner[k]];  // runs down column inner[k], whose rows contain those of this column below
     const auto of_k = static_cast<std::size_t>(k - begin);
     for (SparseIndex i = k; i < end; ++i) {
       while (inner[at] < inner[i]) ++at;

@@ -19,7 +19,7 @@ using SparseRowsd = Eigen::SparseMatrix<double, Eigen::RowMajor, SparseIndex>;
 
 /// The inverse of a symmetric positive definite matrix, at all entries where its Cholesky factor is not zero
 /// by structure (Takahashi's recursion; Erisman & Tinney 1975). That includes the pattern of the matrix, so
-/// the covariance of any two unknowns that meet in a residual is there.
+/// the covariance of any two unknowns of a common residual is available.
 class SelectedInverse {
  public:
   /// Only the lower triangle is read. Nothing if the matrix is not positive definite.

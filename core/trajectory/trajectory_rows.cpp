@@ -11,8 +11,8 @@ namespace fusebench::trajectory {
 
 namespace {
 
-constexpr double kSmallestNorm = 1e-3;     // below it there is no direction left in four printed decimals
-constexpr double kToleratedExcess = 1e-3;  // ten times what rounding to four decimals does
+constexpr double kMinQuaternionNorm = 1e-3;  // below it four printed decimals do not determine a rotation
+constexpr double kMaxNormError = 1e-3;       // ten times what rounding to four decimals does
 
 struct BackwardSteps {
   std::size_t count = 0;
@@ -31,7 +31,7 @@ BackwardSteps backward_steps(const Trajectory& poses) {
   return steps;
 }
 
-/// Sorting would weave two trajectories into one that never was.
+/// Sorting would interleave two concatenated trajectories.
 Result<void> check_single(const TrajectoryRows& rows, const std::filesystem::path& file) {
   constexpr std::size_t kFewSteps = 3;
   const BackwardSteps steps = backward_steps(rows.poses);
@@ -101,13 +101,12 @@ io::TimeOrder order_for(Duplicates duplicates) {
 Result<void> take_pose(const io::TextTable& table, std::int64_t time_ns, const Vector3d& translation_m,
                        const Quaterniond& rotation, TrajectoryRows& rows) {
   const double norm = rotation.norm();
-  if (!(norm > kSmallestNorm && std::isfinite(norm))) {
+  if (!(norm > kMinQuaternionNorm && std::isfinite(norm))) {
     return table.fail_here(
         fmt::format("quaternion (x y z w) = {:g} {:g} {:g} {:g} has norm {:g} (expected 1)", rotation.x(),
                     rotation.y(), rotation.z(), rotation.w(), norm));
   }
-  if (std::abs(norm - 1.0) > kToleratedExcess && rows.not_unit++ == 0)
-    rows.first_not_unit_line = table.line();
+  if (std::abs(norm - 1.0) > kMaxNormError && rows.not_unit++ == 0) rows.first_not_unit_line = table.line();
   rows.poses.push_back({time_ns, {rotation.normalized(), translation_m}});
   rows.lines.push_back(table.line());
   return {};

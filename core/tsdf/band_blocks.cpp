@@ -18,11 +18,11 @@ constexpr int kPixels = static_cast<int>(simd::kLanes);
 /// The one to take of `stride` in a row (a power of two, 4 at most), another one for the next number: first
 /// those that are far apart (van der Corput 1935).
 int taken_of(int stride, std::uint32_t number) {
-  constexpr std::array<int, 4> kOfFour = {0, 2, 1, 3};
-  return kOfFour[number % kOfFour.size()] * stride / 4;
+  constexpr std::array<int, 4> kBitReversed = {0, 2, 1, 3};
+  return kBitReversed[number % kBitReversed.size()] * stride / 4;
 }
 
-/// What the segments of eight rays do along one axis of the lattice, in units of blocks.
+/// Traversal of eight ray segments along one axis of the lattice, in units of blocks.
 struct AxisSegments {
   simd::Int8 begin;      ///< block in which the segment begins
   simd::Int8 crossings;  ///< faces that it crosses, negative if downwards
@@ -44,14 +44,15 @@ AxisSegments segments_along(float origin, simd::Float8 ray, simd::Float8 near, s
   return {begin, crossings, crossings == 0 ? never : rest * between, crossings == 0 ? never : between};
 }
 
-/// The way of eight segments through the blocks. Segments run through the same blocks if they begin in the
-/// same one and cross the same faces in the same order: mostly those of neighbouring pixels.
+/// The block traversal of eight segments. Segments run through the same blocks if they begin in the same one
+/// and cross the same faces in the same order: mostly those of neighbouring pixels.
 struct Paths {
   std::array<simd::Int8, 3> begin;
   std::array<simd::Int8, 3> crossings;
   simd::Int8 order;  ///< of the crossings; -1 if an axis is crossed more than twice, or nothing was measured
 
-  /// Bit i is set if pixel i has another way than the pixel before it; `last` is the one before the first.
+  /// Bit i is set if pixel i passes other blocks than the pixel before it; `last` is the one before the
+  /// first.
   [[nodiscard]] unsigned changes(const Paths& last) const {
     simd::Int8 same = (order != -1) & (order == shifted(last.order, order));
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -146,8 +147,8 @@ class PixelSegments {
     last_ = paths;
   }
 
-  // Adds the blocks on the segment of a pixel: the traversal of Amanatides & Woo 1987. The number of steps
-  // is known beforehand, so rounding can at worst pick a neighbour at a corner, never run away.
+  // Adds the blocks on the segment of a pixel: the traversal of Amanatides & Woo 1987. The number of steps is
+  // known beforehand, so rounding can at worst pick a neighbour at a corner; the loop always ends.
   void add_blocks(const std::array<AxisSegments, 3>& axes, std::size_t lane, OrderedBlocks& blocks) const {
     const std::array<int, 3> crossings = {axes[0].crossings[lane], axes[1].crossings[lane],
                                           axes[2].crossings[lane]};
@@ -181,10 +182,10 @@ class PixelSegments {
 void OrderedBlocks::clear() {
   table_.clear();
   blocks_.clear();
-  forget_recent();
+  clear_recent();
 }
 
-void OrderedBlocks::forget_recent() {
+void OrderedBlocks::clear_recent() {
   recent_.fill(BlockIndex::Constant(std::numeric_limits<int>::max()));  // nothing reaches that far
 }
 

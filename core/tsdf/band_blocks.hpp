@@ -26,7 +26,7 @@ namespace fusebench::tsdf {
 /// A set of blocks in the order in which they were first met.
 class OrderedBlocks {
  public:
-  OrderedBlocks() { forget_recent(); }
+  OrderedBlocks() { clear_recent(); }
 
   void clear();
   void add(const BlockIndex& index) {
@@ -40,7 +40,7 @@ class OrderedBlocks {
   [[nodiscard]] const std::vector<BlockIndex>& blocks() const { return blocks_; }
 
  private:
-  void forget_recent();
+  void clear_recent();
 
   BlockTable table_;
   std::vector<BlockIndex> blocks_;
@@ -54,9 +54,9 @@ class BandBlocks {
   /// as far behind it (both along z). Depth outside [min_m, max_m] of `depth` is skipped. Where a block is at
   /// least kFinePixels wide in the image as far away as max_m, every fourth pixel of every fourth row stands
   /// for its neighbours, every second one where it is half as wide: of a surface they may miss corners, half
-  /// a block wide. Which pixels these are changes from row to row and with the number of the frame, so that
-  /// something thin is not passed over all along, nor again and again. Single precision from the camera on: a
-  /// ray that misses a corner of a block by less than a micrometre may count as a hit.
+  /// a block wide. Which pixels these are changes from row to row and with the number of the frame, so that a
+  /// thin structure is not missed systematically. Single precision from the camera on: a ray that misses a
+  /// corner of a block by less than a micrometre may count as a hit.
   void find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
             const config::TsdfConfig& tsdf, const config::DepthConfig& depth, std::uint32_t frame_number,
             const Workers& workers);

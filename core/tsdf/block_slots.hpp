@@ -10,8 +10,8 @@
 
 namespace fusebench::tsdf {
 
-/// Slots of the blocks of a volume. Remembers the regions that it looked up last, so use one for a part of
-/// space, one a thread; the volume must not change meanwhile.
+/// Slots of the blocks of a volume. Caches the regions that were looked up last, so use one instance for each
+/// part of space and thread; the volume must not change meanwhile.
 class BlockSlots {
  public:
   explicit BlockSlots(const TsdfVolume& volume) : volume_(volume) {}

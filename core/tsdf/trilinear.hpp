@@ -11,7 +11,7 @@
 
 namespace fusebench::tsdf {
 
-/// In place of what is not known.
+/// Marks unobserved values.
 [[nodiscard]] inline simd::Float8 not_a_number() {
   return simd::all_lanes(std::numeric_limits<float>::quiet_NaN());
 }

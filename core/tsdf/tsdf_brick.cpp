@@ -48,7 +48,7 @@ void TsdfBrick::copy(const TsdfVolume& volume, const VoxelIndex& first, const Vo
   for (block.z() = first_block.z(); block.z() <= last_block.z(); ++block.z()) {
     for (block.y() = first_block.y(); block.y() <= last_block.y(); ++block.y()) {
       for (block.x() = first_block.x(); block.x() <= last_block.x(); ++block.x()) {
-        // Of a block that is not there, slot -1 is read: nothing observed.
+        // Of an unallocated block, slot -1 is read: nothing observed.
         const std::ptrdiff_t slot = volume.find_block(block);
         copy_block(volume.distances_m() + slot * kBlockVoxels, block * kBlockSide);
       }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kRegionVoxels = kRegionSide * kBlockSide;
 /// A window of more regions than this (16 MB) takes longer to make than it saves.
-constexpr double kMostWindowRegions = 1 << 22;
+constexpr double kMaxWindowRegions = 1 << 22;
 
 }  // namespace
 
@@ -88,7 +88,7 @@ TsdfLanes::TsdfLanes(const TsdfVolume& volume, const Vector3d& centre_world, dou
       reach_(static_cast<int>(std::ceil(reach_m / (kRegionVoxels * volume.voxel_m()))) + 2) {
   const double side = 2.0 * reach_ + 1.0;
   window_step_ = {};
-  if (side * side * side > kMostWindowRegions) return;
+  if (side * side * side > kMaxWindowRegions) return;
   const auto regions_a_side = static_cast<std::size_t>(side);
   const auto step = static_cast<std::int32_t>(regions_a_side);
   window_step_ = {1, step, step * step};

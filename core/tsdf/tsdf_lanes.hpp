@@ -15,7 +15,7 @@ namespace fusebench::tsdf {
 /// volume must have blocks, outlive it, and not change meanwhile.
 class TsdfLanes {
  public:
-  /// Further than reach_m from the centre there may seem to be no blocks.
+  /// Blocks further than reach_m from the centre may be reported as absent.
   TsdfLanes(const TsdfVolume& volume, const Vector3d& centre_world, double reach_m);
 
   [[nodiscard]] const TsdfVolume& volume() const { return volume_; }
@@ -70,12 +70,12 @@ class TsdfLanes {
   std::array<std::int32_t, 3> window_step_;  // from one region to the next along each axis
 };
 
-/// The field as far as a camera sees; nothing if there is no block, or the pose is no place in the lattice.
+/// The field in view of a camera; nothing if there is no block, or the pose is no place in the lattice.
 [[nodiscard]] std::optional<TsdfLanes> field_in_view(const TsdfVolume& volume, const PinholeCamera& camera,
                                                      const SE3& T_world_camera,
                                                      const config::DepthConfig& depth);
 
-// Inline: one step of a ray after the other asks for them.
+// Inline: called in every step of a ray.
 
 inline TsdfLanes::BlockAxis TsdfLanes::block_axis(simd::Int8 block, int axis) const {
   const simd::Int8 region = block >> 2;

@@ -14,19 +14,20 @@ using simd::lane_details::byte_of;
 
 static_assert(kBlockSide == simd::kLanes, "a row of a block is one vector");
 
-// What weighs less is nothing: of less, 16 bits keep no eleven digits.
-constexpr float kLeastWeight = 0x1p-14F;
+// Smaller weights are treated as zero: below this, a half-precision number has fewer than eleven significant
+// bits.
+constexpr float kMinWeight = 0x1p-14F;
 constexpr float kMaxColorCount = 255.0F;  // of a byte
 constexpr int kCountByte = 3;
 
 // More, added to 255, would round to 256.
-constexpr float kMostRounding = 1.0F - 0x1p-16F;
+constexpr float kMaxRounding = 1.0F - 0x1p-16F;
 
-/// A number from 0 to kMostRounding for each frame, evenly spread over any few frames in a row: multiples of
+/// A number from 0 to kMaxRounding for each frame, evenly spread over any few frames in a row: multiples of
 /// the golden ratio (Weyl 1916).
 float spread(std::uint32_t frame_number) {
   return std::min(static_cast<float>((frame_number * 0x9E3779B9U) >> 8) / static_cast<float>(1U << 24),
-                  kMostRounding);
+                  kMaxRounding);
 }
 
 }  // namespace
@@ -52,8 +53,8 @@ VoxelUpdate::VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, co
       max_color_count_(std::min(max_weight_, kMaxColorCount)),
       color_rounding_(spread(frame_number)) {}
 
-// A slice at a time, and each step for all of its rows before the next one: which rows matter is known by
-// then, so that a processor need not guess it, and takes no work back.
+// A slice at a time, and each step for all of its rows before the next one: which rows are needed is known by
+// then, so that the branch is not mispredicted.
 void VoxelUpdate::apply(const BlockIndex& index, const BlockVoxels& block) const {
   const Vector3d corner_world = index.cast<double>() * (kBlockSide * voxel_m_);
   const Eigen::Vector3f corner_camera = (T_camera_world_ * corner_world).cast<float>();
@@ -114,12 +115,13 @@ VoxelUpdate::SeenRow VoxelUpdate::look(simd::Float8 x_m, simd::Float8 y_m, simd:
 simd::Int8 VoxelUpdate::add_distance(const SeenRow& seen, const BlockVoxels& block, std::size_t row) const {
   const simd::Float8 sigma_m = depth_sigma_.at_m(seen.measured_m);
   const simd::Float8 band = band_m(sigma_m);
-  // What lies deep behind the surface is a guess, and wrong where a ray clips an edge and comes out again.
+  // Far behind the surface the projective distance is unreliable, and wrong where a ray clips an edge and
+  // comes out again.
   const simd::Float8 half_m = 0.5F * band;
   const simd::Float8 weight =
       simd::min(half_m, band + seen.distance_m) * voxel_variance_ /
       (half_m * simd::multiply_add(sigma_m, sigma_m, simd::all_lanes(voxel_variance_)));
-  const simd::Int8 observed = seen.seen & (weight >= kLeastWeight);
+  const simd::Int8 observed = seen.seen & (weight >= kMinWeight);
   // The running mean; what was never observed has no distance yet.
   const simd::Float8 before_m = simd::load(block.distance_m + row);
   const simd::Float8 before = simd::load(block.weight + row);
@@ -133,7 +135,7 @@ simd::Int8 VoxelUpdate::add_distance(const SeenRow& seen, const BlockVoxels& blo
 }
 
 // The running means of the three channels. A mean moves by less than a level, so that always rounding to the
-// nearest would stop it; rounding up as often as the fraction says lets it go on.
+// nearest would stop it; stochastic rounding by the fraction keeps it moving.
 void VoxelUpdate::add_color(simd::Int8 pixel, simd::Int8 colored, const BlockVoxels& block,
                             std::size_t row) const {
   static_assert(sizeof(Rgb) == 3);

@@ -1,4 +1,4 @@
-// One frame as the voxels of the model see it.
+// Projection of one frame onto the voxels of the model.
 #pragma once
 
 #include "core/preprocessing/depth_gates.hpp"
@@ -11,14 +11,14 @@ namespace fusebench::tsdf {
 /// 1e-7 of the depth is far below the depth noise. The frame must outlive it.
 class VoxelUpdate {
  public:
-  /// frame_number: of the frames that the model has seen; decides how colours are rounded.
+  /// frame_number: number of frames fused so far; decides how colours are rounded.
   VoxelUpdate(const RgbdFrame& frame, const PinholeCamera& camera, const SE3& T_world_camera,
               const config::DepthConfig& depth, const config::TsdfConfig& tsdf, std::uint32_t frame_number);
 
   void apply(const BlockIndex& index, const BlockVoxels& block) const;
 
  private:
-  /// What the frame says of a row of eight voxels.
+  /// Measurements of the frame for a row of eight voxels.
   struct SeenRow {
     simd::Int8 pixel;         ///< that they are seen in; 0 outside of the image
     simd::Float8 measured_m;  ///< there

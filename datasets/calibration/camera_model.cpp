@@ -61,7 +61,7 @@ Undistortion::Undistortion(const CalibratedCamera& camera)
     for (int x = 0; x < width; ++x) {
       const Vector3d ray = camera_.back_project(x, y, 1.0);
       const Vector2d distorted = camera.distortion.distort(ray.head<2>());
-      // Far outside would overflow; there, the border is as good as anything.
+      // Far outside would overflow; there, the border is used.
       const double u = std::clamp(camera_.fx_px * distorted.x() + camera_.cx_px, -2.0, width + 1.0);
       const double v = std::clamp(camera_.fy_px * distorted.y() + camera_.cy_px, -2.0, height + 1.0);
       color_.add(static_cast<std::int32_t>(std::lround(u * BilinearMap::kFractions)),

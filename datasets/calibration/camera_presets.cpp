@@ -50,7 +50,7 @@ std::vector<std::string_view> preset_names() {
   return names;
 }
 
-constexpr double kMostOfCamera = 1e6;  // pixels, or of a coefficient of distortion
+constexpr double kMaxCameraParameter = 1e6;  // pixels, or of a coefficient of distortion
 
 Result<CalibratedCamera> camera_from_numbers(std::string_view text,
                                              const std::vector<std::string_view>& fields) {
@@ -59,9 +59,10 @@ Result<CalibratedCamera> camera_from_numbers(std::string_view text,
     const Result<double> number = io::parse_number(fields[i]);
     if (!number)
       return fail(ErrorCode::configuration, fmt::format("camera = {}: {}", text, number.error().message));
-    if (std::abs(*number) > kMostOfCamera) {
-      return fail(ErrorCode::configuration, fmt::format("camera = {}: {} (allowed {:g} .. {:g})", text,
-                                                        fields[i], -kMostOfCamera, kMostOfCamera));
+    if (std::abs(*number) > kMaxCameraParameter) {
+      return fail(ErrorCode::configuration,
+                  fmt::format("camera = {}: {} (allowed {:g} .. {:g})", text, fields[i], -kMaxCameraParameter,
+                              kMaxCameraParameter));
     }
     value[i] = *number;
   }

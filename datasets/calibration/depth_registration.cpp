@@ -79,8 +79,8 @@ void find_cover(const float* depth_m, const float* half_px, const Axis& axis, Co
     const float step_m = kMaxStep * z;
     const bool joined_back = std::abs(back_m) < step_m;
     const bool joined_ahead = std::abs(ahead_m) < step_m;
-    // A surface that the colour camera sees from behind has its neighbours in the wrong order. It keeps its
-    // half pixels; what lies before it hides it.
+    // A surface seen from behind by the colour camera has its neighbours in the wrong order. It keeps its
+    // half pixels, and nearer surfaces hide it.
     const float low_px = select(joined_back & (back_px > 0), 0.5F * back_px, half);
     const float high_px = select(joined_ahead & (ahead_px > 0), 0.5F * ahead_px, half);
     const float low = std::ceil(at - low_px - kOverlap_px);

@@ -1,4 +1,4 @@
-// Depth of one camera as another camera sees it.
+// Registration of depth to another camera.
 #pragma once
 
 #include "core/base/types.hpp"

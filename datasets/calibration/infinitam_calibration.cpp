@@ -16,7 +16,7 @@ namespace fusebench::calibration {
 
 namespace {
 
-constexpr std::size_t kMostWords = 1000;  // the format has 45; a file of many more is something else
+constexpr std::size_t kMaxWords = 1000;  // the format has 45; a file of many more is something else
 
 struct Word {
   std::string text;
@@ -31,7 +31,7 @@ Result<std::vector<Word>> words_of(const std::filesystem::path& file) {
   std::vector<Word> words;
   std::vector<std::string_view> fields;
   std::string line;
-  for (int number = 1; std::getline(stream, line) && words.size() < kMostWords; ++number) {
+  for (int number = 1; std::getline(stream, line) && words.size() < kMaxWords; ++number) {
     std::string_view content = std::string_view(line).substr(0, line.find_first_of("%#"));
     if (number == 1 && content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);  // byte order mark
     io::split_fields(content, fields);
@@ -40,7 +40,7 @@ Result<std::vector<Word>> words_of(const std::filesystem::path& file) {
   return words;
 }
 
-/// Takes the words one after the other and remembers the first thing that was wrong.
+/// Reads words in order and keeps the first error.
 class Blocks {
  public:
   Blocks(std::string file, std::vector<Word> words) : file_(std::move(file)), words_(std::move(words)) {}

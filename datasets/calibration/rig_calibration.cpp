@@ -40,13 +40,13 @@ struct Range {
 constexpr Range kPixels{1e-3, 1e6};
 constexpr Range kCentre{-1e6, 1e6};
 constexpr Range kSize{1, 100'000};
-constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would silence all others
+constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would override all others
 constexpr Range kWalk{0, 100};
 constexpr Range kReadout{0, 1};
 constexpr Range kOffset{-10, 10};
-constexpr double kMostTranslation_m = 1000;  // between sensors of one rig
+constexpr double kMaxTranslation_m = 1000;  // between sensors of one rig
 
-/// One of the three tables: its entries by key, and what went wrong first.
+/// One of the three tables: its entries by key, and the first error.
 class Section {
  public:
   Section(const config::TomlDocument& document, std::string name, const std::string& file)
@@ -123,9 +123,9 @@ class Section {
       report(fmt::format("{}: {} is no rigid transform", entries_.at(key)->place, entries_.at(key)->key),
              fmt::format("a matrix is {}, translation in metres", kRigidTransformRule));
     }
-    if (T && T->translation.cwiseAbs().maxCoeff() > kMostTranslation_m) {
+    if (T && T->translation.cwiseAbs().maxCoeff() > kMaxTranslation_m) {
       report(fmt::format("{}: {} has a translation of {:g} m (allowed up to {} m)", entries_.at(key)->place,
-                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMostTranslation_m),
+                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMaxTranslation_m),
              "translations are in metres");
     }
     return T.value_or(SE3{});
@@ -203,8 +203,8 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
     section.complain("[imu] T_imu_depth needs a depth camera of its own ([depth] with T_color_depth)");
   } else {
     imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
-    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMostTranslation_m)
-      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMostTranslation_m));
+    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMaxTranslation_m)
+      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMaxTranslation_m));
   }
   imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
   imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);
@@ -282,7 +282,7 @@ Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesys
   if (!std::filesystem::exists(file, ignored)) return std::optional<RigCalibration>{};
   auto calibration = read_calibration(file);
   if (calibration) return std::optional<RigCalibration>(std::move(*calibration));
-  // The file is part of the recording, not of what the user asked for.
+  // The file is part of the recording, not of the command line.
   calibration.error().code = ErrorCode::data_corrupt;
   return tl::unexpected(calibration.error());
 }

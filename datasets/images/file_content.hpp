@@ -1,4 +1,4 @@
-// All bytes of a file in memory, and whether they are still those of the recording that was opened.
+// The bytes of a file in memory, and a check that they have not changed since the recording was opened.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace fusebench::images {
 
-/// Bytes that nobody has to set before they are written, unlike those of a vector.
+/// A buffer of uninitialised bytes, unlike a vector.
 struct ByteBuffer {
   std::size_t size = 0;
   std::unique_ptr<std::uint8_t[]> bytes;

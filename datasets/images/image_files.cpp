@@ -38,10 +38,10 @@ tl::unexpected<Error> no_library(const std::string& image, Error error) {
 /// A header may claim any size. PNG's compression makes at most 1032 bytes of one, and JPEG's less in
 /// practice, so that memory stays in proportion to the file.
 Result<void> check_claim(const std::filesystem::path& file, const ImageHeader& header) {
-  constexpr std::uintmax_t kMostPerByte = 1032;
+  constexpr std::uintmax_t kMaxPerByte = 1032;
   std::error_code ignored;
   const std::uintmax_t bytes = std::filesystem::file_size(file, ignored);
-  if (header.pixel_bytes / kMostPerByte <= bytes) return {};
+  if (header.pixel_bytes / kMaxPerByte <= bytes) return {};
   return corrupt(file, fmt::format("damaged image (its header claims {}x{} "
                                    "pixels, too many for {} bytes)",
                                    header.width_px, header.height_px, bytes));
@@ -61,7 +61,7 @@ Result<OpenedImage> open_image(const std::filesystem::path& file) {
   return std::move(*opened);
 }
 
-/// What the caller needs the file to hold.
+/// Requirements of the caller on the file.
 struct Layout {
   int channels = 0;
   SampleType type = SampleType::uint8;
@@ -88,15 +88,15 @@ Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout&
   return image;
 }
 
-/// What the recordings at hand consist of takes the short way; whatever is not as it should be is left to the
-/// library, which knows why.
+/// Plain PNGs of recordings take the fast decoder; every other or damaged file is left to the library, which
+/// reports the reason.
 template <class Pixel, class Decode>
 Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
                                   const Layout& layout, std::optional<ImageSize> expected,
                                   const std::optional<io::ContentHash>& opened) {
   ByteBuffer content = content_of(file);
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored)) {  // else its absence is what is wrong
+  if (std::filesystem::exists(file, ignored)) {  // else the missing library is the error
     if (const auto same = check_unchanged(file, content.text(), opened); !same)
       return tl::unexpected(same.error());
   }

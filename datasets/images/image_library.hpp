@@ -1,4 +1,4 @@
-// The image library as the program sees it: functions of a module that is loaded when the first is needed.
+// Interface of the image library: a module that is loaded on first use.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace fusebench::images {
 
-/// What the library answers, or its reason in its own words.
+/// A result of the library, or its error message.
 template <class T>
 using LibraryResult = tl::expected<T, std::string>;
 
@@ -22,7 +22,7 @@ struct ImageHeader {
   int height_px = 0;
   int channels = 0;
   SampleType type = SampleType::other;
-  std::string type_name;          ///< in the library's words: "uint8", "float"
+  std::string type_name;          ///< as the library names it: "uint8", "float"
   std::uint64_t pixel_bytes = 0;  ///< of all pixels, decoded
 };
 

@@ -92,9 +92,9 @@ std::optional<Chunks> join_chunks(ByteBuffer& content) {
 /// None if the compressed stream is damaged, which its checksum tells, or does not hold exactly this much.
 std::optional<ByteBuffer> inflate(std::span<std::uint8_t> compressed, std::size_t size) {
   // A header may claim any size, but one byte makes at most 1032.
-  constexpr std::size_t kMostPerByte = 1032;
-  constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  // the library counts so far
-  if (size / kMostPerByte > compressed.size() || std::max(size, compressed.size()) > kMostBytes)
+  constexpr std::size_t kMaxPerByte = 1032;
+  constexpr std::size_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();  // the library counts so far
+  if (size / kMaxPerByte > compressed.size() || std::max(size, compressed.size()) > kMaxBytes)
     return std::nullopt;
   ByteBuffer inflated(size);
   const auto state = std::make_unique_for_overwrite<inflate_state>();
@@ -140,8 +140,8 @@ std::optional<Image<Pixel>> decode_plain_png(ByteBuffer content, std::string_vie
   if (!chunks || chunks->header.substr(8) != layout) return std::nullopt;
   const std::uint32_t width = big_endian(chunks->header);
   const std::uint32_t height = big_endian(chunks->header.substr(4));
-  constexpr std::uint32_t kMostSide = 1U << 20;
-  if (width == 0 || height == 0 || width > kMostSide || height > kMostSide) return std::nullopt;
+  constexpr std::uint32_t kMaxSide = 1U << 20;
+  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) return std::nullopt;
   const std::size_t row_bytes = width * sizeof(Pixel);
   const std::optional<ByteBuffer> rows = inflate(chunks->pixels, height * (1 + row_bytes));
   if (!rows) return std::nullopt;

@@ -12,7 +12,7 @@ namespace fusebench::images {
 
 /// A PNG with red, green and blue of 8 bits, or grey of 16, neither interlaced nor with transparency, whose
 /// chunks and checksums are in order. None for any other file, sound or not: then a complete decoder has to
-/// tell what it is, or what is wrong with it.
+/// decode or diagnose it.
 [[nodiscard]] std::optional<ColorImage> decode_plain_png_color(ByteBuffer content);
 [[nodiscard]] std::optional<Image<std::uint16_t>> decode_plain_png_grey16(ByteBuffer content);
 [[nodiscard]] std::optional<ColorImage> read_plain_png_color(const std::filesystem::path& file);

@@ -24,7 +24,7 @@ void remember(png_structp png, png_const_charp reason) {
 
 void ignore(png_structp, png_const_charp) {}
 
-/// What the library needs; released in the end.
+/// State of the library; released in the destructor.
 struct Writer {
   explicit Writer(std::string& reason)
       : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, remember, ignore)),
@@ -67,7 +67,7 @@ tl::expected<void, std::string> write_png_file(const std::filesystem::path& file
   std::string reason = "not enough memory";
   const Writer writer(reason);
   if (writer.info == nullptr || !write_rows(writer.png, writer.info, output.get(), image)) {
-    // The system knows more than "Write Error".
+    // The error of the operating system is more specific than "Write Error".
     if (std::ferror(output.get()) != 0) return reason_of_system();
     return tl::unexpected(reason);
   }

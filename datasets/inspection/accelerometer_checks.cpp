@@ -126,7 +126,7 @@ void fit_to_truth(const recording::Recording& recording, Inspection& out) {
   const auto fit = fit_windows(windows_of(recording, ImuPath(recording, *out.imu_alignment)));
   if (!fit || !fit->gravity_mps2.allFinite() || !fit->bias_mps2.allFinite()) return;
   ImuMeasurement& imu = *out.imu;
-  // Gravity and bias are told apart by turning; where the recording turns too little, neither is reported.
+  // Gravity and bias are separated by rotation; where the recording rotates too little, neither is reported.
   if (fit->bias_sigma_mps2 < 0.15) {
     imu.accelerometer_bias_mps2 = fit->bias_mps2;
     if (!imu.gravity_mps2) {

@@ -8,7 +8,7 @@
 namespace fusebench::inspection {
 
 enum class Severity {
-  error,    ///< results on this recording cannot be trusted until it is repaired
+  error,    ///< results on this recording are invalid until it is repaired
   warning,  ///< to be known before results are read
   note,     ///< a fact
 };

@@ -41,7 +41,7 @@ double laplacian_variance(const GreyImage& grey) {
 }
 
 void measure_depth(const DepthImage& depth_m, MeasuredFrame& out) {
-  std::vector<double> sample;  // every third pixel of every third row says enough about quantiles
+  std::vector<double> sample;  // every third pixel of every third row is enough for quantiles
   for (int y = 0; y < depth_m.height; ++y) {
     for (int x = 0; x < depth_m.width; ++x) {
       const float z_m = depth_m(x, y);

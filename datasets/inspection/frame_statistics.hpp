@@ -1,4 +1,4 @@
-// What a single frame tells of exposure, sharpness and depth.
+// Statistics of a single frame: exposure, sharpness and depth.
 #pragma once
 
 #include <array>

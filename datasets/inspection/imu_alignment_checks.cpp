@@ -23,7 +23,7 @@ constexpr double kOffsetError_s = 0.010;
 constexpr double kRotationWarning_rad = radians(2);
 constexpr double kRotationError_rad = radians(5);
 constexpr double kSwapTolerance_rad = radians(20);
-constexpr double kKnown_rad = radians(3);  // the uncertainty of a rotation that is worth telling
+constexpr double kKnown_rad = radians(3);  // largest uncertainty of a rotation that is reported
 constexpr double kSigmas = 4;
 
 struct SignedPermutation {
@@ -192,7 +192,7 @@ std::vector<TurnRate> rates_of(const measures::CameraTurns& turns, std::int64_t 
 }
 
 /// Whether the poses, by what was found so far, are those of the camera at their stamps.
-bool truth_is_trusted(const Inspection& out) {
+bool truth_is_usable(const Inspection& out) {
   return out.truth && out.truth->coverage > 0 &&
          std::ranges::none_of(out.findings, [](const Finding& finding) {
            return finding.severity == Severity::error && finding.code.starts_with("truth-");
@@ -210,15 +210,15 @@ struct ComparedTurns {
   [[nodiscard]] bool related() const { return fit && fit->offset_found && fit->explained >= kMinExplained; }
 };
 
-/// With the truth, if there is one that can be trusted. If the IMU does not turn as the truth does, the
-/// images tell which of the two is wrong.
+/// With the truth, if there is one without errors. If the gyroscope disagrees with the truth, the images
+/// decide which of the two is wrong.
 ComparedTurns compare_turns(const recording::Recording& recording, const Workers& workers,
                             const InspectOptions& options, Inspection& out) {
   const measures::GyroscopeIntegral gyroscope(recording.imu);
   const auto by_images = [&] {
     return ComparedTurns(measures::turns_from_images(recording, workers, options.turn_samples), gyroscope);
   };
-  if (!truth_is_trusted(out)) return by_images();
+  if (!truth_is_usable(out)) return by_images();
   ComparedTurns by_truth(measures::turns_from_truth(recording), gyroscope);
   if (!by_truth.fit || by_truth.related()) return by_truth;
   ComparedTurns other = by_images();

@@ -151,11 +151,11 @@ std::optional<recording::Recording> leave_out_imu_faults(const recording::Record
   if (!out.imu || out.has("imu-out-of-order")) return std::nullopt;
   const std::vector<measures::ImuFault> faults = measures::find_imu_faults(recording.imu);
   if (faults.empty()) return std::nullopt;
-  constexpr std::size_t kMostTold = 3;
+  constexpr std::size_t kMaxListed = 3;
   std::string told;
-  for (std::size_t i = 0; i < std::min(kMostTold, faults.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kMaxListed, faults.size()); ++i)
     told += (i == 0 ? "" : ", ") + measures::describe(faults[i], recording.imu);
-  if (faults.size() > kMostTold) told += fmt::format(", and {} more", faults.size() - kMostTold);
+  if (faults.size() > kMaxListed) told += fmt::format(", and {} more", faults.size() - kMaxListed);
   out.add("imu-spike", Severity::warning,
           fmt::format("{} of {} samples are no measurement: {}", faults.size(), recording.imu.size(), told),
           "remove their rows from the IMU's file; what is said of the IMU here leaves them out");

@@ -1,5 +1,5 @@
-// Looks at a recording before it is trusted: measures stamps, images, depth, motion, IMU and calibration, and
-// says what is wrong with them.
+// Quality checks of a recording before use: measures stamps, images, depth, motion, IMU and calibration, and
+// reports faults.
 #pragma once
 
 #include <cstdint>
@@ -100,7 +100,7 @@ struct SpeedSample {
 /// are divided ..."), without a number. Here a frame is blurred severely if its blur is as long as one of the
 /// paper's patches is wide (10 pixels), and a recording is fast if that holds for a twentieth of its frames.
 struct MotionMeasurement {
-  std::string source;  ///< "ground truth", "gyroscope", or empty: nothing tells
+  std::string source;  ///< "ground truth", "gyroscope", or empty: no source
   std::vector<SpeedSample> speeds;
   double angular_mean_radps = 0;
   double angular_p95_radps = 0;
@@ -143,8 +143,8 @@ struct TurnRate {
   double camera_radps = 0;
 };
 
-/// How the IMU's clock and axes lie to the camera's. The turn of the camera over an interval, known from
-/// ground truth or measured in the images, is compared with the integral of the gyroscope.
+/// Time offset and rotation of the IMU relative to the camera. The turn of the camera over an interval, known
+/// from ground truth or measured in the images, is compared with the integral of the gyroscope.
 struct ImuAlignment {
   std::string source;  ///< "ground truth" or "images"
   std::size_t intervals = 0;

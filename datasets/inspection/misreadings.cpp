@@ -11,7 +11,7 @@ namespace fusebench::inspection {
 
 namespace {
 
-// Residuals below these say nothing: 1 mm at 1 m, half a grey level.
+// Residuals below these are not significant: 1 mm at 1 m, half a grey level.
 constexpr double kDepthFloor = 0.001;
 constexpr double kIntensityFloor_grey = 0.5;
 constexpr double kLostRatio = 4;  // of a pair that a reading warps out of view
@@ -99,9 +99,9 @@ Comparison WarpTest::compare(const std::vector<std::optional<measures::WarpResid
   const auto other = residuals(reading);
   double sum = 0, wins = 0, count = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    if (!base[i] || !other[i]) continue;  // outside of the truth, which is nobody's merit
+    if (!base[i] || !other[i]) continue;  // no ground truth: counts for neither reading
     ++count;
-    // A reading must not win by warping most points out of view.
+    // A reading must not improve by warping most points out of view.
     const bool lost = other[i]->overlap < 0.5 * base[i]->overlap || other[i]->points < 50;
     const double ratio =
         lost ? std::log(kLostRatio)

@@ -122,7 +122,7 @@ double peak_at_rest(const Scores& scores) {
 }  // namespace
 
 void check_registration(const recording::Recording& recording, const Workers& workers, Inspection& out) {
-  // Depth at a wrong scale is registered wrongly, too, and that has been said.
+  // Depth at a wrong scale is also misregistered, and is reported already.
   if (out.images.empty() || out.has("depth-range") || out.has("depth-scale")) return;
   const FrameScores scores = score_frames(recording, workers);
   if (scores.edges < kMinEdges) return;

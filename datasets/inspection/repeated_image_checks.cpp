@@ -41,7 +41,7 @@ bool same_depth(const FrameStatistics& a, const FrameStatistics& b) {
          a.depth_p95_m == b.depth_p95_m && a.depth_max_m == b.depth_max_m;
 }
 
-/// Whether the camera, as far as is known, moved visibly since the frame before.
+/// Whether the camera moved visibly since the frame before, by truth or gyroscope.
 std::vector<bool> visible_motion(const recording::Recording& recording, const Inspection& inspection) {
   std::vector<bool> moves(recording.frames.size(), true);
   for (const SpeedSample& speed : inspection.motion.speeds) {

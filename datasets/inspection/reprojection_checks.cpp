@@ -21,15 +21,15 @@ namespace {
 // A misreading is named if it lowers the residuals to this share, in most pairs. Fitted parameters always
 // gain a little.
 constexpr double kClearFactor = 0.75;
-constexpr double kClearWins = 0.7;
-constexpr double kSlightFactor = 0.88;
+constexpr double kMinShareOfPairs = 0.7;
+constexpr double kCorrectionFactor = 0.88;
 constexpr int kRounds = 3;
 // True poses leave a small part of the residuals of no motion at all; poses of something else leave about as
-// much. That says nothing where the truth itself hardly moves: turn plus baseline over depth.
-constexpr double kStillFactor = 1.1;
+// much. The test is not significant where the truth itself hardly moves: turn plus baseline over depth.
+constexpr double kStaticFactor = 1.1;
 constexpr double kMinMotion_rad = radians(3);
 
-bool clear(const Comparison& c, double factor) { return c.factor < factor && c.wins >= kClearWins; }
+bool clear(const Comparison& c, double factor) { return c.factor < factor && c.wins >= kMinShareOfPairs; }
 
 void measure_pairs(const recording::Recording& recording, const WarpTest& test,
                    ReprojectionMeasurement& out) {
@@ -151,14 +151,14 @@ std::optional<Severity> severity_of(const Improvement& found, double frame_s) {
     const double off = std::abs(std::log(value));
     const double error_off = code == "depth-scale" ? 0.10 : 0.05;
     if (off > error_off && clear(found.comparison, kClearFactor)) return Severity::error;
-    if (off > 0.02 && clear(found.comparison, kSlightFactor)) return Severity::warning;
+    if (off > 0.02 && clear(found.comparison, kCorrectionFactor)) return Severity::warning;
     return std::nullopt;
   }
   if (code == "truth-time-offset") {
     const double off_s = std::abs(value);
     if (off_s > std::min(0.015, 0.5 * frame_s) && clear(found.comparison, kClearFactor))
       return Severity::error;
-    if (off_s > 0.004 && clear(found.comparison, kSlightFactor)) return Severity::warning;
+    if (off_s > 0.004 && clear(found.comparison, kCorrectionFactor)) return Severity::warning;
     return std::nullopt;
   }
   if (clear(found.comparison, kClearFactor)) return Severity::error;
@@ -188,14 +188,14 @@ void search_misreadings(const recording::Recording& recording, const WarpTest& t
 }
 
 /// Whether something was found that makes the truth disagree with the images.
-bool disagreement_is_explained(const Inspection& out) {
+bool inconsistency_is_explained(const Inspection& out) {
   return std::ranges::any_of(out.findings, [](const Finding& f) {
     return f.severity == Severity::error &&
            (f.code.starts_with("truth-") || f.code == "depth-scale" || f.code == "focal-length");
   });
 }
 
-/// By how much the truth says that the image moves in the median pair.
+/// Image motion of the median pair according to the truth.
 double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m) {
   std::vector<double> motion_rad;
   for (const ReprojectionPair& pair : measured.pairs)
@@ -204,8 +204,8 @@ double median_motion_rad(const ReprojectionMeasurement& measured, double depth_m
 }
 
 void report_inconsistency(const ReprojectionMeasurement& measured, Inspection& out) {
-  if (disagreement_is_explained(out) || !times_are_plausible(out)) return;
-  if (measured.static_factor > kStillFactor) return;
+  if (inconsistency_is_explained(out) || !times_are_plausible(out)) return;
+  if (measured.static_factor > kStaticFactor) return;
   if (median_motion_rad(measured, out.depth.median_m) < kMinMotion_rad) return;
   out.add("truth-inconsistent", Severity::error,
           fmt::format("the ground truth explains the images no better than no motion at all: warped frames "

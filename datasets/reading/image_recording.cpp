@@ -21,7 +21,7 @@ struct ImageHashes {
   io::ContentHash depth;
 };
 
-/// Everything that a frame needs after opening; shared by all copies of the recording.
+/// Data for loading frames; shared by all copies of the recording.
 struct FrameLoader {
   std::vector<recording::FrameEntry> frames;
   std::vector<ImageHashes> opened;  ///< of each frame's images, as the fingerprint has them
@@ -119,7 +119,7 @@ void add_samples(io::Fingerprint& fingerprint, const recording::Recording& recor
   }
 }
 
-/// What was read to identify the recording.
+/// Data that the fingerprint is made of.
 struct Identity {
   std::string fingerprint;
   std::vector<ImageHashes> images;  ///< of each frame
@@ -147,7 +147,7 @@ Result<Identity> identity_of(const recording::Recording& recording, const ImageD
   return identity;
 }
 
-/// The images decide what is used: an IMU of another time is an error, one that begins late or ends early a
+/// The IMU must overlap the images: an IMU of another time is an error, one that begins late or ends early a
 /// warning.
 Result<void> check_imu_overlap(recording::Recording& recording) {
   const std::int64_t first_ns = recording.imu.front().timestamp_ns;
@@ -174,7 +174,7 @@ Result<void> check_imu_overlap(recording::Recording& recording) {
   return {};
 }
 
-/// From here on the IMU's stamps are on the images' clock. Samples of an unknown sensor are of no use.
+/// From here on the IMU's stamps are on the images' clock. Samples without calibration are not used.
 Result<void> calibrate_imu(recording::Recording& recording,
                            const std::optional<calibration::ImuCalibration>& imu) {
   if (!imu && recording.imu_source == recording::ImuSource::recorded) {

@@ -18,20 +18,19 @@ namespace fusebench::reading {
 
 namespace {
 
-// A truth that pauses for longer than this (ten samples at 100 Hz) does not say what the camera did in
-// between.
+// A truth that pauses for longer than this (ten samples at 100 Hz) does not determine the motion in between.
 constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
 
 /// Positions of the truth are used in double precision only, but they must leave room for squares.
 Result<void> check_positions(const Trajectory& truth, const std::filesystem::path& source) {
   for (const StampedPose& pose : truth) {
     const Vector3d& position_m = pose.T_world_camera.translation;
-    if (position_m.cwiseAbs().maxCoeff() <= recording::kMostPosition_m) continue;
+    if (position_m.cwiseAbs().maxCoeff() <= recording::kMaxPosition_m) continue;
     return fail(
         ErrorCode::data_corrupt,
         fmt::format("{}: the pose at time {} has position ({:g}, {:g}, {:g}) m (allowed {:g} .. {:g})",
                     source.string(), trajectory::stamp_text(pose.timestamp_ns), position_m.x(),
-                    position_m.y(), position_m.z(), -recording::kMostPosition_m, recording::kMostPosition_m),
+                    position_m.y(), position_m.z(), -recording::kMaxPosition_m, recording::kMaxPosition_m),
         "remove its row, or subtract an origin from all positions");
   }
   return {};

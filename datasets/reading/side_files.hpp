@@ -1,4 +1,4 @@
-// Files that may lie beside the images of any format: what the format itself has no place for.
+// Optional files beside the images of any format, for data that the format itself does not cover.
 #pragma once
 
 #include <filesystem>
@@ -40,7 +40,7 @@ namespace fusebench::reading {
 [[nodiscard]] Result<void> read_exact_truth_beside(const std::filesystem::path& folder,
                                                    recording::Recording& recording);
 
-/// simulation.toml: a recording that was made by a simulator says so. Sets recording.simulated.
+/// simulation.toml: marks a simulated recording. Sets recording.simulated.
 void note_simulation(const std::filesystem::path& folder, recording::Recording& recording);
 
 }  // namespace fusebench::reading

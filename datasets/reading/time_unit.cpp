@@ -11,16 +11,16 @@ namespace fusebench::reading {
 
 namespace {
 
-constexpr std::size_t kMostRows = 10'000;
+constexpr std::size_t kMaxRows = 10'000;
 constexpr std::array kUnits = {io::TimeUnit::seconds, io::TimeUnit::milliseconds, io::TimeUnit::microseconds,
                                io::TimeUnit::nanoseconds};
 
-/// The stamps as they stand there. A double resolves nanoseconds since 1970 to 256 ns, enough for a spacing.
+/// The stamps as written. A double resolves nanoseconds since 1970 to 256 ns, enough for a spacing.
 Result<std::vector<double>> raw_stamps(const std::filesystem::path& file, std::string_view columns) {
   Result<io::TextTable> table = io::TextTable::open(file, columns);
   if (!table) return tl::unexpected(table.error());
   std::vector<double> stamps;
-  while (stamps.size() < kMostRows) {
+  while (stamps.size() < kMaxRows) {
     const Result<bool> got = table->next();
     if (!got) return tl::unexpected(got.error());
     if (!*got) break;

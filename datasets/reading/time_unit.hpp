@@ -1,4 +1,4 @@
-// In which unit a list counts time. Headers lie about it, spacings do not.
+// Detects the time unit of a list from its spacing, since headers are unreliable.
 #pragma once
 
 #include <filesystem>

@@ -45,7 +45,7 @@ Result<calibration::RigCalibration> choose_calibration(
     if (!calibration.source.empty())
       recording.notes.push_back(fmt::format("calibration: {}", calibration.source));
   } else if (!options.camera || known.error().code != ErrorCode::configuration) {
-    return known;  // the user's camera takes the place of one that is not known, not of a file that is broken
+    return known;  // the user's camera replaces an unknown one, but does not hide an invalid file
   }
   if (options.camera) {
     calibration.color = *options.camera;

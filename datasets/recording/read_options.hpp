@@ -1,4 +1,4 @@
-// What a user may say about a recording that its files do not.
+// Options of reading: properties of a recording that its files do not hold.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace fusebench::recording {
 
-/// Each reader takes what its format has a use for.
+/// Each reader uses those that apply to its format.
 struct ReadOptions {
   std::optional<calibration::RigCalibration>
       calibration;  ///< takes the place of calibration.toml and of published ones

@@ -20,7 +20,7 @@ namespace fusebench::recording {
 enum class ImuSource { none, recorded, synthetic };
 [[nodiscard]] std::string_view to_string(ImuSource source);  ///< "none", "recorded", "synthetic IMU"
 
-/// What the first line of a ground truth says that `fusebench smooth` made, and what records say of it then.
+/// Label of a ground truth made by `fusebench smooth`: in its first line and in records.
 inline constexpr std::string_view kPseudoGroundTruth =
     "pseudo ground truth: batch estimate of the same recording, not independent";
 
@@ -60,7 +60,7 @@ struct Recording {
   std::optional<calibration::RigCalibration> calibration;  ///< as read, before undistortion; of what files
                                                            ///< say, not of a synthetic IMU
   std::vector<std::string> notes;     ///< what was done to the data on reading, for the run's log
-  std::vector<std::string> warnings;  ///< things a user should know (unmatched images, gaps)
+  std::vector<std::string> warnings;  ///< for the user (unmatched images, gaps)
   /// Loads, checks, undistorts one frame. Safe to call from several threads. Errors: data_missing,
   /// data_corrupt.
   std::function<Result<RgbdFrame>(std::size_t frame)> load_frame;
@@ -68,7 +68,7 @@ struct Recording {
   std::filesystem::path truth_mesh_file;  ///< the scene, in the ground truth's world; empty if there is none
 };
 
-/// A recording that knows its name (the folder's) and format, and nothing else yet.
+/// A recording with its name (that of the folder) and format set, and nothing else.
 [[nodiscard]] Recording named_recording(const std::filesystem::path& folder, std::string_view format);
 
 /// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part

@@ -16,15 +16,15 @@ struct Limit {
 };
 
 constexpr Limit kAngularVelocity{
-    kMostAngularVelocity_radps, "rad/s",
+    kMaxAngularVelocity_radps, "rad/s",
     "no gyroscope measures that: remove the row if it is a fault of the sensor; degrees per second must be "
     "multiplied by 0.0174533"};
 constexpr Limit kSpecificForce{
-    kMostSpecificForce_mps2, "m/s^2",
+    kMaxSpecificForce_mps2, "m/s^2",
     "no accelerometer of an IMU measures that: remove the row if it is a fault of the sensor, else check the "
     "unit"};
-constexpr Limit kPosition{kMostPosition_m, "m", "remove the row, or subtract an origin from all positions"};
-constexpr Limit kVelocity{kMostVelocity_mps, "m/s", "remove the row, or check the unit"};
+constexpr Limit kPosition{kMaxPosition_m, "m", "remove the row, or subtract an origin from all positions"};
+constexpr Limit kVelocity{kMaxVelocity_mps, "m/s", "remove the row, or check the unit"};
 
 Result<Vector3d> read_within(const io::TextTable& table, std::size_t first_column, std::string_view name,
                              const Limit& limit) {

@@ -12,7 +12,7 @@ namespace fusebench::recording {
 
 namespace {
 
-constexpr double kMostOffUnit = 0.01;
+constexpr double kMaxOffUnit = 0.01;
 
 }  // namespace
 
@@ -30,9 +30,9 @@ Result<std::vector<filter::StampedState>> read_state_truth(const std::filesystem
     const auto accelerometer_bias_mps2 = read_specific_force(table, 14, "ba");
     if (!accelerometer_bias_mps2) return tl::unexpected(accelerometer_bias_mps2.error());
     const Quaterniond rotation(q[0], q[1], q[2], q[3]);
-    if (!(std::abs(rotation.norm() - 1) <= kMostOffUnit)) {
+    if (!(std::abs(rotation.norm() - 1) <= kMaxOffUnit)) {
       return table.fail_here(
-          fmt::format("the quaternion has length {} (allowed 1 within {})", rotation.norm(), kMostOffUnit));
+          fmt::format("the quaternion has length {} (allowed 1 within {})", rotation.norm(), kMaxOffUnit));
     }
     filter::StampedState state;
     state.timestamp_ns = time_ns;

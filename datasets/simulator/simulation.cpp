@@ -28,10 +28,10 @@ constexpr std::int64_t kImuTail_ns = 50'000'000;  // after the last frame, so th
 constexpr double kLongest_s = 3600;
 // With half of the longest read-out, depth is still within the motion, which goes on for
 // MotionSpan::kTail_ns.
-constexpr double kLongestDelay_s = 0.05;
-// A reader that takes a late clock for a true one looks for samples later than there would be otherwise; with
-// the tail above, they are within MotionSpan::kTail_ns.
-constexpr double kMostUntold_s = 0.04;
+constexpr double kMaxDelay_s = 0.05;
+// With an uncalibrated late clock readers need samples beyond the usual end; with the tail above, they are
+// within MotionSpan::kTail_ns.
+constexpr double kMaxUntold_s = 0.04;
 constexpr int kTruthPerFrame = 3;  // poses a frame: readers that interpolate need more than the frames'
 
 /// Readers of some formats refuse other rates (zr300) or count frames (icl).
@@ -55,9 +55,9 @@ Result<void> check_options(const SimulationOptions& o) {
         std::tuple{"imu_rate_hz", o.imu_rate_hz, 50.0, 2000.0},
         std::tuple{"color readout_s", o.rig.color.timing.color_readout_s, 0.0, 0.1},
         std::tuple{"depth readout_s", o.rig.color.timing.depth_readout_s, 0.0, 0.1},
-        std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kLongestDelay_s, kLongestDelay_s},
+        std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kMaxDelay_s, kMaxDelay_s},
         std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0},
-        std::tuple{"untold_time_offset_s", o.untold_time_offset_s, -kMostUntold_s, kMostUntold_s}}) {
+        std::tuple{"untold_time_offset_s", o.untold_time_offset_s, -kMaxUntold_s, kMaxUntold_s}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
                   fmt::format("{} = {} (allowed {} .. {})", name, value, low, high));
@@ -132,25 +132,25 @@ Result<Drive> choose_motion(const SimulationOptions& options, const std::optiona
 }
 
 /// Poses of the colour camera at every frame and evenly between frames.
-Trajectory true_poses(const Shooting& shooting) {
+Trajectory true_poses(const CaptureSetup& setup) {
   Trajectory truth;
   const auto add = [&](std::int64_t time_ns) {
-    truth.push_back({time_ns, shooting.body.evaluate(time_ns).T_world_body * shooting.T_body_color});
+    truth.push_back({time_ns, setup.body.evaluate(time_ns).T_world_body * setup.T_body_color});
   };
   // One more at both ends: readers may find the capture a little before or after its stamp.
-  const std::int64_t step_ns = (shooting.frame_ns[1] - shooting.frame_ns[0]) / kTruthPerFrame;
-  add(shooting.frame_ns.front() - step_ns);
-  for (std::size_t k = 0; k + 1 < shooting.frame_ns.size(); ++k) {
-    const std::int64_t spacing_ns = shooting.frame_ns[k + 1] - shooting.frame_ns[k];
-    for (int i = 0; i < kTruthPerFrame; ++i) add(shooting.frame_ns[k] + spacing_ns * i / kTruthPerFrame);
+  const std::int64_t step_ns = (setup.frame_ns[1] - setup.frame_ns[0]) / kTruthPerFrame;
+  add(setup.frame_ns.front() - step_ns);
+  for (std::size_t k = 0; k + 1 < setup.frame_ns.size(); ++k) {
+    const std::int64_t spacing_ns = setup.frame_ns[k + 1] - setup.frame_ns[k];
+    for (int i = 0; i < kTruthPerFrame; ++i) add(setup.frame_ns[k] + spacing_ns * i / kTruthPerFrame);
   }
-  add(shooting.frame_ns.back());
-  add(shooting.frame_ns.back() + step_ns);
+  add(setup.frame_ns.back());
+  add(setup.frame_ns.back() + step_ns);
   return truth;
 }
 
 /// Everything but the images.
-Result<void> write_rest(const SimulationOptions& options, const Shooting& shooting,
+Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& setup,
                         const motion::MotionSpan& span, Mesh scene, const fs::path& folder,
                         SimulationReport& report) {
   layouts::SimulatedData data;
@@ -158,13 +158,13 @@ Result<void> write_rest(const SimulationOptions& options, const Shooting& shooti
   data.rig.imu->time_offset_s = options.imu.time_offset_s;
   data.rig.imu->T_imu_camera =
       faults::miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
-  data.frame_ns = shooting.frame_ns;
-  data.dropped = faults::dropped_frames(options.faults, shooting.frame_ns);
-  data.truth = true_poses(shooting);
+  data.frame_ns = setup.frame_ns;
+  data.dropped = faults::dropped_frames(options.faults, setup.frame_ns);
+  data.truth = true_poses(setup);
   sensors::ImuErrors errors = options.imu;
   errors.time_offset_s += options.untold_time_offset_s;
   const std::int64_t late_ns = std::llround(1e9 * std::max(0.0, -options.untold_time_offset_s));
-  data.imu = sensors::simulate_imu(shooting.body, span.begin_ns, span.last_frame_ns + kImuTail_ns + late_ns,
+  data.imu = sensors::simulate_imu(setup.body, span.begin_ns, span.last_frame_ns + kImuTail_ns + late_ns,
                                    options.imu_rate_hz, errors, options.seed);
   data.scene = std::move(scene);
   report.imu_samples = data.imu.samples.size();
@@ -174,8 +174,8 @@ Result<void> write_rest(const SimulationOptions& options, const Shooting& shooti
   return layouts::write_text(folder / "simulation.toml", simulation_text(options, report.identity, gravity));
 }
 
-/// Whether the folder holds this very recording already, as whole as its reader can tell. Error usage if it
-/// is anything else.
+/// Whether the folder already holds this recording, complete as far as its reader checks. Error usage if it
+/// holds anything else.
 Result<bool> is_there(const fs::path& folder, const std::string& identity) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return false;
@@ -213,7 +213,7 @@ Result<SimulationOptions> simulation_defaults(layouts::RecordingLayout layout, m
   options.layout = layout;
   options.preset = preset;
   options.motion = motion::motion_preset(preset);
-  // What is near enough to be swept over, with room for it before.
+  // Surfaces near enough for a sweep, with free space before them.
   if (preset == motion::MotionPreset::sweep) options.room = RoomKind::storage;
   options.rig = std::move(*rig);
   options.depth_noise = layouts::describe(layout).depth_noise;
@@ -259,20 +259,20 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   const auto drive = choose_motion(options, *path, span, scene->free_space, texture);
   if (!drive) return tl::unexpected(drive.error());
   const SE3& T_body_color = options.rig.imu->T_imu_camera;
-  const Shooting shooting{motion::body_motion(drive->camera, T_body_color), T_body_color,
-                          std::move(*frame_ns)};
+  const CaptureSetup setup{motion::body_motion(drive->camera, T_body_color), T_body_color,
+                           std::move(*frame_ns)};
   report.frames = static_cast<std::size_t>(
-      std::ranges::count(faults::dropped_frames(options.faults, shooting.frame_ns), false));
+      std::ranges::count(faults::dropped_frames(options.faults, setup.frame_ns), false));
   report.trajectory_shrunk = drive->shrunk;
   report.trajectory_turned_rad = drive->turned_rad;
   if (*path) report.warnings = (*path)->warnings;
-  report.peaks = motion::peak_speeds(shooting.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
+  report.peaks = motion::peak_speeds(setup.body, T_body_color, span.first_frame_ns, span.last_frame_ns);
 
   auto staged = io::StagedFolder::create(folder);
   if (!staged) return tl::unexpected(staged.error());
-  if (auto written = write_images(options, shooting, scenery, staged->path(), workers, control); !written)
+  if (auto written = write_images(options, setup, scenery, staged->path(), workers, control); !written)
     return tl::unexpected(written.error());
-  if (auto written = write_rest(options, shooting, span, std::move(scene->mesh), staged->path(), report);
+  if (auto written = write_rest(options, setup, span, std::move(scene->mesh), staged->path(), report);
       !written)
     return tl::unexpected(written.error());
   if (const auto committed = staged->commit(); !committed) return tl::unexpected(committed.error());

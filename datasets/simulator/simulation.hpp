@@ -1,4 +1,4 @@
-// A whole simulated recording: scene, motion, sensors, and a folder that the readers open like any other.
+// A whole simulated recording: scene, motion, sensors, and a folder in the format of a published one.
 #pragma once
 
 #include <atomic>
@@ -27,7 +27,7 @@ enum class RoomKind {
   storage,    ///< storage_room.hpp
 };
 
-/// Everything that decides the bytes of a recording; simulation_defaults() fills it in.
+/// All options that a recording depends on; simulation_defaults() fills it in.
 struct SimulationOptions {
   layouts::RecordingLayout layout = layouts::RecordingLayout::zr300;
   std::uint64_t seed = 1;  ///< of the motion and of all noise
@@ -38,7 +38,7 @@ struct SimulationOptions {
   RoomKind room = RoomKind::furnished;
   scene::SceneFileOptions scene;  ///< its axes and unit
 
-  motion::MotionPreset preset = motion::MotionPreset::slow;  ///< what `motion` started from
+  motion::MotionPreset preset = motion::MotionPreset::slow;  ///< the preset that `motion` is based on
   motion::MotionOptions motion;
   std::filesystem::path trajectory_file;  ///< drives the camera instead of `motion`; empty: none
   motion::FileMotionOptions file_motion;
@@ -56,8 +56,8 @@ struct SimulationOptions {
   sensors::ImuErrors imu;
 
   std::vector<faults::SimulatedFault> faults;  ///< of the images
-  faults::CalibrationError calibration_error;  ///< what calibration.toml is wrong about
-  double untold_time_offset_s = 0;  ///< added to imu.time_offset_s, and calibration.toml does not say so
+  faults::CalibrationError calibration_error;  ///< error of calibration.toml
+  double untold_time_offset_s = 0;  ///< added to imu.time_offset_s, but not written to calibration.toml
 };
 
 /// The sensors and effects of a layout with the motion of a preset: motion blur, image noise, the depth noise
@@ -89,17 +89,17 @@ struct SimulationReport {
   std::vector<std::string> warnings;
 };
 
-/// What a caller wants to know and to say meanwhile.
+/// Callbacks for progress and cancellation.
 struct SimulationControl {
   std::function<void(std::size_t done, std::size_t total)>
       progress;                             ///< by one thread at a time; may be empty
   const std::atomic<bool>* stop = nullptr;  ///< leave early, with an error
 };
 
-/// Writes a recording: whole, or not at all. The same options make the same bytes, with any number of
-/// threads. A folder that exists is left alone if its simulation.toml has the same identity (reused), and is
-/// an error otherwise. Errors: configuration (an option out of range), data_missing and data_corrupt (scene
-/// or trajectory file), io, run_failed (stopped).
+/// Writes a recording atomically. The same options make the same bytes, with any number of threads. A folder
+/// that exists is left alone if its simulation.toml has the same identity (reused), and is an error
+/// otherwise. Errors: configuration (an option out of range), data_missing and data_corrupt (scene or
+/// trajectory file), io, run_failed (stopped).
 [[nodiscard]] Result<SimulationReport> simulate(const SimulationOptions& options,
                                                 const std::filesystem::path& folder, const Workers& workers,
                                                 const SimulationControl& control = {});

@@ -9,7 +9,7 @@ namespace fusebench::simulator {
 
 namespace {
 
-// To be raised when the same options come to mean other bytes.
+// To be raised when the same options produce other bytes.
 constexpr int kSimulatorVersion = 1;
 
 std::string_view name_of(sensors::DepthNoise noise) {

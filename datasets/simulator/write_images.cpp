@@ -17,13 +17,13 @@ namespace fusebench::simulator {
 
 namespace {
 
-constexpr int kMostFaultSamples = 64;
+constexpr int kMaxFaultSamples = 64;
 
 /// A longer exposure is made of more instants, so that the steps between them stay as small.
 int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
   if (options.exposure_s <= 0 || exposure_s <= options.exposure_s) return options.blur_samples;
   const double samples = std::ceil(options.blur_samples * exposure_s / options.exposure_s);
-  return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMostFaultSamples})));
+  return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMaxFaultSamples})));
 }
 
 sensors::ColorSensor color_sensor(const SimulationOptions& options, const faults::FrameFaults& faults) {
@@ -51,21 +51,21 @@ sensors::DepthSensor depth_sensor(const SimulationOptions& options) {
 }
 
 /// The hand before a camera that is placed by T_color_camera.
-std::optional<sensors::MovingThing> hand_before(const faults::Scenery& scenery, const Shooting& shooting,
-                                                const faults::FrameFaults& faults,
-                                                const SE3& T_color_camera) {
+std::optional<sensors::MovingObject> hand_before(const faults::Scenery& scenery, const CaptureSetup& setup,
+                                                 const faults::FrameFaults& faults,
+                                                 const SE3& T_color_camera) {
   if (!faults.hand) return std::nullopt;
   const faults::Scenery::MovingHand& moving = *scenery.hands[*faults.hand];
-  return sensors::MovingThing{moving.surface, [&, T_color_camera](std::int64_t t_ns) {
-                                const double time_s = seconds_between(shooting.frame_ns.front(), t_ns);
-                                return moving.hand.T_color_hand(time_s).inverse() * T_color_camera;
-                              }};
+  return sensors::MovingObject{moving.surface, [&, T_color_camera](std::int64_t t_ns) {
+                                 const double time_s = seconds_between(setup.frame_ns.front(), t_ns);
+                                 return moving.hand.T_color_hand(time_s).inverse() * T_color_camera;
+                               }};
 }
 
-/// What is the same for all frames.
-struct Studio {
+/// Data common to all frames.
+struct ImageContext {
   const SimulationOptions& options;
-  const Shooting& shooting;
+  const CaptureSetup& setup;
   const faults::Scenery& scenery;
   Workers alone{1};  // frames are what runs in parallel
 
@@ -74,10 +74,9 @@ struct Studio {
   }
 
   [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
-    const auto hand = hand_before(scenery, shooting, faults, SE3{});
-    return sensors::expose_color(scene(faults), color_sensor(options, faults), shooting.body,
-                                 shooting.T_body_color, shooting.frame_ns[k], options.seed, k, alone,
-                                 hand ? &*hand : nullptr);
+    const auto hand = hand_before(scenery, setup, faults, SE3{});
+    return sensors::expose_color(scene(faults), color_sensor(options, faults), setup.body, setup.T_body_color,
+                                 setup.frame_ns[k], options.seed, k, alone, hand ? &*hand : nullptr);
   }
 
   [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const faults::FrameFaults& faults) const {
@@ -85,25 +84,26 @@ struct Studio {
     const sensors::DepthSensor sensor = depth_sensor(options);
     if (faults.no_depth) return {sensor.camera.width_px, sensor.camera.height_px, std::uint16_t{0}};
     const SE3 T_color_depth = rig.depth ? rig.depth->T_color_depth : SE3{};
-    const auto hand = hand_before(scenery, shooting, faults, T_color_depth);
-    const std::int64_t depth_ns = shooting.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
+    const auto hand = hand_before(scenery, setup, faults, T_color_depth);
+    const std::int64_t depth_ns = setup.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
     Image<std::uint16_t> depth =
-        sensors::sense_depth(scene(faults), sensor, shooting.body, shooting.T_body_color * T_color_depth,
-                             depth_ns, options.seed, k, alone, hand ? &*hand : nullptr);
+        sensors::sense_depth(scene(faults), sensor, setup.body, setup.T_body_color * T_color_depth, depth_ns,
+                             options.seed, k, alone, hand ? &*hand : nullptr);
     // Registered depth has the pixels of the colour image, which are distorted.
     if (!rig.depth && !rig.color.distortion.is_zero()) depth = sensors::distort_depth(depth, rig.color);
     return depth;
   }
 };
 
-Result<void> write_frame(const Studio& studio, std::size_t k, const std::filesystem::path& folder) {
-  const layouts::LayoutDescription& layout = layouts::describe(studio.options.layout);
-  const std::vector<std::int64_t>& frame_ns = studio.shooting.frame_ns;
-  const faults::FrameFaults faults = faults::faults_at(studio.options.faults, frame_ns[k] - frame_ns.front());
+Result<void> write_frame(const ImageContext& context, std::size_t k, const std::filesystem::path& folder) {
+  const layouts::LayoutDescription& layout = layouts::describe(context.options.layout);
+  const std::vector<std::int64_t>& frame_ns = context.setup.frame_ns;
+  const faults::FrameFaults faults =
+      faults::faults_at(context.options.faults, frame_ns[k] - frame_ns.front());
   if (faults.dropped) return {};
-  const auto color = images::write_png(folder / layout.color_name(k, frame_ns[k]), studio.color(k, faults));
+  const auto color = images::write_png(folder / layout.color_name(k, frame_ns[k]), context.color(k, faults));
   if (!color) return color;
-  return images::write_png(folder / layout.depth_name(k, frame_ns[k]), studio.depth(k, faults));
+  return images::write_png(folder / layout.depth_name(k, frame_ns[k]), context.depth(k, faults));
 }
 
 Result<void> create_folders(const layouts::LayoutDescription& layout, const std::filesystem::path& folder) {
@@ -120,19 +120,19 @@ Result<void> create_folders(const layouts::LayoutDescription& layout, const std:
 
 }  // namespace
 
-Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
+Result<void> write_images(const SimulationOptions& options, const CaptureSetup& setup,
                           const faults::Scenery& scenery, const std::filesystem::path& folder,
                           const Workers& workers, const SimulationControl& control) {
   if (auto created = create_folders(layouts::describe(options.layout), folder); !created) return created;
-  const Studio studio{options, shooting, scenery};
-  const std::size_t count = shooting.frame_ns.size();
+  const ImageContext context{options, setup, scenery};
+  const std::size_t count = setup.frame_ns.size();
   std::vector<std::optional<Error>> errors(count);
   std::atomic<bool> failed = false;
   std::mutex mutex;
   std::size_t done = 0;
   workers.for_chunks(count, 1, [&](std::size_t k, std::size_t) {
     if (failed || (control.stop != nullptr && *control.stop)) return;
-    if (const auto written = write_frame(studio, k, folder); !written) {
+    if (const auto written = write_frame(context, k, folder); !written) {
       errors[k] = written.error();
       failed = true;
       return;

@@ -15,7 +15,7 @@
 namespace fusebench::simulator {
 
 /// What moves, and when it is looked at.
-struct Shooting {
+struct CaptureSetup {
   synthetic_imu::PoseSpline body;  ///< the IMU body in the scene's world
   SE3 T_body_color;
   std::vector<std::int64_t> frame_ns;  ///< stamps, and middles of the exposures (depth: its delay later)
@@ -24,7 +24,7 @@ struct Shooting {
 /// Renders and writes all colour and depth images below the folder, frames in parallel, with the faults of
 /// the options. Errors: io;
 /// run_failed (stopped). The error is that of the first frame that has one, whatever the threads.
-[[nodiscard]] Result<void> write_images(const SimulationOptions& options, const Shooting& shooting,
+[[nodiscard]] Result<void> write_images(const SimulationOptions& options, const CaptureSetup& setup,
                                         const faults::Scenery& scenery, const std::filesystem::path& folder,
                                         const Workers& workers, const SimulationControl& control);
 

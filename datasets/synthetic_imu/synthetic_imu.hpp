@@ -1,5 +1,4 @@
-// An inertial sensor made from ground truth, for recordings that have none. Always asked for, never a
-// default.
+// An inertial sensor made from ground truth, for recordings that have none. Only on request, never a default.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +62,8 @@ std::vector<ImuBias> add_imu_noise(std::vector<ImuSample>& samples, const ImuSen
 /// shorter times white noise claims too much, over longer ones too little:
 ///   n_gyroscope = sqrt(2) r / sqrt(1 s).
 /// Taking T as one correlation time of the fit instead (42 ms) makes the gyroscope five times noisier than it
-/// is over a second, and the filter then follows slow drifts of the images against a prior that knows better.
+/// is over a second, and the filter would then follow slow drifts of the visual measurements against a more
+/// accurate prior.
 ///
 /// Accelerometer: options.truth_acceleration_mps2_sqrthz. The residuals of the positions (0.1 mm) say little
 /// about it, since the error is that of the truth's mounting on the camera rather than jitter.

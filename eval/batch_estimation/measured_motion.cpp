@@ -29,7 +29,7 @@ class MotionCollector {
     // The first frame, or one that was taken anew: the world is where it was put.
     Seen seen{frame, {report.T_world_camera, Matrix6d::Zero()}};
     if (report.evidence) {
-      seen.pose = smoother::seen_pose(*report.evidence, T_imu_camera_);
+      seen.pose = smoother::visual_pose(*report.evidence, T_imu_camera_);
       const auto reference = seen_.find(report.evidence->reference_ns);
       if (reference != seen_.end()) {
         smoother::RelativeCameraMotion motion = smoother::motion_between(reference->second.pose, seen.pose);
@@ -44,7 +44,7 @@ class MotionCollector {
  private:
   struct Seen {
     std::size_t frame = 0;
-    smoother::SeenPose pose;
+    smoother::VisualPose pose;
   };
 
   MeasuredMotion& measured_;

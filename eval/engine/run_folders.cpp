@@ -133,7 +133,7 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
     ++report.runs;
     report.bytes += size_of(folder);
     report.paths.push_back(folder);
-    const auto error = garbage.only_look ? std::error_code() : io::remove_whole(folder);
+    const auto error = garbage.only_look ? std::error_code() : io::remove_atomically(folder);
     if (error)
       return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", folder.string(), error.message()));
   }

@@ -92,7 +92,7 @@ std::string picture(const Pixels& pixels, const GreyImage& image) {
   const auto before = [](const run_files::PatchTablePixel& p) {
     return Eigen::Vector2f(p.reference_px.cast<float>());
   };
-  const auto here = [](const run_files::PatchTablePixel& p) { return p.landed_px; };
+  const auto here = [](const run_files::PatchTablePixel& p) { return p.warped_px; };
   const Window there = window_of(pixels, before, 1);
   const Window window = window_of(pixels, here, 3);
   const std::vector<cv::Mat> tiles = {

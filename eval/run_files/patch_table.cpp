@@ -30,13 +30,13 @@ PatchTableFrame taken(std::size_t frame, const health::FrameReport& report, cons
   PatchTableFrame result{frame, report.timestamp_ns, report.patch_motion_px, {}, grey};
   for (std::size_t i = 0; i < report.pixels.intensity.size(); ++i) {
     const IntensityResidual& residual = report.pixels.intensity[i];
-    const PixelLanding& landing = report.pixels.landings[i];
+    const WarpedPixel& landing = report.pixels.warped[i];
     const auto width = static_cast<std::uint32_t>(grey.width);
     result.pixels.push_back({landing.patch,
                              residual.accepted,
                              {static_cast<int>(residual.reference_pixel % width),
                               static_cast<int>(residual.reference_pixel / width)},
-                             landing.landed_px,
+                             landing.warped_px,
                              landing.reference_grey,
                              landing.observed_grey});
   }
@@ -67,7 +67,7 @@ Result<void> write_patch_table(const std::filesystem::path& folder,
     for (const PatchTablePixel& p : frame.pixels) {
       fmt::format_to(std::back_inserter(text), "{},{},{:.3f},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.2f}\n",
                      frame.frame, stamp, frame.motion_px, p.patch, p.accepted ? 1 : 0, p.reference_px.x(),
-                     p.reference_px.y(), p.landed_px.x(), p.landed_px.y(), p.reference_grey, p.observed_grey);
+                     p.reference_px.y(), p.warped_px.x(), p.warped_px.y(), p.reference_grey, p.observed_grey);
     }
     if (auto written = images::write_png(image_file(folder, frame.frame), frame.grey); !written)
       return written;
@@ -107,7 +107,7 @@ Result<std::vector<PatchTableFrame>> read_patch_table(const std::filesystem::pat
     if (!image) return tl::unexpected(image.error());
     const auto inside = [&](const PatchTablePixel& p) {
       return image->contains(p.reference_px.x(), p.reference_px.y()) &&
-             image->contains(static_cast<int>(p.landed_px.x()), static_cast<int>(p.landed_px.y()));
+             image->contains(static_cast<int>(p.warped_px.x()), static_cast<int>(p.warped_px.y()));
     };
     if (!std::ranges::all_of(frame.pixels, inside)) {
       return fail(ErrorCode::data_corrupt, fmt::format("{}: frame {} has a patch outside its image",

@@ -22,7 +22,7 @@ struct PatchTablePixel {
   std::uint32_t patch = 0;
   bool accepted = false;
   Eigen::Vector2i reference_px = Eigen::Vector2i::Zero();
-  Eigen::Vector2f landed_px = Eigen::Vector2f::Zero();
+  Eigen::Vector2f warped_px = Eigen::Vector2f::Zero();
   float reference_grey = 0;
   float observed_grey = 0;
 };

@@ -33,8 +33,8 @@ void check_imu(const MemoryFile& file) {
   for (std::size_t i = 0; i < recording.imu.size(); ++i) {
     const ImuSample& sample = recording.imu[i];
     check(i == 0 || sample.timestamp_ns > recording.imu[i - 1].timestamp_ns, "time strictly increases");
-    check(sample.angular_velocity_radps.cwiseAbs().maxCoeff() <= kMostAngularVelocity_radps &&
-              sample.specific_force_mps2.cwiseAbs().maxCoeff() <= kMostSpecificForce_mps2,
+    check(sample.angular_velocity_radps.cwiseAbs().maxCoeff() <= kMaxAngularVelocity_radps &&
+              sample.specific_force_mps2.cwiseAbs().maxCoeff() <= kMaxSpecificForce_mps2,
           "samples are what a sensor can measure");
   }
 }
@@ -46,7 +46,7 @@ void check_truth(const MemoryFile& file) {
   }
   check(!recording.ground_truth.empty(), "a ground truth has poses");
   for (const StampedPose& pose : recording.ground_truth) {
-    check(pose.T_world_camera.translation.cwiseAbs().maxCoeff() <= kMostPosition_m, "poses are on Earth");
+    check(pose.T_world_camera.translation.cwiseAbs().maxCoeff() <= kMaxPosition_m, "poses are on Earth");
   }
   check(recording.ground_truth.front().timestamp_ns <= 2'000'000'000 &&
             recording.ground_truth.back().timestamp_ns >= 1'000'000'000,

@@ -49,8 +49,8 @@ void check_imu(ReadImu read, const std::filesystem::path& folder) {
   check(!recording.imu.empty() && recording.imu_source == ImuSource::recorded, "an IMU has samples");
   check_order(recording.imu);
   for (const ImuSample& sample : recording.imu) {
-    check(sample.angular_velocity_radps.cwiseAbs().maxCoeff() <= kMostAngularVelocity_radps &&
-              sample.specific_force_mps2.cwiseAbs().maxCoeff() <= kMostSpecificForce_mps2,
+    check(sample.angular_velocity_radps.cwiseAbs().maxCoeff() <= kMaxAngularVelocity_radps &&
+              sample.specific_force_mps2.cwiseAbs().maxCoeff() <= kMaxSpecificForce_mps2,
           "samples are what a sensor can measure");
   }
 }

@@ -19,7 +19,7 @@ namespace fusebench::formats::eth3d {
 namespace {
 
 constexpr double kUnitsPerMetre = 5000;
-constexpr double kMost_px = 1e6;
+constexpr double kMax_px = 1e6;
 
 /// One row of intrinsics; a second one is an error.
 Result<calibration::RigCalibration> read_intrinsics(const std::filesystem::path& file) {
@@ -33,9 +33,9 @@ Result<calibration::RigCalibration> read_intrinsics(const std::filesystem::path&
     if (!*got) break;
     if (++rows > 1) return table->fail_here("a second row; expected one row: fx fy cx cy");
     if (const auto read = table->numbers(0, k); !read) return tl::unexpected(read.error());
-    if (!std::ranges::all_of(k, [](double value) { return value > 0 && value <= kMost_px; }))
+    if (!std::ranges::all_of(k, [](double value) { return value > 0 && value <= kMax_px; }))
       return table->fail_here(
-          fmt::format("fx, fy, cx and cy must be above 0 and at most {:g} pixels", kMost_px));
+          fmt::format("fx, fy, cx and cy must be above 0 and at most {:g} pixels", kMax_px));
   }
   if (rows == 0)
     return fail(ErrorCode::data_corrupt, fmt::format("{}: has no row (expected fx fy cx cy)", file.string()));

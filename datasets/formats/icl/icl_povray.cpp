@@ -78,7 +78,7 @@ Result<std::vector<IclFrame>> pair_files(const SceneFiles& files, recording::Rec
   return frames;
 }
 
-/// Tells that a camera file does not fit the intrinsics that are used, or that its unit is another.
+/// Warns if a camera file does not fit the intrinsics in use, or if its unit seems wrong.
 void compare(const PovrayCamera& camera, const SE3& pose, const PinholeCamera& used,
              recording::Recording& recording) {
   const double fx = camera.direction.norm() / camera.right.norm() * used.width_px;

@@ -21,9 +21,9 @@ namespace fusebench::formats::icl {
 
 namespace {
 
-constexpr std::uintmax_t kLongestCameraFile = 1 << 16;
-constexpr std::uintmax_t kLongestNumber = 32;  // characters with a separator, on average
-constexpr double kOrthogonal = 1e-3;           // the files have six digits
+constexpr std::uintmax_t kMaxCameraFileBytes = 1 << 16;
+constexpr std::uintmax_t kMaxNumberLength = 32;  // characters with a separator, on average
+constexpr double kOrthogonal = 1e-3;             // the files have six digits
 constexpr double kFarthest_m = 1000;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
@@ -149,7 +149,7 @@ Result<std::vector<float>> parse_lengths(const std::filesystem::path& file, std:
 }  // namespace
 
 Result<PovrayCamera> read_povray_camera(const std::filesystem::path& file) {
-  const auto text = read_text(file, kLongestCameraFile);
+  const auto text = read_text(file, kMaxCameraFileBytes);
   if (!text) return tl::unexpected(text.error());
   CameraLines lines;
   std::string_view rest = *text;
@@ -179,7 +179,7 @@ Result<DepthImage> read_povray_depth(const std::filesystem::path& file, const Pi
                                      double units_per_metre, const std::optional<io::ContentHash>& opened) {
   const std::size_t count =
       static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
-  const auto text = read_text(file, kLongestNumber * (count + 1));
+  const auto text = read_text(file, kMaxNumberLength * (count + 1));
   if (!text) return tl::unexpected(text.error());
   if (const auto same = images::check_unchanged(file, *text, opened); !same)
     return tl::unexpected(same.error());

@@ -24,8 +24,8 @@ std::vector<std::int64_t> stamps(std::span<const ListedImage> images) {
   return result;
 }
 
-/// When the images of a list were taken. The jitter that was removed is told, since it changes what an IMU
-/// predicts.
+/// Capture times of the images of a list. The removed jitter is noted, since it changes the prediction by an
+/// IMU.
 std::vector<std::int64_t> capture_times(const ImageList& list, const recording::ReadOptions& options,
                                         recording::Recording& recording) {
   std::vector<std::int64_t> recorded = stamps(list.images);

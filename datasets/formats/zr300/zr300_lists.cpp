@@ -132,7 +132,7 @@ Result<void> read_sensor(const fs::path& file, std::string_view columns, recordi
   return done;
 }
 
-/// Joins both sensors and says what had to be interpolated or left out.
+/// Joins both sensors and notes which samples were interpolated or dropped.
 Result<void> set_imu(const fs::path& file, std::span<const GyroscopeSample> gyroscope,
                      std::span<const recording::AccelerometerSample> accelerometer,
                      recording::Recording& recording) {

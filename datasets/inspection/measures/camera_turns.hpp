@@ -29,7 +29,7 @@ struct CameraTurns {
 
 /// Between neighbouring frames where the gyroscope turns most, `count` of them in up to six runs spread over
 /// the recording: corners are followed by Lucas and Kanade's method, and the pose of their depths is found by
-/// RANSAC (OpenCV). Needs an IMU, since without one nobody asks.
+/// RANSAC (OpenCV). Needs an IMU (for the choice of frames).
 [[nodiscard]] CameraTurns turns_from_images(const recording::Recording& recording, const Workers& workers,
                                             std::size_t count);
 

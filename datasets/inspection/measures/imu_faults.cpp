@@ -25,7 +25,7 @@ struct SensorLimits {
   SampleVector member;
   std::string_view name;
   std::string_view unit;
-  double least_spike;  ///< what no hand does from one sample to the next and back
+  double least_spike;  ///< impossible for a hand-held rig from one sample to the next and back
   double range;        ///< where the sensors of hand-held rigs end (4000 deg/s; 100 g)
 };
 constexpr std::array<SensorLimits, 2> kSensors = {

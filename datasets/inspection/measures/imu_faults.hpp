@@ -21,7 +21,8 @@ struct ImuFault {
 /// A spike: one or two samples in a row whose value jumps away from those on both sides and back, by more
 /// than 5 rad/s or 50 m/s^2 and by more than ten times what neighbouring samples differ. Or a value that no
 /// sensor of a hand-held rig measures (70 rad/s, 1000 m/s^2), if these are few; if they are many, the unit is
-/// another, which others find. In order of the samples, one component each: the one that is farthest off.
+/// wrong, which other checks report. In order of the samples, one component each: the one that is farthest
+/// off.
 [[nodiscard]] std::vector<ImuFault> find_imu_faults(std::span<const ImuSample> samples);
 
 /// "the gyroscope's x reads 100 rad/s at 1305031102.175304000 (sample 412)".

@@ -107,7 +107,7 @@ bool holds_enough(const Fit& fit, std::size_t all) {
 }
 
 /// What a fit leaves unexplained of the turns that it was compared with, 0 to 1. For the search over all
-/// offsets: far offsets compare other parts of the motion, and a still part would be explained by anything.
+/// offsets: far offsets compare other parts of the motion, and a part without motion fits anything.
 double unexplained(const Fit& fit, std::size_t all) {
   return holds_enough(fit, all) ? fit.cost / fit.total : 1;
 }
@@ -154,10 +154,10 @@ double parabola(const std::vector<Interval>& intervals, const GyroscopeIntegral&
 /// the offsets that are tried next: a fit would shift the clock to share it between two turns.
 void drop_gross(std::vector<Interval>& intervals, const std::vector<double>& residuals, double limit_rad) {
   constexpr double kReach_s = 0.04;
-  constexpr double kMostShare = 0.1;  // more are no faults of single turns
+  constexpr double kMaxShare = 0.1;  // more are no faults of single turns
   const auto is_gross = [&](double residual) { return residual > kGross * limit_rad; };
   const auto count = static_cast<double>(std::ranges::count_if(residuals, is_gross));
-  if (count > kMostShare * static_cast<double>(residuals.size())) return;
+  if (count > kMaxShare * static_cast<double>(residuals.size())) return;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     if (!is_gross(residuals[i])) continue;
     const double begin_s = intervals[i].begin_s - kReach_s, end_s = intervals[i].end_s + kReach_s;
@@ -219,11 +219,11 @@ double camera_rms(const std::vector<Interval>& intervals) {
 
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
-/// How well all that is fitted together is known: offset, rotation (3), bias (3), scale. The curvature of the
-/// cost would not tell, since the gyroscope's noise bends it as well. So the model is linearised, with the
-/// change of the rate from the gyroscope smoothed over kSmoothing_s; the noise that is left in it would count
-/// as information about the offset and is taken off. What the turns do not tell is known as wide as it is
-/// searched.
+/// Joint uncertainty of all fitted parameters: offset, rotation (3), bias (3), scale. The curvature of the
+/// cost cannot be used, since the noise of the gyroscope contributes to it. So the model is linearised, with
+/// the change of the rate from the gyroscope smoothed over kSmoothing_s; the noise that is left in it would
+/// count as information about the offset and is taken off. A parameter that the data do not determine has the
+/// width of its search interval as uncertainty.
 Matrix8d covariance(const std::vector<Interval>& intervals, const GyroscopeIntegral& gyroscope,
                     const Fit& fit, double offset_s, double variance_rad2) {
   constexpr double kSmoothing_s = 0.15;
@@ -282,7 +282,7 @@ std::optional<TurnAlignment> align_turns(const CameraTurns& turns, const Gyrosco
   for (const Interval& interval : intervals)
     dt_s += (interval.end_s - interval.begin_s) / static_cast<double>(intervals.size());
   result.intervals = intervals.size();
-  // At an end, the cost may fall further beyond it; the refinement must not wander off either.
+  // At an end, the cost may fall further beyond it; the refinement must stay within the interval.
   const double farthest_s = std::max(std::abs((mirrored ? mirror : proper).offset_s), std::abs(vertex_s));
   result.offset_found = farthest_s < kMaxOffset_s - kOffsetStep_s;
   result.time_offset_s = vertex_s;

@@ -12,10 +12,10 @@ namespace fusebench::simulator::faults {
 
 namespace {
 
-constexpr std::uint64_t kCalibrationError = 0xCE;  // keeps the random numbers of one seed apart
+constexpr std::uint64_t kCalibrationError = 0xCE;  // key of an independent random stream
 
-constexpr double kMost_deg = 45;
-constexpr double kMost_cm = 50;
+constexpr double kMax_deg = 45;
+constexpr double kMax_cm = 50;
 
 /// Uniform on the unit sphere.
 Vector3d direction(noise::RandomSequence& random) {
@@ -39,14 +39,14 @@ Result<CalibrationError> parse_calibration_error(std::string_view text) {
 }
 
 Result<void> check_calibration_error(const CalibrationError& error) {
-  if (!(error.rotation_deg >= 0 && error.rotation_deg <= kMost_deg)) {
-    return fail(ErrorCode::configuration,
-                fmt::format("calibration error's rotation_deg = {} (allowed 0 .. {})", error.rotation_deg,
-                            kMost_deg));
+  if (!(error.rotation_deg >= 0 && error.rotation_deg <= kMax_deg)) {
+    return fail(
+        ErrorCode::configuration,
+        fmt::format("calibration error's rotation_deg = {} (allowed 0 .. {})", error.rotation_deg, kMax_deg));
   }
-  if (!(error.shift_cm >= 0 && error.shift_cm <= kMost_cm)) {
+  if (!(error.shift_cm >= 0 && error.shift_cm <= kMax_cm)) {
     return fail(ErrorCode::configuration,
-                fmt::format("calibration error's shift_cm = {} (allowed 0 .. {})", error.shift_cm, kMost_cm));
+                fmt::format("calibration error's shift_cm = {} (allowed 0 .. {})", error.shift_cm, kMax_cm));
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// A calibration that is wrong about where the colour camera sits on the IMU.
+// An error of the extrinsic calibration of the colour camera to the IMU.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace fusebench::simulator::faults {
 
-/// What calibration.toml says differs from the truth by this much, in directions from the seed.
+/// Deviation of calibration.toml from the truth, in directions from the seed.
 struct CalibrationError {
   double rotation_deg = 0;  ///< 0 to 45
   double shift_cm = 0;      ///< 0 to 50

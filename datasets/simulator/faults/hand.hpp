@@ -1,4 +1,4 @@
-// A textured thing that moves closely before the camera, as a hand or somebody passing by does.
+// A textured object that moves close to the camera, such as a hand or a passer-by.
 #pragma once
 
 #include <cstdint>

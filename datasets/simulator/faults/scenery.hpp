@@ -1,4 +1,4 @@
-// Everything that rays can meet: the scene, and what faults put in its place or before it.
+// All geometry that rays can hit: the scene, and objects that faults add or replace.
 #pragma once
 
 #include <cstdint>

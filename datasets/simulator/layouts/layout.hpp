@@ -1,5 +1,5 @@
-// How a simulated recording lies on disk: the layouts of TUM RGB-D, of ICL-NUIM (TUM-compatible packing) and
-// of the ZR300 recordings of FMDataset. Beside what the format itself has, every layout holds
+// File layouts of simulated recordings: those of TUM RGB-D, of ICL-NUIM (TUM-compatible packing) and of the
+// ZR300 recordings of FMDataset. Beside what the format itself has, every layout holds
 //
 //     calibration.toml         rig_calibration.hpp
 //     state_groundtruth.csv    EuRoC's columns: position, attitude, velocity and biases of the IMU

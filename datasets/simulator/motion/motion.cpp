@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kKnotSpacing_ns = 20'000'000;  // carries the 10 Hz of a tremor
 constexpr std::int64_t kSpeedStep_ns = 5'000'000;
 constexpr double kMeanPitch_rad = radians(-8.0);  // things stand on floors and tables
-constexpr double kLongestOffset_s = 8;            // in which a start in full motion is looked for
+constexpr double kMaxStartOffset_s = 8;           // search interval for a start in full motion
 
 Result<void> check_range(std::string_view name, double value, double low, double high) {
   if (value >= low && value <= high) return {};
@@ -55,7 +55,7 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
   return {};
 }
 
-/// What turns the shape of a path into a motion.
+/// Parameters that scale a path to a motion.
 struct Scale {
   double position_m = 1;
   double angle_rad = 1;
@@ -77,7 +77,7 @@ double full_motion_s(const HandPath& path) {
     const Vector3d turned = path.angles(path_s + kStep_s) - path.angles(path_s);
     return Vector2d(moved.norm(), turned.norm());
   };
-  const int steps = static_cast<int>(kLongestOffset_s / kStep_s);
+  const int steps = static_cast<int>(kMaxStartOffset_s / kStep_s);
   Vector2d largest = Vector2d::Zero();
   for (int i = 0; i < steps; ++i) largest = largest.cwiseMax(speeds(i * kStep_s));
   double best = -1;
@@ -109,9 +109,9 @@ PathClock clock_for(const MotionOptions& options, const MotionSpan& span, const 
 /// within 1 % (by a tremor that is faster than the peak, say).
 Result<synthetic_imu::PoseSpline> scaled_motion(const HandPath& path, const MotionOptions& options,
                                                 const MotionSpan& span, double heading_rad) {
-  constexpr int kMostRounds = 30;
+  constexpr int kMaxRounds = 30;
   constexpr double kTolerance = 2e-3;
-  constexpr double kPromised = 1e-2;
+  constexpr double kPeakTolerance = 1e-2;
   const PathClock clock = clock_for(options, span, path);
   Scale scale{0.5 * options.peak_speed_mps, 0.5 * options.peak_rate_radps, heading_rad};
   for (int round = 0;; ++round) {
@@ -121,8 +121,8 @@ Result<synthetic_imu::PoseSpline> scaled_motion(const HandPath& path, const Moti
     const double position = options.peak_speed_mps / peaks.speed_mps;
     const double angle = options.peak_rate_radps / peaks.rate_radps;
     const double off = std::max(std::abs(position - 1), std::abs(angle - 1));
-    const bool last = round == kMostRounds || !std::isfinite(off);
-    if (off < (last ? kPromised : kTolerance)) return spline;
+    const bool last = round == kMaxRounds || !std::isfinite(off);
+    if (off < (last ? kPeakTolerance : kTolerance)) return spline;
     if (last) {
       return fail(
           ErrorCode::configuration,
@@ -144,10 +144,10 @@ Vector3d mean_forward(const synthetic_imu::PoseSpline& spline) {
   return forward;
 }
 
-/// Where a path looks, and the weights of its speeds along the axes of the world.
+/// The heading of a path, and the weights of its speeds along the axes of the world.
 struct View {
   double heading_rad = 0;
-  std::array<double, 3> weight = HandPath::kHabit;
+  std::array<double, 3> weight = HandPath::kDefaultAxisWeights;
 };
 
 /// unturned: the motion with the path's own heading.
@@ -275,15 +275,15 @@ Result<synthetic_imu::PoseSpline> hand_held_motion(const MotionOptions& options,
                                                    const Eigen::AlignedBox3d& box, std::uint64_t seed,
                                                    const HeadingTexture& texture) {
   if (const auto valid = check_options(options, span); !valid) return tl::unexpected(valid.error());
-  constexpr int kMostTries = 40;
-  const double length_s = seconds_between(span.begin_ns, span.last_frame_ns) + kLongestOffset_s + 1;
+  constexpr int kMaxTries = 40;
+  const double length_s = seconds_between(span.begin_ns, span.last_frame_ns) + kMaxStartOffset_s + 1;
   const Vector3d room_m = box.sizes();
   Vector3d stretch = Vector3d::Ones();
   const HandPath path(options, seed, stretch, length_s);
   const auto unturned = scaled_motion(path, options, span, path.mean_yaw_rad());
   if (!unturned) return unturned;
   const View view = choose_view(path, options, *unturned, texture);
-  for (int attempt = 0; attempt < kMostTries; ++attempt) {
+  for (int attempt = 0; attempt < kMaxTries; ++attempt) {
     auto spline = scaled_motion(HandPath(options, seed, stretch, length_s, view.weight), options, span,
                                 view.heading_rad);
     if (!spline) return spline;
@@ -294,7 +294,7 @@ Result<synthetic_imu::PoseSpline> hand_held_motion(const MotionOptions& options,
       for (Vector3d& point : spline->position_world_m) point += shift;
       return spline;
     }
-    // The same speed within less space: turn round sooner along the axes that are too long.
+    // The same speed within less space: reverse sooner along the axes that are too long.
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       if (size_m[axis] > room_m[axis]) stretch[axis] *= 1.15;
     }

@@ -1,4 +1,4 @@
-// How a hand carries the simulated camera: smooth paths from a seed, or from a trajectory file
+// Hand-held motion of the simulated camera: smooth paths from a seed, or from a trajectory file
 // (motion_file.hpp), as splines that images and inertial samples are taken from.
 #pragma once
 
@@ -27,7 +27,7 @@ struct FrequencyBand {
   double high_hz = 0;
 };
 
-/// What is asked of a hand-held motion. Speeds are those of the colour camera.
+/// Parameters of a hand-held motion. Speeds are those of the colour camera.
 struct MotionOptions {
   double peak_speed_mps = 0.4;   ///< reached, and not exceeded, within the recording
   double peak_rate_radps = 0.6;  ///< the same for the angular speed
@@ -44,7 +44,7 @@ struct MotionOptions {
 };
 [[nodiscard]] MotionOptions motion_preset(MotionPreset preset);
 
-/// When the motion is needed: the IMU begins before the first frame, and ends after the last one.
+/// Time span of the motion: the IMU begins before the first frame, and ends after the last one.
 struct MotionSpan {
   static constexpr std::int64_t kTail_ns = 100'000'000;  ///< how long a motion goes on after the last frame
 

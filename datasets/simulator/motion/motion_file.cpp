@@ -22,7 +22,7 @@ constexpr double kIclRate_hz = 30;
 // ICL-NUIM's paths are estimates of a hand-held camera that jump by millimetres from frame to frame. Hand
 // motion ends at about 3 Hz; what is above would shake the camera with accelerations of several g.
 constexpr double kIclCutoff_hz = 3;
-constexpr double kFitMargin_s = 0.5;  // beyond what is needed, since a fit is loose at its ends
+constexpr double kFitMargin_s = 0.5;  // beyond what is needed, since a fit is less accurate at its ends
 
 constexpr std::string_view kMatrixColumns = "index r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz";
 
@@ -38,7 +38,7 @@ Result<std::size_t> count_columns(const std::filesystem::path& file) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()),
                 "give a trajectory file: TUM columns, or one of ICL-NUIM's");
   }
-  std::string buffer(io::TextTable::kLongestLine + 1, '\0');
+  std::string buffer(io::TextTable::kMaxLineLength + 1, '\0');
   std::vector<std::string_view> fields;
   int line = 1;
   for (; stream.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++line) {
@@ -47,7 +47,7 @@ Result<std::size_t> count_columns(const std::filesystem::path& file) {
   }
   if (!stream.eof() && !stream.bad()) {
     return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: line is longer than {} characters",
-                                                     file.string(), line, io::TextTable::kLongestLine));
+                                                     file.string(), line, io::TextTable::kMaxLineLength));
   }
   return fail(ErrorCode::data_corrupt, fmt::format("{}: holds no pose", file.string()));
 }
@@ -116,13 +116,13 @@ Eigen::AlignedBox3d extent_of(const synthetic_imu::PoseSpline& spline, double he
   return extent;
 }
 
-/// How much the path must shrink to fit at a heading; 1: not at all.
+/// Scale factor for the path to fit at a heading; 1: unchanged.
 double fit_of(const synthetic_imu::PoseSpline& camera, const Eigen::AlignedBox3d& box, double heading_rad) {
   const Vector3d size_m = extent_of(camera, heading_rad).sizes();
   return std::min(1.0, box.sizes().cwiseQuotient(size_m.cwiseMax(1e-9)).minCoeff());
 }
 
-/// Turns, shrinks if it must, and moves the path into the box.
+/// Rotates, scales down if necessary, and moves the path into the box.
 void place_in_box(const Eigen::AlignedBox3d& box, const HeadingTexture& texture, FileMotion& motion) {
   constexpr int kHeadings = 36;
   motion.heading_rad = texture.best_turn_rad(motion.camera);

@@ -1,4 +1,4 @@
-// Motion along a trajectory that somebody recorded.
+// Motion along a recorded trajectory.
 //
 // Files that are read, by their columns and name:
 //   TUM text         timestamp tx ty tz qx qy qz qw: colour camera (x right, y down, z forward) in a world

@@ -1,4 +1,4 @@
-// Where there is something to see: people do not point a camera at a blank wall.
+// Choice of a heading with texture: hand-held cameras are rarely pointed at a blank wall.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,8 +12,8 @@
 
 namespace fusebench::simulator::motion {
 
-/// How much texture a level camera sees by its heading (about world z, 0 looks along x). A default one is the
-/// same everywhere, so that nothing is preferred.
+/// Amount of texture in view of a level camera, by heading (about world z, 0 looks along x). A default one is
+/// the same everywhere, so that nothing is preferred.
 struct HeadingTexture {
   static constexpr std::size_t kHeadings = 24;
 

@@ -11,18 +11,19 @@ namespace fusebench::simulator::motion {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::size_t kSines = 4;  // an odd rhythm already; more of them only approach a normal distribution
+constexpr std::size_t kSines =
+    4;  // enough for an irregular motion; with more, speeds approach a normal distribution
 
 // Hand-held cameras turn mostly about the vertical.
 constexpr std::array<double, 3> kAngleWeight = {1.0, 0.35, 0.2};
-// Shaking has no such habit.
+// Shaking has no preferred axis.
 constexpr std::array<double, 3> kShakePositionWeight = {0.8, 0.8, 1.0};
 constexpr std::array<double, 3> kShakeAngleWeight = {1.0, 1.0, 0.6};
 
 constexpr FrequencyBand kTremor_hz = {6, 10};  // physiological tremor of a hand that holds something
 constexpr double kShakeBursts_hz = 0.35;
 constexpr std::uint64_t kPurpose =
-    0x6D6F74696F6EULL;  // keeps the numbers apart from those of rooms and images
+    0x6D6F74696F6EULL;  // key of a random stream independent of those of rooms and images
 
 // Names of the streams of random numbers: three axes each, three values a sine.
 enum Stream : std::uint64_t { position = 0, angle = 10, shake_position = 20, shake_angle = 30, tremor = 40 };

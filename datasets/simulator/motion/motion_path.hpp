@@ -14,12 +14,12 @@ namespace fusebench::simulator::motion {
 class HandPath {
  public:
   /// Mostly in the horizontal plane, as hands move.
-  static constexpr std::array<double, 3> kHabit = {1.0, 1.0, 0.35};
+  static constexpr std::array<double, 3> kDefaultAxisWeights = {1.0, 1.0, 0.35};
 
   /// stretch: factors on the frequencies of the three axes of the position; weight: on its speeds. Pans last
   /// until length_s.
   HandPath(const MotionOptions& options, std::uint64_t seed, const Vector3d& stretch, double length_s,
-           const std::array<double, 3>& weight = kHabit);
+           const std::array<double, 3>& weight = kDefaultAxisWeights);
 
   [[nodiscard]] Vector3d position(double path_s) const;
   [[nodiscard]] Vector3d angles(double path_s) const;  ///< yaw, pitch, roll about their means

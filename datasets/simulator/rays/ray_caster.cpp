@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kLanes = 8;
 using Lanes = Eigen::Array<float, kLanes, 1>;
 
-/// The instruction set decides the bits, so it is named rather than taken from the machine. "threads" stays
-/// away: Embree would limit oneTBB for the whole program for as long as the device lives.
+/// The instruction set affects the last bits, so it is fixed rather than taken from the machine. "threads" is
+/// not set: Embree would limit oneTBB for the whole program for as long as the device lives.
 constexpr const char* kDeviceConfiguration = "isa=avx2,start_threads=0,set_affinity=0";
 
 }  // namespace

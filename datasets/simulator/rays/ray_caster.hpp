@@ -1,4 +1,4 @@
-// Where rays meet triangles. The .cpp file is the only one that knows Embree.
+// Ray casting against triangles. Only the .cpp file includes Embree.
 #pragma once
 
 #include <Eigen/Core>

@@ -22,7 +22,7 @@ struct Linear {
   [[nodiscard]] float at(const rays::RayHit& hit) const { return at_a + hit.u * along_u + hit.v * along_v; }
 };
 
-/// All that shading needs of a textured triangle, in one cache line.
+/// Shading data of a textured triangle, in one cache line.
 struct TriangleShading {
   Linear u;
   Linear v;
@@ -43,7 +43,7 @@ float texel_density(const scene::SimulatedScene& scene, const std::array<std::ui
   return area > 0 ? static_cast<float>(side) * std::sqrt(texture_area / area) : 0.0F;
 }
 
-/// One row of rays in the world, and what they hit.
+/// One row of rays in the world frame, and their hits.
 struct RowOfRays {
   std::vector<float> x;
   std::vector<float> y;
@@ -108,8 +108,7 @@ struct Renderer::State {
     if (plain) copy_colors(scene.mesh);
   }
 
-  /// The light that a hit sends; footprint_m: side of the square at the hit, across the ray, that is
-  /// averaged.
+  /// Radiance of a hit; footprint_m: side of the square at the hit, across the ray, that is averaged.
   [[nodiscard]] Eigen::Vector3f light_of(const rays::RayHit& hit, float footprint_m) const {
     const TriangleShading& at = shading[hit.triangle];
     if (at.texture == scene::SimulatedScene::kNoTexture) {
@@ -118,9 +117,9 @@ struct Renderer::State {
     }
     // Seen obliquely the square becomes a rectangle; the side of a square of the same area avoids most of the
     // aliasing without blurring along the short side too much.
-    constexpr float kLeastCosine = 0.05F;
+    constexpr float kMinCosine = 0.05F;
     const float texels =
-        footprint_m * at.texels_per_metre / std::sqrt(std::max(kLeastCosine, hit.cos_incidence));
+        footprint_m * at.texels_per_metre / std::sqrt(std::max(kMinCosine, hit.cos_incidence));
     const Eigen::Array4f reflectance =
         textures[static_cast<std::size_t>(at.texture)].sample(at.u.at(hit), at.v.at(hit), texels);
     return at.light.at(hit) * reflectance.head<3>().matrix();
@@ -170,7 +169,7 @@ void Renderer::add_light_of_row(const rays::RayField& rays, int row, const SE3& 
   line.cast(state_->caster, rays, row, T_world_camera, offset_px);
   RowOfRays before(foreground != nullptr ? rays.camera().width_px : 0);
   if (foreground != nullptr)
-    before.cast(foreground->thing.state_->caster, rays, row, foreground->T_thing_camera, offset_px);
+    before.cast(foreground->thing.state_->caster, rays, row, foreground->T_object_camera, offset_px);
   const float footprint = footprint_px / static_cast<float>(rays.camera().fx_px);
   for (std::size_t i = 0; i < light.size(); ++i) {
     const bool hidden = foreground != nullptr && is_nearer(before.hits[i], line.hits[i]);

@@ -1,4 +1,4 @@
-// Ray casting of a scene: what lies behind a pixel, and the light that it sends.
+// Ray casting of a scene: depth and radiance of pixels.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,13 +28,13 @@ struct RowPoses {
 
 class Renderer;
 
-/// A thing that moves before the scene, as it is at one instant.
+/// A moving foreground object at one instant.
 struct Foreground {
   const Renderer& thing;
-  SE3 T_thing_camera;
+  SE3 T_object_camera;
 };
 
-/// A ray caster over a scene. Rays are independent, so the number of threads never shows in a result.
+/// A ray caster over a scene. Rays are independent, so results do not depend on the number of threads.
 class Renderer {
  public:
   explicit Renderer(const scene::SimulatedScene& scene);  ///< keeps its own copy of what it needs

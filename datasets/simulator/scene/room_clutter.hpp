@@ -22,15 +22,15 @@ class Clutter {
   /// that the wall behind is seen through.
   void fill_board(const SE3& T, const Vector3d& clear_m);
 
-  void can(const SE3& T, double most_height_m);
-  void bottle(const SE3& T, double most_height_m);
-  void box(const SE3& T, double most_height_m);  ///< turned by any angle
-  void leaning_books(const SE3& T, double width_m, double most_height_m);
-  void plates(const SE3& T, double width_m, double most_height_m);  ///< upright in a rack, one behind another
-  void pencils(const SE3& T, double most_height_m);                 ///< in a pot
-  void pot_plant(const SE3& T, double most_height_m);
-  void wire_basket(const SE3& T, double width_m, double depth_m, double most_height_m);
-  void slatted_crate(const SE3& T, double width_m, double depth_m, double most_height_m);
+  void can(const SE3& T, double max_height_m);
+  void bottle(const SE3& T, double max_height_m);
+  void box(const SE3& T, double max_height_m);  ///< turned by any angle
+  void leaning_books(const SE3& T, double width_m, double max_height_m);
+  void plates(const SE3& T, double width_m, double max_height_m);  ///< upright in a rack, one behind another
+  void pencils(const SE3& T, double max_height_m);                 ///< in a pot
+  void pot_plant(const SE3& T, double max_height_m);
+  void wire_basket(const SE3& T, double width_m, double depth_m, double max_height_m);
+  void slatted_crate(const SE3& T, double width_m, double depth_m, double max_height_m);
   void poster(const SE3& T, double width_m, double height_m);  ///< on a wall
   /// A cable that hangs between two points, its middle lower by the sag.
   void cable(const Vector3d& from_room, const Vector3d& to_room, double sag_m);
@@ -41,8 +41,8 @@ class Clutter {
   [[nodiscard]] Paint label(double repeat_m);
   void bar(const Vector3d& from_room, const Vector3d& to_room, double thickness_m, const Paint& paint);
   void leaf(const SE3& T, double length_m);
-  double wide_thing(const SE3& T_left, double room_m, double depth_m, double most_height_m);
-  double slender_thing(const SE3& T_left, double most_height_m);
+  double wide_object(const SE3& T_left, double room_m, double depth_m, double max_height_m);
+  double slender_object(const SE3& T_left, double max_height_m);
   [[nodiscard]] double any(double low, double high) { return random_.uniform(low, high); }
 
   RoomBuilder& builder_;

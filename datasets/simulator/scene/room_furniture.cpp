@@ -93,9 +93,9 @@ void Furnisher::bookshelf(const SE3& T, double width_m, double height_m) {
     const double rest = inner_m - split;
     if (rest > 0.5)
       stack_of_books(placed(T_board, {-0.5 * inner_m + split + 0.14, 0, 0}), 3 + random_.below(4));
-    small_thing(placed(T_board, {0.5 * inner_m - 0.13, 0.02, 0}));
+    small_object(placed(T_board, {0.5 * inner_m - 0.13, 0.02, 0}));
   }
-  small_thing(placed(T, {any(-0.3, 0.3) * width_m, 0, height_m + 0.001}));
+  small_object(placed(T, {any(-0.3, 0.3) * width_m, 0, height_m + 0.001}));
 }
 
 void Furnisher::desk(const SE3& T) {
@@ -180,7 +180,7 @@ void Furnisher::cabinet(const SE3& T, double width_m, double height_m) {
                            {0.015, 0.015, 0.015}, {.texture = textures_.metal, .repeat_m = 0.1});
   }
   for (double x = -0.5 * width_m + 0.16; x < 0.5 * width_m - 0.12; x += 0.3) {
-    small_thing(placed(T, {x, any(-0.08, 0.08), height_m + 0.001}, any(-0.5, 0.5)));
+    small_object(placed(T, {x, any(-0.08, 0.08), height_m + 0.001}, any(-0.5, 0.5)));
   }
 }
 

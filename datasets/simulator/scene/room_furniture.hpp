@@ -54,7 +54,7 @@ class Furnisher {
   void shelf_of_jars(const SE3& T, int columns, int rows);  ///< all alike, on a wall
 
   // Small things and what hangs on walls (room_objects.cpp).
-  void books(const SE3& T, double width_m, double most_height_m);  ///< a standing row, spines towards y
+  void books(const SE3& T, double width_m, double max_height_m);  ///< a standing row, spines towards y
   void stack_of_books(const SE3& T, int count);
   void papers(const SE3& T, double reach_m, int count);  ///< scattered sheets
   void carton(const SE3& T, const Vector3d& size);
@@ -66,7 +66,7 @@ class Furnisher {
   void picture(const SE3& T, double width_m, double height_m);  ///< on a wall
   void door(const SE3& T);
   void window(const SE3& T);
-  void small_thing(const SE3& T);  ///< one of the above, up to 0.3 m high and 0.24 m wide
+  void small_object(const SE3& T);  ///< one of the above, up to 0.3 m high and 0.24 m wide
 
  private:
   [[nodiscard]] Paint wood(bool dark) const;

@@ -15,7 +15,7 @@ constexpr int kAmbientRays = 32;
 constexpr double kAmbientReach_m = 1.2;
 constexpr double kLift_m = 0.01;  // off the surface, so that it does not shield itself
 constexpr double kLampRadius_m = 0.12;
-constexpr double kFullShield = 0.25;  // what is left of the ambient light in a closed corner: it bounces
+constexpr double kMinAmbientShare = 0.25;  // what is left of the ambient light in a closed corner: it bounces
 
 /// Directions over the hemisphere about z, denser where the surface sees more (cosine), the same for all
 /// vertices so that neighbours differ smoothly.
@@ -60,7 +60,7 @@ void bake_light(SimulatedScene& scene, const std::vector<Lamp>& lamps, double am
       const Vector3d world = tangents.col(0) * d.x() + tangents.col(1) * d.y() + normal * d.z();
       if (!caster.blocked(point.cast<float>(), (kAmbientReach_m * world).cast<float>())) ++open;
     }
-    const double shield = kFullShield + (1 - kFullShield) * open / kAmbientRays;
+    const double shield = kMinAmbientShare + (1 - kMinAmbientShare) * open / kAmbientRays;
     double light = ambient * shield;
     for (const Lamp& lamp : lamps) light += lamp_light(caster, lamp, point, normal);
     scene.light[i] *= static_cast<float>(std::min(light, 1.25));

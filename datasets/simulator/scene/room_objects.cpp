@@ -12,12 +12,12 @@ Paint Furnisher::cover() {
           .brightness = static_cast<float>(any(0.7, 1.1))};
 }
 
-void Furnisher::books(const SE3& T, double width_m, double most_height_m) {
+void Furnisher::books(const SE3& T, double width_m, double max_height_m) {
   double x = -0.5 * width_m;
   while (true) {
     const double thickness = any(0.018, 0.055);
     if (x + thickness > 0.5 * width_m) break;
-    const double height = most_height_m * any(0.65, 1.0);
+    const double height = max_height_m * any(0.65, 1.0);
     const double depth = any(0.15, 0.2);
     Paint paint = cover();
     paint.repeat_m = 0.62;
@@ -141,7 +141,7 @@ void Furnisher::window(const SE3& T) {
   }
 }
 
-void Furnisher::small_thing(const SE3& T) {
+void Furnisher::small_object(const SE3& T) {
   switch (random_.below(5)) {
     case 0:
       return vase(T);

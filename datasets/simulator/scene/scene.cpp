@@ -6,7 +6,7 @@
 namespace fusebench::simulator::scene {
 
 void color_vertices(SimulatedScene& scene) {
-  constexpr float kFootprint_texels = 16;  // a vertex stands for its surroundings
+  constexpr float kFootprint_texels = 16;  // a vertex represents its surroundings
   scene.mesh.colors.resize(scene.mesh.vertices.size(), Rgb{0, 0, 0});
   for (std::size_t t = 0; t < scene.triangle_textures.size(); ++t) {
     if (scene.triangle_textures[t] == SimulatedScene::kNoTexture) continue;

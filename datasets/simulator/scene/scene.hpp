@@ -12,7 +12,7 @@
 
 namespace fusebench::simulator::scene {
 
-/// Triangles with materials in the scene's own world: metres, z up. Surfaces are matt: what they send does
+/// Triangles with materials in the scene's own world: metres, z up. Surfaces are matt: their radiance does
 /// not depend on the direction, so a point keeps its brightness while the camera moves (the sensor changes
 /// it, the scene does not).
 struct SimulatedScene {
@@ -28,7 +28,7 @@ struct SimulatedScene {
       light;  ///< by vertex: a texture's reflectance times this is what the surface sends; empty: 1
   std::vector<texture::Texture> textures;
 
-  /// Where a camera may be: nothing of the scene is inside. For scenes read from files this is a guess
+  /// Where a camera may be: nothing of the scene is inside. For scenes read from files this is an estimate
   /// (read_scene()).
   Eigen::AlignedBox3d free_space;
   /// Where the things worth looking at are.
@@ -38,8 +38,8 @@ struct SimulatedScene {
   std::optional<double> heading_rad;
 };
 
-/// Gives the vertices of textured triangles the colour that they show (mesh.colors), for whoever looks at the
-/// mesh without its textures.
+/// Gives the vertices of textured triangles the colour that they show (mesh.colors), for viewers of the mesh
+/// without its textures.
 void color_vertices(SimulatedScene& scene);
 
 }  // namespace fusebench::simulator::scene

@@ -38,7 +38,7 @@ class StorageRoomPlan {
   SimulatedScene build() {
     shell();
     rack(placed(wall(1), {0, kGap_m + 0.5 * kRackDepth_m, 0}));
-    // Seldom seen, but a room is a room all around.
+    // Seldom in view.
     furnisher_.desk(placed(wall(0), {0.3, 0.42, 0}));
     furnisher_.bookshelf(placed(wall(3), {-0.6, 0.17, 0}), 1.6, 1.9);
     furnisher_.door(placed(wall(3), {1.3, 0, 0}));

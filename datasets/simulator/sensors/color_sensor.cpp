@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kRowsPerChunk = 8;
 
-// Purposes that keep the random numbers of one seed apart.
+// Keys of independent random streams of one seed.
 constexpr std::uint64_t kPixelNoise = 0xC0;
 constexpr std::uint64_t kGainPhase = 0xC1;
 
@@ -67,7 +67,7 @@ std::vector<Vector2d> sample_offsets(int samples) {
   return offsets;
 }
 
-/// What does not change within an image.
+/// Parameters that are constant within an image.
 struct Exposure {
   const render::Renderer& renderer;
   const ColorSensor& sensor;
@@ -79,7 +79,7 @@ struct Exposure {
   rays::RayField rays;
   std::vector<Vector2d> offsets;
   SrgbEncoder encoder;
-  const MovingThing* before;
+  const MovingObject* before;
 
   [[nodiscard]] std::int64_t instant_ns(int row, std::size_t sample) const {
     const double middle = (static_cast<double>(sample) + 0.5) / static_cast<double>(offsets.size()) - 0.5;
@@ -99,7 +99,7 @@ struct Exposure {
     for (std::size_t s = 0; s < offsets.size(); ++s) {
       std::optional<render::Foreground> thing;
       if (before != nullptr)
-        thing.emplace(render::Foreground{before->surface, before->T_thing_camera(instant_ns(row, s))});
+        thing.emplace(render::Foreground{before->surface, before->T_object_camera(instant_ns(row, s))});
       renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count, light,
                                 thing ? &*thing : nullptr);
     }
@@ -156,7 +156,7 @@ double exposure_gain(double drift, std::int64_t capture_ns, std::uint64_t seed) 
 ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sensor,
                         const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
                         std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
-                        const Workers& workers, const MovingThing* before) {
+                        const Workers& workers, const MovingObject* before) {
   const PinholeCamera& camera = sensor.camera.pinhole;
   check(camera.width_px > 0 && camera.height_px > 0, "a simulated camera has a size");
   check(sensor.blur_samples >= 1, "an exposure has at least one sample");

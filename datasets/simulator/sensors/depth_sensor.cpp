@@ -11,7 +11,7 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-constexpr std::uint64_t kDepthNoise = 0xD0;  // keeps the random numbers of one seed apart
+constexpr std::uint64_t kDepthNoise = 0xD0;  // key of an independent random stream
 
 std::uint16_t raw_value(float depth_m, double units_per_metre) {
   const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
@@ -34,7 +34,7 @@ DepthImage measured_depth(const Image<render::Renderer::Surface>& surfaces, cons
   return depth_m;
 }
 
-/// What the camera sees of a surface whose frame is a function of the time.
+/// Depth image of a surface whose frame is a function of time.
 Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const DepthSensor& sensor,
                                          std::int64_t capture_ns,
                                          const std::function<SE3(std::int64_t)>& T_surface_camera,
@@ -50,7 +50,7 @@ Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const 
   return surfaces;
 }
 
-/// Keeps the nearer one of each pixel; 0 is nothing.
+/// Keeps the nearer depth of each pixel; 0 is no measurement.
 void put_before(const Image<render::Renderer::Surface>& nearer, Image<render::Renderer::Surface>& surfaces) {
   for (std::size_t i = 0; i < surfaces.data.size(); ++i) {
     const render::Renderer::Surface& a = nearer.data[i];
@@ -64,12 +64,12 @@ void put_before(const Image<render::Renderer::Surface>& nearer, Image<render::Re
 Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSensor& sensor,
                                  const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
                                  std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
-                                 const Workers& workers, const MovingThing* before) {
+                                 const Workers& workers, const MovingObject* before) {
   Image<render::Renderer::Surface> surfaces = seen_by(
       renderer, sensor, capture_ns,
       [&](std::int64_t t_ns) { return motion.evaluate(t_ns).T_world_body * T_body_camera; }, workers);
   if (before != nullptr)
-    put_before(seen_by(before->surface, sensor, capture_ns, before->T_thing_camera, workers), surfaces);
+    put_before(seen_by(before->surface, sensor, capture_ns, before->T_object_camera, workers), surfaces);
   const DepthImage depth_m =
       measured_depth(surfaces, sensor, noise::mix_key(noise::mix_key(seed, kDepthNoise), frame), workers);
   Image<std::uint16_t> raw(depth_m.width, depth_m.height);

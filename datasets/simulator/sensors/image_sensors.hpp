@@ -29,10 +29,11 @@ struct ColorSensor {
   bool covered = false;  ///< no light comes in; the noise stays
 };
 
-/// A thing that moves before the camera while an image is taken.
-struct MovingThing {
-  const render::Renderer& surface;                    ///< in the thing's own frame
-  std::function<SE3(std::int64_t)> T_thing_camera{};  ///< at an instant; camera: the one that takes the image
+/// An object that moves before the camera while an image is taken.
+struct MovingObject {
+  const render::Renderer& surface;  ///< in the object's own frame
+  std::function<SE3(std::int64_t)>
+      T_object_camera{};  ///< at an instant; camera: the one that takes the image
 };
 
 enum class DepthNoise {
@@ -56,14 +57,14 @@ struct DepthSensor {
 [[nodiscard]] ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sensor,
                                       const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
                                       std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
-                                      const Workers& workers, const MovingThing* before = nullptr);
+                                      const Workers& workers, const MovingObject* before = nullptr);
 
 /// Raw values as the format stores them (0: no measurement, or beyond 65535 units).
 [[nodiscard]] Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSensor& sensor,
                                                const synthetic_imu::PoseSpline& motion,
                                                const SE3& T_body_camera, std::int64_t capture_ns,
                                                std::uint64_t seed, std::uint64_t frame,
-                                               const Workers& workers, const MovingThing* before = nullptr);
+                                               const Workers& workers, const MovingObject* before = nullptr);
 
 /// The factor on all light at a time: 1 + drift s(t), with s a sum of three sines (periods 3.1 s, 7.3 s and
 /// 17 s, phases from the seed) that stays within -1 and 1.

@@ -11,7 +11,7 @@
 
 namespace fusebench::simulator::sensors {
 
-/// What the sensor makes of the true motion: measured = gain * true + bias + noise, cut off at the range.
+/// Sensor model: measured = gain * true + bias + noise, cut off at the range.
 struct ImuErrors {
   synthetic_imu::ImuSensor sensor = synthetic_imu::zr300_imu();  ///< noise, random walks, initial biases
   Matrix3d gyroscope_gain = Matrix3d::Identity();      ///< scale factors and misalignment of the axes

@@ -36,7 +36,7 @@ constexpr int kCell = 3;  // one dot each; the fill radius of 3 px reaches into 
 constexpr float kFillRadius2 = 9;
 constexpr double kKinectSteps_cm = 35130;
 constexpr double kStepNoise = 1.0 / 6.0;
-constexpr float kLeastCosine = 0.1736F;  // 80 degrees
+constexpr float kMinCosine = 0.1736F;  // 80 degrees
 
 constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kShiftNoise = 1;
@@ -69,7 +69,7 @@ DepthImage quantised_disparity(const Image<render::Renderer::Surface>& surfaces,
       const std::array<const render::Renderer::Surface*, 4> corners = {&surfaces(x0, y0), &surfaces(x1, y0),
                                                                        &surfaces(x0, y1), &surfaces(x1, y1)};
       const bool open = std::ranges::any_of(corners, [](const auto* s) { return s->depth_m <= 0; });
-      if (open || surfaces(u, v).cos_incidence < kLeastCosine) continue;
+      if (open || surfaces(u, v).cos_incidence < kMinCosine) continue;
       const float fx = x - static_cast<float>(x0);
       const float fy = y - static_cast<float>(y0);
       const float top = corners[0]->depth_m + fx * (corners[1]->depth_m - corners[0]->depth_m);

@@ -25,16 +25,16 @@ namespace fusebench::simulator::sensors {
 namespace {
 
 constexpr double kBaseline_m = 0.07;
-constexpr float kMostDisparity_px = 63;
+constexpr float kMaxDisparity_px = 63;
 constexpr float kDisparityNoise_px = 0.09F;
 constexpr int kNoiseSpacing_px = 4;
 constexpr float kStepsPerPixel = 32;
 constexpr float kFadeBegin_m = 4;
 constexpr float kFadeEnd_m = 6;
-constexpr int kHalfWindow = 2;  // the outer ring of the 7 x 7 window has little say
+constexpr int kHalfWindow = 2;  // the outer ring of the 7 x 7 window has little weight
 constexpr float kJump_px = 1.5F;
 constexpr float kOcclusion_px = 1;
-constexpr float kLeastCosine = 0.1736F;  // 80 degrees
+constexpr float kMinCosine = 0.1736F;  // 80 degrees
 
 constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kFieldKey = 3;
@@ -65,8 +65,8 @@ class SmoothNoise {
   std::uint64_t key_;
 };
 
-/// Where the right camera sees something nearer in place of what the left one sees, or nothing since it is
-/// out of its image. True: the pixel of the row has no partner.
+/// Occlusion in the right image: true where a nearer surface hides the point of a pixel of the left image
+/// row, or the point is outside the right image.
 std::vector<bool> occluded_in_right(const DepthImage& disparity_px, int row) {
   const auto width = static_cast<std::size_t>(disparity_px.width);
   std::vector<float> nearest(width, 0.0F);  // by column of the right image
@@ -126,7 +126,7 @@ DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
           for (int u = 0; u < surfaces.width; ++u) {
             const render::Renderer::Surface& surface = surfaces(u, v);
             if (surface.depth_m <= 0 || occluded[static_cast<std::size_t>(u)] ||
-                surface.cos_incidence < kLeastCosine || behind_jump(disparity_px, u, v)) {
+                surface.cos_incidence < kMinCosine || behind_jump(disparity_px, u, v)) {
               continue;
             }
             const float fade = faded(surface.depth_m);
@@ -135,7 +135,7 @@ DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
               continue;
             const float exact = disparity_px(u, v) + kDisparityNoise_px * (1 + fade) * noise.at(u, v);
             const float measured = std::round(kStepsPerPixel * exact) / kStepsPerPixel;
-            if (measured > 0 && measured <= kMostDisparity_px) depth_m(u, v) = focal_baseline / measured;
+            if (measured > 0 && measured <= kMaxDisparity_px) depth_m(u, v) = focal_baseline / measured;
           }
         }
       });

@@ -202,9 +202,9 @@ TEST_F(StagedFolderTest, OnlyTemporaryFoldersOfThisProgramAreAbandonedOnes) {
 
 TEST_F(StagedFolderTest, AFolderIsRemovedWhole) {
   write("0123/images/1.png", "pixels");
-  EXPECT_FALSE(remove_whole(folder_ / "0123"));
+  EXPECT_FALSE(remove_atomically(folder_ / "0123"));
   EXPECT_EQ(entries(folder_), 0U);
-  EXPECT_TRUE(remove_whole(folder_ / "0123"));
+  EXPECT_TRUE(remove_atomically(folder_ / "0123"));
   EXPECT_EQ(entries(folder_), 0U);
 }
 

@@ -80,9 +80,9 @@ TEST(TextTable, WrongNumberOfColumnsNamesPlaceAndExpectation) {
 TEST(TextTable, RefusesWhatIsNotText) {
   EXPECT_NE(read_all(std::string_view("1 a\n\0\0 b\n", 9), "t name").error.find(":2: not a text file"),
             std::string::npos);
-  const std::string long_line = "1 a\n" + std::string(TextTable::kLongestLine + 1, 'x') + "\n";
+  const std::string long_line = "1 a\n" + std::string(TextTable::kMaxLineLength + 1, 'x') + "\n";
   EXPECT_NE(read_all(long_line, "t name").error.find(":2: line is longer than 65536"), std::string::npos);
-  const std::string longest = "1 " + std::string(TextTable::kLongestLine - 2, 'x') + "\n2 b\n";
+  const std::string longest = "1 " + std::string(TextTable::kMaxLineLength - 2, 'x') + "\n2 b\n";
   EXPECT_EQ(read_all(longest, "t name").fields.size(), 2U);
 }
 

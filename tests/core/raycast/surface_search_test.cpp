@@ -45,7 +45,7 @@ struct Room {
   [[nodiscard]] std::vector<SurfacePoint> found_beside(const std::vector<ExpectedSurface>& pixels) const {
     TsdfBrick brick;
     std::vector<SurfacePoint> surfaces(pixels.size());
-    SurfaceSearch(*field, kCamera, SE3{}, kDepth).find_beside(pixels, brick, surfaces);
+    SurfaceSearch(*field, kCamera, SE3{}, kDepth).find_near_measurements(pixels, brick, surfaces);
     return surfaces;
   }
   [[nodiscard]] std::vector<SurfacePoint> found(const std::vector<ExpectedSurface>& pixels) const {

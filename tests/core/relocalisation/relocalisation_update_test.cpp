@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "core/filter/iekf.hpp"
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 namespace fusebench {
 

@@ -136,7 +136,7 @@ Matrix6d some_information() {
   return 1e4 * (root * root.transpose() + Matrix6d::Identity());
 }
 
-TEST(SeenPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
+TEST(VisualPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   const SE3 T_imu_camera{so3_exp({0.1, -0.3, 0.2}), {0.09, -0.02, 0.05}};
   PoseEvidence evidence;
   evidence.T_world_imu = {so3_exp({0.4, 1.1, -0.3}), {1.0, -2.0, 0.5}};
@@ -145,7 +145,7 @@ TEST(SeenPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   evidence.quadratic.information = some_information();
   evidence.quadratic.gradient = -evidence.quadratic.information * step;
 
-  const SeenPose seen = seen_pose(evidence, T_imu_camera);
+  const VisualPose seen = visual_pose(evidence, T_imu_camera);
   const SE3 T_world_imu = pose_plus(evidence.T_world_imu, step);
   EXPECT_LT(pose_minus(seen.T_world_camera, T_world_imu * T_imu_camera).norm(), 1e-12);
 
@@ -159,18 +159,18 @@ TEST(SeenPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   EXPECT_LT((seen.covariance - expected).norm(), 1e-6 * expected.norm());
 }
 
-TEST(SeenPose, StaysWhereNothingIsKnown) {
+TEST(VisualPose, StaysWhereNothingIsKnown) {
   PoseEvidence evidence;
   evidence.quadratic.information.diagonal() << 1e6, 1e6, 1e6, 1e6, 1e6, 0;
   evidence.quadratic.gradient << 0, 0, 0, 0, 0, 1e-3;
-  const SeenPose seen = seen_pose(evidence, {});
+  const VisualPose seen = visual_pose(evidence, {});
   EXPECT_EQ(seen.T_world_camera.translation.z(), 0.0);
   EXPECT_NEAR(seen.covariance(5, 5), 1.0, 1e-12);
 }
 
 TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
-  const SeenPose a{{so3_exp({0.2, 0.1, -0.4}), {0.3, 0.2, 1.0}}, some_information().inverse()};
-  const SeenPose b{{so3_exp({0.5, -0.2, -0.1}), {0.9, -0.2, 1.3}}, 2.0 * some_information().inverse()};
+  const VisualPose a{{so3_exp({0.2, 0.1, -0.4}), {0.3, 0.2, 1.0}}, some_information().inverse()};
+  const VisualPose b{{so3_exp({0.5, -0.2, -0.1}), {0.9, -0.2, 1.3}}, 2.0 * some_information().inverse()};
   const RelativeCameraMotion motion = motion_between(a, b);
   const auto by = [&](bool first) {
     return numeric_jacobian(

@@ -20,7 +20,7 @@ FrameReport moved(double motion_px, std::uint32_t pixel) {
   report.timestamp_ns = 1'305'031'229'000'000'000 + static_cast<std::int64_t>(pixel);
   report.patch_motion_px = motion_px;
   report.pixels.intensity = {{pixel, 3.5F, true}};
-  report.pixels.landings = {{7, {12.25F, 8.5F}, 100.5F, 104.0F}};
+  report.pixels.warped = {{7, {12.25F, 8.5F}, 100.5F, 104.0F}};
   return report;
 }
 
@@ -51,7 +51,7 @@ TEST_F(PatchTable, KeepsTheFastestFramesInOrder) {
   EXPECT_EQ(pixel.patch, 7U);
   EXPECT_TRUE(pixel.accepted);
   EXPECT_EQ(pixel.reference_px, Eigen::Vector2i(5, 3));
-  EXPECT_EQ(pixel.landed_px, Eigen::Vector2f(12.25F, 8.5F));
+  EXPECT_EQ(pixel.warped_px, Eigen::Vector2f(12.25F, 8.5F));
   EXPECT_EQ(pixel.reference_grey, 100.5F);
   EXPECT_EQ(pixel.observed_grey, 104.0F);
 }

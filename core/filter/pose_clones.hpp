@@ -1,10 +1,11 @@
-// What the images are compared with, and how certain it is: the frame that the patches were cut from, and the
-// model. Neither is exact. A photometric residual tells the motion since the reference frame; a geometric one
-// the pose against the model, which was built at estimated poses and drifts with them.
+// Stochastic clones of the pose (Roumeliotis & Burdick 2002): errors of the reference frame, which the
+// patches were cut from, and of the model. A photometric residual measures the motion since the reference
+// frame; a geometric one measures the pose relative to the model, which was built at estimated poses and
+// drifts with them.
 //
-// Between fusions the pose, velocity and gravity of the filter are against the model ("world" as the model
-// has it). When a frame is fused the model takes over a share of its pose error. That error is then no longer
-// one against the model, but one of the model against the world of the first camera (kModelPose).
+// Between fusions the pose, velocity and gravity of the filter are relative to the model. When a frame is
+// fused, the model takes over a share of its pose error: this share is from then on an error of the model
+// relative to the first camera (kModelPose).
 #pragma once
 
 #include "core/filter/filter_state.hpp"
@@ -15,8 +16,8 @@ namespace fusebench::filter {
 /// (right rotation in rad, world position in m).
 [[nodiscard]] Matrix6d pose_transport(const SE3& to, const SE3& from);
 
-/// The two things that images tell, as combinations of the error state: the pose against the reference frame
-/// (rows 0-5) and against the model (rows 6-11), both in the tangent of the pose.
+/// The two quantities that images measure, as linear combinations of the error state: the pose against the
+/// reference frame (rows 0-5) and against the model (rows 6-11), both in the tangent of the pose.
 [[nodiscard]] Eigen::Matrix<double, 2 * kPoseSize, kStateSize> measured_combinations(
     const FilterState& state);
 
@@ -30,8 +31,8 @@ struct ModelDrift {
 /// pose.
 [[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift);
 
-/// The estimate in the world of the first camera: the uncertainty of the model's place is added to that of
-/// the pose, the velocity and the direction of gravity.
+/// The estimate in the world of the first camera: the uncertainty of the model's pose is added to that of the
+/// pose, the velocity and the direction of gravity.
 [[nodiscard]] GaussianState in_first_camera_world(const GaussianState& state);
 
 }  // namespace fusebench::filter

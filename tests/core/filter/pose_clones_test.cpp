@@ -1,4 +1,4 @@
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 const SE3 kFrom{so3_exp({0.3, -0.2, 0.5}), {0.4, -0.3, 1.2}};
 const SE3 kTo{so3_exp({-0.1, 0.6, 0.2}), {0.9, 0.2, 0.7}};
 
-TEST(PoseAnchors, TransportEqualsTheErrorOfARigidlyAttachedPose) {
+TEST(PoseClones, TransportEqualsTheErrorOfARigidlyAttachedPose) {
   Vector6d d;
   d << 1e-6, -2e-6, 3e-6, 4e-6, 5e-6, -6e-6;
   const SE3 displaced = pose_plus(kFrom, d);
@@ -40,7 +40,7 @@ GaussianState uncertain_at(const SE3& T, double variance) {
   return state;
 }
 
-TEST(PoseAnchors, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
+TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   for (const double share : {0.0, 0.3, 1.0}) {
     const GaussianState after = cloned_after_fusion(before, {.share = share});
@@ -51,7 +51,7 @@ TEST(PoseAnchors, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   }
 }
 
-TEST(PoseAnchors, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
+TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
   const GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-4), {});
   const auto combinations = measured_combinations(state.mean);
   const MeasuredMatrix measured = combinations * state.covariance * combinations.transpose();
@@ -88,7 +88,7 @@ class KnownMeasurement final : public PoseMeasurement {
 
 /// Steps of a camera that stands still, seen with noise: against the last frame alone its error grows like a
 /// random walk, against the model it stays; the filter must know both.
-TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
+TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
   constexpr int kRuns = 40, kSteps = 50;
   constexpr double kSigma = 1e-3;
   for (const bool by_model : {false, true}) {
@@ -118,7 +118,7 @@ TEST(PoseAnchors, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
   }
 }
 
-TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
+TEST(PoseClones, ASecondLookFromTheSameReferenceIsNoMotion) {
   // Without an anchor in between (an occluded frame is tracked, but nothing is cut from it) the next frame is
   // compared with the same patches: what was learnt of the reference pose must not count as motion.
   GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
@@ -141,7 +141,7 @@ TEST(PoseAnchors, ASecondLookFromTheSameReferenceIsNoMotion) {
   EXPECT_LT((again.covariance - once.covariance).norm() / once.covariance.norm(), 1e-3);
 }
 
-TEST(PoseAnchors, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
+TEST(PoseClones, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   const GaussianState after = cloned_after_fusion(before, {.share = 0.1, .factor = 5});
   EXPECT_NEAR(after.covariance(kPosition, kPosition), 0.81e-4, 1e-12);
@@ -150,7 +150,7 @@ TEST(PoseAnchors, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   EXPECT_NEAR(after.covariance(kPosition, kModelPose + 3), 0.9 * 0.1 * 1e-4, 1e-12);
 }
 
-TEST(PoseAnchors, ADisplacedModelTurnsVelocityAndGravity) {
+TEST(PoseClones, ADisplacedModelTurnsVelocityAndGravity) {
   // The model turned by a small angle about the pose: what is known against it is turned in the world.
   GaussianState state = known_at(kTo);
   state.mean.gravity_direction_world = Vector3d(0.2, 0.9, -0.4).normalized();

@@ -1,4 +1,4 @@
-#include "core/filter/pose_anchors.hpp"
+#include "core/filter/pose_clones.hpp"
 
 #include <algorithm>
 
@@ -6,8 +6,8 @@ namespace fusebench::filter {
 
 namespace {
 
-/// How a rigid displacement of everything, given as a pose error at the pose, moves the error state: what is
-/// seen from the displaced world moves the other way.
+/// Jacobian of the error state by a rigid displacement of the reference frame, given as a pose error at the
+/// pose: quantities expressed in the displaced frame move the other way.
 Eigen::Matrix<double, kStateSize, kPoseSize> displacement(const FilterState& state) {
   Eigen::Matrix<double, kStateSize, kPoseSize> moves = Eigen::Matrix<double, kStateSize, kPoseSize>::Zero();
   const Matrix3d R = state.T_world_imu.rotation_matrix();
@@ -55,7 +55,7 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   clone.block<kPoseSize, kPoseSize>(kReferencePose, 0).setIdentity();
 
   GaussianState result = transformed(state, clone * to_model);
-  // What the model drifts beyond independent errors is no error of this pose.
+  // The drift of the model beyond that of independent errors is no error of this pose.
   const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
   result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
       excess * state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
