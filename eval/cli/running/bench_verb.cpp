@@ -34,7 +34,6 @@ struct BenchOptions {
   engine::EngineOptions engine;
   std::string executor = "local";
   engine::SlurmOptions slurm;
-  bool resume = false;
   bool threads_given = false;
   bool dry_run = false;
   std::filesystem::path summary;
@@ -300,12 +299,11 @@ void add_suite_options(CLI::App& verb, engine::Invocation& invocation) {
       ->type_name("FILES");
 }
 
-console::Verb add(CLI::App& app, const char* name, const char* description) {
+console::Verb add(CLI::App& app) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* verb = app.add_subcommand(name, description);
+  CLI::App* verb = app.add_subcommand(
+      "bench", "Runs a suite: every variant over every recording, and every point of its sweeps");
   add_suite_options(*verb, options->invocation);
-  verb->add_flag("--resume", options->resume,
-                 "Leaves alone what is finished. It always does: the flag is kept for scripts");
   verb->add_flag("--repeat", options->engine.repeat_finished, "Runs again what is finished");
   verb->add_flag("--dry-run", options->dry_run,
                  "Prints the runs, which are finished, and how long the others will take; runs nothing");
@@ -372,11 +370,7 @@ Result<int> rerun(const BenchOptions& options, const std::filesystem::path& runs
 }  // namespace
 
 console::Verb add_bench_verb(CLI::App& app) {
-  return add(app, "bench", "Runs a suite: every variant over every recording, and every point of its sweeps");
-}
-
-console::Verb add_sweep_verb(CLI::App& app) {
-  return add(app, "sweep", "The same as bench, for suites that sweep options");
+  return add(app);
 }
 
 console::Verb add_slurm_task_verb(CLI::App& app) {
@@ -415,12 +409,10 @@ console::Verb add_rerun_verb(CLI::App& app) {
   struct RerunOptions {
     BenchOptions bench;
     std::filesystem::path runs;
-    bool failed = false;
   };
   auto options = std::make_shared<RerunOptions>();
-  CLI::App* verb = app.add_subcommand("rerun", "Runs again what failed in a folder of runs");
+  CLI::App* verb = app.add_subcommand("rerun", "Repeats the failed runs of a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder that `fusebench bench` wrote (its --out)")->required();
-  verb->add_flag("--failed", options->failed, "The failed runs; what there is to run again")->required();
   verb->add_option("-j,--jobs", options->bench.engine.at_once, "Runs at a time")
       ->check(CLI::Range(1, 1024))
       ->type_name("N")
