@@ -108,6 +108,8 @@ class SlurmEngine {
       std::error_code no_record;
       const auto written = fs::last_write_time(awaited.folder / "record.json", no_record);
       if (!no_record) awaited.written_before = written;
+      // A task of an earlier array may have written it since we looked.
+      if (ledger_.end_if_finished(i, **run)) continue;
       awaited_.emplace(i, std::move(awaited));
       missing.push_back(i);
     }
