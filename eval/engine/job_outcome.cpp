@@ -42,7 +42,7 @@ BatchOutcome outcome_without_results(const BatchJob& job, std::string reason) {
   outcome.recording = job.recording.filename().string();
   outcome.variant = job.variant;
   outcome.group = job.group;
-  outcome.half = job.half;
+  outcome.split = job.split;
   outcome.reason = std::move(reason);
   return outcome;
 }

@@ -88,18 +88,19 @@ console::Verb add_bench_verb(CLI::App& app) {
   console::add_profile_flag(*verb, options->invocation.options.profile);
   verb->add_option(
           "--summary", options->summary,
-          "Writes what the runs say together as JSON: by half, group and variant, against the motion "
-          "in the image, and the suite's bars")
+          "Writes the summary of all runs as JSON: by split, group and variant, against the motion in the "
+          "image, and the suite's acceptance criteria")
       ->type_name("FILE");
   verb->add_option("--summary-page", options->summary_page,
-                   "Writes the same as a page with charts (HTML, needs no network)")
+                   "Writes the summary as a page with charts (HTML, needs no network)")
       ->type_name("FILE");
   console::add_json_flag(*verb, options->json);
   verb->footer(
       "A finished run is never repeated: its folder is named by the hash of configuration, recording and\n"
       "estimator. With --profile, one that has no profile is. A run that fails, crashes, hangs or is lost\n"
-      "is a row with its reason, and the suite goes on; the exit code is then 4. A suite with bars prints\n"
-      "its summary and ends with 1 if a bar failed; runs that are lost are then the bars' matter.\n"
+      "is a row with its reason, and the suite goes on; the exit code is then 4. A suite with\n"
+      "acceptance criteria prints its summary and ends with 1 if one failed; they also decide about lost "
+      "runs.\n"
       "docs/experiments.md says what a suite can ask for.");
   return {verb, [options, verb] {
             options->threads_given = verb->count("--threads") > 0;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "eval/cli/console/console.hpp"
-#include "eval/study/bars_json.hpp"
+#include "eval/study/criteria_json.hpp"
 #include "eval/study/summary_formats.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_file.hpp"
@@ -15,7 +15,7 @@ namespace fusebench::cli::running {
 
 namespace {
 
-constexpr int kExitBarFailed = 1;
+constexpr int kExitCriterionFailed = 1;
 
 /// With their records.
 std::vector<study::StudyRun> study_runs(const engine::BatchPlan& plan,
@@ -33,7 +33,7 @@ std::vector<study::StudyRun> study_runs(const engine::BatchPlan& plan,
       record->config_hash = config::config_hash(plan.jobs[i].spec.config.values);
     }
     const bool is_there = record->status != record::RunStatus::failed;
-    runs.push_back({outcome.recording, outcome.group, outcome.half, outcome.variant,
+    runs.push_back({outcome.recording, outcome.group, outcome.split, outcome.variant,
                     is_there ? outcome.folder : std::filesystem::path(), std::move(*record)});
   }
   return runs;
@@ -52,13 +52,13 @@ RunCounts counts_of(const std::vector<engine::BatchOutcome>& outcomes) {
   return counts;
 }
 
-Result<std::vector<study::BarResult>> conclude(const suites::Suite& suite, const BenchOptions& options,
-                                               const engine::BatchPlan& plan,
-                                               const std::vector<engine::BatchOutcome>& outcomes) {
+Result<std::vector<study::CriterionResult>> conclude(const suites::Suite& suite, const BenchOptions& options,
+                                                     const engine::BatchPlan& plan,
+                                                     const std::vector<engine::BatchOutcome>& outcomes) {
   const bool files = !options.summary.empty() || !options.summary_page.empty();
-  if (suite.bars.empty() && !files) return std::vector<study::BarResult>{};
+  if (suite.criteria.empty() && !files) return std::vector<study::CriterionResult>{};
   const study::Study study = study::gather_study(study_runs(plan, outcomes), suite.variants);
-  study::StudySummary summary = study::summarise(suite.name, study, suite.bars);
+  study::StudySummary summary = study::summarise(suite.name, study, suite.criteria);
   if (!options.summary.empty()) {
     if (auto written = text::write_text_file(options.summary, study::summary_json(summary, study)); !written)
       return tl::unexpected(written.error());
@@ -69,21 +69,21 @@ Result<std::vector<study::BarResult>> conclude(const suites::Suite& suite, const
       return tl::unexpected(written.error());
   }
   if (!options.json) console::print_output(study::summary_text(summary));
-  return std::move(summary.bars);
+  return std::move(summary.criteria);
 }
 
-int exit_code_of(const RunCounts& counts, const std::vector<study::BarResult>& bars) {
-  const auto failed = [](const study::BarResult& bar) {
-    return bar.decided.verdict == study::Verdict::failed;
+int exit_code_of(const RunCounts& counts, const std::vector<study::CriterionResult>& criteria) {
+  const auto failed = [](const study::CriterionResult& criterion) {
+    return criterion.decided.verdict == study::Verdict::failed;
   };
-  if (std::any_of(bars.begin(), bars.end(), failed)) return kExitBarFailed;
-  const bool good = bars.empty() ? counts.ok == counts.total : counts.failed == 0;
+  if (std::any_of(criteria.begin(), criteria.end(), failed)) return kExitCriterionFailed;
+  const bool good = criteria.empty() ? counts.ok == counts.total : counts.failed == 0;
   return good ? 0 : console::kExitRunFailed;
 }
 
 std::string json_of(const suites::Suite& suite, const engine::BatchPlan& plan,
                     const std::vector<engine::BatchOutcome>& outcomes, const RunCounts& counts,
-                    const std::vector<study::BarResult>& bars) {
+                    const std::vector<study::CriterionResult>& criteria) {
   using Json = nlohmann::ordered_json;
   Json runs = Json::array();
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
@@ -106,7 +106,7 @@ std::string json_of(const suites::Suite& suite, const engine::BatchPlan& plan,
                    {"n_total", counts.total},
                    {"runs", runs},
                    {"excluded", excluded}};
-  if (!suite.bars.empty()) document["bars"] = study::bars_json(bars);
+  if (!suite.criteria.empty()) document["criteria"] = study::criteria_json(criteria);
   return text::json_text(document) + "\n";
 }
 

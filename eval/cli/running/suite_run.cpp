@@ -115,10 +115,10 @@ Result<int> run_suite(BenchOptions options) {
   console::print_progress(fmt::format(
       "{}: {} of {} runs ok{}; `fusebench table {}` shows them", suite->name, counts.ok, counts.total,
       plan->excluded.empty() ? "" : fmt::format(", {} excluded", plan->excluded.size()), batch.out.string()));
-  const auto bars = conclude(*suite, options, *plan, *outcomes);
-  if (!bars) return tl::unexpected(bars.error());
-  if (options.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *bars));
-  return exit_code_of(counts, *bars);
+  const auto criteria = conclude(*suite, options, *plan, *outcomes);
+  if (!criteria) return tl::unexpected(criteria.error());
+  if (options.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *criteria));
+  return exit_code_of(counts, *criteria);
 }
 
 }  // namespace fusebench::cli::running
