@@ -42,7 +42,7 @@ BatchOutcome outcome_without_results(const BatchJob& job, std::string reason) {
   outcome.recording = job.recording.filename().string();
   outcome.variant = job.variant;
   outcome.group = job.group;
-  outcome.half = job.half;
+  outcome.split = job.split;
   outcome.reason = std::move(reason);
   return outcome;
 }
@@ -93,7 +93,7 @@ Result<BatchOutcome> record_failed(const BatchJob& job, const run::PreparedRun& 
   BatchOutcome outcome = outcome_without_results(job, reason_of(end));
   const auto there = run::record_head(run.folder);
   if (there && there->status != record::RunStatus::failed && there->run_id == run.run_id) return outcome;
-  record::RunRecord record = run::record_of_question(run);
+  record::RunRecord record = run::requested_record(run);
   record.reason = outcome.reason;
   record.frames.total = run.recording.frames.size();
   record.timing.cpu_s = end.cpu_s;

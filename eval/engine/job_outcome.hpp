@@ -16,7 +16,7 @@ struct BatchOutcome {
   std::string recording;
   std::string variant;
   std::string group;
-  std::string half;
+  std::string split;
   record::RunStatus status = record::RunStatus::failed;
   std::string reason;
   bool resumed = false;  ///< was there already

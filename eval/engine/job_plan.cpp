@@ -17,7 +17,7 @@ namespace {
 struct Planned {
   fs::path folder;
   std::string group;
-  std::string half;
+  std::string split;
   std::vector<std::string> variants;
   std::optional<suites::SimulationRequest> simulation = {};
 };
@@ -60,7 +60,7 @@ Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, con
     if (!folders) return tl::unexpected(folders.error());
     for (const fs::path& folder : *folders) {
       planned.push_back(
-          {folder, folder.filename().string(), std::string(suites::kHeldOutHalf), suite.variants});
+          {folder, folder.filename().string(), std::string(suites::kHeldOutSplit), suite.variants});
     }
   }
   for (const suites::SuiteRecording& recording : suite.recordings) {
@@ -71,7 +71,7 @@ Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, con
     }
     for (const fs::path& folder : *folders) {
       planned.push_back({folder, recording.group.empty() ? folder.filename().string() : recording.group,
-                         recording.half, recording.variants.empty() ? suite.variants : recording.variants});
+                         recording.split, recording.variants.empty() ? suite.variants : recording.variants});
     }
   }
   return planned;
@@ -88,7 +88,7 @@ Result<Planned> simulated_recording(const suites::SuiteSimulation& simulation, c
     }
     request.trajectory = options.data / request.trajectory;
   }
-  return Planned{options.simulated / simulation.name, simulation.group, simulation.half, simulation.variants,
+  return Planned{options.simulated / simulation.name, simulation.group, simulation.split, simulation.variants,
                  std::move(request)};
 }
 
@@ -152,8 +152,8 @@ Result<BatchJob> job_of(const Common& common, const Planned& recording, const st
   spec.profile = common.options.profile;
   spec.out = common.options.out;
   const bool optional = common.suite.all && !recording.simulation;
-  return BatchJob{recording.folder, variant_name,   std::move(spec),      optional,
-                  recording.group,  recording.half, recording.simulation, point};
+  return BatchJob{recording.folder, variant_name,    std::move(spec),      optional,
+                  recording.group,  recording.split, recording.simulation, point};
 }
 
 const suites::Exclusion* exclusion_of(const suites::Suite& suite, const BatchJob& job) {

@@ -32,7 +32,7 @@ struct BatchJob {
   run::RunSpec spec;
   bool optional = false;  ///< from `all = true`: skipped if its format or camera is unknown
   std::string group;      ///< of the recording, for summaries
-  std::string half;       ///< "tuning" or "held-out"
+  std::string split;      ///< "tuning" or "held-out"
   std::optional<suites::SimulationRequest> simulation = {};  ///< that makes the recording if it is not there
   suites::SweepPoint edits = {};                             ///< those of the sweep
 };

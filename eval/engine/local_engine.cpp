@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "core/io/staged_folder.hpp"
-#include "eval/engine/opened_recordings.hpp"
+#include "eval/engine/batch_ledger.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/process/forked_job.hpp"
 #include "eval/process/machine_memory.hpp"
@@ -44,31 +44,29 @@ struct RunningJob {
 class Engine {
  public:
   Engine(std::span<const BatchJob> jobs, const EngineOptions& options, const EngineControl& control)
-      : jobs_(jobs), options_(options), control_(control), outcomes_(jobs.size()) {
+      : jobs_(jobs), options_(options), control_(control), ledger_(jobs, options, control) {
     for (std::size_t i = 0; i < jobs.size(); ++i) waiting_.push_back(i);
   }
 
   [[nodiscard]] Result<std::vector<BatchOutcome>> run() {
     if (!jobs_.empty()) remove_free_claims(jobs_.front().spec.out);
     while (!waiting_.empty() || !running_.empty()) {
-      if (is_stopped()) return stop_all();
+      if (ledger_.is_stopped()) return stop_all();
       if (!fatal_ && has_room() && Clock::now() >= next_try_) {
         const bool started = start_next();
         if (started && has_room()) continue;
         if (!started) next_try_ = Clock::now() + kWaitForOthers;
       }
-      if (fatal_ && running_.empty()) return tl::unexpected(give_up());
+      if (fatal_ && running_.empty()) return tl::unexpected(ledger_.given_up(*fatal_));
       listen();
       take_ended();
       tell_progress();
     }
-    if (fatal_) return tl::unexpected(give_up());
-    return std::move(outcomes_);
+    if (fatal_) return tl::unexpected(ledger_.given_up(*fatal_));
+    return ledger_.take_outcomes();
   }
 
  private:
-  [[nodiscard]] bool is_stopped() const { return control_.stop != nullptr && control_.stop->load(); }
-
   [[nodiscard]] bool has_room() const {
     if (waiting_.empty() || running_.size() >= static_cast<std::size_t>(options_.at_once)) return false;
     if (running_.empty()) return true;
@@ -98,22 +96,17 @@ class Engine {
   /// False if another engine is at it.
   bool start(std::size_t index) {
     const BatchJob& job = jobs_[index];
-    const Result<recording::Recording>& recording = opened_.of(job.spec);
-    if (!recording) {
-      end_unopened(index, recording.error());
-      return true;
-    }
-    // Two identities of this plan may begin with the same digits before either has a record.
-    run::PreparedRun run = run::place_run(job.spec, *recording, places_);
-    places_.emplace(run.folder, run.run_id);
-    if (ended_already(index, run)) return true;
+    auto unfinished = ledger_.unfinished_run(index);
+    if (!unfinished) fatal_ = unfinished.error();
+    if (!unfinished || !*unfinished) return true;
+    run::PreparedRun run = std::move(**unfinished);
     auto claim = RunClaim::take(job.spec.out, claim_name(run.run_id, run.spec.repetition));
     if (!claim) {
       fatal_ = claim.error();
       return true;
     }
     if (!*claim) return false;
-    if (ended_already(index, run)) return true;  // by whoever had the claim just now
+    if (ledger_.end_if_finished(index, run)) return true;  // by whoever had the claim just now
     prepare_place(job, run);
     auto process = process::ForkedJob::start(
         [&](const process::JobVoice& voice) { work(run, voice); },
@@ -135,50 +128,6 @@ class Engine {
     } else {
       voice.failed(record.error());
     }
-  }
-
-  void end_unopened(std::size_t index, const Error& error) {
-    const BatchJob& job = jobs_[index];
-    if (job.optional && error.code == ErrorCode::configuration) {
-      BatchOutcome outcome = outcome_without_results(job, error.message);
-      outcome.skipped = true;
-      end(index, std::move(outcome));
-      return;
-    }
-    if (options_.only_failed && !was_not_started(job)) {
-      end_resumed(index, outcome_without_results(job, "not among the failed runs"), true);
-      return;
-    }
-    auto outcome = record_not_started(job, error.message);
-    if (outcome) {
-      end(index, std::move(*outcome));
-    } else {
-      fatal_ = outcome.error();
-    }
-  }
-
-  bool ended_already(std::size_t index, const run::PreparedRun& run) {
-    const auto head = run::record_head(run.folder);
-    const bool is_ours = head && head->run_id == run.run_id;
-    const bool is_damaged = head && head->state != run_files::RunState::whole;
-    const bool has_failed =
-        (is_ours && head->status == record::RunStatus::failed) || is_damaged || was_not_started(jobs_[index]);
-    if (options_.only_failed && !has_failed) {
-      const auto outcome = outcome_without_results(jobs_[index], "not among the failed runs");
-      end_resumed(index, outcome, true);
-      return true;
-    }
-    if (options_.repeat_finished || !is_ours || !is_finished(run, *head)) return false;
-    end_resumed(index, outcome_of_finished(jobs_[index], run.folder, *head), false);
-    return true;
-  }
-
-  void end_resumed(std::size_t index, BatchOutcome outcome, bool skipped) {
-    if (!skipped) forget_not_started(jobs_[index]);
-    outcome.resumed = true;
-    outcome.skipped = skipped;
-    ++state_.resumed;
-    end(index, std::move(outcome));
   }
 
   void prepare_place(const BatchJob& job, const run::PreparedRun& run) {
@@ -209,51 +158,27 @@ class Engine {
     // A run that cannot write its results says nothing of itself, but of the disk.
     const bool disk = end.error && end.error->code == ErrorCode::io;
     if (disk && !fatal_) fatal_ = end.error;
-    if (disk || (is_stopped() && !end.finished)) return;
-    const BatchJob& planned = jobs_[job.index];
+    if (disk || (ledger_.is_stopped() && !end.finished)) return;
     if (end.finished) {
       const auto head = run::record_head(job.run.folder);
       if (head && head->run_id == job.run.run_id) {
-        this->end(job.index, outcome_of_finished(planned, job.run.folder, *head));
+        ledger_.end_with_record(job.index, job.run.folder, *head);
         return;
       }
     }
-    auto outcome = record_failed(planned, job.run, end);
-    if (outcome) {
-      this->end(job.index, std::move(*outcome));
-    } else if (!fatal_) {
-      fatal_ = outcome.error();
-    }
-  }
-
-  void end(std::size_t index, BatchOutcome outcome) {
-    ++state_.ended;
-    if (!outcome.skipped && outcome.status != record::RunStatus::ok) ++state_.failed;
-    outcomes_[index] = std::move(outcome);
-    if (control_.finished) control_.finished(index, outcomes_[index]);
+    const auto ended = ledger_.end_failed(job.index, job.run, end);
+    if (!ended && !fatal_) fatal_ = ended.error();
   }
 
   void tell_progress() {
-    if (!control_.progress) return;
-    state_.jobs = jobs_.size();
-    state_.elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-    state_.running.clear();
-    state_.share_running = 0;
+    std::vector<std::string> running;
+    double share_running = 0;
     for (const RunningJob& job : running_) {
       const std::size_t total = job.process.total();
-      if (total > 0)
-        state_.share_running += static_cast<double>(job.process.done()) / static_cast<double>(total);
-      state_.running.push_back(
-          fmt::format("{} {}/{}", to_string(jobs_[job.index]), job.process.done(), total));
+      if (total > 0) share_running += static_cast<double>(job.process.done()) / static_cast<double>(total);
+      running.push_back(fmt::format("{} {}/{}", to_string(jobs_[job.index]), job.process.done(), total));
     }
-    control_.progress(state_);
-  }
-
-  [[nodiscard]] Error give_up() const {
-    Error error = *fatal_;
-    error.message += fmt::format("; {} of {} runs are finished and kept", state_.ended, jobs_.size());
-    error.hint = "the same command goes on where it ended, once the cause is gone";
-    return error;
+    ledger_.report(std::move(running), share_running);
   }
 
   /// All are asked at once, so that it takes no longer than the slowest.
@@ -274,26 +199,19 @@ class Engine {
       fs::remove(place, ignored);
       fs::remove(place.parent_path(), ignored);
     }
-    return fail(
-        ErrorCode::run_failed,
-        fmt::format("stopped by the user; {} of {} runs are finished and kept", state_.ended, jobs_.size()),
-        "the same command goes on where it ended");
+    return tl::unexpected(ledger_.stopped_by_user());
   }
 
   std::span<const BatchJob> jobs_;
   EngineOptions options_;
   const EngineControl& control_;
-  std::vector<BatchOutcome> outcomes_;
+  BatchLedger ledger_;
   std::deque<std::size_t> waiting_;
   std::list<RunningJob> running_;
-  OpenedRecordings opened_;
-  run::TakenFolders places_;
   std::set<fs::path> tidied_;
   std::optional<Error> fatal_;
   std::uint64_t expected_bytes_ = 300'000'000;  // of a run, until one has ended that needed more
-  EngineState state_;
   Clock::time_point next_try_ = Clock::now();
-  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace

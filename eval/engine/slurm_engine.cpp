@@ -1,30 +1,23 @@
 #include "eval/engine/slurm_engine.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <thread>
 #include <utility>
 
-#include "core/config/config_access.hpp"
-#include "core/io/fingerprint.hpp"
-#include "eval/engine/opened_recordings.hpp"
+#include "eval/engine/batch_ledger.hpp"
 #include "eval/engine/plan_preview.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/engine/slurm_queue.hpp"
 #include "eval/process/forked_job.hpp"
-#include "eval/record/build_info.hpp"
 #include "eval/record/process_meter.hpp"
-#include "eval/text/text_file.hpp"
 
 namespace fusebench::engine {
 
@@ -63,30 +56,6 @@ struct Chunk {
   std::string node;
 };
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-/// Numbers of jobs mean the same to whoever has this one.
-std::string plan_digest(std::span<const BatchJob> jobs) {
-  io::Fingerprint digest;
-  digest.add(record::build_info().estimator);
-  for (const BatchJob& job : jobs) {
-    digest.add(to_string(job));
-    digest.add(config::config_hash(job.spec.config.values));
-  }
-  return digest.hex();
-}
-
-std::string quoted(const fs::path& path) {
-  std::string text = "'";
-  for (const char c : path.string()) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 class SlurmEngine {
  public:
   SlurmEngine(std::span<const BatchJob> jobs, const EngineOptions& options, const SlurmOptions& slurm,
@@ -95,9 +64,8 @@ class SlurmEngine {
         options_(options),
         slurm_(slurm),
         site_(site),
-        control_(control),
-        queue_(slurm.command_limit_s),
-        outcomes_(jobs.size()) {
+        ledger_(jobs, options, control),
+        queue_(slurm.command_limit_s) {
     name_ = fmt::format("fusebench-{}-{}-{}", site.invocation.stem().string(), record::host_name(), getpid());
     folder_ = fs::absolute(engine_folder(jobs.front().spec.out) / "slurm" / name_);
   }
@@ -105,11 +73,14 @@ class SlurmEngine {
   Result<std::vector<BatchOutcome>> run() {
     auto missing = what_is_missing();
     if (!missing) return tl::unexpected(missing.error());
-    if (missing->empty()) return std::move(outcomes_);
+    if (missing->empty()) return ledger_.take_outcomes();
     if (auto submitted = submit(chunks_of(*missing)); !submitted) return tl::unexpected(submitted.error());
-    if (slurm_.submit_only) return std::move(outcomes_);
+    if (slurm_.submit_only) return ledger_.take_outcomes();
     while (!chunks_.empty() || !to_submit_.empty()) {
-      if (control_.stop != nullptr && control_.stop->load()) return stop();
+      if (ledger_.is_stopped()) {
+        queue_.cancel_all(name_);
+        return tl::unexpected(ledger_.stopped_by_user());
+      }
       look_at_results();
       if (since(last_queue_) > kQueueEvery_s) {
         look_at_queue();
@@ -122,45 +93,23 @@ class SlurmEngine {
     queue_.cancel_all(name_);  // what still runs was done by others
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
-    return std::move(outcomes_);
+    return ledger_.take_outcomes();
   }
 
  private:
-  void end(std::size_t index, BatchOutcome outcome) {
-    ++state_.ended;
-    if (!outcome.skipped && outcome.status != record::RunStatus::ok) ++state_.failed;
-    if (outcome.resumed) ++state_.resumed;
-    outcomes_[index] = std::move(outcome);
-    if (control_.finished) control_.finished(index, outcomes_[index]);
-  }
-
-  /// Ends what is there, or cannot be opened; the others are awaited.
+  /// The jobs that are to be run; the others have ended.
   Result<std::vector<std::size_t>> what_is_missing() {
     std::vector<std::size_t> missing;
-    OpenedRecordings opened;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      const auto& recording = opened.of(jobs_[i].spec);
-      if (!recording) {
-        BatchOutcome skipped = outcome_without_results(jobs_[i], recording.error().message);
-        skipped.skipped = jobs_[i].optional && recording.error().code == ErrorCode::configuration;
-        auto outcome = skipped.skipped ? Result<BatchOutcome>(std::move(skipped))
-                                       : record_not_started(jobs_[i], recording.error().message);
-        if (!outcome) return tl::unexpected(outcome.error());
-        end(i, std::move(*outcome));
-        continue;
-      }
-      const run::PreparedRun run = run::place_run(jobs_[i].spec, *recording);
-      Awaited awaited{run.folder, run.run_id, recording->frames.size(), {}, 0};
-      const auto head = run::record_head(awaited.folder);
-      const bool ours = head && head->run_id == awaited.run_id;
-      if (ours && is_finished(run, *head)) {
-        BatchOutcome outcome = outcome_of_finished(jobs_[i], awaited.folder, *head);
-        outcome.resumed = true;
-        end(i, std::move(outcome));
-        continue;
-      }
-      std::error_code ignored;
-      if (ours) awaited.written_before = fs::last_write_time(awaited.folder / "record.json", ignored);
+      const auto run = ledger_.unfinished_run(i);
+      if (!run) return tl::unexpected(run.error());
+      if (!*run) continue;
+      Awaited awaited{(*run)->folder, (*run)->run_id, (*run)->recording.frames.size(), {}, 0};
+      std::error_code no_record;
+      const auto written = fs::last_write_time(awaited.folder / "record.json", no_record);
+      if (!no_record) awaited.written_before = written;
+      // A task of an earlier array may have written it since we looked.
+      if (ledger_.end_if_finished(i, **run)) continue;
       awaited_.emplace(i, std::move(awaited));
       missing.push_back(i);
     }
@@ -197,19 +146,11 @@ class SlurmEngine {
     return {};
   }
 
-  /// The task file has a line a task, the numbers of its jobs in the plan; the script is what a node runs.
   Result<void> submit_array(std::span<Chunk> chunks) {
     const fs::path part = folder_ / fmt::format("{}", arrays_++);
-    std::string lines = plan_digest(jobs_) + "\n";
-    for (const Chunk& chunk : chunks) lines += fmt::format("{}\n", fmt::join(chunk.jobs, " "));
-    const std::string script = fmt::format(
-        "#!/bin/sh\nexec {} slurm-task {} {} \"$SLURM_ARRAY_TASK_ID\" -j {}\n", quoted(site_.program),
-        quoted(site_.invocation), quoted(part / "tasks.txt"), slurm_.at_once);
-    std::error_code error;
-    fs::create_directories(part / "logs", error);
-    for (const auto& [name, text] : {std::pair("tasks.txt", lines), std::pair("task.sh", script)}) {
-      if (auto written = text::write_text_file(part / name, text); !written) return written;
-    }
+    std::vector<std::vector<std::size_t>> tasks;
+    for (const Chunk& chunk : chunks) tasks.push_back(chunk.jobs);
+    if (auto written = write_task_files(part, jobs_, tasks, site_, slurm_.at_once); !written) return written;
     std::size_t largest = 0;
     for (const Chunk& chunk : chunks) largest = std::max(largest, chunk.jobs.size());
     // A run that takes too long is ended by its own limit, and says so; Slurm's is for what hangs beyond
@@ -218,8 +159,8 @@ class SlurmEngine {
     const double limit_s = options_.limits.time_s * static_cast<double>(largest);
     const double time_s = limit_s > 0 ? 1.1 * limit_s + kMargin_s : 0;
     const auto job = queue_.submit({name_,
-                                    part / "task.sh",
-                                    part / "logs",
+                                    part / kTaskScript,
+                                    part / kTaskLogs,
                                     chunks.size(),
                                     slurm_.cpus,
                                     time_s,
@@ -235,7 +176,7 @@ class SlurmEngine {
       Chunk& chunk = chunks[task];
       // Where nobody answered the array may be in the queue or not: it counts as vanished if nothing comes.
       chunk.task = job ? fmt::format("{}_{}", *job, task) : "";
-      chunk.alive = part / fmt::format("alive-{}", task);
+      chunk.alive = sign_of_life(part, task);
       if (job) {
         for (const std::size_t index : chunk.jobs) ++awaited_.at(index).attempts;
       }
@@ -264,7 +205,7 @@ class SlurmEngine {
     std::erase_if(chunk.jobs, [&](std::size_t index) {
       const Awaited& awaited = awaited_.at(index);
       const auto head = result_of(awaited);
-      if (head) end(index, outcome_of_finished(jobs_[index], awaited.folder, *head));
+      if (head) ledger_.end_with_record(index, awaited.folder, *head);
       return head.has_value();
     });
   }
@@ -275,7 +216,7 @@ class SlurmEngine {
     const auto start = Clock::now();
     for (Chunk& chunk : chunks_) {
       take_results(chunk);
-      std::string sign = text_of(chunk.alive);
+      std::string sign = text_if_there(chunk.alive);
       if (sign != chunk.last_sign) {
         chunk.last_sign = std::move(sign);
         chunk.last_change = Clock::now();
@@ -342,11 +283,11 @@ class SlurmEngine {
     const auto run = run::prepare_run(jobs_[index].spec);
     auto outcome =
         run ? record_failed(jobs_[index], *run, none) : record_not_started(jobs_[index], none.reason);
-    end(index, outcome ? std::move(*outcome) : outcome_without_results(jobs_[index], none.reason));
+    ledger_.end(index, outcome ? std::move(*outcome) : outcome_without_results(jobs_[index], none.reason));
   }
 
   [[nodiscard]] static std::string log_of(const Chunk& chunk) {
-    return text_of(chunk.alive.parent_path() / "logs" / (chunk.task + ".txt"));
+    return text_if_there(chunk.alive.parent_path() / kTaskLogs / (chunk.task + ".txt"));
   }
 
   /// Nodes that came back are used again; and if all are excluded, none is, or nothing would ever start.
@@ -367,31 +308,19 @@ class SlurmEngine {
   }
 
   void tell_progress() {
-    if (!control_.progress) return;
-    state_.jobs = jobs_.size();
-    state_.elapsed_s = since(start_);
-    state_.running.clear();
+    std::vector<std::string> running;
     for (const Chunk& chunk : chunks_) {
-      if (!chunk.node.empty()) state_.running.push_back(fmt::format("{} on {}", chunk.task, chunk.node));
+      if (!chunk.node.empty()) running.push_back(fmt::format("{} on {}", chunk.task, chunk.node));
     }
-    control_.progress(state_);
-  }
-
-  Result<std::vector<BatchOutcome>> stop() {
-    queue_.cancel_all(name_);
-    return fail(
-        ErrorCode::run_failed,
-        fmt::format("stopped by the user; {} of {} runs are finished and kept", state_.ended, jobs_.size()),
-        "the same command goes on where it ended");
+    ledger_.report(std::move(running), 0);
   }
 
   std::span<const BatchJob> jobs_;
   EngineOptions options_;
   SlurmOptions slurm_;
   SlurmSite site_;
-  const EngineControl& control_;
+  BatchLedger ledger_;
   SlurmQueue queue_;
-  std::vector<BatchOutcome> outcomes_;
   std::string name_;
   fs::path folder_;  // of task files, scripts, signs of life and logs
   std::map<std::size_t, Awaited> awaited_;
@@ -402,8 +331,6 @@ class SlurmEngine {
   double look_s_ = 0;
   Clock::time_point last_look_ = Clock::now() - std::chrono::hours(1);
   Clock::time_point last_queue_ = Clock::now();
-  Clock::time_point start_ = Clock::now();
-  EngineState state_;
 };
 
 }  // namespace
@@ -413,49 +340,6 @@ Result<std::vector<BatchOutcome>> run_on_slurm(std::span<const BatchJob> jobs, c
                                                const EngineControl& control) {
   if (jobs.empty()) return std::vector<BatchOutcome>{};
   return SlurmEngine(jobs, options, slurm, site, control).run();
-}
-
-Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions& options,
-                            const fs::path& task_file, std::size_t task, const EngineControl& control) {
-  std::istringstream lines(text_of(task_file));
-  std::string line;
-  std::getline(lines, line);
-  if (line != plan_digest(jobs)) {
-    return fail(
-        ErrorCode::configuration,
-        fmt::format("{}: the plan is not the one that was submitted: recordings, suite or program have "
-                    "changed since",
-                    task_file.string()),
-        "submit it again");
-  }
-  for (std::size_t i = 0; i <= task && std::getline(lines, line); ++i) {
-  }
-  std::vector<BatchJob> mine;
-  std::istringstream numbers(line);
-  for (std::size_t number = 0; numbers >> number;) {
-    if (number >= jobs.size()) {
-      return fail(ErrorCode::data_corrupt,
-                  fmt::format("{}: run {} of a plan of {}", task_file.string(), number, jobs.size()),
-                  "is this the program that submitted the task?");
-    }
-    mine.push_back(jobs[number]);
-  }
-  if (mine.empty())
-    return fail(ErrorCode::data_missing, fmt::format("{}: has no task {}", task_file.string(), task));
-  // In a process of its own: opening a large recording takes longer than a sign of life may.
-  const fs::path alive = task_file.parent_path() / fmt::format("alive-{}", task);
-  const auto pulse = process::ForkedJob::start(
-      [&](const process::JobVoice&) {
-        for (std::size_t count = 0;; ++count) {
-          static_cast<void>(text::write_text_file(alive, fmt::format("{} {}\n", record::host_name(), count)));
-          std::this_thread::sleep_for(std::chrono::seconds(1));
-        }
-      },
-      {});
-  if (!pulse) return tl::unexpected(pulse.error());
-  const auto outcomes = run_locally(mine, options, control);
-  if (!outcomes) return tl::unexpected(outcomes.error());
-  return {};
 }
 
 }  // namespace fusebench::engine

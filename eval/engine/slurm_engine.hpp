@@ -3,14 +3,14 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "eval/engine/engine_options.hpp"
 #include "eval/engine/job_plan.hpp"
-#include "eval/engine/local_engine.hpp"
+#include "eval/engine/slurm_task.hpp"
 
 namespace fusebench::engine {
 
@@ -24,12 +24,6 @@ struct SlurmOptions {
   bool submit_only = false;            ///< returns when everything is submitted
 };
 
-/// How tasks find their work: kept beside the runs, see Invocation.
-struct SlurmSite {
-  std::filesystem::path invocation;  ///< its file
-  std::filesystem::path program;     ///< on the shared file system, or installed on every node
-};
-
 /// Submits what is not finished as arrays of tasks, follows the results, and submits again what a node that
 /// died or was cut off, or a controller that forgot, took with it (three times at most; then the run is a row
 /// with that reason). Outcomes as run_locally(); with submit_only, those of what is there already. A stop
@@ -39,11 +33,5 @@ struct SlurmSite {
                                                              const EngineOptions& options,
                                                              const SlurmOptions& slurm, const SlurmSite& site,
                                                              const EngineControl& control = {});
-
-/// In a task: runs the jobs of one line of the task file, and gives signs of life beside it. Errors:
-/// data_missing, data_corrupt (the task file); those of run_locally().
-[[nodiscard]] Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions& options,
-                                          const std::filesystem::path& task_file, std::size_t task,
-                                          const EngineControl& control = {});
 
 }  // namespace fusebench::engine

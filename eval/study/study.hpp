@@ -17,7 +17,7 @@ namespace fusebench::study {
 struct StudyRun {
   std::string recording;
   std::string group;
-  std::string half;
+  std::string split;
   std::string variant;
   std::filesystem::path folder;  ///< empty if there is none
   record::RunRecord record;

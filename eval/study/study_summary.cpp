@@ -63,12 +63,12 @@ ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& ru
   return spread;
 }
 
-std::optional<SummaryRow> row_of(const Study& study, const std::string& half, const std::string& group,
+std::optional<SummaryRow> row_of(const Study& study, const std::string& split, const std::string& group,
                                  const std::string& variant) {
-  SummaryRow row{.half = half, .group = group, .variant = variant, .values = {}};
+  SummaryRow row{.split = split, .group = group, .variant = variant, .values = {}};
   std::vector<const StudyRun*> runs;
   for (const StudyRun& run : study.runs) {
-    if (run.half != half || run.group != group || run.variant != variant) continue;
+    if (run.split != split || run.group != group || run.variant != variant) continue;
     runs.push_back(&run);
     ++row.total;
     if (run.record.status == record::RunStatus::ok) ++row.ok;
@@ -83,8 +83,8 @@ std::optional<SummaryRow> row_of(const Study& study, const std::string& half, co
 }
 
 /// Nothing if no frame of these has a motion.
-std::optional<MotionCurve> curve_of(const Study& study, const std::string& half, std::string_view group) {
-  MotionCurve curve{half, std::string(group), {}};
+std::optional<MotionCurve> curve_of(const Study& study, const std::string& split, std::string_view group) {
+  MotionCurve curve{split, std::string(group), {}};
   bool any = false;
   for (std::size_t i = 0; i < kMotionEdges_px.size(); ++i) {
     MotionBin bin;
@@ -92,7 +92,7 @@ std::optional<MotionCurve> curve_of(const Study& study, const std::string& half,
     if (i + 1 < kMotionEdges_px.size()) bin.to_px = kMotionEdges_px[i + 1];
     std::vector<SharedFrame> frames;
     for (const StudyRun& run : study.runs) {
-      if (run.half != half || run.variant != study.partner()) continue;
+      if (run.split != split || run.variant != study.partner()) continue;
       if (group != kAllGroups && run.group != group) continue;
       for (const SharedFrame& frame : run.shared) {
         const bool inside =
@@ -123,7 +123,8 @@ std::vector<std::string> data_notes(const Study& study) {
 
 }  // namespace
 
-StudySummary summarise(const std::string& suite, const Study& study, std::span<const suites::Bar> bars) {
+StudySummary summarise(const std::string& suite, const Study& study,
+                       std::span<const suites::Criterion> criteria) {
   StudySummary summary;
   summary.suite = suite;
   summary.reference = study.reference();
@@ -132,19 +133,19 @@ StudySummary summarise(const std::string& suite, const Study& study, std::span<c
   summary.notes.insert(summary.notes.end(), study.notes.begin(), study.notes.end());
   const std::vector<std::string> groups = distinct(study, &StudyRun::group);
   const std::vector<std::string> variants = variants_in_order(study);
-  for (const std::string_view half_name : {suites::kHeldOutHalf, suites::kTuningHalf}) {
-    const std::string half(half_name);
+  for (const std::string_view split_name : {suites::kHeldOutSplit, suites::kTuningSplit}) {
+    const std::string split(split_name);
     for (const std::string& group : groups) {
       for (const std::string& variant : variants) {
-        if (auto row = row_of(study, half, group, variant)) summary.rows.push_back(std::move(*row));
+        if (auto row = row_of(study, split, group, variant)) summary.rows.push_back(std::move(*row));
       }
     }
-    if (auto curve = curve_of(study, half, kAllGroups)) summary.curves.push_back(std::move(*curve));
+    if (auto curve = curve_of(study, split, kAllGroups)) summary.curves.push_back(std::move(*curve));
     for (const std::string& group : groups) {
-      if (auto curve = curve_of(study, half, group)) summary.curves.push_back(std::move(*curve));
+      if (auto curve = curve_of(study, split, group)) summary.curves.push_back(std::move(*curve));
     }
   }
-  summary.bars = check_bars(study, bars);
+  summary.criteria = check_criteria(study, criteria);
   return summary;
 }
 

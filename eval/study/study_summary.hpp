@@ -1,5 +1,5 @@
-// What a study's runs say together: by half, group and variant, against the motion in the image, and bar by
-// bar.
+// What a study's runs say together: by split, group and variant, against the motion in the image, and
+// criterion by criterion.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "eval/metrics/consistency_metrics.hpp"
-#include "eval/study/bar_check.hpp"
+#include "eval/study/criteria_check.hpp"
 #include "eval/study/study.hpp"
 
 namespace fusebench::study {
@@ -30,7 +30,7 @@ struct ValueSpread {
 };
 
 struct SummaryRow {
-  std::string half;
+  std::string split;
   std::string group;
   std::string variant;
   std::size_t total = 0;
@@ -51,7 +51,7 @@ struct MotionBin {
   SharedMeans means;  ///< of the partner
 };
 struct MotionCurve {
-  std::string half;
+  std::string split;
   std::string group;  ///< "all": of all groups
   std::vector<MotionBin> bins;
 };
@@ -60,15 +60,15 @@ struct StudySummary {
   std::string suite;
   std::string reference;  ///< these two variants as Study says; curves compare them
   std::string partner;
-  std::vector<SummaryRow> rows;  ///< held-out half first; groups as the suite has them; variants as listed
+  std::vector<SummaryRow> rows;  ///< held-out split first; groups as the suite has them; variants as listed
   std::vector<MotionCurve> curves;
-  std::vector<BarResult> bars;
+  std::vector<CriterionResult> criteria;
   std::vector<std::string> notes;  ///< where the data of which groups come from; what was not compared
 };
 
 inline constexpr std::string_view kAllGroups = "all";
 
 [[nodiscard]] StudySummary summarise(const std::string& suite, const Study& study,
-                                     std::span<const suites::Bar> bars);
+                                     std::span<const suites::Criterion> criteria);
 
 }  // namespace fusebench::study

@@ -8,14 +8,14 @@
 
 namespace fusebench::study {
 
-/// JSON in SI units with keys in a fixed order: rows, curves, bars, and every run. No times but frames a
+/// JSON in SI units with keys in a fixed order: rows, curves, criteria, and every run. No times but frames a
 /// second; what does not exist is null.
 [[nodiscard]] std::string summary_json(const StudySummary& summary, const Study& study);
 
-/// Markdown: the bars, then a table a half, then AIE against motion.
+/// Markdown: the criteria, then a table a split, then AIE against motion.
 [[nodiscard]] std::string summary_text(const StudySummary& summary);
-/// The bars alone.
-[[nodiscard]] std::string bars_text(const std::vector<BarResult>& bars);
+/// The criteria alone.
+[[nodiscard]] std::string criteria_text(const std::vector<CriterionResult>& criteria);
 
 /// One HTML file that needs no network: the same tables, and charts.
 [[nodiscard]] std::string summary_page(const StudySummary& summary, const Study& study);
@@ -26,7 +26,7 @@ struct SummaryTable {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
 };
-[[nodiscard]] SummaryTable bar_table(const std::vector<BarResult>& bars);
+[[nodiscard]] SummaryTable criteria_table(const std::vector<CriterionResult>& criteria);
 /// Mean, median and worst of the trajectory, AIE and model; then NEES. Empty tables are left out.
 [[nodiscard]] std::vector<SummaryTable> value_tables(const StudySummary& summary);
 [[nodiscard]] std::vector<SummaryTable> motion_tables(const StudySummary& summary);

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "eval/study/bars_json.hpp"
+#include "eval/study/criteria_json.hpp"
 #include "eval/study/summary_formats.hpp"
 #include "eval/text/json_text.hpp"
 
@@ -33,7 +33,7 @@ Json json_of(const ValueSpread& spread, const suites::StudyValue& value) {
 
 Json json_of(const SummaryRow& row) {
   Json json = {
-      {"half", row.half},     {"group", row.group}, {"variant", row.variant},         {"n_ok", row.ok},
+      {"split", row.split},   {"group", row.group}, {"variant", row.variant},         {"n_ok", row.ok},
       {"n_total", row.total}, {"n_lost", row.lost}, {"lost_frames", row.lost_frames}, {"frames", row.frames}};
   Json values = Json::object();
   for (std::size_t i = 0; i < suites::study_values().size(); ++i) {
@@ -57,11 +57,11 @@ Json json_of(const StudySummary& summary, const MotionCurve& curve) {
                     {summary.partner, any ? Json(means.variant_grey) : Json(nullptr)},
                     {"ratio", any ? number(means.variant_grey / means.reference_grey) : Json(nullptr)}});
   }
-  return {{"half", curve.half}, {"group", curve.group}, {"bins", bins}};
+  return {{"split", curve.split}, {"group", curve.group}, {"bins", bins}};
 }
 
-Json json_of(const BarMeasurement& measurement) {
-  return {{"half", measurement.half},
+Json json_of(const CriterionMeasurement& measurement) {
+  return {{"split", measurement.split},
           {"verdict", to_string(measurement.verdict)},
           {"measured", number(measurement.measured)},
           {"limit", measurement.limit},
@@ -69,12 +69,12 @@ Json json_of(const BarMeasurement& measurement) {
           {"note", measurement.note}};
 }
 
-Json json_of(const BarResult& result) {
-  Json json = {{"title", result.bar.title},
-               {"groups", result.bar.groups},
-               {"variant", result.bar.variant},
-               {"against", result.bar.against},
-               {"metric", result.bar.metric}};
+Json json_of(const CriterionResult& result) {
+  Json json = {{"title", result.criterion.title},
+               {"groups", result.criterion.groups},
+               {"variant", result.criterion.variant},
+               {"against", result.criterion.against},
+               {"metric", result.criterion.metric}};
   json.update(json_of(result.decided));
   json["beside"] = json_of(result.beside);
   return json;
@@ -84,7 +84,7 @@ Json json_of(const Study& study, const StudyRun& run) {
   Json json = {{"recording", run.recording},
                {"variant", run.variant},
                {"group", run.group},
-               {"half", run.half},
+               {"split", run.split},
                {"status", record::to_string(run.record.status)},
                {"reason", run.record.reason},
                {"config_hash", run.record.config_hash},
@@ -105,14 +105,14 @@ Json list_of(const std::vector<T>& items) {
 
 }  // namespace
 
-Json bars_json(const std::vector<BarResult>& bars) { return list_of(bars); }
+Json criteria_json(const std::vector<CriterionResult>& criteria) { return list_of(criteria); }
 
 std::string summary_json(const StudySummary& summary, const Study& study) {
   Json runs = Json::array();
   for (const StudyRun& run : study.runs) runs.push_back(json_of(study, run));
   Json motion = Json::array();
   for (const MotionCurve& curve : summary.curves) motion.push_back(json_of(summary, curve));
-  const Json document = {{"suite", summary.suite},        {"bars", bars_json(summary.bars)},
+  const Json document = {{"suite", summary.suite},        {"criteria", criteria_json(summary.criteria)},
                          {"rows", list_of(summary.rows)}, {"motion", motion},
                          {"notes", summary.notes},        {"runs", runs}};
   return text::json_text(document) + "\n";

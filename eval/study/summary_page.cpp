@@ -70,7 +70,7 @@ std::vector<std::string_view> recordings_of(const Study& study, std::string_view
 
 /// A dot for each ok run, above the number of its recording.
 page::Chart value_chart(const StudySummary& summary, const Study& study, std::string_view group,
-                  const suites::StudyValue& value) {
+                        const suites::StudyValue& value) {
   page::Chart chart;
   chart.title = fmt::format("{}: {}", group, value.label);
   chart.x_label = "recording";
@@ -89,7 +89,7 @@ page::Chart value_chart(const StudySummary& summary, const Study& study, std::st
   }
   std::size_t lost = 0;
   for (const SummaryRow& row : summary.rows) lost += row.group == group ? row.total - row.ok : 0;
-  chart.caption = fmt::format("Both halves; runs that are not ok have no dot ({} of all variants).", lost);
+  chart.caption = fmt::format("Both splits; runs that are not ok have no dot ({} of all variants).", lost);
   return chart;
 }
 
@@ -116,18 +116,18 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
   std::size_t ok = 0;
   for (const StudyRun& run : study.runs) ok += run.record.status == record::RunStatus::ok ? 1 : 0;
   page.subtitle = fmt::format(
-      "{} of {} runs ok. The tuning half is for choosing parameters, the held-out half for judging them.", ok,
-      study.runs.size());
-  if (!summary.bars.empty()) {
-    SummaryTable bars = bar_table(summary.bars);
-    page.sections.push_back({bars.title, "", page_table(bars)});
+      "{} of {} runs ok. The tuning split is for choosing parameters, the held-out split for judging them.",
+      ok, study.runs.size());
+  if (!summary.criteria.empty()) {
+    SummaryTable criteria = criteria_table(summary.criteria);
+    page.sections.push_back({criteria.title, "", page_table(criteria)});
   }
   std::vector<page::Chart> motion;
   for (const MotionCurve& curve : summary.curves) {
-    if (curve.half == suites::kHeldOutHalf) motion.push_back(motion_chart(summary, curve));
+    if (curve.split == suites::kHeldOutSplit) motion.push_back(motion_chart(summary, curve));
   }
   if (!motion.empty())
-    page.sections.push_back({"AIE against image motion, held-out half", "", std::move(motion)});
+    page.sections.push_back({"AIE against image motion, held-out split", "", std::move(motion)});
   std::vector<page::Chart> charts = value_charts(summary, study);
   if (!charts.empty()) page.sections.push_back({"Each recording", "", std::move(charts)});
   for (const auto& tables : {value_tables(summary), motion_tables(summary)}) {

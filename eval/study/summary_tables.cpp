@@ -45,16 +45,16 @@ bool any_value(const std::vector<const SummaryRow*>& rows, std::size_t index) {
                      [&](const SummaryRow* row) { return row->values[index].count > 0; });
 }
 
-std::vector<const SummaryRow*> rows_of(const StudySummary& summary, std::string_view half) {
+std::vector<const SummaryRow*> rows_of(const StudySummary& summary, std::string_view split) {
   std::vector<const SummaryRow*> rows;
   for (const SummaryRow& row : summary.rows) {
-    if (row.half == half) rows.push_back(&row);
+    if (row.split == split) rows.push_back(&row);
   }
   return rows;
 }
 
-SummaryTable value_table(std::string_view half, const std::vector<const SummaryRow*>& rows) {
-  SummaryTable table{fmt::format("Runs, {} half: mean / median / worst over recordings", half),
+SummaryTable value_table(std::string_view split, const std::vector<const SummaryRow*>& rows) {
+  SummaryTable table{fmt::format("Runs, {} split: mean / median / worst over recordings", split),
                      {"group", "variant", "ok", "lost frames"},
                      {}};
   for (const SummaryRow* row : rows) {
@@ -74,9 +74,9 @@ SummaryTable value_table(std::string_view half, const std::vector<const SummaryR
   return table;
 }
 
-SummaryTable nees_table(std::string_view half, const std::vector<const SummaryRow*>& rows) {
+SummaryTable nees_table(std::string_view split, const std::vector<const SummaryRow*>& rows) {
   SummaryTable table{
-      fmt::format("NEES / dof, {} half: mean over runs (95 % bounds of that mean); ! is outside", half),
+      fmt::format("NEES / dof, {} split: mean over runs (95 % bounds of that mean); ! is outside", split),
       {"group", "variant"},
       {}};
   const auto values = suites::study_values();
@@ -102,17 +102,19 @@ std::string number_cell(const std::optional<double>& value) {
 
 }  // namespace
 
-SummaryTable bar_table(const std::vector<BarResult>& bars) {
+SummaryTable criteria_table(const std::vector<CriterionResult>& criteria) {
   SummaryTable table{
-      "Bars", {"verdict", "bar", "groups", "measured", "limit", "recordings", "other half", "remarks"}, {}};
-  for (const BarResult& result : bars) {
+      "Acceptance criteria",
+      {"verdict", "criterion", "groups", "measured", "limit", "recordings", "other split", "remarks"},
+      {}};
+  for (const CriterionResult& result : criteria) {
     std::string groups;
-    for (const std::string& group : result.bar.groups) groups += (groups.empty() ? "" : " ") + group;
+    for (const std::string& group : result.criterion.groups) groups += (groups.empty() ? "" : " ") + group;
     table.rows.push_back(
-        {std::string(to_string(result.decided.verdict)), result.bar.title,
+        {std::string(to_string(result.decided.verdict)), result.criterion.title,
          groups.empty() ? std::string(kAllGroups) : groups, number_cell(result.decided.measured),
          result.decided.limit, fmt::format("{}", result.decided.recordings),
-         fmt::format("{}: {} ({} of {})", result.beside.half, number_cell(result.beside.measured),
+         fmt::format("{}: {} ({} of {})", result.beside.split, number_cell(result.beside.measured),
                      to_string(result.beside.verdict), result.beside.recordings),
          result.decided.note});
   }
@@ -121,11 +123,11 @@ SummaryTable bar_table(const std::vector<BarResult>& bars) {
 
 std::vector<SummaryTable> value_tables(const StudySummary& summary) {
   std::vector<SummaryTable> tables;
-  for (const std::string_view half : {suites::kHeldOutHalf, suites::kTuningHalf}) {
-    const std::vector<const SummaryRow*> rows = rows_of(summary, half);
+  for (const std::string_view split : {suites::kHeldOutSplit, suites::kTuningSplit}) {
+    const std::vector<const SummaryRow*> rows = rows_of(summary, split);
     if (rows.empty()) continue;
-    tables.push_back(value_table(half, rows));
-    SummaryTable nees = nees_table(half, rows);
+    tables.push_back(value_table(split, rows));
+    SummaryTable nees = nees_table(split, rows);
     if (!nees.rows.empty()) tables.push_back(std::move(nees));
   }
   return tables;
@@ -133,14 +135,14 @@ std::vector<SummaryTable> value_tables(const StudySummary& summary) {
 
 std::vector<SummaryTable> motion_tables(const StudySummary& summary) {
   std::vector<SummaryTable> tables;
-  for (const std::string_view half : {suites::kHeldOutHalf, suites::kTuningHalf}) {
+  for (const std::string_view split : {suites::kHeldOutSplit, suites::kTuningSplit}) {
     SummaryTable table{
-        fmt::format("AIE on common pixels against the motion of patches between two frames, {} half", half),
+        fmt::format("AIE on common pixels against the motion of patches between two frames, {} split", split),
         {"group", "motion [px]", "frames", "pixels", summary.reference, summary.partner,
          fmt::format("{} / {}", summary.partner, summary.reference)},
         {}};
     for (const MotionCurve& curve : summary.curves) {
-      if (curve.half != half) continue;
+      if (curve.split != split) continue;
       for (const MotionBin& bin : curve.bins) {
         const SharedMeans& means = bin.means;
         if (means.frames == 0) continue;

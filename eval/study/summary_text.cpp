@@ -29,14 +29,14 @@ std::string markdown(const SummaryTable& table) {
 
 }  // namespace
 
-std::string bars_text(const std::vector<BarResult>& bars) {
+std::string criteria_text(const std::vector<CriterionResult>& criteria) {
   const auto count = [&](Verdict verdict) {
-    return std::count_if(bars.begin(), bars.end(),
-                         [&](const BarResult& result) { return result.decided.verdict == verdict; });
+    return std::count_if(criteria.begin(), criteria.end(),
+                         [&](const CriterionResult& result) { return result.decided.verdict == verdict; });
   };
-  return markdown(bar_table(bars)) + fmt::format("{} of {} bars passed, {} failed, {} not applicable.\n\n",
-                                                 count(Verdict::passed), bars.size(), count(Verdict::failed),
-                                                 count(Verdict::not_applicable));
+  return markdown(criteria_table(criteria)) +
+         fmt::format("{} of {} criteria passed, {} failed, {} not applicable.\n\n", count(Verdict::passed),
+                     criteria.size(), count(Verdict::failed), count(Verdict::not_applicable));
 }
 
 std::string summary_text(const StudySummary& summary) {
@@ -44,7 +44,7 @@ std::string summary_text(const StudySummary& summary) {
   for (const SummaryTable& table : value_tables(summary)) text += markdown(table);
   for (const SummaryTable& table : motion_tables(summary)) text += markdown(table);
   for (const std::string& note : summary.notes) text += fmt::format("- {}\n", note);
-  if (!summary.bars.empty()) text += bars_text(summary.bars);
+  if (!summary.criteria.empty()) text += criteria_text(summary.criteria);
   return text;
 }
 

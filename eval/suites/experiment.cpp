@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::array<std::string_view, 14> kSuiteKeys = {
-    "name", "recordings", "all",  "variants", "imu",   "config",  "simulations",
-    "bars", "frames",     "keep", "limits",   "sweep", "exclude", "repetitions"};
-constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "half", "variants"};
+    "name",     "recordings", "all",  "variants", "imu",   "config",  "simulations",
+    "criteria", "frames",     "keep", "limits",   "sweep", "exclude", "repetitions"};
+constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "split", "variants"};
 constexpr std::string_view kConfigPrefix = "config.";
 constexpr std::string_view kLimitPrefix = "limits.";
 
 tl::unexpected<Error> unknown_suite_key(const std::string& place, const std::string& key) {
-  constexpr std::array<std::string_view, 4> lists = {"sweep", "exclude", "simulations", "bars"};
+  constexpr std::array<std::string_view, 4> lists = {"sweep", "exclude", "simulations", "criteria"};
   if (std::find(lists.begin(), lists.end(), key) != lists.end())
     return fail(ErrorCode::configuration,
                 fmt::format("{}: {} is a list of tables: write [[{}]]", place, key, key));
@@ -101,14 +101,14 @@ Result<void> read_recording(const EntryTable& table, Suite& suite) {
       continue;
     }
     const std::array<std::pair<std::string_view, std::string*>, 3> texts = {
-        {{"name", &recording.name}, {"group", &recording.group}, {"half", &recording.half}}};
+        {{"name", &recording.name}, {"group", &recording.group}, {"split", &recording.split}}};
     const auto* const target =
         std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.first == entry.key; });
     if (target == texts.end()) return unknown_key(entry.place, entry.key, kRecordingKeys, "a recording");
     auto text = text_entry(entry);
     if (!text) return tl::unexpected(text.error());
     *target->second = std::move(*text);
-    if (recording.half != kTuningHalf && recording.half != kHeldOutHalf)
+    if (recording.split != kTuningSplit && recording.split != kHeldOutSplit)
       return wrong_entry(entry, "\"tuning\" or \"held-out\"");
   }
   if (recording.name.empty())
@@ -130,9 +130,10 @@ Result<void> read_tables(const config::TomlDocument& document, Suite& suite) {
   auto exclusions = read_exclusions(entry_tables(document, "exclude"));
   if (!exclusions) return tl::unexpected(exclusions.error());
   suite.exclusions = std::move(*exclusions);
-  auto bars = read_bars(entry_tables(document, "bars"), suite.variants.empty() ? "" : suite.variants.front());
-  if (!bars) return tl::unexpected(bars.error());
-  suite.bars = std::move(*bars);
+  auto criteria =
+      read_criteria(entry_tables(document, "criteria"), suite.variants.empty() ? "" : suite.variants.front());
+  if (!criteria) return tl::unexpected(criteria.error());
+  suite.criteria = std::move(*criteria);
   return {};
 }
 
@@ -149,7 +150,7 @@ std::vector<std::string> variants_of(const Suite& suite) {
   return all;
 }
 
-/// A bar on a group that no recording is in would never decide anything.
+/// A criterion on a group that no recording is in would never decide anything.
 Result<void> check_groups(const Suite& suite) {
   std::vector<std::string> groups;
   for (const SuiteSimulation& simulation : suite.simulations) groups.push_back(simulation.group);
@@ -159,11 +160,11 @@ Result<void> check_groups(const Suite& suite) {
     groups.push_back(recording.group);
   }
   const std::vector<std::string_view> known(groups.begin(), groups.end());
-  for (const Bar& bar : suite.bars) {
-    for (const std::string& group : bar.groups) {
+  for (const Criterion& criterion : suite.criteria) {
+    for (const std::string& group : criterion.groups) {
       if (suite.all || std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
       return fail(ErrorCode::configuration, fmt::format("{}: no recording is in the group '{}' (nearest: {})",
-                                                        bar.place, group, nearest_name(group, known)));
+                                                        criterion.place, group, nearest_name(group, known)));
     }
   }
   return {};
@@ -237,7 +238,7 @@ Result<fs::path> find_folder_named(const std::string& name, const fs::path& data
 Result<Suite> read_suite(const fs::path& file) {
   const auto document = config::read_toml(file);
   if (!document) return tl::unexpected(document.error());
-  constexpr std::array<std::string_view, 3> lists = {"recordings", "simulations", "bars"};
+  constexpr std::array<std::string_view, 3> lists = {"recordings", "simulations", "criteria"};
   constexpr std::array<std::string_view, 2> lists_of_options = {"sweep",
                                                                 "exclude"};  // with tables of their own
   for (const config::TomlTable& table : document->tables) {

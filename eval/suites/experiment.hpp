@@ -11,7 +11,7 @@
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
 #include "eval/run/run.hpp"
-#include "eval/suites/suite_bars.hpp"
+#include "eval/suites/acceptance_criteria.hpp"
 #include "eval/suites/suite_runs.hpp"
 #include "eval/suites/suite_simulations.hpp"
 #include "eval/suites/sweep_design.hpp"
@@ -23,12 +23,12 @@ namespace fusebench::suites {
 ///     [[recordings]]                      # or, at the top of the file: recordings = ["fr1_rpy", ...]
 ///     name = "rgbd_dataset_freiburg1_*"   # a final * takes all folders under --data that begin so
 ///     group = "fr1"                       # default: the recording's own name
-///     half = "tuning"                     # or "held-out" (default)
+///     split = "tuning"                     # or "held-out" (default)
 ///     variants = ["full"]                 # default: those of the suite
 struct SuiteRecording {
   std::string name;
   std::string group = {};  ///< empty: the recording's name
-  std::string half = std::string(kHeldOutHalf);
+  std::string split = std::string(kHeldOutSplit);
   std::vector<std::string> variants = {};
 };
 
@@ -48,7 +48,7 @@ struct SuiteRecording {
 ///     [[sweep]]                       # see SweepBlock
 ///     [[exclude]]                     # see Exclusion
 ///     [[simulations]]                 # see SuiteSimulation
-///     [[bars]]                        # what the runs must reach: see Bar
+///     [[criteria]]                        # what the runs must reach: see Criterion
 struct Suite {
   std::string name;
   bool all = false;
@@ -63,7 +63,7 @@ struct Suite {
   RunLimits limits;
   std::vector<SweepBlock> sweeps;
   std::vector<Exclusion> exclusions;
-  std::vector<Bar> bars;
+  std::vector<Criterion> criteria;
 };
 
 /// Errors name file:line: data_missing (no such file), configuration (unknown key or variant, wrong type, a

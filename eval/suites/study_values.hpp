@@ -1,4 +1,4 @@
-// The numbers of a run that studies summarise and set bars on, by name.
+// The numbers of a run that studies summarise and set acceptance criteria on, by name.
 #pragma once
 
 #include <optional>

@@ -55,7 +55,7 @@ struct EntryTable {
 [[nodiscard]] std::vector<EntryTable> entry_tables(const config::TomlDocument& document,
                                                    std::string_view name);
 
-/// Of "bars[3].title" the name "bars"; nothing for a key that is in no list of tables.
+/// Of "criteria[3].title" the name "criteria"; nothing for a key that is in no list of tables.
 [[nodiscard]] std::optional<std::string_view> list_of_key(std::string_view key);
 
 }  // namespace fusebench::suites

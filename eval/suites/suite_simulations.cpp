@@ -245,7 +245,7 @@ Result<SuiteSimulation> simulation_of(const EntryTable& table, const Assignments
   if (!group_name) return tl::unexpected(group_name.error());
   simulation.group = std::move(*group_name);
   const bool tunes = std::find(tuning.begin(), tuning.end(), simulation.request.seed) != tuning.end();
-  simulation.half = tunes ? kTuningHalf : kHeldOutHalf;
+  simulation.split = tunes ? kTuningSplit : kHeldOutSplit;
   return simulation;
 }
 
@@ -258,7 +258,7 @@ Result<void> add(SuiteSimulation simulation, std::vector<SuiteSimulation>& all) 
     return {};
   }
   if (same->described != simulation.described || same->group != simulation.group ||
-      same->half != simulation.half) {
+      same->split != simulation.split) {
     return fail(ErrorCode::configuration,
                 fmt::format("{}: '{}' is declared twice: at {} with {}, and here with {}", simulation.place,
                             simulation.name, same->place, same->described, simulation.described),

@@ -10,10 +10,10 @@
 
 namespace fusebench::suites {
 
-/// Which half of a study a recording belongs to: parameters are chosen by looking at one half only, and bars
-/// are set on the other.
-inline constexpr std::string_view kTuningHalf = "tuning";
-inline constexpr std::string_view kHeldOutHalf = "held-out";
+/// Which split of a study a recording belongs to: parameters are chosen by looking at one split only, and
+/// criteria are set on the other.
+inline constexpr std::string_view kTuningSplit = "tuning";
+inline constexpr std::string_view kHeldOutSplit = "held-out";
 
 /// One recording to simulate.
 ///
@@ -23,7 +23,7 @@ inline constexpr std::string_view kHeldOutHalf = "held-out";
 ///     preset = ["slow", "fast"]               # a list makes a recording for each of its values
 ///     start = ["rest", "motion"]              # default: rest with a preset, motion with a trajectory
 ///     seed = [1, 2, 3, 4]
-///     tuning_seeds = [1, 3]                   # these seeds are the tuning half, the others are held out
+///     tuning_seeds = [1, 3]                   # these seeds are the tuning split, the others are held out
 ///     duration_s = 5
 ///     group = "{preset}"                      # default: the preset; required with a trajectory
 ///     variants = ["full"]                     # default: those of the suite
@@ -38,7 +38,7 @@ struct SuiteSimulation {
   std::string name;
   SimulationRequest request;  ///< its trajectory as it is written
   std::string group;
-  std::string half;
+  std::string split;
   std::vector<std::string> variants;
   std::string described;  ///< key = value, ...: what tells one recording from another
   std::string place;

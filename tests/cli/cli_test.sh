@@ -192,8 +192,8 @@ check_bad_usage() {
 
   printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\npreset = "quick"\n' >suite.toml
   refused "unknown preset of a suite" 2 'suite.toml:5' 'slow' -- bench suite.toml --out out
-  printf 'name = "s"\nall = true\nvariants = ["full"]\n[[bars]]\ntitle = "t"\nvariant = "full"\nmetric = "ate_rmse"\n' >suite.toml
-  refused "unknown metric of a bar" 2 'suite.toml:7' 'ate_rmse_m' -- bench suite.toml --data . --out out
+  printf 'name = "s"\nall = true\nvariants = ["full"]\n[[criteria]]\ntitle = "t"\nvariant = "full"\nmetric = "ate_rmse"\n' >suite.toml
+  refused "unknown metric of a criterion" 2 'suite.toml:7' 'ate_rmse_m' -- bench suite.toml --data . --out out
 
   # An unwritable place; a file in the way serves root as well, who may write everywhere.
   printf 'in the way' >obstacle
@@ -314,17 +314,17 @@ check_determinism() {
   done < <(cd one && find . -name record.json -o -name trajectory.tum -o -name intensity.bin)
   [[ $(find one_more -name record.json | wc -l) == 2 ]] || complain "bench -j 2: not two runs"
 
-  # A bar decides the exit code.
-  printf '[[bars]]\ntitle = "t"\nvariant = "no-imu"\nmetric = "lost_frames"\nstatistic = "worst"\nat_most = 0\n' >>suite.toml
+  # A criterion decides the exit code.
+  printf '[[criteria]]\ntitle = "t"\nvariant = "no-imu"\nmetric = "lost_frames"\nstatistic = "worst"\nat_most = 0\n' >>suite.toml
   checks=$((checks + 1))
-  "$binary" bench suite.toml --data data --out one --resume --summary sums/s.json --summary-page s.html >stdout 2>stderr ||
-    complain "a bar that passes: exit code $?"
-  grep -q '1 of 1 bars passed' stdout || complain "a bar that passes is not told"
-  grep -q '"verdict": "PASS"' sums/s.json || complain "a bar that passes is not in the summary"
+  "$binary" bench suite.toml --data data --out one --summary sums/s.json --summary-page s.html >stdout 2>stderr ||
+    complain "a criterion that passes: exit code $?"
+  grep -q '1 of 1 criteria passed' stdout || complain "a criterion that passes is not told"
+  grep -q '"verdict": "PASS"' sums/s.json || complain "a criterion that passes is not in the summary"
   grep -q '<canvas' s.html || grep -q '<table>' s.html || complain "the summary's page has no table"
   sed -i 's/^at_most.*/at_least = 1/' suite.toml
-  "$binary" bench suite.toml --data data --out one --resume >stdout 2>stderr
-  (($? == 1)) || complain "a bar that fails: not exit code 1"
+  "$binary" bench suite.toml --data data --out one >stdout 2>stderr
+  (($? == 1)) || complain "a criterion that fails: not exit code 1"
 }
 
 # without_times FILE: frames.csv without its last columns, the milliseconds of decoding and of each stage.

@@ -170,9 +170,9 @@ check_engines() {
   ((status == 4)) || complain "a killed run: exit code $status instead of 4"
   "$binary" list runs few -o failed >listed 2>stderr || complain "list runs"
   grep -q 'signal 9 (Killed)' listed || complain "a killed run: its reason is not listed"
-  "$binary" rerun --failed few >stdout 2>stderr || complain "rerun --failed: exit code $?"
-  [[ $("$binary" list runs few -o failed | wc -l) == 1 ]] || complain "rerun --failed: something is still failed"
-  [[ $("$binary" list runs few -o ok | wc -l) == 7 ]] || complain "rerun --failed: not 6 good runs"
+  "$binary" rerun few >stdout 2>stderr || complain "rerun: exit code $?"
+  [[ $("$binary" list runs few -o failed | wc -l) == 1 ]] || complain "rerun: something is still failed"
+  [[ $("$binary" list runs few -o ok | wc -l) == 7 ]] || complain "rerun: not 6 good runs"
 }
 
 # says CODE PATTERN ARGUMENT...: the program ends with the code and prints the pattern on standard output or error.

@@ -57,7 +57,7 @@ iekf.max_iterations = { from = 1, to = 8 }
 TEXT
 
 bench() { "$binary" bench sweep.toml --simulated simulated "$@"; }
-on_slurm() { timeout 150 "$binary" sweep sweep.toml --simulated simulated --executor slurm --chunk 1 --slurm-silence 4 "$@"; }
+on_slurm() { timeout 150 "$binary" bench sweep.toml --simulated simulated --executor slurm --chunk 1 --slurm-silence 4 "$@"; }
 table() { "$binary" collect "$1" --without-timing --out "$2" 2>stderr || complain "collect $1: exit code $?"; }
 finished() { find "$1" -name record.json -not -path '*/.*/*' 2>/dev/null | wc -l; }
 

@@ -29,7 +29,8 @@ struct NeesOptions {
   std::string estimate;
   std::string align = "se3";
   /// A nearest stamp half an interval away is an error of its own, larger than what a covariance speaks of.
-  trajectory_files::AssociationOptions association{trajectory_files::AssociationRule::interpolated, kUsualGap_s};
+  trajectory_files::AssociationOptions association{trajectory_files::AssociationRule::interpolated,
+                                                   kUsualGap_s};
   std::filesystem::path errors;
   std::filesystem::path figures;
   std::string figure_format = "svg";

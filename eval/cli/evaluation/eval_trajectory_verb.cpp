@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,72 +11,13 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
+#include "eval/cli/evaluation/trajectory_request.hpp"
 #include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/text/text_file.hpp"
-#include "eval/trajectory_error/evaluation.hpp"
-#include "eval/trajectory_files/stamped_list.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::evaluation {
 
 namespace {
-
-struct EvalOptions {
-  std::vector<std::string> files;  ///< reference and estimate; before them, as evo has it, perhaps a format
-  std::string format;
-  std::string protocol = "evo";
-  std::string align;
-  bool evo_align = false;
-  bool evo_scale = false;
-  bool evo_origin = false;
-  std::size_t n_to_align = 0;
-  std::optional<double> t_max_diff;
-  double t_offset = 0;
-  std::optional<double> t_start;
-  std::optional<double> t_end;
-  bool interpolate = false;
-  std::filesystem::path images;
-  std::string duplicates;
-  std::size_t downsample = 0;
-  std::vector<double> motion_filter;
-  std::string plane = "none";
-  std::string relation = "trans_part";
-  std::string change_unit;
-  std::optional<double> delta;
-  std::string delta_unit;
-  double delta_tol = 0.1;
-  bool all_pairs = false;
-  bool pairs_from_reference = false;
-  bool verbose = false;
-  std::filesystem::path errors;
-  bool json = false;
-};
-
-template <typename T, std::size_t N>
-T named(const std::array<std::pair<const char*, T>, N>& names, const std::string& name) {
-  for (const auto& [known, value] : names) {
-    if (name == known) return value;
-  }
-  return names.front().second;  // the parser lets no other name through
-}
-
-constexpr std::array<std::pair<const char*, trajectory::Duplicates>, 4> kDuplicates{
-    {{"error", trajectory::Duplicates::none},
-     {"first", trajectory::Duplicates::first},
-     {"last", trajectory::Duplicates::last},
-     {"keep", trajectory::Duplicates::as_written}}};
-constexpr std::array<std::pair<const char*, trajectory_error::Plane>, 4> kPlanes{
-    {{"none", trajectory_error::Plane::none},
-     {"xy", trajectory_error::Plane::xy},
-     {"xz", trajectory_error::Plane::xz},
-     {"yz", trajectory_error::Plane::yz}}};
-constexpr std::array<std::pair<const char*, trajectory_error::AlignmentMode>, 6> kAlignments{
-    {{"none", trajectory_error::AlignmentMode::none},
-     {"se3", trajectory_error::AlignmentMode::se3},
-     {"sim3", trajectory_error::AlignmentMode::sim3},
-     {"scale", trajectory_error::AlignmentMode::scale},
-     {"yaw", trajectory_error::AlignmentMode::yaw},
-     {"origin", trajectory_error::AlignmentMode::origin}}};
 
 template <typename T, std::size_t N>
 CLI::IsMember members(const std::array<std::pair<const char*, T>, N>& names) {
@@ -86,113 +26,7 @@ CLI::IsMember members(const std::array<std::pair<const char*, T>, N>& names) {
   return CLI::IsMember(list);
 }
 
-/// "fusebench eval ate tum GT EST" is how evo is called.
-Result<void> take_leading_format(EvalOptions& options) {
-  if (options.files.size() == 3) {
-    if (!options.format.empty())
-      return fail(ErrorCode::usage, "the format is given twice, before the files and with --format");
-    options.format = options.files.front();
-    options.files.erase(options.files.begin());
-  }
-  return {};
-}
-
-Result<void> set_alignment(const EvalOptions& options, trajectory_error::TrajectoryRequest& request) {
-  const bool evo = options.evo_align || options.evo_scale || options.evo_origin;
-  if (!options.align.empty() && evo)
-    return fail(ErrorCode::usage, "--align and evo's -a, -s or --align_origin exclude each other");
-  if (options.evo_align && options.evo_origin)
-    return fail(ErrorCode::usage, "-a and --align_origin exclude each other");
-  if (!options.align.empty()) request.alignment.mode = named(kAlignments, options.align);
-  if (options.evo_align)
-    request.alignment.mode =
-        options.evo_scale ? trajectory_error::AlignmentMode::sim3 : trajectory_error::AlignmentMode::se3;
-  if (options.evo_scale && !options.evo_align)
-    request.alignment.mode = trajectory_error::AlignmentMode::scale;
-  if (options.evo_origin) {
-    request.alignment.mode = trajectory_error::AlignmentMode::origin;
-    request.alignment.scale_origin = options.evo_scale;
-  }
-  request.alignment.first = options.n_to_align;
-  return {};
-}
-
-Result<void> set_association(const EvalOptions& options, trajectory_error::TrajectoryRequest& request) {
-  trajectory_files::AssociationOptions& association = request.association;
-  if (options.interpolate) {
-    constexpr double kUsualGap_s = 0.1;
-    association.rule = trajectory_files::AssociationRule::interpolated;
-    association.max_difference_s = kUsualGap_s;
-  }
-  if (options.t_max_diff) association.max_difference_s = *options.t_max_diff;
-  association.offset_s = options.t_offset;
-  if (options.t_start) association.start_s = *options.t_start;
-  if (options.t_end) association.end_s = *options.t_end;
-  if (options.images.empty()) return {};
-  if (request.protocol != trajectory_error::Protocol::eth3d)
-    return fail(ErrorCode::usage, "--images is for --protocol eth3d, which compares at the stamps of images");
-  auto stamps = trajectory_files::read_stamps(options.images);
-  if (!stamps) return tl::unexpected(stamps.error());
-  association.evaluated_ns = std::move(*stamps);
-  return {};
-}
-
-Result<void> set_motions(const EvalOptions& options, trajectory_error::TrajectoryRequest& request) {
-  const bool asked =
-      options.delta || !options.delta_unit.empty() || options.all_pairs || options.pairs_from_reference;
-  if (request.motions == trajectory_error::MotionRule::segments) {
-    if (!asked) return {};
-    return fail(ErrorCode::usage,
-                fmt::format("protocol {} compares segments of its own lengths",
-                            trajectory_error::to_string(request.protocol)),
-                "--delta, --delta_unit, --all_pairs and --pairs_from_reference are for evo and tum");
-  }
-  if (!options.delta_unit.empty()) {
-    const auto unit = trajectory_error::parse_delta_unit(options.delta_unit);
-    if (!unit) return tl::unexpected(unit.error());
-    request.delta.unit = *unit;
-  }
-  if (options.delta) request.delta.value = *options.delta;
-  if (options.all_pairs)
-    request.motions = request.protocol == trajectory_error::Protocol::tum
-                          ? trajectory_error::MotionRule::each_to_each
-                          : trajectory_error::MotionRule::all;
-  request.delta_tolerance = options.delta_tol;
-  request.from_reference = options.pairs_from_reference;
-  return {};
-}
-
-Result<trajectory_error::TrajectoryRequest> request_of(const EvalOptions& options,
-                                                       trajectory_error::TrajectoryMetric metric) {
-  const auto protocol = trajectory_error::parse_protocol(options.protocol);
-  if (!protocol) return tl::unexpected(protocol.error());
-  auto request = trajectory_error::request_for(*protocol, metric);
-  if (!request) return request;
-  const auto relation = trajectory_error::parse_pose_relation(options.relation);
-  if (!relation) return tl::unexpected(relation.error());
-  request->relation = *relation;
-  request->plane = named(kPlanes, options.plane);
-  request->downsample = options.downsample;
-  request->listing.needed = !options.errors.empty();
-  constexpr std::size_t kMostInJson = std::size_t{1} << 20;  // 240 bytes each while the document is made
-  if (options.json && options.errors.empty()) request->listing.most = kMostInJson;
-  if (!options.motion_filter.empty())
-    request->motion_filter =
-        trajectory_error::MotionFilter{options.motion_filter[0], radians(options.motion_filter[1])};
-  for (const auto& set : {set_alignment(options, *request), set_association(options, *request),
-                          metric == trajectory_error::TrajectoryMetric::rpe ? set_motions(options, *request)
-                                                                            : Result<void>{}}) {
-    if (!set) return tl::unexpected(set.error());
-  }
-  return request;
-}
-
-struct Sides {
-  trajectory_files::LoadedTrajectory reference;
-  trajectory_files::LoadedTrajectory estimate;
-};
-
-Result<Sides> load(const EvalOptions& options, trajectory_error::Protocol protocol) {
+Result<Sides> load(const TrajectoryOptions& options, trajectory_error::Protocol protocol) {
   std::optional<trajectory_files::TrajectoryFormat> format;
   if (!options.format.empty()) {
     const auto parsed = trajectory_files::parse_trajectory_format(options.format);
@@ -215,33 +49,6 @@ Result<Sides> load(const EvalOptions& options, trajectory_error::Protocol protoc
   return Sides{std::move(*reference), std::move(*estimate)};
 }
 
-/// Poses without stamps go by their number, whatever the protocol does otherwise.
-Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest& request) {
-  const bool reference = sides.reference.has_stamps();
-  const bool estimate = sides.estimate.has_stamps();
-  if (reference != estimate) {
-    return fail(ErrorCode::usage,
-                fmt::format("the {} has no stamps (kitti), the {} has", reference ? "estimate" : "reference",
-                            reference ? "reference" : "estimate"),
-                "use two trajectories with stamps, or two without");
-  }
-  if (reference) {
-    if (request.association.rule == trajectory_files::AssociationRule::index)
-      request.association.rule = trajectory_files::AssociationRule::nearest;
-    return {};
-  }
-  const bool by_time = request.metric == trajectory_error::TrajectoryMetric::rpe &&
-                       (request.motions == trajectory_error::MotionRule::fixed_delta ||
-                        request.delta.unit == trajectory_error::DeltaUnit::seconds);
-  if (by_time || request.association.rule == trajectory_files::AssociationRule::held ||
-      request.association.rule == trajectory_files::AssociationRule::interpolated) {
-    return fail(ErrorCode::usage, "poses without stamps (kitti) cannot be compared by time",
-                "`--protocol evo` goes by the number of the pose, with --delta in frames, metres or degrees");
-  }
-  request.association.rule = trajectory_files::AssociationRule::index;
-  return {};
-}
-
 std::string errors_text(const trajectory_error::ErrorSeries& series) {
   std::string text =
       fmt::format("timestamp_ns,{}{}{}\n", series.relation, series.unit.empty() ? "" : "_", series.unit);
@@ -259,7 +66,7 @@ void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation) {
                   evaluation.pairs, evaluation.possible, 100 * evaluation.coverage));
 }
 
-Result<int> run(EvalOptions options, trajectory_error::TrajectoryMetric metric) {
+Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
   if (auto taken = take_leading_format(options); !taken) return tl::unexpected(taken.error());
   auto request = request_of(options, metric);
   if (!request) return tl::unexpected(request.error());
@@ -286,7 +93,7 @@ Result<int> run(EvalOptions options, trajectory_error::TrajectoryMetric metric) 
   return 0;
 }
 
-void add_protocol_options(CLI::App& verb, EvalOptions& options) {
+void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("GT EST", options.files,
                   "Reference and estimate; a format before them, as with evo, is understood")
       ->expected(2, 3)
@@ -325,7 +132,7 @@ void add_protocol_options(CLI::App& verb, EvalOptions& options) {
       ->check(members(kDuplicates));
 }
 
-void add_selection_options(CLI::App& verb, EvalOptions& options) {
+void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("--downsample", options.downsample, "Leaves N poses of each side before anything else")
       ->type_name("N");
   verb.add_option("--motion_filter", options.motion_filter,
@@ -343,7 +150,7 @@ void add_selection_options(CLI::App& verb, EvalOptions& options) {
   verb.add_option("--change_unit", options.change_unit, "mm, cm, km, rad or deg")->type_name("UNIT");
 }
 
-void add_motion_options(CLI::App& verb, EvalOptions& options) {
+void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("-d,--delta", options.delta, "How far poses are apart; default: 1 frame (evo), 1 s (tum)")
       ->type_name("D");
   verb.add_option("-u,--delta_unit", options.delta_unit, "f (frames), m, d (degrees), r (radians) or s")
@@ -358,12 +165,13 @@ void add_motion_options(CLI::App& verb, EvalOptions& options) {
 }
 
 console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, const char* description) {
-  auto options = std::make_shared<EvalOptions>();
+  auto options = std::make_shared<TrajectoryOptions>();
   CLI::App* verb = eval.add_subcommand(std::string(trajectory_error::to_string(metric)), description);
   add_protocol_options(*verb, *options);
   add_selection_options(*verb, *options);
   if (metric == trajectory_error::TrajectoryMetric::rpe) add_motion_options(*verb, *options);
-  verb->add_flag("-v", options->verbose, "Accepted for evo's sake: everything is always said");
+  verb->add_flag("-v", options->verbose,
+                 "Accepted for compatibility with evo; the output is always complete");
   verb->add_option("--errors", options->errors, "Writes each error with its stamp")->type_name("FILE.csv");
   console::add_json_flag(*verb, options->json);
   verb->footer("docs/metrics.md defines the protocols. Exit code 3 for files that cannot be compared.");

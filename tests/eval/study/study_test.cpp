@@ -7,7 +7,7 @@
 
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/metrics/intensity_file.hpp"
-#include "eval/study/bar_check.hpp"
+#include "eval/study/criteria_check.hpp"
 #include "eval/study/study_summary.hpp"
 #include "eval/study/summary_formats.hpp"
 #include "eval/tables/common_pixels.hpp"
@@ -27,7 +27,7 @@ namespace {
 
 using Pixels = std::vector<IntensityResidual>;
 
-/// Made-up runs; recordings named "t..." are the tuning half.
+/// Made-up runs; recordings named "t..." are the tuning split.
 class StudyTest : public testing::InTemporaryFolder {
  protected:
   StudyRun& add(const std::string& recording, const std::string& group, const std::string& variant,
@@ -63,18 +63,18 @@ class StudyTest : public testing::InTemporaryFolder {
 
   [[nodiscard]] Study study() { return gather_study(runs_, variants_); }
 
-  [[nodiscard]] BarMeasurement check(Bar bar) {
-    bar.title = "t";
-    if (bar.half.empty()) bar.half = "held-out";
-    return check_bars(study(), std::vector<Bar>{bar}).front().decided;
+  [[nodiscard]] CriterionMeasurement check(Criterion criterion) {
+    criterion.title = "t";
+    if (criterion.split.empty()) criterion.split = "held-out";
+    return check_criteria(study(), std::vector<Criterion>{criterion}).front().decided;
   }
 
-  static Bar ate_bar(BarStatistic statistic, const std::string& variant = "full") {
-    Bar bar;
-    bar.variant = variant;
-    bar.metric = "ate_rmse_m";
-    bar.statistic = statistic;
-    return bar;
+  static Criterion ate_criterion(CriterionStatistic statistic, const std::string& variant = "full") {
+    Criterion criterion;
+    criterion.variant = variant;
+    criterion.metric = "ate_rmse_m";
+    criterion.statistic = statistic;
+    return criterion;
   }
 
   std::vector<StudyRun> runs_;
@@ -86,55 +86,55 @@ TEST_F(StudyTest, WorstAgainstALimit) {
   add("b", "slow", "full", 0.009);
   add("c", "fast", "full", 0.5);
   add("t1", "slow", "full", 0.7);
-  Bar bar = ate_bar(BarStatistic::worst);
-  bar.groups = {"slow"};
-  bar.at_most = 0.009;
-  BarMeasurement measured = check(bar);
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.groups = {"slow"};
+  criterion.at_most = 0.009;
+  CriterionMeasurement measured = check(criterion);
   EXPECT_EQ(measured.verdict, Verdict::passed);
   EXPECT_DOUBLE_EQ(*measured.measured, 0.009);
   EXPECT_EQ(measured.recordings, 2U);
   EXPECT_EQ(measured.limit, "<= 0.009");
   EXPECT_EQ(measured.note, "worst: b");
-  bar.at_most.reset();
-  bar.below = 0.009;
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);  // below is strict
-  bar.below.reset();
-  bar.at_least = 0.0085;
-  measured = check(bar);
+  criterion.at_most.reset();
+  criterion.below = 0.009;
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);  // below is strict
+  criterion.below.reset();
+  criterion.at_least = 0.0085;
+  measured = check(criterion);
   EXPECT_DOUBLE_EQ(*measured.measured, 0.008);  // the smallest is the worst over a lower limit
   EXPECT_EQ(measured.verdict, Verdict::failed);
 }
 
-TEST_F(StudyTest, TheOtherHalfStandsBeside) {
+TEST_F(StudyTest, TheOtherSplitStandsBeside) {
   add("a", "slow", "full", 0.01);
   add("t1", "slow", "full", 0.03);
-  Bar bar = ate_bar(BarStatistic::worst);
-  bar.half = "held-out";
-  bar.at_most = 0.02;
-  const BarResult result = check_bars(study(), std::vector<Bar>{bar}).front();
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.split = "held-out";
+  criterion.at_most = 0.02;
+  const CriterionResult result = check_criteria(study(), std::vector<Criterion>{criterion}).front();
   EXPECT_EQ(result.decided.verdict, Verdict::passed);
-  EXPECT_EQ(result.beside.half, "tuning");
+  EXPECT_EQ(result.beside.split, "tuning");
   EXPECT_EQ(result.beside.verdict, Verdict::failed);
   EXPECT_DOUBLE_EQ(*result.beside.measured, 0.03);
 }
 
-TEST_F(StudyTest, ALostRunFailsABarAndNoRunDecidesNothing) {
+TEST_F(StudyTest, ALostRunFailsACriterionAndNoRunDecidesNothing) {
   add("a", "slow", "full", 0.001);
   add("b", "slow", "full", 0.001, RunStatus::lost);
-  Bar bar = ate_bar(BarStatistic::worst);
-  bar.at_most = 1;
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);
-  EXPECT_EQ(check(bar).note, "not ok: b");
-  bar.metric = "runs_not_ok";
-  EXPECT_DOUBLE_EQ(*check(bar).measured, 1);
-  bar.metric = "ate_rmse_m";
-  bar.groups = {"fast"};
-  EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
-  bar.groups = {};
-  bar.metric = "nees_pose";  // no run has it, but one was lost
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.at_most = 1;
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);
+  EXPECT_EQ(check(criterion).note, "not ok: b");
+  criterion.metric = "runs_not_ok";
+  EXPECT_DOUBLE_EQ(*check(criterion).measured, 1);
+  criterion.metric = "ate_rmse_m";
+  criterion.groups = {"fast"};
+  EXPECT_EQ(check(criterion).verdict, Verdict::not_applicable);
+  criterion.groups = {};
+  criterion.metric = "nees_pose";  // no run has it, but one was lost
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);
   runs_.pop_back();
-  EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
+  EXPECT_EQ(check(criterion).verdict, Verdict::not_applicable);
 }
 
 TEST_F(StudyTest, ARunThatDidNotStartHasNoLostFrames) {
@@ -144,25 +144,25 @@ TEST_F(StudyTest, ARunThatDidNotStartHasNoLostFrames) {
   const StudyValue& value = *find_study_value("lost_frames");
   EXPECT_FALSE(value_of(study(), runs_[1], value).has_value());
   EXPECT_EQ(value_of(study(), runs_[0], value), 0.0);
-  Bar bar = ate_bar(BarStatistic::worst);
-  bar.metric = "lost_frames";
-  bar.at_most = 0;
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);
-  EXPECT_EQ(check(bar).note, "not ok: b");
-  EXPECT_DOUBLE_EQ(*check(bar).measured, 0);
+  Criterion criterion = ate_criterion(CriterionStatistic::worst);
+  criterion.metric = "lost_frames";
+  criterion.at_most = 0;
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);
+  EXPECT_EQ(check(criterion).note, "not ok: b");
+  EXPECT_DOUBLE_EQ(*check(criterion).measured, 0);
   const StudySummary summary = summarise("demo", study(), {});
   EXPECT_EQ(summary.rows[0].values[1].count, 1U);  // lost_frames, of the one that ran
   runs_.erase(runs_.begin());
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);  // none ran: no evidence
-  EXPECT_FALSE(check(bar).measured.has_value());
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);  // none ran: no evidence
+  EXPECT_FALSE(check(criterion).measured.has_value());
 }
 
 TEST_F(StudyTest, ARunWithoutTheNumberFailsWhereOthersHaveIt) {
   add("a", "slow", "full", 0.001);
   add("b", "slow", "full", 0.001).record.metrics.ate = {};
-  Bar bar = ate_bar(BarStatistic::mean);
-  bar.at_most = 1;
-  const BarMeasurement measured = check(bar);
+  Criterion criterion = ate_criterion(CriterionStatistic::mean);
+  criterion.at_most = 1;
+  const CriterionMeasurement measured = check(criterion);
   EXPECT_EQ(measured.verdict, Verdict::failed);
   EXPECT_EQ(measured.note, "without the number: b");
 }
@@ -174,38 +174,38 @@ TEST_F(StudyTest, ComparisonsAreByRecordingOrOfMeans) {
   add("b", "slow", "no-imu", 0.03);
   add("c", "slow", "full", 0.5);
   add("c", "slow", "no-imu", 0.5, RunStatus::lost);
-  Bar bar = ate_bar(BarStatistic::mean);
-  bar.against = "no-imu";
-  bar.at_most = 1;
-  BarMeasurement measured = check(bar);
+  Criterion criterion = ate_criterion(CriterionStatistic::mean);
+  criterion.against = "no-imu";
+  criterion.at_most = 1;
+  CriterionMeasurement measured = check(criterion);
   EXPECT_DOUBLE_EQ(*measured.measured, (0.25 + 1.0) / 2);
   EXPECT_EQ(measured.recordings, 2U);
   EXPECT_EQ(measured.note, "left out, no-imu is not ok: c");
   EXPECT_EQ(measured.verdict, Verdict::passed);
-  bar.of_means = true;
-  EXPECT_DOUBLE_EQ(*check(bar).measured, 0.04 / 0.07);
-  bar.of_means = false;
-  bar.compare = BarComparison::difference;
-  EXPECT_NEAR(*check(bar).measured, -0.015, 1e-15);
+  criterion.of_means = true;
+  EXPECT_DOUBLE_EQ(*check(criterion).measured, 0.04 / 0.07);
+  criterion.of_means = false;
+  criterion.compare = CriterionComparison::difference;
+  EXPECT_NEAR(*check(criterion).measured, -0.015, 1e-15);
 }
 
-TEST_F(StudyTest, SharesCountLostRunsWhereTheBarSaysSo) {
+TEST_F(StudyTest, SharesCountLostRunsWhereTheCriterionSaysSo) {
   for (const char* name : {"a", "b", "c", "d"}) add(name, "fast", "full", 0.01);
   add("a", "fast", "no-imu", 0.049);
   add("b", "fast", "no-imu", 0.051);
   add("c", "fast", "no-imu", 0, RunStatus::lost);
   add("d", "fast", "no-imu", 0.01);
-  Bar bar = ate_bar(BarStatistic::share, "no-imu");
-  bar.against = "full";
-  bar.each_at_least = 5;
-  bar.lost_counts = true;
-  bar.at_least = 0.5;
-  BarMeasurement measured = check(bar);
+  Criterion criterion = ate_criterion(CriterionStatistic::share, "no-imu");
+  criterion.against = "full";
+  criterion.each_at_least = 5;
+  criterion.lost_counts = true;
+  criterion.at_least = 0.5;
+  CriterionMeasurement measured = check(criterion);
   EXPECT_DOUBLE_EQ(*measured.measured, 0.5);
   EXPECT_EQ(measured.recordings, 4U);
   EXPECT_EQ(measured.verdict, Verdict::passed);
-  bar.lost_counts = false;
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+  criterion.lost_counts = false;
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);
 }
 
 TEST_F(StudyTest, NeesIsHeldAgainstTheBoundsOfSoManyRuns) {
@@ -214,16 +214,16 @@ TEST_F(StudyTest, NeesIsHeldAgainstTheBoundsOfSoManyRuns) {
     result.stats = statistics(std::vector<double>{nees});
     add(name, "slow", "full", 0.01).record.metrics.nees[0] = {result, {}};
   }
-  Bar bar = ate_bar(BarStatistic::mean);
-  bar.metric = "nees_orientation";
-  bar.within_bounds = true;
-  BarMeasurement measured = check(bar);
+  Criterion criterion = ate_criterion(CriterionStatistic::mean);
+  criterion.metric = "nees_orientation";
+  criterion.within_bounds = true;
+  CriterionMeasurement measured = check(criterion);
   EXPECT_NEAR(*measured.measured, 3.2 / 3, 1e-15);
   // Chi-square with 9 degrees of freedom: 2.700 and 19.023, divided by 9.
   EXPECT_EQ(measured.limit, "0.3 .. 2.11 (95 % of 3 runs)");
   EXPECT_EQ(measured.verdict, Verdict::passed);
   runs_[0].record.metrics.nees[0].value->stats.mean = 5;
-  EXPECT_EQ(check(bar).verdict, Verdict::failed);
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);
 }
 
 /// As tables have it, with the groups that it is about.
@@ -311,21 +311,21 @@ TEST_F(SharedPixelsTest, AgreeWithTheTablesCommonPixels) {
 }
 
 TEST_F(SharedPixelsTest, BarsTakeFramesAboveAMotion) {
-  Bar bar;
-  bar.variant = "dm";
-  bar.against = "full";
-  bar.metric = "aie_common_grey";
-  bar.statistic = BarStatistic::mean;
-  bar.of_means = true;
-  bar.at_least = 1.75;
-  EXPECT_DOUBLE_EQ(*check(bar).measured, 37.0 / 13);
-  bar.frames_above_px = 30;
-  EXPECT_DOUBLE_EQ(*check(bar).measured, 3);
-  bar.frames_above_px = 35;
-  EXPECT_EQ(check(bar).verdict, Verdict::not_applicable);
-  std::swap(bar.variant, bar.against);
-  bar.frames_above_px = 30;
-  EXPECT_DOUBLE_EQ(*check(bar).measured, 1.0 / 3);
+  Criterion criterion;
+  criterion.variant = "dm";
+  criterion.against = "full";
+  criterion.metric = "aie_common_grey";
+  criterion.statistic = CriterionStatistic::mean;
+  criterion.of_means = true;
+  criterion.at_least = 1.75;
+  EXPECT_DOUBLE_EQ(*check(criterion).measured, 37.0 / 13);
+  criterion.frames_above_px = 30;
+  EXPECT_DOUBLE_EQ(*check(criterion).measured, 3);
+  criterion.frames_above_px = 35;
+  EXPECT_EQ(check(criterion).verdict, Verdict::not_applicable);
+  std::swap(criterion.variant, criterion.against);
+  criterion.frames_above_px = 30;
+  EXPECT_DOUBLE_EQ(*check(criterion).measured, 1.0 / 3);
 }
 
 TEST_F(SharedPixelsTest, TheSummaryHasRowsAndCurves) {

@@ -42,7 +42,7 @@ TEST_F(SuiteTest, ReadsEveryKey) {
   ASSERT_EQ(suite->recordings.size(), 2U);
   EXPECT_EQ(suite->recordings[0].name, "a");
   EXPECT_EQ(suite->recordings[1].name, "b");
-  EXPECT_EQ(suite->recordings[1].half, "held-out");
+  EXPECT_EQ(suite->recordings[1].split, "held-out");
   EXPECT_EQ(suite->variants, (std::vector<std::string>{"full", "dm"}));
   EXPECT_EQ(suite->imu, ImuChoice::synthetic);
   const auto config = suite_config(*suite, *find_variant("dm"));

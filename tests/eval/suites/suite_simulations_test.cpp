@@ -48,8 +48,8 @@ TEST_F(SuiteSimulationsTest, ListsAreMultipliedOutInTheOrderOfTheFile) {
                                       "zr300_shake_motion_1", "zr300_shake_motion_2"}));
   const SuiteSimulation& last = suite->simulations.back();
   EXPECT_EQ(last.group, "shake");
-  EXPECT_EQ(last.half, "held-out");
-  EXPECT_EQ(suite->simulations[6].half, "tuning");
+  EXPECT_EQ(last.split, "held-out");
+  EXPECT_EQ(suite->simulations[6].split, "tuning");
   EXPECT_EQ(last.variants, suite->variants);
   EXPECT_EQ(last.request.layout, RecordingLayout::zr300);
   EXPECT_EQ(last.request.preset, MotionPreset::shake);
@@ -87,7 +87,7 @@ TEST_F(SuiteSimulationsTest, WhatMakesNoSenseIsRefusedWithItsLine) {
   expect_refused("[[simulation]]\nname = \"a\"\n", ":4", "nearest: simulations");
   expect_refused("[simulations]\nname = \"a\"\n", ":4", "write [[simulations]]");
   expect_refused(std::string(kLists) +
-                     "[[bars]]\ntitle = \"t\"\ngroups = [\"slwo\"]\nvariant = \"full\"\n"
+                     "[[criteria]]\ntitle = \"t\"\ngroups = [\"slwo\"]\nvariant = \"full\"\n"
                      "metric = \"fps\"\nstatistic = \"mean\"\nat_least = 1\n",
                  ":11", "nearest: slow");
   expect_refused("[[recordings]]\nname = \"a\"\nhalf = \"left\"\n", ":6", "held-out");

@@ -1,0 +1,38 @@
+// The result of a suite as a whole: counts, summary, acceptance criteria and exit code.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "eval/cli/running/suite_run.hpp"
+#include "eval/engine/job_outcome.hpp"
+#include "eval/engine/job_plan.hpp"
+#include "eval/study/criteria_check.hpp"
+#include "eval/suites/experiment.hpp"
+
+namespace fusebench::cli::running {
+
+struct RunCounts {
+  std::size_t ok = 0;
+  std::size_t failed = 0;
+  std::size_t total = 0;
+};
+
+[[nodiscard]] RunCounts counts_of(const std::vector<engine::BatchOutcome>& outcomes);
+
+/// What the runs say together: the files that were asked for, the tables, and the criteria. Nothing of that
+/// is for a suite without criteria unless a file is asked for.
+[[nodiscard]] Result<std::vector<study::CriterionResult>> conclude(
+    const suites::Suite& suite, const BenchOptions& options, const engine::BatchPlan& plan,
+    const std::vector<engine::BatchOutcome>& outcomes);
+
+/// 1 if a criterion failed. Criteria decide about lost runs; without criteria, each run has to be ok.
+[[nodiscard]] int exit_code_of(const RunCounts& counts, const std::vector<study::CriterionResult>& criteria);
+
+[[nodiscard]] std::string json_of(const suites::Suite& suite, const engine::BatchPlan& plan,
+                                  const std::vector<engine::BatchOutcome>& outcomes, const RunCounts& counts,
+                                  const std::vector<study::CriterionResult>& criteria);
+
+}  // namespace fusebench::cli::running

@@ -1,0 +1,124 @@
+#include "eval/cli/running/suite_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/engine_console.hpp"
+#include "eval/cli/running/suite_conclusion.hpp"
+#include "eval/engine/local_engine.hpp"
+#include "eval/engine/plan_preview.hpp"
+#include "eval/suites/experiment.hpp"
+
+namespace fusebench::cli::running {
+
+namespace {
+
+Result<int> preview(const BenchOptions& options, const engine::BatchPlan& plan) {
+  const engine::PlanPreview preview = engine::preview_of(plan);
+  const int at_once = options.engine.at_once;
+  console::print_output(options.json ? engine::to_json(preview, plan, at_once)
+                                     : engine::to_text(preview, plan, at_once));
+  return 0;
+}
+
+Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, const suites::Suite& suite,
+                                                   const engine::BatchPlan& plan, int all_threads) {
+  const auto kept = engine::keep(options.invocation);
+  if (!kept) return tl::unexpected(kept.error());
+  if (auto made = console::simulate_missing(plan.jobs, all_threads); !made)
+    return tl::unexpected(made.error());
+  engine::EngineOptions engine = options.engine;
+  engine.limits = suite.limits;
+  console::EngineConsole console(plan.jobs);
+  const engine::EngineControl control = console.control();
+  std::error_code ignored;
+  const engine::SlurmSite site{std::filesystem::absolute(*kept, ignored),
+                               std::filesystem::read_symlink("/proc/self/exe", ignored)};
+  auto outcomes = options.executor == "slurm"
+                      ? engine::run_on_slurm(plan.jobs, engine, options.slurm, site, control)
+                      : engine::run_locally(plan.jobs, engine, control);
+  console.clear();
+  return outcomes;
+}
+
+/// Side by side, runs share the machine unless somebody says how many threads each has; on a cluster, a run
+/// has one, and the cluster many runs.
+Result<void> set_executor(BenchOptions& options) {
+  int& threads = options.invocation.options.threads;
+  const int at_once = options.engine.at_once;
+  if (options.executor == "local") {
+    if (options.slurm.submit_only || options.slurm.chunk > 0 || !options.slurm.arguments.empty())
+      return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg are for --executor slurm");
+    if (!options.threads_given) threads = std::max(1, threads / at_once);
+    return {};
+  }
+  if (!options.threads_given) threads = 1;
+  options.slurm.at_once = at_once;
+  options.slurm.cpus = at_once * threads;
+  if (!options.engine.repeat_finished) return {};
+  return fail(ErrorCode::usage, "--repeat is for --executor local", "another --out starts afresh");
+}
+
+/// Returns when everything is in the queue.
+Result<int> submit(const BenchOptions& options, const suites::Suite& suite, const engine::BatchPlan& plan,
+                   int all_threads) {
+  const auto outcomes = run_plan(options, suite, plan, all_threads);
+  if (!outcomes) return tl::unexpected(outcomes.error());
+  const std::string out = options.invocation.options.out.string();
+  console::print_progress(
+      fmt::format("{}: submitted; `fusebench collect {}` shows what is there, and the same command without "
+                  "--submit waits for the rest and submits again what was lost",
+                  suite.name, out));
+  return 0;
+}
+
+}  // namespace
+
+Result<int> run_suite(BenchOptions options) {
+  const auto suite = engine::suite_of(options.invocation);
+  if (!suite) return tl::unexpected(suite.error());
+  engine::BatchOptions& batch = options.invocation.options;
+  if (batch.out.empty()) batch.out = std::filesystem::path("results/runs") / suite->name;
+  const int all_threads = batch.threads;
+  if (auto sensible = set_executor(options); !sensible) return tl::unexpected(sensible.error());
+  const auto plan = engine::plan_batch(*suite, batch);
+  if (!plan) return tl::unexpected(plan.error());
+  for (const std::string& warning : plan->warnings) console::print_progress("warning: " + warning);
+  if (options.dry_run) return preview(options, *plan);
+  if (plan->jobs.empty()) {
+    return fail(ErrorCode::usage,
+                fmt::format("all {} runs of suite '{}' are excluded, the first one because: {}",
+                            plan->excluded.size(), suite->name, plan->excluded.front().reason),
+                "[[exclude]] without recording, variant and options leaves everything out");
+  }
+  if (options.executor == "slurm" && options.slurm.submit_only)
+    return submit(options, *suite, *plan, all_threads);
+  const auto outcomes = run_plan(options, *suite, *plan, all_threads);
+  if (!outcomes) return tl::unexpected(outcomes.error());
+
+  const RunCounts counts = counts_of(*outcomes);
+  if (options.engine.only_failed) {
+    console::print_progress(
+        fmt::format("{}: {} runs were run again, {} of them ok", suite->name, counts.total, counts.ok));
+    return counts.failed == 0 ? 0 : console::kExitRunFailed;
+  }
+  if (counts.total == 0) {
+    return fail(ErrorCode::data_missing,
+                fmt::format("suite '{}': none of the recordings can be opened", suite->name),
+                "the lines above say why");
+  }
+  console::print_progress(fmt::format(
+      "{}: {} of {} runs ok{}; `fusebench table {}` shows them", suite->name, counts.ok, counts.total,
+      plan->excluded.empty() ? "" : fmt::format(", {} excluded", plan->excluded.size()), batch.out.string()));
+  const auto criteria = conclude(*suite, options, *plan, *outcomes);
+  if (!criteria) return tl::unexpected(criteria.error());
+  if (options.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *criteria));
+  return exit_code_of(counts, *criteria);
+}
+
+}  // namespace fusebench::cli::running

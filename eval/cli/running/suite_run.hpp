@@ -1,0 +1,31 @@
+// A suite from its file to its exit code.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "eval/engine/engine_options.hpp"
+#include "eval/engine/invocation.hpp"
+#include "eval/engine/slurm_engine.hpp"
+
+namespace fusebench::cli::running {
+
+struct BenchOptions {
+  engine::Invocation invocation;
+  engine::EngineOptions engine;
+  std::string executor = "local";
+  engine::SlurmOptions slurm;
+  bool threads_given = false;
+  bool dry_run = false;
+  std::filesystem::path summary;
+  std::filesystem::path summary_page;
+  bool json = false;
+};
+
+/// Plans and runs the suite, prints what came out of it and gives the exit code. Errors: those of suite_of(),
+/// plan_batch() and the engines; usage for options that do not go together or a suite without runs;
+/// data_missing if no recording can be opened.
+[[nodiscard]] Result<int> run_suite(BenchOptions options);
+
+}  // namespace fusebench::cli::running

@@ -1,0 +1,154 @@
+#include "eval/run/run_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "eval/metrics/intensity_file.hpp"
+#include "eval/record/record_origin.hpp"
+#include "eval/run/frame_source.hpp"
+
+namespace fusebench::run {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+metrics::FrameResiduals residuals_of(const health::FrameReport& report) {
+  metrics::FrameResiduals residuals;
+  if (report.pixels_photometric > 0) residuals.chi2_photometric = report.chi2_photometric;
+  if (report.pixels_geometric > 0) residuals.chi2_geometric = report.chi2_geometric;
+  residuals.patches_tracked = report.patches_tracked;
+  residuals.patches_accepted = report.patches_accepted;
+  return residuals;
+}
+
+/// The run begins at this frame: those before are lost, also one that it began at before.
+void forget_earlier_start(RunProgress& progress, std::size_t frame, const health::FrameReport& report) {
+  progress.log +=
+      fmt::format("frame {}: {}\n", frame,
+                  report.reason.empty() ? "started: no frame before could be used" : report.reason);
+  progress.frames.lost += std::exchange(progress.frames.tracked, 0);
+  progress.output.trajectory.clear();
+  progress.output.states.clear();
+}
+
+/// Takes one frame's report into the progress; ends the run when too many frames are lost in a row.
+void take_report(RunProgress& progress, std::size_t frame, const health::FrameReport& report,
+                 const PreparedRun& run, double decode_ms) {
+  progress.frame_table += run_files::frame_table_row(frame, report, decode_ms);
+  progress.state_table += run_files::state_table_row(report);
+  progress.decode_ms += decode_ms;
+  for (std::size_t stage = 0; stage < health::kStageNames.size(); ++stage) {
+    progress.stage_ms[stage] += report.stages.sums_ms()[stage];
+  }
+  // The first frame has nothing to be compared with: it is no frame without tracked pixels.
+  if (report.status != health::FrameStatus::initialised)
+    progress.output.intensity.add_frame(report.pixels.intensity);
+  if (report.status != health::FrameStatus::lost) {
+    if (report.status == health::FrameStatus::relocalised)
+      progress.log +=
+          fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
+    if (report.status == health::FrameStatus::initialised && frame > 0)
+      forget_earlier_start(progress, frame, report);
+    // A start that is not the first one is none until a frame is tracked from it.
+    progress.lost_in_a_row = report.reason.empty() ? 0 : progress.lost_in_a_row + 1;
+    ++progress.frames.tracked;
+    progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
+    progress.output.states.push_back({report.capture_ns, report.estimate});
+    if (report.status != health::FrameStatus::initialised)
+      progress.output.residuals.add_frame(residuals_of(report));
+    return;
+  }
+  ++progress.frames.lost;
+  ++progress.lost_in_a_row;
+  progress.log += fmt::format("frame {}: lost: {}\n", frame, report.reason);
+  const int limit = run.spec.config.values.iekf.max_lost_frames;
+  if (progress.lost_in_a_row > static_cast<std::size_t>(limit)) {
+    progress.end(record::RunStatus::lost,
+                 fmt::format("lost at frame {}: {} (iekf.max_lost_frames = {})",
+                             frame + 1 - progress.lost_in_a_row, report.reason, limit));
+  }
+}
+
+bool is_bad_data(const Error& error) {
+  return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
+}
+
+/// The error of a frame ends the run and is in the progress, unless the caller wants it as an error.
+Result<void> end_at_frame(RunProgress& progress, std::size_t frame, Error error, const RunControl& control) {
+  error.message = fmt::format("frame {}: {}", frame, error.message);
+  if (is_bad_data(error) && !control.bad_data_is_recorded) return tl::unexpected(std::move(error));
+  progress.end(record::RunStatus::failed, std::move(error.message));
+  return {};
+}
+
+}  // namespace
+
+void RunProgress::end(record::RunStatus how, std::string why) {
+  status = how;
+  reason = std::move(why);
+  log += fmt::format("{}: {}\n", record::to_string(status), reason);
+}
+
+Result<RunProgress> process_frames(const PreparedRun& run, core::Pipeline& pipeline,
+                                   const io::StagedFolder& folder, const RunControl& control) {
+  RunProgress progress;
+  const recording::Recording& recording = run.recording;
+  progress.frames.total = recording.frames.size();
+  for (const std::string& note : record::reading_notes(recording, run.spec.recording))
+    progress.log += note + "\n";
+
+  const PinholeCamera& camera = recording.rig.camera;
+  std::optional<metrics::IntensityWriter> intensity;
+  if (run.spec.kept == KeptFiles::all) {
+    auto writer =
+        metrics::IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
+    if (!writer) return tl::unexpected(writer.error());
+    intensity.emplace(std::move(*writer));
+  }
+  progress.profile.decodes_ahead = run.spec.threads > 1;
+  if (run.spec.profile) progress.profile.frames.reserve(recording.frames.size());
+  FrameSource source(recording, progress.profile.decodes_ahead);
+  for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == record::RunStatus::ok;
+       ++frame) {
+    if (control.stop != nullptr && control.stop->load())
+      return fail(ErrorCode::run_failed, "stopped by the user");
+    const auto begin = Clock::now();
+    const auto loaded = source.next();
+    const auto ready = Clock::now();
+    if (!loaded) {
+      const auto ended = end_at_frame(progress, frame, loaded.error(), control);
+      if (!ended) return tl::unexpected(ended.error());
+      break;
+    }
+    const auto report = pipeline.process(loaded->frame);
+    if (!report) {
+      const auto ended = end_at_frame(progress, frame, report.error(), control);
+      if (!ended) return tl::unexpected(ended.error());
+      break;
+    }
+    const auto processed = Clock::now();
+    take_report(progress, frame, *report, run, loaded->decode.milliseconds());
+    if (intensity) {
+      progress.fastest.offer(frame, *report, loaded->frame.grey);
+      if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written)
+        return tl::unexpected(written.error());
+    }
+    if (run.spec.profile) {
+      progress.profile.frames.push_back(
+          {frame, report->status, loaded->decode, {begin, ready}, report->stages, {processed, Clock::now()}});
+    }
+    if (control.progress) control.progress(frame + 1, recording.frames.size());
+  }
+  if (progress.status == record::RunStatus::ok && progress.frames.tracked == 0)
+    progress.end(record::RunStatus::lost, "no frame could be used as the first one (see log.txt)");
+  if (intensity) {
+    if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
+  }
+  return progress;
+}
+
+}  // namespace fusebench::run

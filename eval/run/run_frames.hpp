@@ -1,0 +1,46 @@
+// The frames of a run through the pipeline, and what they leave behind for its files and metrics.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/health/frame_report.hpp"
+#include "core/io/staged_folder.hpp"
+#include "core/pipeline.hpp"
+#include "eval/profile/run_profile.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run/run_control.hpp"
+#include "eval/run/run_evaluation.hpp"
+#include "eval/run/run_placement.hpp"
+#include "eval/run_files/frame_table.hpp"
+#include "eval/run_files/patch_table.hpp"
+#include "eval/run_files/state_table.hpp"
+
+namespace fusebench::run {
+
+/// What the frames left behind; grows frame by frame.
+struct RunProgress {
+  record::RunStatus status = record::RunStatus::ok;
+  std::string reason;
+  record::RecordedFrames frames;
+  std::size_t lost_in_a_row = 0;
+  RunOutput output;
+  run_files::FastestFrames fastest;
+  std::string frame_table = run_files::frame_table_header();
+  std::string state_table = run_files::state_table_header();
+  std::string log;
+  double decode_ms = 0;
+  std::array<double, health::kStageNames.size()> stage_ms{};
+  profile::RunProfile profile;  ///< stays without frames unless it is asked for
+
+  void end(record::RunStatus how, std::string why);
+};
+
+/// Processes all frames; intensity.bin goes into `folder` if it is kept. Errors: io, run_failed (a stop), and
+/// bad data if it is not recorded; whatever else goes wrong ends the run and is in the progress.
+[[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, core::Pipeline& pipeline,
+                                                 const io::StagedFolder& folder, const RunControl& control);
+
+}  // namespace fusebench::run

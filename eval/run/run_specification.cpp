@@ -1,0 +1,64 @@
+#include "eval/run/run_specification.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "core/config/variants.hpp"
+#include "datasets/synthetic_imu/synthetic_imu.hpp"
+
+namespace fusebench::run {
+
+namespace {
+
+Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
+  if (!config::needs_imu(spec.config.values)) {
+    recording.imu.clear();
+    recording.imu_source = recording::ImuSource::none;
+    recording.imu_note.clear();
+    return {};
+  }
+  const bool recorded = recording.imu_source != recording::ImuSource::none;
+  if (spec.imu == ImuChoice::synthetic || (spec.imu == ImuChoice::automatic && !recorded))
+    return synthetic_imu::add_synthetic_imu(recording);
+  if (recorded) return {};
+  return fail(
+      ErrorCode::usage,
+      fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
+      "--imu synthetic (or auto, where there is none) makes one from the ground truth and says so in every "
+      "table; --variant no-imu does without");
+}
+
+}  // namespace
+
+std::string_view to_string(KeptFiles kept) { return kept == KeptFiles::all ? "all" : "small"; }
+
+Result<FrameWindow> parse_window(const std::string& text) {
+  FrameWindow window;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, window.begin);
+  const bool colon = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
+  const auto second = colon ? std::from_chars(first.ptr + 1, end, window.end) : first;
+  if (!colon || second.ec != std::errc{} || second.ptr != end || window.begin >= window.end) {
+    return fail(ErrorCode::usage, fmt::format("frames {} (allowed: A:B with 0 <= A < B)", text),
+                "A:B takes frames A to B-1");
+  }
+  return window;
+}
+
+Result<recording::Recording> open_for_run(const RunSpec& spec) {
+  auto recording = datasets::open_recording(spec.recording, spec.open);
+  if (!recording) return recording;
+  if (spec.frames) {
+    if (auto cut = recording::select_frames(*recording, spec.frames->begin, spec.frames->end); !cut) {
+      return tl::unexpected(cut.error());
+    }
+  }
+  if (recording->frames.empty()) {
+    return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
+  }
+  if (auto provided = provide_imu(*recording, spec); !provided) return tl::unexpected(provided.error());
+  return recording;
+}
+
+}  // namespace fusebench::run

@@ -1,0 +1,58 @@
+// What one run is asked to do, and the recording as it sees it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/base/error.hpp"
+#include "core/config/config_access.hpp"
+#include "datasets/open_recording.hpp"
+
+namespace fusebench::run {
+
+/// Which IMU a variant that needs one gets.
+enum class ImuChoice {
+  recorded,   ///< the recording's own; without one, the run is refused
+  synthetic,  ///< one made from the ground truth, even if the recording has its own
+  automatic,  ///< the recording's own, and where there is none, one made from the ground truth
+};
+
+/// Frames begin to end - 1.
+struct FrameWindow {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+/// "A:B" to frames A to B-1. Error usage.
+[[nodiscard]] Result<FrameWindow> parse_window(const std::string& text);
+
+/// Which files a run's folder keeps. In large sweeps the others would fill the disk.
+enum class KeptFiles {
+  all,
+  small,  ///< record, trajectories, frames.csv, nees.csv, log, and trace.json of a profiled run: no model,
+          ///< patches, states or pixels
+};
+[[nodiscard]] std::string_view to_string(KeptFiles kept);  ///< "all", "small"
+
+struct RunSpec {
+  std::filesystem::path recording;
+  datasets::OpenOptions open;
+  ImuChoice imu = ImuChoice::recorded;
+  std::string variant;
+  config::EffectiveConfig config;  ///< the variant's, with all edits
+  std::optional<FrameWindow> frames;
+  int threads = 1;
+  int repetition = 1;  ///< the results are the same, the time is another sample
+  KeptFiles kept = KeptFiles::all;
+  bool profile = false;  ///< also trace.json and the record's histograms of times; no part of the identity
+  std::filesystem::path out;
+};
+
+/// The recording as a run of that specification sees it: opened, cut to the window, with its IMU. Errors:
+/// those of open_recording, select_frames and add_synthetic_imu; usage if the variant needs an IMU and there
+/// is none.
+[[nodiscard]] Result<recording::Recording> open_for_run(const RunSpec& spec);
+
+}  // namespace fusebench::run
