@@ -25,7 +25,7 @@ ESTIMATOR = {"prediction", "preprocessing", "patches", "measurement", "relocalis
 # Rooms that put recordings into the pipeline.
 RUNNERS = {"run", "batch_estimation"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])(?:fusebench/)?([^">]+)[">]')
-NAMESPACE = re.compile(r"^namespace (fusebench[\w: ]*) \{")
+NAMESPACE = re.compile(r"^namespace (fusebench[\w:]*) \{")
 
 
 def read_rooms(text):
@@ -44,9 +44,9 @@ def read_rooms(text):
 
 
 def namespace_of(folder):
-    """The namespace of a room; what is in base is visible everywhere below fusebench."""
+    """The namespace of a room; that of base is an inline one within fusebench, so its names need no prefix."""
     if folder == "core/base":
-        return "fusebench::inline base"
+        return "fusebench"
     parts = folder.split("/")
     return "::".join(["fusebench", *(parts[1:] or parts)])
 

@@ -44,9 +44,8 @@ find "${rooms[@]}" -type f \( -name '*.hpp' -o -name '*.cpp' \) -print | LC_ALL=
     depth = line = 0
     while ((getline text < file) > 0) {
       line++
-      if (match(text, /^(inline )?namespace [A-Za-z0-9_: ]* *\{/)) {
+      if (match(text, /^(inline )?namespace [A-Za-z0-9_:]* *\{/)) {
         sub(/^(inline )?namespace /, "", text)
-        gsub(/inline /, "", text)
         sub(/ *\{.*/, "", text)
         scope[++depth] = text
       } else if (text ~ /^\}  *\/\/ *namespace/) {

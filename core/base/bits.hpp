@@ -5,7 +5,8 @@
 #include <concepts>
 #include <cstddef>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 /// Calls use(i) for each bit i that is set, from the lowest on.
 template <std::unsigned_integral Bits, class Use>
@@ -13,4 +14,5 @@ void for_each_bit(Bits bits, const Use& use) {
   for (; bits != 0; bits &= bits - 1) use(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

@@ -8,7 +8,8 @@
 #include <tl/expected.hpp>
 #include <utility>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 /// What kind of failure it was; decides the exit code of the command line.
 enum class ErrorCode {
@@ -69,4 +70,5 @@ inline void check(bool condition, const char* what,
   }
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

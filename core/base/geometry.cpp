@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 namespace {
 // Below this angle the series is exact to double precision and the closed form divides 0 by 0.
@@ -83,4 +84,5 @@ Vector2d s2_minus(const Vector3d& to, const Vector3d& from) {
   return s2_basis(from).transpose() * (angle / sine * axis);
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

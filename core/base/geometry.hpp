@@ -8,7 +8,8 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
@@ -73,4 +74,5 @@ struct SE3 {
 /// Inverse of s2_plus: the delta that moves `from` to `to` (both unit).
 [[nodiscard]] Vector2d s2_minus(const Vector3d& to, const Vector3d& from);
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

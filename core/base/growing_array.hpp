@@ -9,7 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 /// An array of plain values whose memory is grown by realloc(): for large ones the system moves pages, not
 /// bytes, so that neither time nor twice the memory is spent, and pages that were never written take no
@@ -64,4 +65,5 @@ class GrowingArray {
   std::size_t capacity_ = 0;
 };
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

@@ -5,7 +5,8 @@
 
 #include "core/base/error.hpp"
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 IntensitySample sample_bilinear(const GreyImage& image, double x, double y) {
   // The cell [x0, x0 + 1) x [y0, y0 + 1); the last row and column belong to the cell before them.
@@ -59,4 +60,5 @@ GreyImage to_grey(const ColorImage& color) {
   return grey;
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

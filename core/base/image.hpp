@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 template <class Pixel>
 struct Image {
@@ -60,4 +61,5 @@ void build_pyramid(const GreyImage& image, int levels, std::vector<GreyImage>& p
 /// Grey image by ITU-R BT.601 weights in integer arithmetic (0.299 R + 0.587 G + 0.114 B).
 [[nodiscard]] GreyImage to_grey(const ColorImage& color);
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

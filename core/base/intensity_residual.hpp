@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 /// |I_k - I_{k-1}| of one pixel of a tracked patch at level 0, before robust weighting and brightness
 /// correction.
@@ -30,4 +31,5 @@ struct TrackedPixels {
   std::vector<WarpedPixel> warped;
 };
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

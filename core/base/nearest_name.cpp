@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 namespace {
 /// Levenshtein distance, one row of the table at a time.
@@ -38,4 +39,5 @@ std::string nearest_name(std::string_view name, std::span<const std::string_view
   return std::string(best);
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

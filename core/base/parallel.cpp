@@ -6,7 +6,8 @@
 
 #include "core/base/error.hpp"
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 struct Workers::Arena {
   explicit Arena(int threads)
@@ -38,4 +39,5 @@ void Workers::for_chunks(std::size_t count, std::size_t chunk_size,
   arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

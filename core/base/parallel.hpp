@@ -9,7 +9,8 @@
 #include <memory>
 #include <vector>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 /// A fixed number of threads to run chunks on. Cheap to pass by reference, not copyable.
 class Workers {
@@ -43,4 +44,5 @@ class Workers {
   std::unique_ptr<Arena> arena_;
 };
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 std::string printable(std::string_view text, std::size_t most) {
   std::string shown;
@@ -17,4 +18,5 @@ std::string printable(std::string_view text, std::size_t most) {
   return shown;
 }
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

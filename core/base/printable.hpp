@@ -5,10 +5,12 @@
 #include <string>
 #include <string_view>
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 /// The text in printable ASCII: every other byte as \xNN; after about `most` characters "..." ends it.
 /// A message stays one line of valid UTF-8 this way, whatever the file holds.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t most = 40);
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

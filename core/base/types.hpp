@@ -9,7 +9,8 @@
 #include "core/base/geometry.hpp"
 #include "core/base/image.hpp"
 
-namespace fusebench::inline base {
+namespace fusebench {
+inline namespace base {
 
 inline constexpr double kGravity_mps2 = 9.81;  ///< magnitude only; the direction is a state of the filter
 
@@ -116,4 +117,5 @@ struct BasicMesh {
 using Mesh = BasicMesh<float>;          ///< as it is reconstructed and drawn
 using PreciseMesh = BasicMesh<double>;  ///< as files hold it, and as it is measured
 
-}  // namespace fusebench::inline base
+}  // namespace base
+}  // namespace fusebench

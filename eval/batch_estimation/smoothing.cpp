@@ -115,8 +115,10 @@ std::string to_json(const SmoothedRecording& smoothed, const recording::Recordin
       {"inertial_variance_factor", estimate.inertial_variance_factor},
       {"outliers", estimate.outliers},
       {"time_offset_s", estimate.time_offset_s},
-      {"last_position_sigma_m", std::sqrt(last.covariance.block<3, 3>(filter::kPosition, filter::kPosition).trace())},
-      {"last_rotation_sigma_rad", std::sqrt(last.covariance.block<3, 3>(filter::kRotation, filter::kRotation).trace())}};
+      {"last_position_sigma_m",
+       std::sqrt(last.covariance.block<3, 3>(filter::kPosition, filter::kPosition).trace())},
+      {"last_rotation_sigma_rad",
+       std::sqrt(last.covariance.block<3, 3>(filter::kRotation, filter::kRotation).trace())}};
   if (!recording.ground_truth.empty() && recording.truth_label.empty()) {
     document["against_ground_truth"] = {
         {"smoothed", errors_of(smoothed.trajectory, recording)},

@@ -13,12 +13,12 @@ namespace fusebench::compare {
 namespace {
 
 /// As an attribute or text of XML 1.0, which takes no control characters at all.
-std::string escaped(std::string_view text) {
+std::string xml_escaped(std::string_view text) {
   return text::with_entities(printable(text, std::numeric_limits<std::size_t>::max()), "&<>\"'");
 }
 
 std::string test_case(const ComparedRun& run, const GateResult& gate) {
-  const std::string message = escaped(gate.message);
+  const std::string message = xml_escaped(gate.message);
   std::string inside;
   if (gate.fails) {
     inside = fmt::format("<failure type=\"{}\" message=\"{}\"/>", to_string(gate.verdict), message);
@@ -28,7 +28,7 @@ std::string test_case(const ComparedRun& run, const GateResult& gate) {
     inside = fmt::format("<system-out>{}: {}</system-out>", to_string(gate.verdict), message);
   }
   return fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\">{}</testcase>\n",
-                     escaped(run.runs.label), escaped(gate.gate), inside);
+                     xml_escaped(run.runs.label), xml_escaped(gate.gate), inside);
 }
 
 struct Counts {
@@ -61,7 +61,7 @@ std::string comparison_junit(const RunComparison& comparison) {
     all.tests += counts.tests;
     all.failures += counts.failures;
     all.skipped += counts.skipped;
-    suites += fmt::format("  <testsuite name=\"{}\" {}>\n", escaped(run.runs.label), counts_text(counts));
+    suites += fmt::format("  <testsuite name=\"{}\" {}>\n", xml_escaped(run.runs.label), counts_text(counts));
     for (const GateResult& gate : run.gates) suites += test_case(run, gate);
     suites += "  </testsuite>\n";
   }

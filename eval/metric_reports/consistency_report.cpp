@@ -63,7 +63,8 @@ Json json_of_part(const trajectory_error::PartConsistency& part, const char* uni
 }
 
 page::Chart error_chart(const trajectory_error::PoseConsistency& c, int axis, const char* what,
-                        const char* unit, double factor, Vector3d trajectory_error::PoseConsistencyRow::*error,
+                        const char* unit, double factor,
+                        Vector3d trajectory_error::PoseConsistencyRow::*error,
                         Vector3d trajectory_error::PoseConsistencyRow::*sigma) {
   page::Chart chart;
   chart.title = fmt::format("{} error along {}", what, kAxes[static_cast<std::size_t>(axis)]);

@@ -20,8 +20,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::vector<std::string>>;
 
-std::string shown(double value) { return fmt::format("{:.7g}", value); }
-
 std::string shape_text(const std::string& file, const mesh_error::MeshShape& shape) {
   return fmt::format("{}: {} vertices, {} triangles, {:.4g} x {:.4g} x {:.4g} m", file, shape.vertices,
                      shape.triangles, shape.extent_m.x(), shape.extent_m.y(), shape.extent_m.z());
@@ -72,7 +70,8 @@ std::string statistics_text(const mesh_error::MeshEvaluation& e) {
   for (const auto& [title, distances] : columns) lines[0].push_back(title);
   const auto add = [&](const char* name, auto&& value) {
     lines.push_back({name});
-    for (const auto& [title, distances] : columns) lines.back().push_back(shown(value(*distances)));
+    for (const auto& [title, distances] : columns)
+      lines.back().push_back(text::seven_digits(value(*distances)));
   };
   add("mean", [](const mesh_error::MeshDistances& d) { return d.stats.mean; });
   add("rmse", [](const mesh_error::MeshDistances& d) { return d.stats.rmse; });
@@ -92,7 +91,7 @@ std::string thresholds_text(const mesh_error::MeshEvaluation& e) {
   if (e.not_culled) lines[0].emplace_back("recall of all truth [%]");
   for (std::size_t i = 0; i < e.errors.thresholds.size(); ++i) {
     const mesh_error::MeshThreshold& at = e.errors.thresholds[i];
-    lines.push_back({shown(at.tau_m), fmt::format("{:.2f}", 100 * at.precision),
+    lines.push_back({text::seven_digits(at.tau_m), fmt::format("{:.2f}", 100 * at.precision),
                      fmt::format("{:.2f}", 100 * at.recall), fmt::format("{:.2f}", 100 * at.fscore)});
     if (e.not_culled) lines.back().push_back(fmt::format("{:.2f}", 100 * e.not_culled->thresholds[i].recall));
   }
@@ -101,10 +100,10 @@ std::string thresholds_text(const mesh_error::MeshEvaluation& e) {
 
 std::string surfreg_text(const mesh_error::SurfregScore& score) {
   const std::string mean =
-      fmt::format("{} m, mean distance of vertices to vertices", shown(score.vertex_mean_m));
+      fmt::format("{} m, mean distance of vertices to vertices", text::seven_digits(score.vertex_mean_m));
   if (!score.after_icp_m) return mean;
   return fmt::format("{}; {} m after its ICP", mean,
-                     shown(std::min(score.vertex_mean_m, *score.after_icp_m)));
+                     text::seven_digits(std::min(score.vertex_mean_m, *score.after_icp_m)));
 }
 
 Json json_of(const std::string& file, const mesh_error::MeshShape& shape) {
@@ -151,9 +150,9 @@ std::string to_text(const mesh_error::MeshEvaluation& evaluation, const mesh_err
   heading.push_back({"culling", culling_text(evaluation, request, files)});
   std::string text = "mesh error: exact distances to triangles\n\n" + text::aligned_columns(heading) + "\n";
   text += statistics_text(evaluation) + "\n" + thresholds_text(evaluation) + "\n";
-  return text +
-         text::aligned_columns({{"Chamfer", shown(evaluation.errors.chamfer_m) + " m, mean of both means"},
-                                {"SurfReg", surfreg_text(evaluation.surfreg)}});
+  return text + text::aligned_columns(
+                    {{"Chamfer", text::seven_digits(evaluation.errors.chamfer_m) + " m, mean of both means"},
+                     {"SurfReg", surfreg_text(evaluation.surfreg)}});
 }
 
 std::string to_json(const mesh_error::MeshEvaluation& evaluation, const mesh_error::MeshRequest& request,

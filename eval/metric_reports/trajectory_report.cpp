@@ -19,8 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::vector<std::string>>;
 
-std::string shown(double value) { return fmt::format("{:.7g}", value); }
-
 /// "a [m]", or "a" of what has no unit.
 std::string with_unit(const trajectory_error::ErrorSeries& series) {
   return series.unit.empty() ? series.relation : fmt::format("{} [{}]", series.relation, series.unit);
@@ -120,7 +118,7 @@ std::string statistics_text(const trajectory_error::TrajectoryEvaluation& e) {
   for (const auto& [name, value] : kRows) {
     lines.push_back({name});
     for (const trajectory_error::ErrorSeries& series : e.series)
-      lines.back().push_back(shown(series.stats.*value));
+      lines.back().push_back(text::seven_digits(series.stats.*value));
   }
   lines.push_back({"errors"});
   for (const trajectory_error::ErrorSeries& series : e.series)
@@ -132,10 +130,12 @@ std::string segments_text(const trajectory_error::TrajectoryEvaluation& e) {
   Lines lines = {{"length [m]", "segments", "translation mean [m]", "mean [%]", "median [%]",
                   "rotation mean [deg]", "mean [deg/m]", "yaw mean [deg]", "gravity mean [deg]"}};
   for (const trajectory_error::SegmentRow& row : e.segments) {
-    lines.push_back({shown(row.length_m), fmt::format("{}", row.segments), shown(row.translation_m.mean),
-                     shown(row.translation_percent.mean), shown(row.translation_percent.median),
-                     shown(row.rotation_deg.mean), shown(row.rotation_deg_per_m.mean),
-                     shown(row.yaw_deg.mean), shown(row.gravity_deg.mean)});
+    lines.push_back(
+        {text::seven_digits(row.length_m), fmt::format("{}", row.segments),
+         text::seven_digits(row.translation_m.mean), text::seven_digits(row.translation_percent.mean),
+         text::seven_digits(row.translation_percent.median), text::seven_digits(row.rotation_deg.mean),
+         text::seven_digits(row.rotation_deg_per_m.mean), text::seven_digits(row.yaw_deg.mean),
+         text::seven_digits(row.gravity_deg.mean)});
   }
   return text::aligned_columns(lines);
 }

@@ -1,4 +1,5 @@
-// Files that every page carries within itself. Defined by a generated source (scripts/cmake/embed_files.cmake).
+// Files that every page carries within itself. Defined by a generated source
+// (scripts/cmake/embed_files.cmake).
 #pragma once
 
 #include <string_view>

@@ -58,8 +58,9 @@ std::string frame_table_row(std::size_t frame, const health::FrameReport& report
       number_cell(report.chi2_photometric), number_cell(report.chi2_geometric),
       number_cell(report.variance_photometric), number_cell(report.variance_geometric),
       number_cell(report.velocity_world_mps.norm()), number_cell(angular_speed), number_cell(report.blur_px),
-      number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)), number_cell(sigma(filter::kRotation)),
-      number_cell(report.estimate.mean.imu_time_offset_s), report.model_blocks, decode_ms);
+      number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)),
+      number_cell(sigma(filter::kRotation)), number_cell(report.estimate.mean.imu_time_offset_s),
+      report.model_blocks, decode_ms);
   for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
   return row + "\n";
 }

@@ -22,6 +22,8 @@ std::string aligned_columns(const std::vector<std::vector<std::string>>& lines) 
   return text;
 }
 
+std::string seven_digits(double value) { return fmt::format("{:.7g}", value); }
+
 std::string markdown_cell(std::string_view text) {
   std::string cell;
   for (const char c : text) {

@@ -13,6 +13,9 @@ namespace fusebench::text {
 /// "45 s", "35 min", "2.5 h".
 [[nodiscard]] std::string duration_text(double time_s);
 
+/// A number with seven significant digits, "0.01234568".
+[[nodiscard]] std::string seven_digits(double value);
+
 /// A text as a cell of a Markdown table.
 [[nodiscard]] std::string markdown_cell(std::string_view text);
 

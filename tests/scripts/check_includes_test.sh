@@ -27,7 +27,7 @@ fusebench_room(eval/run
   USES base core recording tum metrics
   SOURCES ${build_info})
 TEXT
-  write core/base/types.hpp 'fusebench::inline base' '#pragma once\n#include <vector>'
+  write core/base/types.hpp fusebench '#pragma once\n#include <vector>'
   write core/filter/iekf.cpp fusebench::filter '#include "core/base/types.hpp"'
   write core/filter/iekf.hpp fusebench::filter '#pragma once'
   write core/pipeline.cpp fusebench::core '#include "core/base/types.hpp"\n#include "core/filter/iekf.hpp"'

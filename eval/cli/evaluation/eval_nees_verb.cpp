@@ -37,14 +37,14 @@ struct NeesOptions {
   bool json = false;
 };
 
-constexpr std::array<std::pair<const char*, trajectory_error::AlignmentMode>, 4> kAlignments{
+constexpr std::array<std::pair<const char*, trajectory_error::AlignmentMode>, 4> kNeesAlignments{
     {{"none", trajectory_error::AlignmentMode::none},
      {"se3", trajectory_error::AlignmentMode::se3},
      {"yaw", trajectory_error::AlignmentMode::yaw},
      {"origin", trajectory_error::AlignmentMode::origin}}};
 
 trajectory_error::AlignmentMode alignment_named(const std::string& name) {
-  for (const auto& [known, mode] : kAlignments) {
+  for (const auto& [known, mode] : kNeesAlignments) {
     if (name == known) return mode;
   }
   return trajectory_error::AlignmentMode::se3;  // the parser lets no other name through
@@ -103,7 +103,7 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
                    "covariances of orientation (body) and position (world); 20 columns")
       ->required();
   std::vector<std::string> modes;
-  for (const auto& [name, mode] : kAlignments) modes.emplace_back(name);
+  for (const auto& [name, mode] : kNeesAlignments) modes.emplace_back(name);
   verb->add_option("--align", options->align,
                    "What may move the estimate: none, se3, yaw (and position), or origin (the first pair); "
                    "a fit hides part of the errors")

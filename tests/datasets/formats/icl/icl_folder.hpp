@@ -40,8 +40,8 @@ class IclFolder {
     write("rgb/" + name, "");
     write("depth/" + name, "");
     const auto value = static_cast<std::uint16_t>(5000 + k);
-    EXPECT_TRUE(
-        images::write_png(path() / "rgb" / name, ColorImage(8, 6, Rgb{10, 20, static_cast<std::uint8_t>(k)})));
+    EXPECT_TRUE(images::write_png(path() / "rgb" / name,
+                                  ColorImage(8, 6, Rgb{10, 20, static_cast<std::uint8_t>(k)})));
     EXPECT_TRUE(images::write_png(path() / "depth" / name, Image<std::uint16_t>(8, 6, value)));
   }
   void write(const std::string& name, std::string_view content) const { folder_.write(name, content); }

@@ -64,7 +64,7 @@ class Zr300Folder {
     EXPECT_TRUE(images::write_png(path() / "color" / name, ColorImage(16, 12, Rgb{10, 20, 30})));
     EXPECT_TRUE(images::write_png(path() / "depth" / name, Image<std::uint16_t>(16, 12, depth)));
     EXPECT_TRUE(images::write_png(path() / "filtered" / name,
-                          Image<std::uint16_t>(16, 12, static_cast<std::uint16_t>(depth + 1000))));
+                                  Image<std::uint16_t>(16, 12, static_cast<std::uint16_t>(depth + 1000))));
   }
   void remove(const std::string& name) const { EXPECT_TRUE(std::filesystem::remove(path() / name)); }
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
