@@ -102,7 +102,7 @@ void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
       ->expected(2)
       ->type_name("TRUTH ESTIMATE");
   verb.add_option("--icp-kept", options.icp_kept,
-                  fmt::format("Of the points, those nearest to the truth that icp counts [{}]",
+                  fmt::format("Share of the points, nearest to the truth first, that icp uses [{}]",
                               mesh_error::RegistrationOptions{}.kept))
       ->check(CLI::Range(0.01, 1.0))
       ->type_name("SHARE");
