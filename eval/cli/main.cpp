@@ -101,7 +101,8 @@ int main(int argc, char** argv) {
     const int code = fusebench::cli::command_line(argc, argv);
     return fusebench::cli::console::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
   } catch (const std::exception& error) {
-    fusebench::cli::console::print_error({fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
+    fusebench::cli::console::print_error(
+        {fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});
     return fusebench::exit_code(fusebench::ErrorCode::internal);
   }
 }

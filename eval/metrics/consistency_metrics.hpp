@@ -28,12 +28,13 @@ struct StatePart {
   int offset = 0;
   int dof = 0;
 };
-inline constexpr std::array<StatePart, 6> kStateParts = {{{"orientation", filter::kRotation, 3},
-                                                          {"position", filter::kPosition, 3},
-                                                          {"velocity", filter::kVelocity, 3},
-                                                          {"gyroscope_bias", filter::kGyroscopeBias, 3},
-                                                          {"accelerometer_bias", filter::kAccelerometerBias, 3},
-                                                          {"pose", filter::kRotation, 6}}};
+inline constexpr std::array<StatePart, 6> kStateParts = {
+    {{"orientation", filter::kRotation, 3},
+     {"position", filter::kPosition, 3},
+     {"velocity", filter::kVelocity, 3},
+     {"gyroscope_bias", filter::kGyroscopeBias, 3},
+     {"accelerometer_bias", filter::kAccelerometerBias, 3},
+     {"pose", filter::kRotation, 6}}};
 
 /// The state between two stamps, by a cubic through four of them in the tangent space (fewer at the ends).
 /// Nothing before the first and after the last state, or between two that are more than 0.1 s apart.
