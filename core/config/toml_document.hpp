@@ -17,8 +17,8 @@ using TomlList = std::vector<OptionValue>;
 
 /// One assignment of the file.
 struct TomlEntry {
-  /// dotted: [iekf] max_iterations = 8 has the key "iekf.max_iterations", the first [[bars]] title = "x" the
-  /// key "bars[0].title"
+  /// dotted: [iekf] max_iterations = 8 has the key "iekf.max_iterations", the first [[criteria]] title = "x"
+  /// the key "criteria[0].title"
   std::string key;
   std::variant<OptionValue, TomlList> value;
   std::string place;  ///< "file:line", for messages

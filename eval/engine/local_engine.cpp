@@ -109,7 +109,7 @@ class Engine {
     if (ledger_.end_if_finished(index, run)) return true;  // by whoever had the claim just now
     prepare_place(job, run);
     auto process = process::ForkedJob::start(
-        [&](const process::JobVoice& voice) { work(run, voice); },
+        [&](const process::JobReporter& reporter) { work(run, reporter); },
         {options_.limits.time_s, options_.limits.stall_s, options_.limits.memory_bytes});
     if (!process) {
       fatal_ = process.error();
@@ -120,13 +120,13 @@ class Engine {
   }
 
   /// In the child.
-  void work(const run::PreparedRun& run, const process::JobVoice& voice) const {
+  void work(const run::PreparedRun& run, const process::JobReporter& reporter) const {
     const auto record = run::execute_run(
-        run, {[&](std::size_t frame, std::size_t total) { voice.progress(frame, total); }, control_.stop});
+        run, {[&](std::size_t frame, std::size_t total) { reporter.progress(frame, total); }, control_.stop});
     if (record) {
-      voice.finished(record::to_string(record->status));
+      reporter.finished(record::to_string(record->status));
     } else {
-      voice.failed(record.error());
+      reporter.failed(record.error());
     }
   }
 

@@ -45,7 +45,7 @@ struct MergeReport {
   std::size_t damaged = 0;    ///< not copied
   std::size_t differing = 0;  ///< of those, with another status: the same identity must give the same results
 };
-/// Copies runs from one folder to another, each whole or not at all; a failed run gives way to a finished one
+/// Copies runs from one folder to another, each atomically; a failed run gives way to a finished one
 /// of its identity, and never the other way round. Errors: data_missing, io.
 [[nodiscard]] Result<MergeReport> merge_runs(const std::filesystem::path& from,
                                              const std::filesystem::path& into);

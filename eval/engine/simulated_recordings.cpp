@@ -43,17 +43,18 @@ std::vector<std::string> split(const std::string& text) {
 }
 
 /// In the child.
-void work(const BatchJob& job, int threads, const std::atomic<bool>* stop, const process::JobVoice& voice) {
+void work(const BatchJob& job, int threads, const std::atomic<bool>* stop,
+          const process::JobReporter& reporter) {
   const Workers workers(threads);
   const auto options = suites::simulation_options(*job.simulation);
   const simulator::SimulationControl control{
-      [&](std::size_t done, std::size_t total) { voice.progress(done, total); }, stop};
+      [&](std::size_t done, std::size_t total) { reporter.progress(done, total); }, stop};
   const auto report = options ? simulator::simulate(*options, job.recording, workers, control)
                               : tl::unexpected(options.error());
   if (report) {
-    voice.finished(lines_of(*report));
+    reporter.finished(lines_of(*report));
   } else {
-    voice.failed(report.error());
+    reporter.failed(report.error());
   }
 }
 
@@ -78,7 +79,7 @@ Result<void> make_simulated_recordings(const std::vector<BatchJob>& jobs, int th
     const std::string name = job.recording.filename().string();
     if (control.started) control.started(name, i, recordings.size());
     auto process = process::ForkedJob::start(
-        [&](const process::JobVoice& voice) { work(job, threads, control.stop, voice); }, {});
+        [&](const process::JobReporter& reporter) { work(job, threads, control.stop, reporter); }, {});
     if (!process) return tl::unexpected(process.error());
     const process::JobEnd end = wait_for(*process, control);
     if (!end.finished) {

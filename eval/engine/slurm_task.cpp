@@ -110,7 +110,7 @@ Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions&
   // In a process of its own: opening a large recording takes longer than a sign of life may.
   const fs::path alive = sign_of_life(task_file.parent_path(), task);
   const auto pulse = process::ForkedJob::start(
-      [&](const process::JobVoice&) {
+      [&](const process::JobReporter&) {
         for (std::size_t count = 0;; ++count) {
           static_cast<void>(text::write_text_file(alive, fmt::format("{} {}\n", record::host_name(), count)));
           std::this_thread::sleep_for(std::chrono::seconds(1));

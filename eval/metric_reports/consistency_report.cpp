@@ -90,7 +90,7 @@ page::Chart error_chart(const trajectory_error::PoseConsistency& c, int axis, co
 page::Chart nees_chart(const trajectory_error::PoseConsistency& c) {
   page::Chart chart;
   chart.title = "NEES per degree of freedom";
-  chart.caption = "1 on average if the covariance is honest; more is too sure of itself.";
+  chart.caption = "1 on average if the covariance is consistent; more is overconfident.";
   chart.x_label = "time [s]";
   chart.left_label = "NEES / d";
   const std::array<std::pair<const char*, double trajectory_error::PoseConsistencyRow::*>, 2> parts = {
@@ -122,7 +122,7 @@ std::string to_text(const trajectory_error::PoseConsistency& c, const Consistenc
        {"rms sigma", number(degrees(o.sigma_rms)) + " deg", number(p.sigma_rms) + " m"},
        {"within 3 sigma, x / y / z", shares(o.share_within_3_sigma), shares(p.share_within_3_sigma)}});
   return text + fmt::format(
-                    "\nAn honest covariance has NEES / 3 near 1 on average (95 % of single poses "
+                    "\nA consistent covariance has NEES / 3 near 1 on average (95 % of single poses "
                     "between {:.2f} and {:.2f}) and 99.7 % within 3 sigma; more NEES is "
                     "overconfident. Errors of one trajectory are correlated: it is one sample.\n",
                     bounds.lower, bounds.upper);

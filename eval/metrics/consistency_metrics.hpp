@@ -53,7 +53,7 @@ inline constexpr std::array<StatePart, 6> kStateParts = {
                                                              const StatePart& part);
 
 /// Of one part in one run. All numbers are NEES / dof: 1 is what a consistent filter has on average, more is
-/// too sure of itself, less too cautious.
+/// overconfident, less underconfident.
 struct NeesResult {
   StatePart part;
   std::vector<double> nees_per_dof;  ///< in order of time

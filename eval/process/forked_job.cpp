@@ -56,18 +56,18 @@ std::size_t count_of(std::string_view text) {
 }
 
 /// The child's last words where its own code found none.
-void run_guarded(const std::function<void(const JobVoice& voice)>& work, const JobVoice& voice) {
+void run_guarded(const std::function<void(const JobReporter& reporter)>& work, const JobReporter& reporter) {
   try {
-    work(voice);
+    work(reporter);
   } catch (const std::bad_alloc&) {
-    voice.failed({ErrorCode::run_failed, "out of memory", ""});
+    reporter.failed({ErrorCode::run_failed, "out of memory", ""});
   } catch (const std::exception& error) {
-    voice.failed({ErrorCode::internal, error.what(), "this is a bug: please report it"});
+    reporter.failed({ErrorCode::internal, error.what(), "this is a bug: please report it"});
   }
 }
 
 /// Never returns. Nothing of the parent's is flushed, closed or destroyed by the child.
-[[noreturn]] void be_the_child(const std::function<void(const JobVoice& voice)>& work,
+[[noreturn]] void be_the_child(const std::function<void(const JobReporter& reporter)>& work,
                                const JobLimits& limits, int pipe, int output, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
@@ -83,7 +83,7 @@ void run_guarded(const std::function<void(const JobVoice& voice)>& work, const J
     const rlimit memory{limits.memory_bytes, limits.memory_bytes};
     setrlimit(RLIMIT_DATA, &memory);
   }
-  run_guarded(work, JobVoice(pipe));
+  run_guarded(work, JobReporter(pipe));
   std::fflush(nullptr);
   _exit(0);
 }
@@ -94,7 +94,7 @@ double seconds_of(const timeval& time) {
 
 }  // namespace
 
-void JobVoice::say(std::string_view line) const {
+void JobReporter::say(std::string_view line) const {
   while (!line.empty()) {
     const ssize_t written = write(pipe_, line.data(), line.size());
     if (written < 0 && errno == EINTR) continue;
@@ -103,18 +103,20 @@ void JobVoice::say(std::string_view line) const {
   }
 }
 
-void JobVoice::progress(std::size_t done, std::size_t total) const {
+void JobReporter::progress(std::size_t done, std::size_t total) const {
   say(fmt::format("{}\t{}\t{}\n", kProgress, done, total));
 }
 
-void JobVoice::failed(const Error& error) const {
+void JobReporter::failed(const Error& error) const {
   say(fmt::format("{}\t{}\t{}\t{}\n", kError, static_cast<int>(error.code), plain(error.message),
                   plain(error.hint)));
 }
 
-void JobVoice::finished(std::string_view text) const { say(fmt::format("{}\t{}\n", kFinished, plain(text))); }
+void JobReporter::finished(std::string_view text) const {
+  say(fmt::format("{}\t{}\n", kFinished, plain(text)));
+}
 
-Result<ForkedJob> ForkedJob::start(const std::function<void(const JobVoice& voice)>& work,
+Result<ForkedJob> ForkedJob::start(const std::function<void(const JobReporter& reporter)>& work,
                                    const JobLimits& limits) {
   NamelessFile output = nameless_file();
   std::array<int, 2> ends{};

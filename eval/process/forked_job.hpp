@@ -27,9 +27,9 @@ struct JobLimits {
 };
 
 /// How the work tells what it does, from within its process.
-class JobVoice {
+class JobReporter {
  public:
-  explicit JobVoice(int pipe) : pipe_(pipe) {}
+  explicit JobReporter(int pipe) : pipe_(pipe) {}
   void progress(std::size_t done, std::size_t total) const;
   void failed(const Error& error) const;       ///< the last word
   void finished(std::string_view text) const;  ///< the last word
@@ -55,7 +55,7 @@ class ForkedJob {
  public:
   /// Runs `work` in a child. This process must have a single thread then: a fork takes no other with it. The
   /// child dies with this process. Error io.
-  [[nodiscard]] static Result<ForkedJob> start(const std::function<void(const JobVoice& voice)>& work,
+  [[nodiscard]] static Result<ForkedJob> start(const std::function<void(const JobReporter& reporter)>& work,
                                                const JobLimits& limits);
 
   ForkedJob(ForkedJob&& other) noexcept;

@@ -1,4 +1,4 @@
-// When a profiled run did what: for each of its frames the stretches of work, and what they say together.
+// When a profiled run did what: for each of its frames the stretches of work, and their histograms.
 #pragma once
 
 #include <chrono>

@@ -121,7 +121,7 @@ page::Chart error_and_sigma(std::span<const RunSeries> runs, std::size_t buckets
 page::Chart consistency_chart(std::span<const RunSeries> runs, std::size_t buckets, std::string_view part) {
   page::Chart chart = chart_of(
       fmt::format("Consistency of the {}", part), "time [s]", "log10 (NEES / 3)",
-      "An honest covariance has a mean NEES / 3 of 1, the 0 here; much above, it is too sure of itself.");
+      "A consistent covariance has a mean NEES / 3 of 1, the 0 here; much above, it is overconfident.");
   chart.from_zero = false;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::vector<Vector2d> points;

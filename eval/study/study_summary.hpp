@@ -1,4 +1,4 @@
-// What a study's runs say together: by split, group and variant, against the motion in the image, and
+// The summary of a study's runs: by split, group and variant, against the motion in the image, and
 // criterion by criterion.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A file of text that appears whole or not at all.
+// Text files that are written atomically.
 #pragma once
 
 #include <filesystem>

@@ -21,7 +21,7 @@ struct PoseConsistencyRow {
   Vector3d orientation_sigma_rad = Vector3d::Zero();
   Vector3d position_error_m = Vector3d::Zero();
   Vector3d position_sigma_m = Vector3d::Zero();
-  double orientation_nees = 0;  ///< per degree of freedom: 1 on average if the covariance is honest
+  double orientation_nees = 0;  ///< per degree of freedom: 1 on average if the covariance is consistent
   double position_nees = 0;
 };
 

@@ -89,7 +89,7 @@ Result<int> run(const MeshVerbOptions& options) {
 void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
   verb.add_option(
           "--align", options.align,
-          "What moves the reconstruction: none, file (--transform), trajectory (--trajectories), or icp "
+          "Alignment of the reconstruction: none, file (--transform), trajectory (--trajectories), or icp "
           "(onto the true surface, rigidly; from there if one of these is given)")
       ->check(CLI::IsMember({"none", "file", "trajectory", "icp"}))
       ->type_name("MODE")
@@ -102,7 +102,7 @@ void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
       ->expected(2)
       ->type_name("TRUTH ESTIMATE");
   verb.add_option("--icp-kept", options.icp_kept,
-                  fmt::format("Of the points, those nearest to the truth that icp counts [{}]",
+                  fmt::format("Share of the points, nearest to the truth first, that icp uses [{}]",
                               mesh_error::RegistrationOptions{}.kept))
       ->check(CLI::Range(0.01, 1.0))
       ->type_name("SHARE");
@@ -113,17 +113,16 @@ void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
 }
 
 void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
-  verb.add_option(
-          "--cull", options.cull,
-          "Truth that counts: none (all of it), or what true poses of a recording have in their frustum, "
-          "see without occlusion by the truth, or have measured in their depth images")
+  verb.add_option("--cull", options.cull,
+                  "Culling of the true surface by the true poses of a recording: none, frustum, occlusion "
+                  "(visible in the truth), or depth (measured in the depth images)")
       ->check(CLI::IsMember({"none", "frustum", "occlusion", "depth"}))
       ->type_name("MODE")
       ->capture_default_str();
   verb.add_option("--recording", options.recording,
-                  "Folder of the recording that --cull looks from, or the name of one under --data")
+                  "Folder of the recording of --cull, or the name of one under --data")
       ->type_name("REC");
-  verb.add_option("--cull-every", options.cull_every, "Looks from every N-th frame")
+  verb.add_option("--cull-every", options.cull_every, "Uses every N-th frame for --cull")
       ->check(CLI::PositiveNumber)
       ->type_name("N")
       ->capture_default_str();
@@ -134,7 +133,7 @@ void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
       ->type_name("MIN MAX")
       ->capture_default_str();
   verb.add_option("--min-observed", options.least_observed,
-                  "Share of the truth that must be observed for its completeness to mean something")
+                  "Share of the truth that must be observed for completeness to be valid")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("SHARE")
       ->capture_default_str();
@@ -146,9 +145,10 @@ void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
 
 console::Verb add_eval_mesh_verb(CLI::App& eval) {
   auto options = std::make_shared<MeshVerbOptions>();
-  CLI::App* verb = eval.add_subcommand(
-      "mesh", "Accuracy and completeness of a mesh by exact distances (CloudCompare C2M, SurfReg, F scores)");
-  verb->add_option("RECONSTRUCTION", options->reconstruction, "Mesh to judge, .ply or .obj")->required();
+  CLI::App* verb = eval.add_subcommand("mesh",
+                                       "Evaluates accuracy and completeness of a mesh by exact distances "
+                                       "(CloudCompare C2M, SurfReg, F scores)");
+  verb->add_option("RECONSTRUCTION", options->reconstruction, "Mesh to evaluate, .ply or .obj")->required();
   verb->add_option("GROUNDTRUTH", options->truth, "True mesh, .ply or .obj")->required();
   add_alignment_options(*verb, *options);
   verb->add_option("--thresholds", options->thresholds_m,

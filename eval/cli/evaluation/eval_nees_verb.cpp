@@ -96,7 +96,7 @@ Result<int> run(const NeesOptions& options) {
 console::Verb add_eval_nees_verb(CLI::App& eval) {
   auto options = std::make_shared<NeesOptions>();
   CLI::App* verb = eval.add_subcommand(
-      "nees", "Consistency of an estimate that comes with covariances: NEES and 3 sigma (ov_eval)");
+      "nees", "Evaluates the consistency of an estimate with covariances: NEES and 3 sigma bounds (ov_eval)");
   verb->add_option("GT", options->reference, "Reference, TUM or EuRoC")->required();
   verb->add_option("EST", options->estimate,
                    "Estimate in ov_eval's format: timestamp, position, quaternion, upper triangles of the "
@@ -105,8 +105,8 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
   std::vector<std::string> modes;
   for (const auto& [name, mode] : kNeesAlignments) modes.emplace_back(name);
   verb->add_option("--align", options->align,
-                   "What may move the estimate: none, se3, yaw (and position), or origin (the first pair); "
-                   "a fit hides part of the errors")
+                   "Alignment of the estimate: none, se3, yaw (and position), or origin (the first pair); a "
+                   "fit hides part of the errors")
       ->type_name("MODE")
       ->check(CLI::IsMember(modes))
       ->capture_default_str();

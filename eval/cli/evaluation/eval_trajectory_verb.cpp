@@ -102,17 +102,17 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
                   "Format of both files: tum, kitti, euroc or openvins; recognised if not given")
       ->type_name("NAME");
   verb.add_option("--protocol", options.protocol,
-                  "evo, tum, rpg, eth3d or kitti: decides what follows where it is not given")
+                  "evo, tum, rpg, eth3d or kitti: sets the defaults of the options below")
       ->type_name("NAME")
       ->capture_default_str();
   verb.add_option("--align", options.align,
-                  "What may move the estimate: none, se3, sim3, scale, yaw (and position) or origin")
+                  "Alignment of the estimate: none, se3, sim3, scale, yaw (and position) or origin")
       ->type_name("MODE")
       ->check(members(kAlignments));
   verb.add_flag("-a", options.evo_align, "As --align se3");
   verb.add_flag("-s", options.evo_scale, "As --align scale; -as as --align sim3");
   verb.add_flag("--align_origin", options.evo_origin, "As --align origin");
-  verb.add_option("--n_to_align", options.n_to_align, "Only the first N pairs tell the alignment")
+  verb.add_option("--n_to_align", options.n_to_align, "Computes the alignment from the first N pairs only")
       ->type_name("N");
   verb.add_option("--t_max_diff", options.t_max_diff,
                   "Largest difference of stamps (evo 0.01, tum and rpg 0.02), or gap to interpolate")
@@ -133,10 +133,10 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
 }
 
 void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
-  verb.add_option("--downsample", options.downsample, "Leaves N poses of each side before anything else")
+  verb.add_option("--downsample", options.downsample, "Downsamples each side to N poses first")
       ->type_name("N");
   verb.add_option("--motion_filter", options.motion_filter,
-                  "Leaves poses that moved by D metres or turned by A degrees since the last")
+                  "Keeps only poses that moved by D metres or turned by A degrees since the last one kept")
       ->expected(2)
       ->type_name("D A");
   verb.add_option("--project_to_plane", options.plane, "Projects both sides after the alignment")
@@ -151,7 +151,8 @@ void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
 }
 
 void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
-  verb.add_option("-d,--delta", options.delta, "How far poses are apart; default: 1 frame (evo), 1 s (tum)")
+  verb.add_option("-d,--delta", options.delta,
+                  "Interval between the poses of a pair; default: 1 frame (evo), 1 s (tum)")
       ->type_name("D");
   verb.add_option("-u,--delta_unit", options.delta_unit, "f (frames), m, d (degrees), r (radians) or s")
       ->type_name("UNIT");
@@ -159,9 +160,9 @@ void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb.add_flag("--all_pairs", options.all_pairs,
-                "Motions from every pose; with --protocol tum, to every pose");
+                "Uses all pairs: from every pose; with --protocol tum, also to every pose");
   verb.add_flag("--pairs_from_reference", options.pairs_from_reference,
-                "The reference's motions decide which are taken");
+                "Selects pairs by the motion of the reference instead of the estimate");
 }
 
 console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, const char* description) {
@@ -182,12 +183,13 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
 
 console::Verb add_eval_ate_verb(CLI::App& eval) {
   return add(eval, trajectory_error::TrajectoryMetric::ate,
-             "Absolute trajectory error (evo_ape, evaluate_ate.py)");
+             "Computes the absolute trajectory error (evo_ape, evaluate_ate.py)");
 }
 
 console::Verb add_eval_rpe_verb(CLI::App& eval) {
-  return add(eval, trajectory_error::TrajectoryMetric::rpe,
-             "Relative pose error (evo_rpe, evaluate_rpe.py), or of segments (rpg, eth3d, kitti)");
+  return add(
+      eval, trajectory_error::TrajectoryMetric::rpe,
+      "Computes the relative pose error (evo_rpe, evaluate_rpe.py), or that of segments (rpg, eth3d, kitti)");
 }
 
 }  // namespace fusebench::cli::evaluation

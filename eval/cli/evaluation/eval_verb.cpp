@@ -8,7 +8,7 @@ namespace fusebench::cli::evaluation {
 
 console::Verb add_eval_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "eval", "Evaluates a trajectory or a mesh from anywhere against its reference, by a named protocol");
+      "eval", "Evaluates a trajectory or a mesh of any system against its reference, by a named protocol");
   verb->require_subcommand(1);
   const auto metrics = std::make_shared<std::vector<console::Verb>>();
   metrics->push_back(add_eval_ate_verb(*verb));

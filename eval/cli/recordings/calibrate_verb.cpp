@@ -78,9 +78,8 @@ Result<int> run(const CalibrateVerbOptions& options) {
 
 console::Verb add_calibrate_verb(CLI::App& app) {
   auto options = std::make_shared<CalibrateVerbOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "calibrate",
-      "Finds from a recording where the camera sits on the IMU and how far their clocks are apart");
+  CLI::App* verb =
+      app.add_subcommand("calibrate", "Estimates the camera-IMU extrinsics and time offset from a recording");
   console::add_run_request(*verb, options->request);
   verb->add_option("--out", options->out,
                    "Writes the calibration of all sensors, for --calibration of other verbs or as the "

@@ -114,7 +114,7 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
       verb.add_option("--trajectory", options.request.trajectory,
                       "Camera path instead of a preset: TUM text (world z up), or a trajectory of ICL-NUIM")
           ->type_name("FILE");
-  verb.add_option("--speed", options.request.speed, "Drives the path of --trajectory that much faster")
+  verb.add_option("--speed", options.request.speed, "Speeds up the motion of --trajectory by this factor")
       ->type_name("X")
       ->needs(trajectory)
       ->capture_default_str();
@@ -131,7 +131,7 @@ void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--exposure", options.request.exposure_s, "Exposure time, which blurs motion")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option("--blur-samples", options.request.blur_samples, "Instants that an exposure is made of")
+  verb.add_option("--blur-samples", options.request.blur_samples, "Renderings that an exposure averages")
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("--rolling-shutter", options.request.rolling_shutter_s,
@@ -139,7 +139,7 @@ void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
       ->type_name("S")
       ->capture_default_str();
   verb.add_option("--time-offset", options.request.time_offset_s,
-                  "What the IMU's stamps are ahead of the images'; calibration.toml says it")
+                  "Lead of the IMU's stamps over the images', as in calibration.toml")
       ->type_name("S")
       ->capture_default_str();
   verb.add_flag("--no-noise", options.request.no_noise,
@@ -157,19 +157,17 @@ std::string kinds_of_faults() {
 }
 
 void add_fault_options(CLI::App& verb, SimulateOptions& options) {
-  verb.add_option(
-          "--fault", options.request.faults,
-          "What goes wrong from BEGIN to END, seconds from the first frame; may be given several times: " +
-              kinds_of_faults())
+  verb.add_option("--fault", options.request.faults,
+                  "Fault from BEGIN to END, seconds from the first frame; may be given several times: " +
+                      kinds_of_faults())
       ->type_name("KIND=BEGIN:END[:AMOUNT]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb.add_option("--calibration-error", options.request.calibration_error,
-                  "calibration.toml is wrong about where the camera sits on the IMU, by so many degrees and "
-                  "centimetres")
+                  "Error of the camera-IMU extrinsics in calibration.toml, in degrees and centimetres")
       ->type_name("DEG:CM");
   verb.add_option("--untold-time-offset", options.request.untold_time_offset_s,
-                  "What the IMU's stamps are ahead of the images' besides; calibration.toml does not say it")
+                  "Additional lead of the IMU's stamps over the images', not in calibration.toml")
       ->type_name("S")
       ->capture_default_str();
 }
@@ -179,7 +177,8 @@ void add_fault_options(CLI::App& verb, SimulateOptions& options) {
 console::Verb add_simulate_verb(CLI::App& app) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
-      "simulate", "Makes a recording with exact truth: images, depth, IMU, trajectory, states and mesh");
+      "simulate",
+      "Simulates a recording with exact ground truth: images, depth, IMU, trajectory, states and mesh");
   verb->add_option("--out", options->out, "Folder of the recording")->type_name("DIR")->required();
   verb->add_option("--format", options->layout,
                    "Layout and sensors: zr300 (as FMDataset), tum (RGB-D) or icl (ICL-NUIM)")

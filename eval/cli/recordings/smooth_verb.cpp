@@ -85,7 +85,8 @@ Result<int> run(const SmoothVerbOptions& options) {
 console::Verb add_smooth_verb(CLI::App& app) {
   auto options = std::make_shared<SmoothVerbOptions>();
   CLI::App* verb = app.add_subcommand(
-      "smooth", "A reference trajectory where there is no truth: a batch estimate of the whole recording");
+      "smooth",
+      "Estimates a reference trajectory of a recording without ground truth, by batch optimisation");
   console::add_run_request(*verb, options->request);
   verb->add_option("--out", options->out, "Folder for trajectory.tum, states.csv and smoothing.json")
       ->type_name("DIR")

@@ -58,15 +58,16 @@ Result<int> compare(const CompareOptions& options) {
 console::Verb add_compare_verb(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* verb = app.add_subcommand("compare",
-                                      "Compares two folders of runs and fails if something got worse. Exit "
-                                      "code: 0 all gates passed, 1 one failed, 2 "
+                                      "Compares two folders of runs and fails on a regression. Exit code: 0 "
+                                      "all gates passed, 1 one failed, 2 "
                                       "usage or gates, 3 data missing or damaged");
   verb->add_option("BASE", options->base, "Folder of runs that is the baseline")->required();
   verb->add_option("NEW", options->fresh, "Folder of runs that is compared with it")->required();
-  verb->add_option("--gates", options->gates, "What may change, and by how much [as in configs/gates.toml]")
+  verb->add_option("--gates", options->gates,
+                   "Gates: which metrics may change, and by how much [as in configs/gates.toml]")
       ->type_name("FILE.toml");
   verb->add_option("--confirm", options->confirm,
-                   "Runs of NEW made again: what was slower or larger fails only if it is so there, too")
+                   "Repeated runs of NEW: times and memory fail their gates only if these confirm it")
       ->type_name("DIR");
   verb->add_option(
           "--format", options->format,

@@ -60,8 +60,7 @@ Result<int> report(const ReportOptions& options) {
 console::Verb add_report_verb(CLI::App& app) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* verb = app.add_subcommand(
-      "report",
-      "Makes one page of a folder of runs: tables, charts, patches and meshes; it needs no network");
+      "report", "Writes a self-contained HTML page of a folder of runs: tables, charts, patches and meshes");
   verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
   verb->add_option("--out", options->out, "The page to write")->type_name("FILE.html")->required();
   verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")

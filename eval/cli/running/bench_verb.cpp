@@ -22,10 +22,9 @@ void add_slurm_options(CLI::App& verb, BenchOptions& options) {
   verb.add_option("--chunk", slurm.chunk, "With slurm: runs of one task; default: about a minute's")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  verb.add_option(
-          "--slurm-silence", slurm.silence_s,
-          "With slurm: a running task without a sign of life for so long is given up, and its runs are "
-          "submitted again")
+  verb.add_option("--slurm-silence", slurm.silence_s,
+                  "With slurm: a running task without a heartbeat for this long is cancelled, and its runs "
+                  "are submitted again")
       ->check(CLI::Range(2.0, 86400.0))
       ->type_name("S")
       ->capture_default_str();

@@ -71,12 +71,13 @@ Result<int> import(const ImportOptions& options) {
 console::Verb add_import_verb(CLI::App& app) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* verb = app.add_subcommand(
-      "import", "Puts what another system made of a recording beside our runs, evaluated the same way");
+      "import",
+      "Imports another system's trajectory and mesh as a run, evaluated like the runs of this program");
   verb->add_option("NAME", options->name, "The other system: the run's variant in tables and reports")
       ->required();
   verb->add_option("TRAJECTORY", options->trajectory, "Its poses of the colour camera (TUM, KITTI or EuRoC)")
       ->required();
-  verb->add_option("MESH", options->mesh, "Its model in the world of these poses, .ply or .obj");
+  verb->add_option("MESH", options->mesh, "Its mesh in the world frame of these poses, .ply or .obj");
   verb->add_option("--recording", options->recording,
                    "Folder of the recording, or the name of one under --data")
       ->type_name("REC")
@@ -87,7 +88,8 @@ console::Verb add_import_verb(CLI::App& app) {
   verb->add_option("--trajectory-format", options->trajectory_format,
                    "tum, kitti, euroc or openvins; recognised if not given")
       ->type_name("NAME");
-  verb->add_option("--imu", options->imu, "What it used: none, recorded or synthetic; said in every table")
+  verb->add_option("--imu", options->imu,
+                   "Inertial data that it used: none, recorded or synthetic; labels its rows in tables")
       ->check(CLI::IsMember({"none", "recorded", "synthetic"}));
   verb->add_option("--frames", options->frames, "It was given only frames A to B-1")->type_name("A:B");
   console::add_reading_options(*verb, options->reading);

@@ -72,7 +72,9 @@ Result<int> merge(const MergeOptions& options) {
 
 console::Verb add_gc_verb(CLI::App& app) {
   auto options = std::make_shared<GcOptions>();
-  CLI::App* verb = app.add_subcommand("gc", "Removes what nobody needs from a folder of runs");
+  CLI::App* verb = app.add_subcommand(
+      "gc",
+      "Removes temporary files, stale claims and, if asked, failed or outdated runs from a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder of runs")->required();
   verb->add_flag("--failed", options->garbage.failed, "Failed and damaged runs, too");
   verb->add_flag("--stale", options->garbage.stale, "Runs of other versions of the estimator, too");
@@ -83,7 +85,8 @@ console::Verb add_gc_verb(CLI::App& app) {
 
 console::Verb add_merge_verb(CLI::App& app) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* verb = app.add_subcommand("merge", "Brings runs of several folders (machines) together in one");
+  CLI::App* verb =
+      app.add_subcommand("merge", "Copies the runs of several folders (e.g. of several machines) into one");
   verb->add_option("FROM", options->from, "Folders of runs")->required();
   verb->add_option("--into", options->into, "Folder that they are copied to")->required()->type_name("DIR");
   return {verb, [options] { return merge(*options); }};

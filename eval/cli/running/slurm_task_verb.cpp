@@ -19,7 +19,9 @@ console::Verb add_slurm_task_verb(CLI::App& app) {
     engine::EngineOptions engine;
   };
   auto options = std::make_shared<TaskOptions>();
-  CLI::App* verb = app.add_subcommand("slurm-task", "What a node runs for --executor slurm; not for people");
+  CLI::App* verb = app.add_subcommand(
+      "slurm-task",
+      "Runs one task of a Slurm array (internal: called by the script that --executor slurm submits)");
   verb->add_option("INVOCATION", options->invocation, "Kept by bench")->required();
   verb->add_option("TASKS", options->tasks, "The array's task file")->required();
   verb->add_option("TASK", options->task, "Number of the task")->required();

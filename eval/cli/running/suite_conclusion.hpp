@@ -22,7 +22,7 @@ struct RunCounts {
 
 [[nodiscard]] RunCounts counts_of(const std::vector<engine::BatchOutcome>& outcomes);
 
-/// What the runs say together: the files that were asked for, the tables, and the criteria. Nothing of that
+/// Summarises the runs: the files that were asked for, the tables, and the criteria. Nothing of that
 /// is for a suite without criteria unless a file is asked for.
 [[nodiscard]] Result<std::vector<study::CriterionResult>> conclude(
     const suites::Suite& suite, const BenchOptions& options, const engine::BatchPlan& plan,

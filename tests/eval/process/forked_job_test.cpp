@@ -17,7 +17,7 @@ using namespace process;
 
 namespace {
 
-using Work = std::function<void(const JobVoice& voice)>;
+using Work = std::function<void(const JobReporter& reporter)>;
 
 JobEnd end_of(const Work& work, const JobLimits& limits = {}) {
   auto job = ForkedJob::start(work, limits);
@@ -30,9 +30,9 @@ JobEnd end_of(const Work& work, const JobLimits& limits = {}) {
 }
 
 TEST(ForkedJob, TellsWhatCameOut) {
-  const JobEnd end = end_of([](const JobVoice& voice) {
-    voice.progress(3, 7);
-    voice.finished("ok");
+  const JobEnd end = end_of([](const JobReporter& reporter) {
+    reporter.progress(3, 7);
+    reporter.finished("ok");
   });
   EXPECT_EQ(end.finished, "ok");
   EXPECT_FALSE(end.error.has_value());
@@ -41,8 +41,8 @@ TEST(ForkedJob, TellsWhatCameOut) {
 }
 
 TEST(ForkedJob, ErrorsArriveAsTheyAre) {
-  const JobEnd end = end_of([](const JobVoice& voice) {
-    voice.failed({ErrorCode::data_corrupt, "a\tmessage\nof two lines", "a hint"});
+  const JobEnd end = end_of([](const JobReporter& reporter) {
+    reporter.failed({ErrorCode::data_corrupt, "a\tmessage\nof two lines", "a hint"});
   });
   ASSERT_TRUE(end.error.has_value());
   EXPECT_EQ(end.error->code, ErrorCode::data_corrupt);
@@ -51,8 +51,8 @@ TEST(ForkedJob, ErrorsArriveAsTheyAre) {
 }
 
 TEST(ForkedJob, ACrashIsAReasonWithThePlaceAndTheLastWords) {
-  const JobEnd end = end_of([](const JobVoice& voice) {
-    voice.progress(117, 240);
+  const JobEnd end = end_of([](const JobReporter& reporter) {
+    reporter.progress(117, 240);
     std::fputs("last words\n", stderr);
     std::raise(SIGSEGV);
   });
@@ -61,25 +61,25 @@ TEST(ForkedJob, ACrashIsAReasonWithThePlaceAndTheLastWords) {
 }
 
 TEST(ForkedJob, AKillFromOutsideSaysSo) {
-  const JobEnd end = end_of([](const JobVoice&) { std::raise(SIGKILL); });
+  const JobEnd end = end_of([](const JobReporter&) { std::raise(SIGKILL); });
   EXPECT_NE(end.reason.find("killed from outside"), std::string::npos) << end.reason;
 }
 
 TEST(ForkedJob, AnExitWithoutAWordIsNoResult) {
-  const JobEnd end = end_of([](const JobVoice&) { _exit(3); });
+  const JobEnd end = end_of([](const JobReporter&) { _exit(3); });
   EXPECT_EQ(end.reason, "ended with exit code 3 and no result");
 }
 
 TEST(ForkedJob, AnExceptionIsAnError) {
-  const JobEnd end = end_of([](const JobVoice&) { throw std::runtime_error("oh"); });
+  const JobEnd end = end_of([](const JobReporter&) { throw std::runtime_error("oh"); });
   ASSERT_TRUE(end.error.has_value());
   EXPECT_EQ(end.error->code, ErrorCode::internal);
   EXPECT_EQ(end.error->message, "oh");
 }
 
 TEST(ForkedJob, AHangIsEnded) {
-  const Work hang = [](const JobVoice& voice) {
-    voice.progress(5, 9);
+  const Work hang = [](const JobReporter& reporter) {
+    reporter.progress(5, 9);
     while (true) pause();
   };
   EXPECT_EQ(end_of(hang, {.stall_s = 0.2}).reason,
@@ -90,12 +90,12 @@ TEST(ForkedJob, AHangIsEnded) {
 
 TEST(ForkedJob, ProgressIsNoHang) {
   const JobEnd end = end_of(
-      [](const JobVoice& voice) {
+      [](const JobReporter& reporter) {
         for (std::size_t i = 0; i < 8; ++i) {
-          voice.progress(i, 8);
+          reporter.progress(i, 8);
           usleep(100'000);
         }
-        voice.finished("ok");
+        reporter.finished("ok");
       },
       {.stall_s = 0.5});
   EXPECT_EQ(end.finished, "ok");
@@ -103,8 +103,8 @@ TEST(ForkedJob, ProgressIsNoHang) {
 
 TEST(ForkedJob, MemoryHasALimit) {
   const JobEnd end = end_of(
-      [](const JobVoice& voice) {
-        voice.progress(2, 3);
+      [](const JobReporter& reporter) {
+        reporter.progress(2, 3);
         std::vector<std::vector<char>> hoard;
         while (true) hoard.emplace_back(10'000'000, 'x');
       },
@@ -114,9 +114,9 @@ TEST(ForkedJob, MemoryHasALimit) {
 }
 
 TEST(ForkedJob, OutputIsKeptFromItsEnd) {
-  const JobEnd end = end_of([](const JobVoice& voice) {
+  const JobEnd end = end_of([](const JobReporter& reporter) {
     for (int i = 0; i < 100'000; ++i) std::printf("%d\n", i);
-    voice.finished("");
+    reporter.finished("");
   });
   EXPECT_TRUE(end.output.ends_with("99999\n"));
   EXPECT_LT(end.output.size(), 20'000U);

@@ -310,7 +310,7 @@ TEST_F(SharedPixelsTest, AgreeWithTheTablesCommonPixels) {
   EXPECT_DOUBLE_EQ(*study.runs[1].shared[1].motion_px, 35);  // as full saw it
 }
 
-TEST_F(SharedPixelsTest, BarsTakeFramesAboveAMotion) {
+TEST_F(SharedPixelsTest, CriteriaTakeFramesAboveAMotion) {
   Criterion criterion;
   criterion.variant = "dm";
   criterion.against = "full";

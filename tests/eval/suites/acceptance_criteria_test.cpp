@@ -19,7 +19,7 @@ constexpr const char* kHead = "[[criteria]]\ntitle = \"t\"\nvariant = \"full\"\n
 
 TEST(SuiteCriteriaTest, ReadsEveryKey) {
   const auto criteria = read(
-      "[[criteria]]\ntitle = \"t\"\ngroups = [\"a\", \"b\"]\nhalf = \"tuning\"\nvariant = \"dm\"\n"
+      "[[criteria]]\ntitle = \"t\"\ngroups = [\"a\", \"b\"]\nsplit = \"tuning\"\nvariant = \"dm\"\n"
       "metric = \"aie_common_grey\"\nstatistic = \"mean\"\nagainst = \"full\"\ncompare = \"difference\"\n"
       "of_means = true\nframes_above_px = 30\nat_least = 1.75\nat_most = 9\n");
   ASSERT_TRUE(criteria.has_value()) << criteria.error().message;
@@ -87,7 +87,7 @@ TEST(SuiteCriteriaTest, WhatMakesNoSenseIsRefusedWithItsLine) {
   refused(ate + "statistic = \"mean\"\nat_most = 1\nagainst = \"dm\"\nframes_above_px = 30\n", ":1",
           "aie_common_grey");
   refused("metric = \"aie_common_grey\"\n" + worst + "at_most = 1\n", ":1", "compares a variant with full");
-  refused(ate + worst + "at_most = 1\nhalf = \"left\"\n", ":7", "tuning");
+  refused(ate + worst + "at_most = 1\nsplit = \"left\"\n", ":7", "tuning");
 }
 
 }  // namespace

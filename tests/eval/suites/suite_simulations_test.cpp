@@ -90,7 +90,7 @@ TEST_F(SuiteSimulationsTest, WhatMakesNoSenseIsRefusedWithItsLine) {
                      "[[criteria]]\ntitle = \"t\"\ngroups = [\"slwo\"]\nvariant = \"full\"\n"
                      "metric = \"fps\"\nstatistic = \"mean\"\nat_least = 1\n",
                  ":11", "nearest: slow");
-  expect_refused("[[recordings]]\nname = \"a\"\nhalf = \"left\"\n", ":6", "held-out");
+  expect_refused("[[recordings]]\nname = \"a\"\nsplit = \"left\"\n", ":6", "held-out");
   expect_refused("[[recordings]]\nname = \"a\"\nvariants = [\"ful\"]\n", ":6", "full");
 }
 
