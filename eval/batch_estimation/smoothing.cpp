@@ -8,7 +8,7 @@
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/batch_estimation/measured_motion.hpp"
 #include "eval/text/json_text.hpp"
-#include "eval/trajectory_error/trajectory_metrics.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::batch_estimation {
 

@@ -13,7 +13,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
-#include "eval/engine/run_folders.hpp"
+#include "eval/engine/run_housekeeping.hpp"
 #include "eval/suites/experiment.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"

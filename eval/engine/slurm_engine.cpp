@@ -15,7 +15,7 @@
 #include "eval/engine/batch_ledger.hpp"
 #include "eval/engine/plan_preview.hpp"
 #include "eval/engine/run_claim.hpp"
-#include "eval/engine/slurm_queue.hpp"
+#include "eval/engine/slurm_commands.hpp"
 #include "eval/process/forked_job.hpp"
 #include "eval/record/process_meter.hpp"
 

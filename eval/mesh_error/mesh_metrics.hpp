@@ -17,7 +17,7 @@
 #include "eval/mesh_error/mesh_views.hpp"
 #include "eval/mesh_error/triangle_tree.hpp"
 #include "eval/metrics/statistics.hpp"
-#include "eval/trajectory_error/trajectory_metrics.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::mesh_error {
 

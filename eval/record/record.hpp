@@ -18,7 +18,7 @@
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/record/duration_histogram.hpp"
-#include "eval/trajectory_error/trajectory_metrics.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::record {
 

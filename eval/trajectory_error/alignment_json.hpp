@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "eval/trajectory_error/trajectory_metrics.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::trajectory_error {
 

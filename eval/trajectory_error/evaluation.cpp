@@ -5,8 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "eval/trajectory_error/ate_rpe.hpp"
 #include "eval/trajectory_error/segment_errors.hpp"
-#include "eval/trajectory_error/trajectory_metrics.hpp"
 
 namespace fusebench::trajectory_error {
 

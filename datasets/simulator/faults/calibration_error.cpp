@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 
 namespace fusebench::simulator::faults {
 
@@ -18,7 +18,7 @@ constexpr double kMax_deg = 45;
 constexpr double kMax_cm = 50;
 
 /// Uniform on the unit sphere.
-Vector3d direction(noise::RandomSequence& random) {
+Vector3d direction(random::RandomSequence& random) {
   const double z = random.uniform(-1, 1);
   const double angle = random.uniform(0, 2 * std::numbers::pi);
   const double across = std::sqrt(1 - z * z);
@@ -53,7 +53,7 @@ Result<void> check_calibration_error(const CalibrationError& error) {
 
 SE3 miscalibrated(const SE3& T_imu_camera, const CalibrationError& error, std::uint64_t seed) {
   if (error.is_zero()) return T_imu_camera;
-  noise::RandomSequence random(noise::mix_key(seed, kCalibrationError));
+  random::RandomSequence random(random::mix_key(seed, kCalibrationError));
   const Vector3d axis = direction(random);
   const Vector3d towards = direction(random);
   return {T_imu_camera.rotation * so3_exp(radians(error.rotation_deg) * axis),

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/texture/texture_patterns.hpp"
 
 namespace fusebench::simulator::faults {
@@ -31,7 +31,7 @@ double root_with_sign(double x) { return std::copysign(std::sqrt(std::abs(x)), x
 }  // namespace
 
 Hand::Hand(const PinholeCamera& color, double share, std::uint64_t seed)
-    : seed_(noise::mix_key(seed, kHand)) {
+    : seed_(random::mix_key(seed, kHand)) {
   const double scale = std::sqrt(share / kAreaOfSquare);
   const Vector2d image_m(kDistance_m * color.width_px / color.fx_px,
                          kDistance_m * color.height_px / color.fy_px);
@@ -43,7 +43,7 @@ Hand::Hand(const PinholeCamera& color, double share, std::uint64_t seed)
   // A turned card needs a little of the free margin itself.
   const Vector2d corner_m = turn_rad_ * half_m_.reverse();
   reach_m_ = (0.5 * free * image_m - corner_m).cwiseMax(0.0).cwiseMin(kMaxReach_m);
-  noise::RandomSequence random(seed_);
+  random::RandomSequence random(seed_);
   for (double& phase : phase_rad_) phase = random.uniform(0, 2 * std::numbers::pi);
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 
 namespace fusebench::simulator::motion {
 
@@ -35,8 +35,8 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
                    const std::array<double, 3>& position_weight)
     : options_(options) {
   const auto random = [seed](std::uint64_t stream, std::uint64_t index, double low, double high) {
-    return low + (high - low) * noise::unit_interval(noise::mix_key(
-                                    noise::mix_key(noise::mix_key(seed, kPurpose), stream), index));
+    return low + (high - low) * random::unit_interval(random::mix_key(
+                                    random::mix_key(random::mix_key(seed, kPurpose), stream), index));
   };
   // Every sine has the same share of the velocity, so that no frequency of the band dominates it.
   const auto sines = [&](std::uint64_t stream, const FrequencyBand& band, double weight) {

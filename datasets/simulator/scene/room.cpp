@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/scene/room_builder.hpp"
 #include "datasets/simulator/scene/room_furniture.hpp"
 #include "datasets/simulator/scene/room_lighting.hpp"
@@ -28,8 +28,8 @@ struct Wall {
 class RoomPlan {
  public:
   explicit RoomPlan(std::uint64_t seed)
-      : random_(noise::mix_key(seed, 1)),
-        textures_(paint_room_textures(builder_, noise::mix_key(seed, 2))),
+      : random_(random::mix_key(seed, 1)),
+        textures_(paint_room_textures(builder_, random::mix_key(seed, 2))),
         furnisher_(builder_, textures_, random_),
         half_x_m_(random_.uniform(2.4, 2.7)),
         half_y_m_(random_.uniform(2.4, 2.7)),
@@ -151,7 +151,7 @@ class RoomPlan {
     furnisher_.cabinet(placed(w.T_room_wall, {0.5 * w.length_m - 0.6, 0.24, 0}), 0.9, 0.6);
   }
 
-  noise::RandomSequence random_;
+  random::RandomSequence random_;
   RoomBuilder builder_;
   RoomTextures textures_;
   Furnisher furnisher_;

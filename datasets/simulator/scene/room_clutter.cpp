@@ -14,10 +14,10 @@ SE3 tilted(const SE3& T, const Vector3d& angles_rad) { return T * SE3{so3_exp(an
 
 }  // namespace
 
-Clutter::Clutter(RoomBuilder& builder, const RoomTextures& textures, noise::RandomSequence& random,
+Clutter::Clutter(RoomBuilder& builder, const RoomTextures& textures, random::RandomSequence& random,
                  std::uint64_t key)
     : builder_(builder), textures_(textures), random_(random) {
-  noise::RandomSequence seeds(key);
+  random::RandomSequence seeds(key);
   // Bold shapes: what is printed small only adds noise when it is seen from near.
   constexpr int kPictures = 7;
   for (int i = 0; i < kPictures; ++i)

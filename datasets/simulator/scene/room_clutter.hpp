@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/scene/room_builder.hpp"
 #include "datasets/simulator/scene/room_furniture.hpp"
 
@@ -15,7 +15,7 @@ namespace fusebench::simulator::scene {
 class Clutter {
  public:
   /// Paints labels of its own; their patterns are a function of the key.
-  Clutter(RoomBuilder& builder, const RoomTextures& textures, noise::RandomSequence& random,
+  Clutter(RoomBuilder& builder, const RoomTextures& textures, random::RandomSequence& random,
           std::uint64_t key);
 
   /// A row of things from wall to front on a board of the given clear size (width, depth, height), with gaps
@@ -47,7 +47,7 @@ class Clutter {
 
   RoomBuilder& builder_;
   const RoomTextures& textures_;
-  noise::RandomSequence& random_;
+  random::RandomSequence& random_;
   std::vector<std::int32_t> labels_;
 };
 

@@ -7,14 +7,14 @@ namespace fusebench::simulator::scene {
 namespace {
 
 /// One of a list of sRGB colours.
-Eigen::Vector3f pick(noise::RandomSequence& random, std::initializer_list<std::uint32_t> colors) {
+Eigen::Vector3f pick(random::RandomSequence& random, std::initializer_list<std::uint32_t> colors) {
   return texture::reflectance_of(colors.begin()[random.below(static_cast<int>(colors.size()))]);
 }
 
 }  // namespace
 
 RoomTextures paint_room_textures(RoomBuilder& builder, std::uint64_t key) {
-  noise::RandomSequence random(key);
+  random::RandomSequence random(key);
   const auto seed = [&] { return random.bits(); };
   RoomTextures t;
   t.plain = builder.add_texture(texture::paint_plain(pick(random, {0xd9d4c7, 0xcfd6d9, 0xd8cfc4})));

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/scene/room_builder.hpp"
 
 namespace fusebench::simulator::scene {
@@ -41,7 +41,7 @@ struct RoomTextures {
 /// Builds furniture with random details.
 class Furnisher {
  public:
-  Furnisher(RoomBuilder& builder, const RoomTextures& textures, noise::RandomSequence& random)
+  Furnisher(RoomBuilder& builder, const RoomTextures& textures, random::RandomSequence& random)
       : builder_(builder), textures_(textures), random_(random) {}
 
   // Large pieces (room_furniture.cpp).
@@ -76,7 +76,7 @@ class Furnisher {
 
   RoomBuilder& builder_;
   const RoomTextures& textures_;
-  noise::RandomSequence& random_;
+  random::RandomSequence& random_;
 };
 
 }  // namespace fusebench::simulator::scene

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <utility>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/scene/room_builder.hpp"
 #include "datasets/simulator/scene/room_clutter.hpp"
 #include "datasets/simulator/scene/room_furniture.hpp"
@@ -30,10 +30,10 @@ constexpr double kSlab_m = 0.22;
 class StorageRoomPlan {
  public:
   explicit StorageRoomPlan(std::uint64_t seed)
-      : random_(noise::mix_key(seed, 5)),
-        textures_(paint_room_textures(builder_, noise::mix_key(seed, 6))),
+      : random_(random::mix_key(seed, 5)),
+        textures_(paint_room_textures(builder_, random::mix_key(seed, 6))),
         furnisher_(builder_, textures_, random_),
-        clutter_(builder_, textures_, random_, noise::mix_key(seed, 7)) {}
+        clutter_(builder_, textures_, random_, random::mix_key(seed, 7)) {}
 
   SimulatedScene build() {
     shell();
@@ -124,7 +124,7 @@ class StorageRoomPlan {
                        random_.uniform(0.1, 0.3));
   }
 
-  noise::RandomSequence random_;
+  random::RandomSequence random_;
   RoomBuilder builder_;
   RoomTextures textures_;
   Furnisher furnisher_;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 
 namespace fusebench::simulator::sensors {
@@ -114,12 +114,12 @@ struct Exposure {
     const bool noisy = sensor.read_noise_grey > 0 || sensor.shot_noise > 0;
     const auto read2 = static_cast<float>(sensor.read_noise_grey * sensor.read_noise_grey);
     const auto shot2 = static_cast<float>(sensor.shot_noise * sensor.shot_noise);
-    const noise::NormalTable& normal = noise::NormalTable::instance();
+    const random::NormalTable& normal = random::NormalTable::instance();
     for (int u = 0; u < image.width; ++u) {
       const double r2 = ((u - centre_x) * (u - centre_x) + y2) / corner2;
       const float factor = gain * static_cast<float>(1.0 - sensor.vignetting * r2);
       std::array<float, 3> draws{};
-      if (noisy) draws = normal.triple(noise::mix_key(noise_key, image.index(u, row)));
+      if (noisy) draws = normal.triple(random::mix_key(noise_key, image.index(u, row)));
       for (std::size_t c = 0; c < 3; ++c) {
         const float value = factor * light[static_cast<std::size_t>(u)][static_cast<Eigen::Index>(c)];
         const SrgbEncoder::Encoded at = encoder(value);
@@ -147,7 +147,7 @@ double exposure_gain(double drift, std::int64_t capture_ns, std::uint64_t seed) 
   double sum = 0;
   for (std::size_t i = 0; i < kPeriodAndShare.size(); ++i) {
     const auto [period_s, share] = kPeriodAndShare[i];
-    const double phase = noise::unit_interval(noise::mix_key(noise::mix_key(seed, kGainPhase), i));
+    const double phase = random::unit_interval(random::mix_key(random::mix_key(seed, kGainPhase), i));
     sum += share * std::sin(2 * std::numbers::pi * (t / period_s + phase));
   }
   return 1 + drift * sum;
@@ -166,7 +166,7 @@ ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sen
       .motion = motion,
       .T_body_camera = T_body_camera,
       .capture_ns = capture_ns,
-      .noise_key = noise::mix_key(noise::mix_key(seed, kPixelNoise), frame),
+      .noise_key = random::mix_key(random::mix_key(seed, kPixelNoise), frame),
       .gain = static_cast<float>(sensor.gain * exposure_gain(sensor.gain_drift, capture_ns, seed)),
       .rays = rays::RayField(sensor.camera, workers),
       .offsets = sample_offsets(sensor.blur_samples),

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 #include "datasets/simulator/sensors/noise_depth.hpp"
 
@@ -71,7 +71,7 @@ Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSe
   if (before != nullptr)
     put_before(seen_by(before->surface, sensor, capture_ns, before->T_object_camera, workers), surfaces);
   const DepthImage depth_m =
-      measured_depth(surfaces, sensor, noise::mix_key(noise::mix_key(seed, kDepthNoise), frame), workers);
+      measured_depth(surfaces, sensor, random::mix_key(random::mix_key(seed, kDepthNoise), frame), workers);
   Image<std::uint16_t> raw(depth_m.width, depth_m.height);
   std::ranges::transform(depth_m.data, raw.data.begin(),
                          [&](float depth) { return raw_value(depth, sensor.units_per_metre); });

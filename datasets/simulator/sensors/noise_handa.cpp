@@ -18,7 +18,7 @@
 #include <array>
 #include <cmath>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/noise_depth.hpp"
 
 namespace fusebench::simulator::sensors {
@@ -54,10 +54,10 @@ void for_rows(const Workers& workers, int rows, const Fill& fill) {
 DepthImage quantised_disparity(const Image<render::Renderer::Surface>& surfaces, float focal_baseline,
                                std::uint64_t key, const Workers& workers) {
   DepthImage disparity_px(surfaces.width, surfaces.height);
-  const noise::NormalTable& normal = noise::NormalTable::instance();
+  const random::NormalTable& normal = random::NormalTable::instance();
   for_rows(workers, surfaces.height, [&](int v) {
     for (int u = 0; u < surfaces.width; ++u) {
-      const std::array<float, 3> shift = normal.triple(noise::mix_key(key, surfaces.index(u, v)));
+      const std::array<float, 3> shift = normal.triple(random::mix_key(key, surfaces.index(u, v)));
       const float x = std::clamp(static_cast<float>(u) + kShift_px * shift[0], 0.0F,
                                  static_cast<float>(surfaces.width - 1));
       const float y = std::clamp(static_cast<float>(v) + kShift_px * shift[1], 0.0F,
@@ -91,7 +91,7 @@ Image<Dot> dot_pattern(int columns, int rows) {
   Image<Dot> dots(columns, rows);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const std::uint64_t bits = noise::mix_key(kDots, dots.index(column, row));
+      const std::uint64_t bits = random::mix_key(kDots, dots.index(column, row));
       dots(column, row) = {kCell * column + static_cast<int>(bits % kCell),
                            kCell * row + static_cast<int>((bits >> 32) % kCell)};
     }
@@ -168,7 +168,7 @@ DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfac
                                   const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
   const auto focal_baseline = static_cast<float>(camera.fx_px * kBaseline_m);
   const DepthImage disparity_px =
-      quantised_disparity(surfaces, focal_baseline, noise::mix_key(key, kShiftNoise), workers);
+      quantised_disparity(surfaces, focal_baseline, random::mix_key(key, kShiftNoise), workers);
   const Image<Dot> dots = dot_pattern(surfaces.width / kCell, surfaces.height / kCell);
   DepthImage dots_px(dots.width, dots.height);
   for_rows(workers, dots_px.height, [&](int row) {
@@ -176,15 +176,15 @@ DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfac
       dots_px(column, row) = measured_at(disparity_px, dots, dots(column, row));
     }
   });
-  const noise::NormalTable& normal = noise::NormalTable::instance();
-  const std::uint64_t step_key = noise::mix_key(key, kStepNoiseKey);
+  const random::NormalTable& normal = random::NormalTable::instance();
+  const std::uint64_t step_key = random::mix_key(key, kStepNoiseKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
   for_rows(workers, depth_m.height, [&](int v) {
     for (int u = 0; u < depth_m.width; ++u) {
       const float disparity = filled_at(dots_px, dots, u, v);
       if (disparity <= 0) continue;
       depth_m(u, v) =
-          kinect_depth_m(focal_baseline / disparity, normal(noise::mix_key(step_key, depth_m.index(u, v))));
+          kinect_depth_m(focal_baseline / disparity, normal(random::mix_key(step_key, depth_m.index(u, v))));
     }
   });
   return depth_m;

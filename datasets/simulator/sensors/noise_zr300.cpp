@@ -17,7 +17,7 @@
 #include <cmath>
 #include <vector>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/noise_depth.hpp"
 
 namespace fusebench::simulator::sensors {
@@ -60,7 +60,7 @@ class SmoothNoise {
  private:
   [[nodiscard]] float knot(int column, int row) const {
     const auto counter = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column);
-    return noise::NormalTable::instance()(noise::mix_key(key_, counter));
+    return random::NormalTable::instance()(random::mix_key(key_, counter));
   }
   std::uint64_t key_;
 };
@@ -116,8 +116,8 @@ DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
                          [&](const render::Renderer::Surface& surface) {
                            return surface.depth_m > 0 ? focal_baseline / surface.depth_m : 0.0F;
                          });
-  const SmoothNoise noise(noise::mix_key(key, kFieldKey));
-  const std::uint64_t fade_key = noise::mix_key(key, kFadeKey);
+  const SmoothNoise noise(random::mix_key(key, kFieldKey));
+  const std::uint64_t fade_key = random::mix_key(key, kFadeKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
   workers.for_chunks(
       static_cast<std::size_t>(surfaces.height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -130,7 +130,7 @@ DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
               continue;
             }
             const float fade = faded(surface.depth_m);
-            if (noise::unit_interval(noise::mix_key(fade_key, surfaces.index(u, v))) <
+            if (random::unit_interval(random::mix_key(fade_key, surfaces.index(u, v))) <
                 static_cast<double>(fade))
               continue;
             const float exact = disparity_px(u, v) + kDisparityNoise_px * (1 + fade) * noise.at(u, v);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/texture/texture.hpp"
 
 namespace fusebench::simulator::texture {
@@ -22,7 +22,7 @@ constexpr std::array<std::uint32_t, 14> kPalette = {0x8c2f2b, 0x1f4e79, 0x2f6b4f
 Color palette_color(std::uint64_t bits) { return reflectance_of(kPalette[bits % kPalette.size()]); }
 
 float random_unit(std::uint64_t seed, std::uint64_t counter) {
-  return static_cast<float>(noise::unit_interval(noise::mix_key(seed, counter)));
+  return static_cast<float>(random::unit_interval(random::mix_key(seed, counter)));
 }
 
 Color blend(const Color& a, const Color& b, float t) { return a + t * (b - a); }
@@ -58,7 +58,7 @@ struct Shape {
   float turn = 0;
   Color color;
 
-  static Shape random(noise::RandomSequence& random) {
+  static Shape random(random::RandomSequence& random) {
     const auto f = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
     Shape shape;
     shape.kind = random.below(3);
@@ -198,7 +198,7 @@ ReflectanceImage paint_fabric(int side, const Color& color, const Color& stripe,
 
 ReflectanceImage paint_rug(int side, const Color& ground, const Color& figure, std::uint64_t seed) {
   const TorusNoise pile{.seed = seed, .cells = 32, .octaves = 4, .gain = 0.9F};
-  const Color accent = palette_color(noise::mix_bits(seed));
+  const Color accent = palette_color(random::mix_bits(seed));
   return paint(side, [&](float u, float v) {
     const float edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v));
     const float x = std::abs(u - 0.5F);
@@ -214,7 +214,7 @@ ReflectanceImage paint_rug(int side, const Color& ground, const Color& figure, s
 }
 
 ReflectanceImage paint_picture(int side, std::uint64_t seed) {
-  noise::RandomSequence random(seed);
+  random::RandomSequence random(seed);
   const Color top = palette_color(random.bits());
   const Color bottom = palette_color(random.bits());
   std::vector<Shape> shapes;
@@ -234,7 +234,7 @@ ReflectanceImage paint_page(int side, std::uint64_t seed) {
   const Color ink = reflectance_of(0x22242c);
   const Color paper = reflectance_of(0xe9e5da);
   const Shape figure = [&] {
-    noise::RandomSequence random(seed);
+    random::RandomSequence random(seed);
     Shape shape = Shape::random(random);
     shape.kind = 1;
     shape.turn = 0;
@@ -272,7 +272,7 @@ ReflectanceImage paint_spines(int side, std::uint64_t seed) {
   const TorusNoise wear{.seed = seed, .cells = 16, .octaves = 4, .gain = 0.8F};
   return paint(side, [&](float u, float v) {
     const auto band = static_cast<std::uint64_t>(u * kBands);
-    const std::uint64_t bits = noise::mix_key(seed, band);
+    const std::uint64_t bits = random::mix_key(seed, band);
     const Color cover = palette_color(bits);
     const Color print = palette_color(bits >> 8);
     const float across = fraction(u * kBands);

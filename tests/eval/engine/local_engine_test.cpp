@@ -12,7 +12,7 @@
 #include "eval/engine/invocation.hpp"
 #include "eval/engine/plan_preview.hpp"
 #include "eval/engine/run_claim.hpp"
-#include "eval/engine/run_folders.hpp"
+#include "eval/engine/run_housekeeping.hpp"
 #include "tests/datasets/formats/tum/tum_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
 

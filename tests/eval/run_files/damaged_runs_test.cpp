@@ -9,7 +9,7 @@
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/compare/comparison.hpp"
-#include "eval/engine/run_folders.hpp"
+#include "eval/engine/run_housekeeping.hpp"
 #include "eval/metrics/intensity_file.hpp"
 #include "eval/report/results_page.hpp"
 #include "eval/run_files/record_files.hpp"

@@ -8,7 +8,7 @@
 
 #include "core/trajectory/association.hpp"
 #include "core/trajectory/trajectory_file.hpp"
-#include "eval/trajectory_error/trajectory_metrics.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 #include "tests/support/trajectory_vectors.hpp"
 
 namespace fusebench {

@@ -4,13 +4,13 @@
 
 #include <cmath>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/texture/texture_patterns.hpp"
 #include "tests/datasets/simulator/simple_scenes.hpp"
 
 namespace fusebench {
 
-using namespace simulator::noise;
+using namespace simulator::random;
 using namespace simulator::texture;
 using namespace simulator::scene;
 using namespace simulator::render;

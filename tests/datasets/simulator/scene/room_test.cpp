@@ -6,14 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/rays/ray_caster.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 #include "tests/datasets/simulator/simple_scenes.hpp"
 
 namespace fusebench {
 
-using namespace simulator::noise;
+using namespace simulator::random;
 using namespace simulator::rays;
 using namespace simulator::scene;
 using namespace simulator::render;

@@ -1,4 +1,4 @@
-#include "eval/trajectory_error/trajectory_metrics.hpp"
+#include "eval/trajectory_error/ate_rpe.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace fusebench::simulator::noise {
+namespace fusebench::simulator::random {
 
 /// The finaliser of SplitMix64 (Steele et al., OOPSLA 2014): every bit of the input moves every bit of the
 /// output.
@@ -65,4 +65,4 @@ class NormalTable {
   std::array<float, 4097> quantile_{};
 };
 
-}  // namespace fusebench::simulator::noise
+}  // namespace fusebench::simulator::random

@@ -1,8 +1,8 @@
-#include "datasets/simulator/noise/noise.hpp"
+#include "datasets/simulator/random/random_numbers.hpp"
 
 #include <cmath>
 
-namespace fusebench::simulator::noise {
+namespace fusebench::simulator::random {
 
 namespace {
 
@@ -35,4 +35,4 @@ const NormalTable& NormalTable::instance() {
   return table;
 }
 
-}  // namespace fusebench::simulator::noise
+}  // namespace fusebench::simulator::random

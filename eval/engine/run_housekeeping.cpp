@@ -1,4 +1,4 @@
-#include "eval/engine/run_folders.hpp"
+#include "eval/engine/run_housekeeping.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "eval/engine/slurm_queue.hpp"
+#include "eval/engine/slurm_commands.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
