@@ -39,16 +39,17 @@ function(fusebench_precompile target headers level)
   endif()
 endfunction()
 
-# fusebench_room(FOLDER [PROGRAM] [USES ROOM...] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [SOURCES FILE...] [OPTIMIZE LEVEL]
+# fusebench_room(FOLDER [PROGRAM] [UNITY] [USES ROOM...] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [SOURCES FILE...] [OPTIMIZE LEVEL]
 #                [HEADERS SET])
 # Defines the library fusebench_<last name of FOLDER> of all sources in FOLDER (PROGRAM: the program fusebench).
+#   UNITY     five sources are compiled at a time (of rooms whose libraries take longer to read than they do)
 #   USES      last names of the rooms that its files include
 #   SOURCES   generated files beside those of the folder
 #   OPTIMIZE  level of a release build, 3 unless given. Rooms that only read, write and print take 1: half the time to compile,
 #             and not a bit of difference in what they compute.
 #   HEADERS   precompiled headers (see above), "values" unless given; "none" for rooms whose libraries define macros
 function(fusebench_room folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;TOGETHER" "OPTIMIZE;HEADERS" "USES;PUBLIC;PRIVATE;SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;UNITY" "OPTIMIZE;HEADERS" "USES;PUBLIC;PRIVATE;SOURCES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "fusebench_room(${folder}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -77,7 +78,7 @@ function(fusebench_room folder)
     set(level ${arg_OPTIMIZE})
     target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   endif()
-  if(arg_TOGETHER)
+  if(arg_UNITY)
     set_target_properties(${room} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
   endif()
   target_link_libraries(${room} PUBLIC ${used} ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
