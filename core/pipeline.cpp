@@ -114,7 +114,7 @@ Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
 health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
                                             health::FrameReport& report) {
   if (!tracking->estimate) return health::FrameStatus::initialised;
-  // As after a gap, nobody knows how fast a recording begins.
+  // As after a gap, the velocity at the start of a recording is unknown.
   const bool after_gap = tracking->lost_frames > 0 || tracking->frames == 1;
   if (track(predicted, after_gap, report)) return health::FrameStatus::tracked;
   return relocalise(predicted, report) ? health::FrameStatus::relocalised : health::FrameStatus::lost;

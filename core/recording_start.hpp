@@ -4,7 +4,7 @@
 // tracked from are lost, until there is one that can be the first. If then nothing is tracked from it either
 // (it was only dim), the estimator starts again at a later frame.
 //
-// A recording that starts in motion starts with a velocity that nobody knows. The first two frames tell it,
+// A recording that starts in motion starts with an unknown velocity. The first two frames tell it,
 // so they are processed again with it: the first one is then compensated properly, and the second one
 // predicted well.
 #pragma once

@@ -5,7 +5,7 @@
 
 namespace fusebench::config {
 
-/// Patches: where they are, how large, when they are honest.
+/// Patches: placement, size, and validity thresholds.
 struct PatchConfig {
   int max_count = 100;
   int size_px = 10;

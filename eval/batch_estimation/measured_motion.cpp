@@ -62,7 +62,7 @@ Result<MeasuredMotion> measure_motion(const recording::Recording& recording, con
   measured.input.imu_noise = recording.rig.imu_noise;
   measured.input.T_imu_camera = recording.rig.T_imu_camera;
   MotionCollector collector(measured, recording.rig.T_imu_camera);
-  // With an IMU that is hardly heard nothing would hold against a place that only looks like another.
+  // With an IMU of so little weight nothing would contradict a place that only looks like another.
   config::Config measuring = config;
   measuring.terms.relocalisation = false;
   core::Pipeline pipeline(measuring, recording.rig, recording.imu, workers);

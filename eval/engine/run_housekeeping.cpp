@@ -41,7 +41,7 @@ bool has_name_of_run(const fs::path& folder) {
 }
 
 bool is_garbage(const fs::path& folder, const run::RecordHead& head, const Garbage& garbage) {
-  if (head.state == run_files::RunState::unreadable) return false;  // what it is, nobody knows
+  if (head.state == run_files::RunState::unreadable) return false;  // unknown content
   if (head.state == run_files::RunState::damaged) return garbage.failed && has_name_of_run(folder);
   if (garbage.failed && head.status == record::RunStatus::failed) return true;
   if (!garbage.stale) return false;
