@@ -30,7 +30,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if ((${#objects[@]} == 0)); then
   cmake --preset odr >/dev/null || exit 2
   # Not the libraries and the program: for these the linker would generate all of the code.
-  mapfile -t objects < <(sed -n 's|^ *"command": ".* -o \([^ ]*\) -c .*|\1|p' build/odr/compile_commands.json)
+  mapfile -t objects < <(sed -n 's|^ *"command": ".* -o \([^ ]*\) -c .*|\1|p' build/odr/compile_commands.json |
+    grep -v '\.gch$')  # precompiled headers are no objects
   ninja -C build/odr -j "$jobs" --quiet "${objects[@]}" || exit 2
   cd build/odr
 fi

@@ -182,7 +182,7 @@ says() {
   "$binary" "$@" >stdout 2>stderr
   status=$?
   ((status == code)) || complain "$*: exit code $status instead of $code"
-  cat stdout stderr | grep -qE -- "$pattern" || complain "$*: does not print '$pattern'"
+  grep -qE -- "$pattern" stdout stderr || complain "$*: does not print '$pattern'"
 }
 
 check_verbs() {
