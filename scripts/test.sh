@@ -11,7 +11,7 @@ Usage: scripts/test.sh [--tidy] [--odr]
 
 Installs missing packages, builds the preset ci (release with warnings as errors and tests) and runs every check.
   --tidy    install clang-tidy-19 if it is missing, and run it over core, datasets and eval as well (slow)
-  --odr     let the linker compare the definitions of all objects as well (scripts/check_odr.sh: 17 CPU minutes)
+  --odr     let the linker compare the definitions of all objects as well (scripts/check_odr.sh: 7 minutes on two cores)
 Tests on real recordings read the folder FUSEBENCH_DATA; where it is not set they are reported as skipped.
 Exit code: 0 when everything passed, 1 otherwise.
 TEXT
