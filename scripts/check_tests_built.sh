@@ -24,6 +24,10 @@ if [[ ! -f $commands ]]; then
   exit 2
 fi
 compiled=$(sed -n 's|^ *"file": "\(.*\)",\{0,1\}$|\1|p' "$commands")
+# Several files that are compiled as one: CMake writes a file that includes them.
+while read -r unity; do
+  compiled+=$'\n'$(sed -n 's|^#include "\(.*\)"$|\1|p' "$unity")
+done < <(grep '/Unity/unity_[^/]*\.cxx$' <<<"$compiled")
 count=0
 missing=0
 while read -r file; do

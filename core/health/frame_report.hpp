@@ -11,7 +11,7 @@
 #include "core/base/intensity_residual.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/filter/iekf.hpp"
-#include "core/health/frame_health.hpp"
+#include "core/health/frame_diagnosis.hpp"
 #include "core/health/stage_times.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/patches/patches.hpp"

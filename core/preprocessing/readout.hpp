@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/base/types.hpp"
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "core/simd/lane_points.hpp"
 
 namespace fusebench::preprocessing {

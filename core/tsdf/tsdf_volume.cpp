@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/preprocessing/depth_gates.hpp"
-#include "core/tsdf/voxel_update.hpp"
+#include "core/tsdf/voxel_fusion.hpp"
 
 namespace fusebench::tsdf {
 namespace {

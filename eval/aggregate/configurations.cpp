@@ -12,25 +12,25 @@ namespace fusebench::aggregate {
 
 namespace {
 
-struct Key {
+struct ConfigurationKey {
   std::size_t rank = 0;
   std::string variant;
   RunOptions options;
 
-  bool operator<(const Key& other) const {
+  bool operator<(const ConfigurationKey& other) const {
     if (variant != other.variant) return std::tie(rank, variant) < std::tie(other.rank, other.variant);
     return RunOptionsLess()(options, other.options);
   }
 };
 
-struct Tally {
+struct RecordingTally {
   std::size_t runs = 0;
   std::vector<double> values;  ///< of ok runs
 };
 
-using Tallies = std::map<std::string, Tally>;  // by recording
+using Tallies = std::map<std::string, RecordingTally>;  // by recording
 
-ConfigurationSummary summary_of(const Key& key, const Tallies& tallies,
+ConfigurationSummary summary_of(const ConfigurationKey& key, const Tallies& tallies,
                                 const std::vector<std::string>& recordings) {
   ConfigurationSummary summary;
   summary.variant = key.variant;
@@ -42,7 +42,7 @@ ConfigurationSummary summary_of(const Key& key, const Tallies& tallies,
       summary.not_run.push_back(recording);
       continue;
     }
-    const Tally& tally = found->second;
+    const RecordingTally& tally = found->second;
     summary.n_total += tally.runs;
     summary.n_ok += tally.values.size();
     if (tally.values.size() < tally.runs) summary.failed.push_back(recording);
@@ -67,13 +67,14 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
     bool any_value = false;
   };
   std::map<std::string, std::size_t> ranks;
-  std::map<Key, Tallies> tallies;
+  std::map<ConfigurationKey, Tallies> tallies;
   std::map<std::string, Recording> recordings;
   for (const RunRow* run : runs) {
     if (!run->attributable()) continue;
     const auto [rank, is_new] = ranks.try_emplace(run->variant, 0);
     if (is_new) rank->second = run_files::variant_rank(run->variant);
-    Tally& tally = tallies[Key{rank->second, run->variant, run->options}][run->recording];
+    RecordingTally& tally =
+        tallies[ConfigurationKey{rank->second, run->variant, run->options}][run->recording];
     Recording& recording = recordings[run->recording];
     ++tally.runs;
     if (run->status != record::RunStatus::ok) continue;

@@ -36,13 +36,13 @@ EffectMean mean_for(std::span<const RunRow> rows, const RunMetric& metric) {
 }
 
 std::vector<SweptRun> swept_runs(std::span<const RunRow> rows, const RunMetric& metric, EffectMean mean) {
-  using Key = std::pair<std::string_view, std::string_view>;  // recording, variant
-  std::map<Key, std::vector<double>> values;
+  using RunKey = std::pair<std::string_view, std::string_view>;  // recording, variant
+  std::map<RunKey, std::vector<double>> values;
   for (const RunRow& row : rows) {
     if (!row.attributable()) continue;
     if (const auto value = value_of(row, metric)) values[{row.recording, row.variant}].push_back(*value);
   }
-  std::map<Key, double> means;
+  std::map<RunKey, double> means;
   for (const auto& [key, of_key] : values) means[key] = mean_of(of_key, mean);
   std::vector<SweptRun> runs;
   for (const RunRow& row : rows) {

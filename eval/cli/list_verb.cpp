@@ -14,7 +14,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/engine/run_housekeeping.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "eval/engine/job_outcome.hpp"
-#include "eval/suites/suite_runs.hpp"
+#include "eval/suites/run_selection.hpp"
 
 namespace fusebench::engine {
 

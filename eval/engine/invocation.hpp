@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/engine/job_plan.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 namespace fusebench::engine {
 

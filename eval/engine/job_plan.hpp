@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "eval/run/run.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 #include "eval/suites/sweep_design.hpp"
 
 namespace fusebench::engine {

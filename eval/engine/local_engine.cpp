@@ -136,7 +136,7 @@ class Engine {
     if (tidied_.insert(run.folder.parent_path()).second) io::remove_abandoned(run.folder.parent_path());
   }
 
-  /// Until something is to be heard, or it is time to look at clocks and at Ctrl-C.
+  /// Until a job has written something, or it is time to look at clocks and at Ctrl-C.
   void listen() const {
     std::vector<pollfd> descriptors;
     for (const RunningJob& job : running_) descriptors.push_back({job.process.descriptor(), POLLIN, 0});

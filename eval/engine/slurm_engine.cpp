@@ -49,7 +49,7 @@ struct Awaited {
 struct Chunk {
   std::vector<std::size_t> jobs;  ///< those that are missing
   std::string task;               ///< "job_task" in the queue
-  fs::path alive;                 ///< where it gives signs of life
+  fs::path alive;                 ///< its heartbeats
   std::string last_sign;
   Clock::time_point last_change = Clock::now();
   std::optional<Clock::time_point> unseen_since;  ///< in answers of the queue
@@ -322,7 +322,7 @@ class SlurmEngine {
   BatchLedger ledger_;
   SlurmQueue queue_;
   std::string name_;
-  fs::path folder_;  // of task files, scripts, signs of life and logs
+  fs::path folder_;  // of task files, scripts, heartbeats and logs
   std::map<std::size_t, Awaited> awaited_;
   std::vector<Chunk> chunks_;     // in the queue
   std::vector<Chunk> to_submit_;  // again

@@ -107,7 +107,7 @@ Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions&
                             const fs::path& task_file, std::size_t task, const EngineControl& control) {
   const auto mine = jobs_of_task(jobs, task_file, task);
   if (!mine) return tl::unexpected(mine.error());
-  // In a process of its own: opening a large recording takes longer than a sign of life may.
+  // In a process of its own: opening a large recording takes longer than a heartbeat may.
   const fs::path alive = sign_of_life(task_file.parent_path(), task);
   const auto pulse = process::ForkedJob::start(
       [&](const process::JobReporter&) {

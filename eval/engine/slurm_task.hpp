@@ -35,7 +35,7 @@ inline constexpr const char* kTaskLogs = "logs";       ///< what the tasks print
 /// The content of a file, empty if it is not there or cannot be read.
 [[nodiscard]] std::string text_if_there(const std::filesystem::path& file);
 
-/// In a task: runs the jobs of one line of the task file, and gives signs of life beside it. Errors:
+/// In a task: runs the jobs of one line of the task file, and writes heartbeats beside it. Errors:
 /// data_missing, data_corrupt (the task file); those of run_locally().
 [[nodiscard]] Result<void> run_slurm_task(std::span<const BatchJob> jobs, const EngineOptions& options,
                                           const std::filesystem::path& task_file, std::size_t task,

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "eval/trajectory_error/evaluation.hpp"
+#include "eval/trajectory_error/trajectory_evaluation.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::metric_reports {

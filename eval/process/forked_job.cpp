@@ -149,7 +149,7 @@ ForkedJob::ForkedJob(ForkedJob&& other) noexcept
       last_sign_(other.last_sign_),
       interrupted_(other.interrupted_),
       broken_limit_(std::move(other.broken_limit_)),
-      heard_(std::move(other.heard_)),
+      partial_line_(std::move(other.partial_line_)),
       done_(other.done_),
       total_(other.total_),
       finished_(std::move(other.finished_)),
@@ -196,10 +196,11 @@ bool ForkedJob::hear() {
     if (count == 0) return false;
     if (count < 0) return errno == EAGAIN || errno == EINTR;
     last_sign_ = Clock::now();
-    heard_.append(part.data(), static_cast<std::size_t>(count));
-    for (std::size_t end = heard_.find('\n'); end != std::string::npos; end = heard_.find('\n')) {
-      take(std::string_view(heard_).substr(0, end));
-      heard_.erase(0, end + 1);
+    partial_line_.append(part.data(), static_cast<std::size_t>(count));
+    for (std::size_t end = partial_line_.find('\n'); end != std::string::npos;
+         end = partial_line_.find('\n')) {
+      take(std::string_view(partial_line_).substr(0, end));
+      partial_line_.erase(0, end + 1);
     }
   }
 }

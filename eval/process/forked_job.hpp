@@ -91,7 +91,7 @@ class ForkedJob {
   Clock::time_point last_sign_ = start_;
   bool interrupted_ = false;
   std::string broken_limit_;  // why it was killed
-  std::string heard_;         // of a line that is not complete
+  std::string partial_line_;  // of a line that is not complete
   std::size_t done_ = 0;
   std::size_t total_ = 0;
   std::optional<std::string> finished_;

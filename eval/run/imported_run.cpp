@@ -11,12 +11,11 @@
 #include "core/io/fingerprint.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/mesh/mesh_file.hpp"
-#include "core/mesh/ply_file.hpp"
 #include "core/trajectory/association.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/run_evaluation.hpp"
-#include "eval/run_files/record_files.hpp"
+#include "eval/run/run_folder.hpp"
 #include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::run {
@@ -124,19 +123,12 @@ Result<std::string> hash_of(const ImportSpec& spec, trajectory_files::Trajectory
 Result<void> write(ImportedRun& run, const RunOutput& output, const Trajectory& truth) {
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
-  if (!output.mesh.vertices.empty()) {
-    if (auto written = mesh::write_ply(output.mesh, folder->file("mesh.ply")); !written) return written;
-  }
-  const std::array<std::pair<std::string_view, std::string>, 3> texts = {
+  const std::array<NamedText, 3> texts = {
       {{"trajectory.tum", trajectory::tum_text(output.trajectory)},
        {"truth.tum", trajectory::tum_text(truth)},
        {"log.txt", fmt::format("imported: {} of {} frames have a pose\n", run.record.frames.tracked,
                                run.record.frames.total)}}};
-  for (const auto& [name, text] : texts) {
-    if (text.empty()) continue;  // no truth
-    if (auto written = folder->write(name, text); !written) return written;
-  }
-  return run_files::commit_run(*folder, run.record);
+  return write_run_folder(*folder, output.mesh.vertices.empty() ? nullptr : &output.mesh, texts, run.record);
 }
 
 }  // namespace

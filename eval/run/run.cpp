@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/io/staged_folder.hpp"
-#include "core/mesh/ply_file.hpp"
 #include "core/meshing/marching_cubes.hpp"
 #include "core/pipeline.hpp"
 #include "core/trajectory/trajectory_file.hpp"
@@ -18,10 +17,10 @@
 #include "eval/record/process_meter.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/run_evaluation.hpp"
+#include "eval/run/run_folder.hpp"
 #include "eval/run/run_frames.hpp"
 #include "eval/run_files/nees_table.hpp"
 #include "eval/run_files/patch_table.hpp"
-#include "eval/run_files/record_files.hpp"
 
 namespace fusebench::run {
 
@@ -58,16 +57,11 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
   return timing;
 }
 
-/// The model, with the error of each vertex where there is a true scene, and the patches that moved fastest.
-Result<void> write_surfaces(RunProgress& progress, const record::RecordedMetrics& metrics,
-                            const io::StagedFolder& folder) {
-  Mesh& mesh = progress.output.mesh;
-  if (metrics.mesh.value) {
-    const std::vector<double>& errors_m = metrics.mesh.value->vertex_errors_m;
-    mesh.quality.assign(errors_m.begin(), errors_m.end());
-  }
-  if (auto written = mesh::write_ply(mesh, folder.file("mesh.ply")); !written) return written;
-  return run_files::write_patch_table(folder.path(), progress.fastest.frames());
+/// The error of each vertex, where there is a true scene.
+void colour_by_error(Mesh& mesh, const record::RecordedMetrics& metrics) {
+  if (!metrics.mesh.value) return;
+  const std::vector<double>& errors_m = metrics.mesh.value->vertex_errors_m;
+  mesh.quality.assign(errors_m.begin(), errors_m.end());
 }
 
 }  // namespace
@@ -93,13 +87,14 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
   if (all) {
-    if (auto written = write_surfaces(*progress, record.metrics, *folder); !written)
+    colour_by_error(progress->output.mesh, record.metrics);
+    if (auto written = run_files::write_patch_table(folder->path(), progress->fastest.frames()); !written)
       return tl::unexpected(written.error());
   }
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
-  const std::array<std::pair<std::string_view, std::string>, 7> texts = {
+  const std::array<NamedText, 7> texts = {
       {{"trajectory.tum", trajectory::tum_text(progress->output.trajectory)},
        {"truth.tum",
         trajectory::tum_text(record::true_trajectory(run.recording, record::frame_stamps(run.recording)))},
@@ -108,11 +103,9 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
        {"nees.csv", run_files::nees_table(record.metrics.nees)},
        {profile::kTraceFile, run.spec.profile ? profile::trace_text(progress->profile, title) : ""},
        {"log.txt", progress->log}}};
-  for (const auto& [name, text] : texts) {
-    if (text.empty()) continue;  // no truth, not kept or not asked for
-    if (auto written = folder->write(name, text); !written) return tl::unexpected(written.error());
-  }
-  if (auto done = run_files::commit_run(*folder, record); !done) return tl::unexpected(done.error());
+  const Mesh* const mesh = all ? &progress->output.mesh : nullptr;
+  if (auto written = write_run_folder(*folder, mesh, texts, record); !written)
+    return tl::unexpected(written.error());
   return record;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/nees_metrics.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/suites/suite_simulations.hpp"
 

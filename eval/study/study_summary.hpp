@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/nees_metrics.hpp"
 #include "eval/study/criteria_check.hpp"
 #include "eval/study/study.hpp"
 

@@ -10,7 +10,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::testing {

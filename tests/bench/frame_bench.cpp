@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/preprocessing/depth_gates.hpp"
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"

@@ -9,7 +9,7 @@
 #include "core/measurement/patch_sums.hpp"
 #include "core/meshing/marching_cubes.hpp"
 #include "core/patches/patch_deformation.hpp"
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 #include "tests/support/gated_depth.hpp"
 #include "tests/support/raycast_image.hpp"

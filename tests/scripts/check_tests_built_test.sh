@@ -43,6 +43,13 @@ compiled tests/core/a_test.cpp tests/core/b_test.cpp tests/core/not_unbuilt_test
 expect 1 'tests/core/unbuilt_test.cpp: is compiled by nobody'
 compiled tests/core/a_test.cpp tests/core/unbuilt_test.cpp tests/core/b_test.cpp
 expect 0 '3 files, all compiled'
+# Two of them as one.
+mkdir -p "$tree/build/Unity"
+compiled tests/core/a_test.cpp build/Unity/unity_0_cxx.cxx
+printf '#include "%s"\n' "$tree/tests/core/b_test.cpp" >"$tree/build/Unity/unity_0_cxx.cxx"
+expect 1 'tests/core/unbuilt_test.cpp: is compiled by nobody'
+printf '#include "%s"\n' "$tree/tests/core/unbuilt_test.cpp" >>"$tree/build/Unity/unity_0_cxx.cxx"
+expect 0 '3 files, all compiled'
 
 if ((failures == 0)); then printf 'check_tests_built: all cases as expected\n'; fi
 exit "$failures"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/health/frame_report.hpp"
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 
 namespace fusebench::testing {
 

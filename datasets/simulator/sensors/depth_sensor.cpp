@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "datasets/simulator/random/random_numbers.hpp"
+#include "datasets/simulator/sensors/depth_noise.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
-#include "datasets/simulator/sensors/noise_depth.hpp"
 
 namespace fusebench::simulator::sensors {
 

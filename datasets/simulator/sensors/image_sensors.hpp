@@ -39,8 +39,8 @@ struct MovingObject {
 enum class DepthNoise {
   none,   ///< exact to the quantum
   handa,  ///< structured light as in ICL-NUIM: disparity quantisation, lateral jitter, holes; see
-          ///< noise_handa.cpp
-  zr300,  ///< active stereo of the ZR300; see noise_zr300.cpp
+          ///< depth_noise_handa.cpp
+  zr300,  ///< active stereo of the ZR300; see depth_noise_zr300.cpp
 };
 
 /// A depth camera. Row r is taken at capture + (r / (height - 1) - 1/2) * readout_s.

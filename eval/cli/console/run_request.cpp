@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "eval/cli/console/shared_options.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::console {
 

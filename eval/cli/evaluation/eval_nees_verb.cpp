@@ -12,10 +12,10 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
-#include "eval/metric_reports/consistency_report.hpp"
+#include "eval/metric_reports/nees_report.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/text/text_file.hpp"
-#include "eval/trajectory_error/pose_consistency.hpp"
+#include "eval/trajectory_error/pose_nees.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::evaluation {

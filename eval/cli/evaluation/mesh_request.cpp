@@ -10,7 +10,7 @@
 #include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/mesh_error/transform_file.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 #include "eval/trajectory_error/pose_alignment.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 #include "eval/trajectory_files/trajectory_pair.hpp"

@@ -11,7 +11,7 @@
 
 #include "core/base/error.hpp"
 #include "core/trajectory/trajectory_file.hpp"
-#include "eval/trajectory_error/evaluation.hpp"
+#include "eval/trajectory_error/trajectory_evaluation.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::evaluation {

@@ -16,7 +16,7 @@
 #include "eval/inspection_report/inspection_json.hpp"
 #include "eval/inspection_report/inspection_page.hpp"
 #include "eval/inspection_report/inspection_text.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::recordings {
 

@@ -10,7 +10,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/run/imported_run.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {
 

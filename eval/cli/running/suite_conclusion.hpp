@@ -10,7 +10,7 @@
 #include "eval/engine/job_outcome.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/study/criteria_check.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {
 

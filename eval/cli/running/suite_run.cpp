@@ -12,7 +12,7 @@
 #include "eval/cli/running/suite_conclusion.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/engine/plan_preview.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {
 

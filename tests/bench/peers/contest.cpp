@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "eval/record/true_camera.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
 #include "tests/bench/peers/our_pipeline.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/pipeline.hpp"
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "datasets/recording/recording.hpp"
 #include "tests/bench/peers/contestant.hpp"
 

@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class PlyFile : public testing::Test {
+class PlyFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("fusebench_ply_file_") + info->name());
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(::testing::TempDir()) / (std::string("fusebench_ply_file_") + info->name());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

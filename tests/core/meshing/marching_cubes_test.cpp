@@ -22,7 +22,7 @@ using namespace meshing;
 
 namespace {
 
-const PinholeCamera kCamera = test_camera(320, 240, 60.0);
+const PinholeCamera kMarchCamera = test_camera(320, 240, 60.0);
 constexpr double kMinWeight = 1.0;
 
 using Edge = std::pair<std::uint64_t, std::uint64_t>;
@@ -167,7 +167,7 @@ TEST(MarchingCubesTable, IsClosedAndOrientedOnRandomSigns) {
 
 TEST(MarchingCubes, ClosesABall) {
   const AnalyticScene scene = ball_scene();
-  const TsdfVolume volume = fuse(scene, kCamera, poses_around_ball());
+  const TsdfVolume volume = fuse(scene, kMarchCamera, poses_around_ball());
   const Mesh mesh = extract_mesh(volume, kMinWeight, Workers(2));
   ASSERT_GT(mesh.vertices.size(), 10000U);
   ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
@@ -188,7 +188,7 @@ TEST(MarchingCubes, ClosesABall) {
 
 TEST(MarchingCubes, FollowsABoxFromOutside) {
   const AnalyticScene scene{{AnalyticBox{{-0.251, -0.183, -0.207}, {0.249, 0.211, 0.193}, false, {1, 2, 3}}}};
-  const TsdfVolume volume = fuse(scene, kCamera, poses_around({0, 0, 0}, 1.1, 40));
+  const TsdfVolume volume = fuse(scene, kMarchCamera, poses_around({0, 0, 0}, 1.1, 40));
   const Mesh mesh = extract_mesh(volume, kMinWeight, Workers(2));
   const double voxel_m = volume.voxel_m();
   const Accuracy all = accuracy(mesh, scene, [](const Vector3d&) { return true; });
@@ -213,7 +213,7 @@ TEST(MarchingCubes, FollowsARoomFromInside) {
   TsdfConfig tsdf;
   tsdf.voxel_m = 0.02;
   tsdf.truncation_m = 0.08;
-  const TsdfVolume volume = fuse(scene, kCamera, poses_looking_out({0.1, -0.05, 0.2}, 40), tsdf);
+  const TsdfVolume volume = fuse(scene, kMarchCamera, poses_looking_out({0.1, -0.05, 0.2}, 40), tsdf);
   const Mesh mesh = extract_mesh(volume, 0.5, Workers(2));
   const Accuracy all = accuracy(mesh, scene, [](const Vector3d&) { return true; });
   EXPECT_GT(all.vertices, 10000U);
@@ -226,7 +226,7 @@ TEST(MarchingCubes, FollowsARoomFromInside) {
 TEST(MarchingCubes, CarriesTheColourOfEachSurface) {
   const AnalyticScene scene{
       {AnalyticSphere{{-0.4, 0, 1}, 0.25, {250, 10, 20}}, AnalyticSphere{{0.4, 0, 1}, 0.25, {5, 200, 100}}}};
-  const Mesh mesh = extract_mesh(fuse(scene, kCamera, {SE3{}, SE3{}}), kMinWeight, Workers(1));
+  const Mesh mesh = extract_mesh(fuse(scene, kMarchCamera, {SE3{}, SE3{}}), kMinWeight, Workers(1));
   std::size_t left = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const bool is_left = mesh.vertices[i].x() < 0.0F;
@@ -238,17 +238,17 @@ TEST(MarchingCubes, CarriesTheColourOfEachSurface) {
 }
 
 TEST(MarchingCubes, HasNoColoursWhereNoFrameHadAny) {
-  RgbdFrame frame = ball_scene().render(kCamera, poses_around_ball()[0]);
+  RgbdFrame frame = ball_scene().render(kMarchCamera, poses_around_ball()[0]);
   frame.color = {};
   TsdfVolume volume{TsdfConfig{}};
-  ASSERT_TRUE(volume.integrate(frame, kCamera, poses_around_ball()[0], DepthConfig{}, Workers(1)));
+  ASSERT_TRUE(volume.integrate(frame, kMarchCamera, poses_around_ball()[0], DepthConfig{}, Workers(1)));
   const Mesh mesh = extract_mesh(volume, 0.5, Workers(1));
   EXPECT_GT(mesh.vertices.size(), 1000U);
   EXPECT_TRUE(mesh.colors.empty());
 }
 
 TEST(MarchingCubes, LeavesOutWhatWasHardlySeen) {
-  const TsdfVolume once = fuse(ball_scene(), kCamera, {poses_around_ball()[0]});
+  const TsdfVolume once = fuse(ball_scene(), kMarchCamera, {poses_around_ball()[0]});
   EXPECT_GT(extract_mesh(once, 0.5, Workers(1)).triangles.size(), 1000U);
   const Mesh none = extract_mesh(once, 2.0, Workers(1));
   EXPECT_TRUE(none.triangles.empty());
@@ -257,7 +257,7 @@ TEST(MarchingCubes, LeavesOutWhatWasHardlySeen) {
 }
 
 TEST(MarchingCubes, IsTheSameForEveryNumberOfThreads) {
-  const TsdfVolume volume = fuse(ball_scene(), kCamera, poses_around_ball());
+  const TsdfVolume volume = fuse(ball_scene(), kMarchCamera, poses_around_ball());
   const Mesh one = extract_mesh(volume, kMinWeight, Workers(1));
   EXPECT_TRUE(same_bytes(one, extract_mesh(volume, kMinWeight, Workers(2))));
   EXPECT_TRUE(same_bytes(one, extract_mesh(volume, kMinWeight, Workers(8))));
@@ -271,8 +271,8 @@ TEST(MarchingCubes, DoesNotDependOnTheOrderOfStorage) {
   const SE3 behind = look_at({0, 0, 0}, {0, 0, -1});
   // Voxels so small that every pixel is looked at: else which ones are depends on a frame's number.
   const TsdfConfig tsdf{.voxel_m = 0.006};
-  const TsdfVolume first = fuse(scene, kCamera, {ahead, behind}, tsdf);
-  const TsdfVolume second = fuse(scene, kCamera, {behind, ahead}, tsdf);
+  const TsdfVolume first = fuse(scene, kMarchCamera, {ahead, behind}, tsdf);
+  const TsdfVolume second = fuse(scene, kMarchCamera, {behind, ahead}, tsdf);
   ASSERT_NE(first.block_indices(), second.block_indices());
   const Mesh mesh = extract_mesh(first, 0.5, Workers(1));
   EXPECT_GT(mesh.triangles.size(), 1000U);

@@ -46,7 +46,7 @@ Vector3d from_row(const Vector2d& pixel, double depth_m, const CameraVelocity& v
   return {landed.x(), landed.y(), carried.z()};
 }
 
-struct Motion {
+struct ReadMotion {
   const char* name;
   CameraVelocity velocity;
   double tolerance_px;
@@ -72,7 +72,7 @@ void for_each_pixel(const Grid& grid, const Check& check) {
   }
 }
 
-class ReadoutMotion : public ::testing::TestWithParam<Motion> {
+class ReadoutMotion : public ::testing::TestWithParam<ReadMotion> {
  protected:
   Readout readout{kCamera, RowTimes(kCamera.height_px, kDelay_s, kReadout_s), GetParam().velocity};
 };
@@ -109,10 +109,11 @@ TEST_P(ReadoutMotion, FindsThePixelsThatMotionCarriesToAPlaceAndTheirDepthThere)
 }
 
 INSTANTIATE_TEST_SUITE_P(Motions, ReadoutMotion,
-                         ::testing::Values(Motion{"slow", {{0.3, -0.2, 0.1}, {0.1, 0.05, -0.1}}, 0.003},
-                                           Motion{"handheld", {{0.8, -1.0, 0.4}, {0.4, -0.2, 0.3}}, 0.015},
-                                           Motion{"fast", {{2.0, 2.0, -1.5}, {0.8, -0.6, 0.5}}, 0.2},
-                                           Motion{"pan", {{0, 5, 0}, {0, 0, 0}}, 0.05}),
+                         ::testing::Values(ReadMotion{"slow", {{0.3, -0.2, 0.1}, {0.1, 0.05, -0.1}}, 0.003},
+                                           ReadMotion{
+                                               "handheld", {{0.8, -1.0, 0.4}, {0.4, -0.2, 0.3}}, 0.015},
+                                           ReadMotion{"fast", {{2.0, 2.0, -1.5}, {0.8, -0.6, 0.5}}, 0.2},
+                                           ReadMotion{"pan", {{0, 5, 0}, {0, 0, 0}}, 0.05}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Readout, OfACameraAtRestDisplacesNothingAtAll) {

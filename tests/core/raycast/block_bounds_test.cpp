@@ -17,24 +17,24 @@ using namespace raycast;
 
 namespace {
 
-const PinholeCamera kCamera = test_camera(160, 120, 60.0);
+const PinholeCamera kBoundsCamera = test_camera(160, 120, 60.0);
 
 float bound_m(const BlockBounds& bounds, double u_px, double v_px) {
   return bounds.nearest_m(all_lanes(static_cast<float>(u_px)), all_lanes(static_cast<float>(v_px)))[0];
 }
 
 TEST(BlockBounds, NoRayMeetsTheModelBefore) {
-  const TsdfVolume volume = fuse(ball_scene(), kCamera, poses_around_ball());
+  const TsdfVolume volume = fuse(ball_scene(), kBoundsCamera, poses_around_ball());
   testing::PlainField field(volume);
   const DepthConfig depth;
   int seen = 0;
   for (const SE3& T_world_camera :
        {look_at({0.5, -0.4, 0.55}, {0.02, 0, 0.01}), look_at({0, 0.2, -1.5}, {0, 0, 0})}) {
-    const BlockBounds bounds(volume, kCamera, T_world_camera, depth);
+    const BlockBounds bounds(volume, kBoundsCamera, T_world_camera, depth);
     // The walk along whole rays, from the very front, in steps of a quarter of a voxel.
-    for (int y = 0; y < kCamera.height_px; y += 7) {
-      for (int x = 0; x < kCamera.width_px; x += 7) {
-        const Vector3d ray = kCamera.back_project(x, y, 1.0);
+    for (int y = 0; y < kBoundsCamera.height_px; y += 7) {
+      for (int x = 0; x < kBoundsCamera.width_px; x += 7) {
+        const Vector3d ray = kBoundsCamera.back_project(x, y, 1.0);
         double first_m = std::numeric_limits<double>::infinity();
         for (double z_m = depth.min_m; z_m < depth.max_m; z_m += 0.25 * volume.voxel_m()) {
           if (!field.distance_m(T_world_camera * Vector3d(z_m * ray))) continue;
@@ -52,8 +52,8 @@ TEST(BlockBounds, NoRayMeetsTheModelBefore) {
 TEST(BlockBounds, AreCloseToTheSurface) {
   const double wall_m = 2.0;
   const AnalyticScene wall{{AnalyticPlane{{0, 0, -1}, -wall_m, {10, 120, 250}}}};
-  const TsdfVolume volume = fuse(wall, kCamera, {SE3{}});
-  const BlockBounds bounds(volume, kCamera, SE3{}, DepthConfig{});
+  const TsdfVolume volume = fuse(wall, kBoundsCamera, {SE3{}});
+  const BlockBounds bounds(volume, kBoundsCamera, SE3{}, DepthConfig{});
   for (int x = 20; x < 140; x += 10) {
     EXPECT_LE(bound_m(bounds, x, 60), wall_m);
     EXPECT_GT(bound_m(bounds, x, 60), wall_m - 0.3) << "a block, the band, and the sphere around the block";
@@ -62,17 +62,17 @@ TEST(BlockBounds, AreCloseToTheSurface) {
 
 TEST(BlockBounds, KnowNothingOutsideOfTheImageAndNoBlocksWhereThereAreNone) {
   const AnalyticScene wall{{AnalyticPlane{{0, 0, -1}, -2.0, {10, 120, 250}}}};
-  const TsdfVolume volume = fuse(wall, kCamera, {SE3{}});
-  const BlockBounds ahead(volume, kCamera, SE3{}, DepthConfig{});
+  const TsdfVolume volume = fuse(wall, kBoundsCamera, {SE3{}});
+  const BlockBounds ahead(volume, kBoundsCamera, SE3{}, DepthConfig{});
   EXPECT_EQ(bound_m(ahead, -1, 60), 0.0F);
   EXPECT_EQ(bound_m(ahead, 160, 60), 0.0F);
   EXPECT_EQ(bound_m(ahead, 80, 120), 0.0F);
   const SE3 away{so3_exp({0, 3.14, 0}), Vector3d::Zero()};
-  const BlockBounds behind(volume, kCamera, away, DepthConfig{});
+  const BlockBounds behind(volume, kBoundsCamera, away, DepthConfig{});
   EXPECT_EQ(bound_m(behind, 80, 60), std::numeric_limits<float>::infinity());
   DepthConfig near;
   near.max_m = 1.0;
-  const BlockBounds too_far(volume, kCamera, SE3{}, near);
+  const BlockBounds too_far(volume, kBoundsCamera, SE3{}, near);
   EXPECT_EQ(bound_m(too_far, 80, 60), std::numeric_limits<float>::infinity());
 }
 

@@ -22,7 +22,7 @@ namespace {
 const PinholeCamera kCamera = test_camera(320, 240, 60.0);
 const SE3 kOrigin;
 
-struct Agreement {
+struct SceneAgreement {
   int hits = 0;
   int expected = 0;  // pixels that the scene covers at a fair angle
   double mean_depth_m = 0;
@@ -32,8 +32,9 @@ struct Agreement {
 };
 
 // Compares a raycast image with the analytic scene where the surface is seen at less than 70 degrees.
-Agreement compare(const testing::SurfaceImage& image, const AnalyticScene& scene, const SE3& T_world_camera) {
-  Agreement result;
+SceneAgreement compare(const testing::SurfaceImage& image, const AnalyticScene& scene,
+                       const SE3& T_world_camera) {
+  SceneAgreement result;
   const RgbdFrame truth = scene.render(kCamera, T_world_camera, 70.0);
   for (int y = 0; y < kCamera.height_px; ++y) {
     for (int x = 0; x < kCamera.width_px; ++x) {
@@ -78,7 +79,7 @@ TEST(Raycast, AgreesWithABall) {
   const SE3 T_world_camera = look_at({0.5, -0.4, 0.55}, {0.02, 0, 0.01});
   const testing::SurfaceImage image =
       testing::raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
-  const Agreement agreement = compare(image, ball_scene(), T_world_camera);
+  const SceneAgreement agreement = compare(image, ball_scene(), T_world_camera);
   EXPECT_GT(agreement.expected, 10000);
   EXPECT_EQ(agreement.hits, agreement.expected);
   EXPECT_LT(agreement.mean_depth_m, 0.1 * volume.voxel_m());
@@ -92,7 +93,7 @@ TEST(Raycast, AgreesWithARoomFromInside) {
   const SE3 T_world_camera = look_at({-0.7, -0.5, -0.6}, {0.5, 0.2, 1.0});
   const testing::SurfaceImage image =
       testing::raycast_image(volume, kCamera, T_world_camera, DepthConfig{}, workers);
-  const Agreement agreement = compare(image, room_with_a_ball(), T_world_camera);
+  const SceneAgreement agreement = compare(image, room_with_a_ball(), T_world_camera);
   EXPECT_GT(agreement.hit_share, 0.9);  // the ball hides some of the wall from where the frames were taken
   EXPECT_LT(agreement.mean_depth_m, 0.25 * volume.voxel_m());
   EXPECT_LT(agreement.mean_normal_deg, 3.0);

@@ -18,14 +18,15 @@ using namespace raycast;
 
 namespace {
 
-const PinholeCamera kCamera = test_camera(320, 240, 60.0);
+const PinholeCamera kSearchCamera = test_camera(320, 240, 60.0);
 const DepthConfig kDepth;
 
 /// A model of the room, and what the camera at its origin would measure.
 struct Room {
-  TsdfVolume model = fuse(room_with_a_ball(), kCamera, {SE3{}, look_at({0.2, 0.1, -0.3}, {0.3, 0.2, 1.0})});
-  RgbdFrame frame = room_with_a_ball().render(kCamera, SE3{}, 75.0);
-  std::optional<TsdfLanes> field = field_in_view(model, kCamera, SE3{}, kDepth);
+  TsdfVolume model =
+      fuse(room_with_a_ball(), kSearchCamera, {SE3{}, look_at({0.2, 0.1, -0.3}, {0.3, 0.2, 1.0})});
+  RgbdFrame frame = room_with_a_ball().render(kSearchCamera, SE3{}, 75.0);
+  std::optional<TsdfLanes> field = field_in_view(model, kSearchCamera, SE3{}, kDepth);
 
   /// The measured pixels of a rectangle, with an error of depth that `error_m` draws.
   template <class Error>
@@ -45,12 +46,12 @@ struct Room {
   [[nodiscard]] std::vector<SurfacePoint> found_beside(const std::vector<ExpectedSurface>& pixels) const {
     TsdfBrick brick;
     std::vector<SurfacePoint> surfaces(pixels.size());
-    SurfaceSearch(*field, kCamera, SE3{}, kDepth).find_near_measurements(pixels, brick, surfaces);
+    SurfaceSearch(*field, kSearchCamera, SE3{}, kDepth).find_near_measurements(pixels, brick, surfaces);
     return surfaces;
   }
   [[nodiscard]] std::vector<SurfacePoint> found(const std::vector<ExpectedSurface>& pixels) const {
     std::vector<SurfacePoint> surfaces(pixels.size());
-    SurfaceSearch(*field, kCamera, SE3{}, kDepth).find(pixels, surfaces);
+    SurfaceSearch(*field, kSearchCamera, SE3{}, kDepth).find(pixels, surfaces);
     return surfaces;
   }
   [[nodiscard]] std::vector<SurfacePoint> walked(const std::vector<ExpectedSurface>& pixels) const {
@@ -59,7 +60,7 @@ struct Room {
       rays.push_back({static_cast<double>(pixel.u_px), static_cast<double>(pixel.v_px)});
     }
     std::vector<SurfacePoint> surfaces;
-    testing::raycast_pixels(model, kCamera, SE3{}, rays, kDepth, Workers(1), surfaces);
+    testing::raycast_pixels(model, kSearchCamera, SE3{}, rays, kDepth, Workers(1), surfaces);
     return surfaces;
   }
 };

@@ -10,7 +10,7 @@ using namespace relocalisation;
 
 namespace {
 
-constexpr PinholeCamera kCamera{640, 480, 520, 520, 319.5, 239.5};
+constexpr PinholeCamera kCertaintyCamera{640, 480, 520, 520, 319.5, 239.5};
 
 /// What is seen in a part of the image.
 struct View {
@@ -30,13 +30,15 @@ bool is_certain(const View& view, const config::RelocalisationConfig& config = {
   std::vector<SeenPoint> seen;
   for (int i = 0; i < view.right + view.wrong; ++i) {
     const Vector2d p(uniform(view.width_px), uniform(view.height_px));
-    const Vector3d point = kCamera.back_project(p.x(), p.y(), view.distance_m * (0.75 + uniform(0.5)));
+    const Vector3d point =
+        kCertaintyCamera.back_project(p.x(), p.y(), view.distance_m * (0.75 + uniform(0.5)));
     const Vector2d error(normal(random), normal(random));
-    const Vector2d off = i < view.right ? error : Vector2d(0.5 * kCamera.width_px, 20.0 + uniform(100));
+    const Vector2d off =
+        i < view.right ? error : Vector2d(0.5 * kCertaintyCamera.width_px, 20.0 + uniform(100));
     seen.push_back({point, p + off, view.scale});
   }
-  const auto pose = pose_from_points(seen, kCamera, config::PlacePoseConfig{});
-  return pose && is_certain_place(seen, *pose, kCamera, config);
+  const auto pose = pose_from_points(seen, kCertaintyCamera, config::PlacePoseConfig{});
+  return pose && is_certain_place(seen, *pose, kCertaintyCamera, config);
 }
 
 TEST(PlaceCertainty, AWholeViewIsCertainAtAnyDistance) {

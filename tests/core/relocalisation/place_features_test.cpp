@@ -17,7 +17,7 @@ namespace {
 
 using config::PlaceFeaturesConfig;
 
-constexpr PlaceFeaturesConfig kDefaults{};
+constexpr PlaceFeaturesConfig kFeatureDefaults{};
 
 GreyImage room_image() { return testing::TexturedRoom{}.render(testing::small_camera(), SE3{}, 0).grey; }
 
@@ -36,7 +36,7 @@ TEST(PlaceFeatures, DistanceCountsTheBitsThatDiffer) {
 
 TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
   const auto match_one = [](const PlaceFeature& query, const std::vector<PlaceFeature>& known) {
-    return match_features(std::vector<PlaceFeature>{query}, known, kDefaults);
+    return match_features(std::vector<PlaceFeature>{query}, known, kFeatureDefaults);
   };
   ASSERT_EQ(match_one(with_bits(100), {with_bits(160), with_bits(110)}).size(), 1U);
   EXPECT_EQ(match_one(with_bits(100), {with_bits(160), with_bits(110)}).front().known, 1U);
@@ -46,7 +46,7 @@ TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
   EXPECT_TRUE(match_one(with_bits(100), {}).empty());
   // Both want the only known one; the nearer gets it.
   const std::vector<PlaceFeature> queries{with_bits(120), with_bits(104)};
-  const auto matches = match_features(queries, std::vector<PlaceFeature>{with_bits(100)}, kDefaults);
+  const auto matches = match_features(queries, std::vector<PlaceFeature>{with_bits(100)}, kFeatureDefaults);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_EQ(matches.front().query, 1U);
 }
@@ -67,7 +67,7 @@ TEST(PlaceFeatures, HowNearAndHowDistinctIsAskedFor) {
 TEST(PlaceFeatures, AHigherThresholdFindsFewerCorners) {
   const GreyImage grey = room_image();
   const std::size_t faint = find_corners(grey, {.fast_threshold = 4}).size();
-  const std::size_t usual = find_corners(grey, kDefaults).size();
+  const std::size_t usual = find_corners(grey, kFeatureDefaults).size();
   const std::size_t strong = find_corners(grey, {.fast_threshold = 60}).size();
   EXPECT_GT(faint, usual);
   EXPECT_GT(usual, strong);
@@ -88,11 +88,11 @@ TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
   grey(50, 61) = 200;
   grey(119, 88) = 200;
   grey(5, 5) = 200;  // too close to the border to be described
-  const std::vector<Vector2d> corners_px = find_corners(grey, kDefaults);
+  const std::vector<Vector2d> corners_px = find_corners(grey, kFeatureDefaults);
   ASSERT_EQ(corners_px.size(), 2U);
   EXPECT_EQ(corners_px[0], Vector2d(50, 61));
   EXPECT_EQ(corners_px[1], Vector2d(119, 88));
-  EXPECT_TRUE(find_corners(GreyImage(62, 62, 9), kDefaults).empty());
+  EXPECT_TRUE(find_corners(GreyImage(62, 62, 9), kFeatureDefaults).empty());
 }
 
 TEST(PlaceFeatures, AreSpreadInsideAndNoMoreThanAsked) {
@@ -130,7 +130,7 @@ TEST(PlaceFeatures, AnImageOnItsSideIsRecognised) {
   }
   const auto a = find_place_features(upright, PlaceFeaturesConfig{.max_count = 400});
   const auto b = find_place_features(turned, PlaceFeaturesConfig{.max_count = 400});
-  const auto matches = match_features(a, b, kDefaults);
+  const auto matches = match_features(a, b, kFeatureDefaults);
   int right = 0;
   for (const FeatureMatch& m : matches) {
     const Vector2d& p = a[m.query].pixel_px;
@@ -142,10 +142,10 @@ TEST(PlaceFeatures, AnImageOnItsSideIsRecognised) {
 }
 
 TEST(PlaceFeatures, NothingIsSeenInPlainAndTinyImages) {
-  EXPECT_TRUE(find_place_features(GreyImage(320, 240, 77), kDefaults).empty());
-  EXPECT_TRUE(find_place_features(GreyImage(40, 30, 77), kDefaults).empty());
-  EXPECT_TRUE(find_place_features(GreyImage(), kDefaults).empty());
-  EXPECT_LE(find_place_features(GreyImage(64, 63, 10), kDefaults).size(), 800U);
+  EXPECT_TRUE(find_place_features(GreyImage(320, 240, 77), kFeatureDefaults).empty());
+  EXPECT_TRUE(find_place_features(GreyImage(40, 30, 77), kFeatureDefaults).empty());
+  EXPECT_TRUE(find_place_features(GreyImage(), kFeatureDefaults).empty());
+  EXPECT_LE(find_place_features(GreyImage(64, 63, 10), kFeatureDefaults).size(), 800U);
 }
 
 }  // namespace

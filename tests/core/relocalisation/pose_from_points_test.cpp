@@ -14,7 +14,7 @@ namespace {
 
 constexpr PinholeCamera kCamera{640, 480, 520, 520, 319.5, 239.5};
 
-constexpr config::PlacePoseConfig kDefaults{};
+constexpr config::PlacePoseConfig kPoseDefaults{};
 
 /// Points before a camera, where it sees them, and the truth.
 struct Scene {
@@ -48,7 +48,7 @@ TEST(PoseFromPoints, IsExactForExactPointsInDepthAndOnAPlane) {
   for (const double depth_range_m : {3.0, 0.0}) {
     Scene scene;
     scene.add(40, 1.5, 1.5 + depth_range_m);
-    const auto found = pose_from_points(scene.seen, kCamera, kDefaults);
+    const auto found = pose_from_points(scene.seen, kCamera, kPoseDefaults);
     ASSERT_TRUE(found);
     EXPECT_LT(scene.error(found->T_a_camera).norm(), 1e-8) << depth_range_m;
     EXPECT_EQ(found->inliers.size(), 40U);
@@ -60,7 +60,7 @@ TEST(PoseFromPoints, TwoThirdsOfWrongPointsAreFoundOut) {
   Scene scene;
   scene.add_wrong(80);
   scene.add(40, 1, 4);
-  const auto found = pose_from_points(scene.seen, kCamera, kDefaults);
+  const auto found = pose_from_points(scene.seen, kCamera, kPoseDefaults);
   ASSERT_TRUE(found);
   // A wrong point may lie within three pixels of its place by chance, 1 in 10000, or pull a little.
   EXPECT_LT(scene.error(found->T_a_camera).norm(), 1e-6);
@@ -78,7 +78,7 @@ TEST(PoseFromPoints, TheCovarianceIsThatOfTheError) {
     Scene scene;
     scene.random.seed(static_cast<unsigned>(run));
     scene.add(60, 1, 4, 0.5);
-    const auto found = pose_from_points(scene.seen, kCamera, kDefaults);
+    const auto found = pose_from_points(scene.seen, kCamera, kPoseDefaults);
     ASSERT_TRUE(found);
     const Vector6d error = scene.error(found->T_a_camera);
     sum += error.dot(found->covariance.ldlt().solve(error));
@@ -113,7 +113,7 @@ TEST(PoseFromPoints, ChanceAgreesOnLittle) {
     Scene scene;
     scene.random.seed(seed);
     scene.add_wrong(150);
-    const auto found = pose_from_points(scene.seen, kCamera, kDefaults);
+    const auto found = pose_from_points(scene.seen, kCamera, kPoseDefaults);
     if (found) {
       EXPECT_LT(found->inliers.size(), 12U);
     }
@@ -128,21 +128,21 @@ TEST(PoseFromPoints, PointsBehindTheCameraDoNotCount) {
     const Vector3d point_camera = scene.T_a_camera.inverse() * scene.seen[i].point_a;
     scene.seen.push_back({scene.T_a_camera * Vector3d(-point_camera), scene.seen[i].pixel_px, 1.0});
   }
-  const auto found = pose_from_points(scene.seen, kCamera, kDefaults);
+  const auto found = pose_from_points(scene.seen, kCamera, kPoseDefaults);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->inliers.size(), 30U);
   EXPECT_EQ(found->inliers.back(), 29U);
 }
 
 TEST(PoseFromPoints, TooFewOrDegeneratePointsGiveNothing) {
-  EXPECT_FALSE(pose_from_points({}, kCamera, kDefaults));
+  EXPECT_FALSE(pose_from_points({}, kCamera, kPoseDefaults));
   Scene few;
   few.add(5, 1, 4);
-  EXPECT_FALSE(pose_from_points(few.seen, kCamera, kDefaults));
+  EXPECT_FALSE(pose_from_points(few.seen, kCamera, kPoseDefaults));
   Scene same;
   same.add(1, 1, 4);
   same.seen.resize(30, same.seen.front());
-  const auto found = pose_from_points(same.seen, kCamera, kDefaults);
+  const auto found = pose_from_points(same.seen, kCamera, kPoseDefaults);
   EXPECT_FALSE(found) << "one point, thirty times";
 }
 
@@ -150,8 +150,8 @@ TEST(PoseFromPoints, TheSamePointsGiveTheSameBits) {
   Scene scene;
   scene.add_wrong(30);
   scene.add(50, 1, 4, 1.0);
-  const auto a = pose_from_points(scene.seen, kCamera, kDefaults);
-  const auto b = pose_from_points(scene.seen, kCamera, kDefaults);
+  const auto a = pose_from_points(scene.seen, kCamera, kPoseDefaults);
+  const auto b = pose_from_points(scene.seen, kCamera, kPoseDefaults);
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->T_a_camera.translation, b->T_a_camera.translation);
   EXPECT_EQ(a->T_a_camera.rotation.coeffs(), b->T_a_camera.rotation.coeffs());

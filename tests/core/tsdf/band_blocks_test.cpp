@@ -22,12 +22,12 @@ using Blocks = testing::BlockSet;
 
 // A narrow view, so that a block of 8 cm is wider than kFinePixels at 5 m, one of 4 cm is half as wide, and
 // one of 3.2 cm is not.
-const PinholeCamera kCamera = test_camera(160, 120, 15.0);
+const PinholeCamera kBandCamera = test_camera(160, 120, 15.0);
 const SE3 kTWorldCamera{so3_exp({0.3, -0.2, 0.1}), {-0.3, 0.4, 0.1}};
 
 DepthImage step_and_wall() {
   const AnalyticScene scene{{AnalyticPlane{{0, 0, -1}, -2.2, {9, 9, 9}}}};
-  DepthImage depth_m = scene.render(kCamera, kTWorldCamera).depth_m;
+  DepthImage depth_m = scene.render(kBandCamera, kTWorldCamera).depth_m;
   for (int y = 30; y < 70; ++y) {
     for (int x = 50; x < 100; ++x) depth_m(x, y) -= 0.4F;  // something before the wall
   }
@@ -40,7 +40,7 @@ Blocks found_blocks(const DepthImage& depth_m, double block_m, const TsdfConfig&
   BandBlocks band;
   const Workers workers(1);
   for (int time = 0; time < 2; ++time) {  // it forgets the image before
-    band.find(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth, frame_number, workers);
+    band.find(depth_m, kBandCamera, kTWorldCamera, block_m, tsdf, depth, frame_number, workers);
   }
   const Blocks blocks = testing::block_set(band.blocks());
   EXPECT_EQ(blocks.size(), band.blocks().size()) << "each once";
@@ -51,9 +51,9 @@ TEST(BandBlocks, OfFinePixelsAreAllThatTheirRaysPass) {
   const TsdfConfig tsdf{.voxel_m = 0.004};
   const DepthConfig depth;
   const double block_m = 8 * tsdf.voxel_m;
-  ASSERT_LT(block_m * kCamera.fx_px / depth.max_m, BandBlocks::kFinePixels / 2);
+  ASSERT_LT(block_m * kBandCamera.fx_px / depth.max_m, BandBlocks::kFinePixels / 2);
   const DepthImage depth_m = step_and_wall();
-  const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
+  const Blocks felt = felt_blocks(depth_m, kBandCamera, kTWorldCamera, block_m, tsdf, depth);
   const Blocks found = found_blocks(depth_m, block_m, tsdf, depth);
   EXPECT_GT(felt.size(), 100U);
   EXPECT_EQ(missing(felt, found), 0U);
@@ -68,8 +68,8 @@ TEST(BandBlocks, OfEverySecondOrFourthPixelMissCornersAtMost) {
                                           std::pair{0.01, BandBlocks::kFinePixels}}) {    // every fourth
     const TsdfConfig tsdf{.voxel_m = voxel_m};
     const double block_m = 8 * tsdf.voxel_m;
-    ASSERT_GE(block_m * kCamera.fx_px / depth.max_m, least_px);
-    const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
+    ASSERT_GE(block_m * kBandCamera.fx_px / depth.max_m, least_px);
+    const Blocks felt = felt_blocks(depth_m, kBandCamera, kTWorldCamera, block_m, tsdf, depth);
     EXPECT_GT(felt.size(), 20U);
     for (const std::uint32_t frame_number : {0U, 1U, 2U, 3U, 0xFFFFFFFFU}) {
       const Blocks found = found_blocks(depth_m, block_m, tsdf, depth, frame_number);
@@ -88,13 +88,13 @@ TEST(BandBlocks, OfSomethingThinAreFoundWithinFourFrames) {
   for (const bool upright : {true, false}) {
     for (int place = 60; place < 64; ++place) {
       // A single row or column of pixels, wherever it lies to the grid that is looked at.
-      DepthImage depth_m(kCamera.width_px, kCamera.height_px);
+      DepthImage depth_m(kBandCamera.width_px, kBandCamera.height_px);
       for (int i = 8; i < 112; ++i) depth_m(upright ? place : i, upright ? i : place) = 2.0F;
       Blocks found;
       for (std::uint32_t frame_number = 0; frame_number < 4; ++frame_number) {
         found.merge(found_blocks(depth_m, block_m, tsdf, depth, frame_number));
       }
-      const Blocks felt = felt_blocks(depth_m, kCamera, kTWorldCamera, block_m, tsdf, depth);
+      const Blocks felt = felt_blocks(depth_m, kBandCamera, kTWorldCamera, block_m, tsdf, depth);
       ASSERT_GT(felt.size(), 8U);
       EXPECT_LE(missing(felt, found), felt.size() / 4) << place;
     }
@@ -106,8 +106,8 @@ TEST(BandBlocks, AreTheSameForEveryNumberOfThreads) {
   const TsdfConfig tsdf;
   const Workers one(1), many(8);
   BandBlocks first, second;
-  first.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, 1, one);
-  second.find(depth_m, kCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, 1, many);
+  first.find(depth_m, kBandCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, 1, one);
+  second.find(depth_m, kBandCamera, kTWorldCamera, 0.08, tsdf, DepthConfig{}, 1, many);
   EXPECT_EQ(first.blocks(), second.blocks());
 }
 

@@ -4,7 +4,7 @@
 
 #include "eval/engine/job_plan.hpp"
 #include "eval/engine/simulated_recordings.hpp"
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {

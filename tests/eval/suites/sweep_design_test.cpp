@@ -16,14 +16,14 @@ using namespace suites;
 
 namespace {
 
-Result<std::vector<SweepBlock>> read(const std::string& text) {
+Result<std::vector<SweepBlock>> read_sweep(const std::string& text) {
   const auto document = parse_toml(text, "s.toml");
   EXPECT_TRUE(document.has_value());
   return read_sweeps(entry_tables(*document, "sweep"));
 }
 
 std::vector<std::string> points_of(const std::string& text) {
-  const auto blocks = read(text);
+  const auto blocks = read_sweep(text);
   EXPECT_TRUE(blocks.has_value()) << blocks.error().message;
   const auto points = sweep_points(*blocks);
   EXPECT_TRUE(points.has_value()) << points.error().message;
@@ -33,7 +33,7 @@ std::vector<std::string> points_of(const std::string& text) {
 }
 
 void expect_refused(const std::string& text, const std::string& part) {
-  const auto blocks = read(text);
+  const auto blocks = read_sweep(text);
   ASSERT_FALSE(blocks.has_value()) << text;
   EXPECT_EQ(blocks.error().code, ErrorCode::configuration);
   EXPECT_NE(blocks.error().message.find(part), std::string::npos) << blocks.error().message;
@@ -72,7 +72,7 @@ TEST(SweepDesign, RangesHaveBothEnds) {
 }
 
 TEST(SweepDesign, ALatinHypercubeHasOneSampleInEachPart) {
-  const auto blocks = read(
+  const auto blocks = read_sweep(
       "[[sweep]]\ndesign = \"latin-hypercube\"\nsamples = 20\nseed = 3\n"
       "tsdf.voxel_m = { from = 0.01, to = 0.03 }\ntsdf.truncation_m = { from = 0.1, to = 1.0, scale = "
       "\"log\" }\n");
@@ -134,7 +134,8 @@ TEST(SweepDesign, WhatMakesNoSenseIsRefusedWithItsLine) {
       "[[sweep]]\ndesign = \"random\"\nsamples = 3\ntsdf.voxel_m = { from = 0.01, to = 0.02, steps = 3 }\n",
       "has steps");
   expect_refused("[[sweep]]\ntsdf.voxel_m = [0.01, 99.0]\n", "s.toml:2");
-  const auto blocks = read("[[sweep]]\ndesign = \"random\"\nsamples = 10000000\ntsdf.voxel_m = [0.01]\n");
+  const auto blocks =
+      read_sweep("[[sweep]]\ndesign = \"random\"\nsamples = 10000000\ntsdf.voxel_m = [0.01]\n");
   ASSERT_TRUE(blocks.has_value());
   EXPECT_EQ(sweep_points(*blocks).error().code, ErrorCode::configuration);
 }

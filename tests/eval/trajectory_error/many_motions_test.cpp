@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/trajectory_error/evaluation.hpp"
+#include "eval/trajectory_error/trajectory_evaluation.hpp"
 #include "tests/datasets/images/child_process.hpp"
 
 namespace fusebench {

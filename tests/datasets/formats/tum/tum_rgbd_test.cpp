@@ -12,6 +12,7 @@
 #include "datasets/calibration/camera_presets.hpp"
 #include "datasets/open_recording.hpp"
 #include "tests/datasets/formats/tum/tum_folder.hpp"
+#include "tests/support/expect_text.hpp"
 
 namespace fusebench {
 
@@ -23,6 +24,7 @@ using namespace datasets;
 
 namespace {
 
+using testing::expect_contains;
 using testing::golden_tum_folder;
 using testing::TumFolder;
 
@@ -40,10 +42,6 @@ std::string refusal(const TumFolder& folder, ErrorCode code, const ReadOptions& 
     return recording.error().message + " | " + recording.error().hint;
   }
   return "was not refused";
-}
-
-void expect_contains(const std::string& text, std::string_view part) {
-  EXPECT_NE(text.find(part), std::string::npos) << "expected: " << part << "\ngot: " << text;
 }
 
 TEST(TumRgbd, OpensAFolder) {

@@ -7,6 +7,7 @@
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/formats/zr300/zr300.hpp"
 #include "tests/datasets/formats/zr300/zr300_folder.hpp"
+#include "tests/support/expect_text.hpp"
 
 namespace fusebench {
 
@@ -17,17 +18,10 @@ using namespace formats::zr300;
 
 namespace {
 
+using testing::any_contains;
+using testing::expect_contains;
 using testing::kFmDatasetCalibTxt;
 using testing::Zr300Folder;
-
-void expect_contains(const std::string& text, std::string_view part) {
-  EXPECT_NE(text.find(part), std::string::npos) << "expected: " << part << "\ngot: " << text;
-}
-
-bool any_contains(const std::vector<std::string>& texts, std::string_view part) {
-  return std::ranges::any_of(texts,
-                             [&](const std::string& text) { return text.find(part) != std::string::npos; });
-}
 
 /// A scene's folder with one sequence in it, whose images have the ZR300's size.
 class Scene {

@@ -10,6 +10,7 @@
 #include "datasets/formats/zr300/zr300_lists.hpp"
 #include "datasets/open_recording.hpp"
 #include "tests/datasets/formats/zr300/zr300_folder.hpp"
+#include "tests/support/expect_text.hpp"
 
 namespace fusebench {
 
@@ -20,6 +21,8 @@ using namespace datasets;
 
 namespace {
 
+using testing::any_contains;
+using testing::expect_contains;
 using testing::kZr300Frames;
 using testing::zr300_frame_us;
 using testing::Zr300Folder;
@@ -30,15 +33,6 @@ std::string refusal(const Zr300Folder& folder, ErrorCode code, const ReadOptions
   if (recording) return "was not refused";
   EXPECT_EQ(recording.error().code, code) << recording.error().message;
   return recording.error().message + " | " + recording.error().hint;
-}
-
-void expect_contains(const std::string& text, std::string_view part) {
-  EXPECT_NE(text.find(part), std::string::npos) << "expected: " << part << "\ngot: " << text;
-}
-
-bool any_contains(const std::vector<std::string>& texts, std::string_view part) {
-  return std::ranges::any_of(texts,
-                             [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
 /// A row of TIMESTAMP.txt for each frame, by its number.

@@ -1,5 +1,5 @@
 // Rolling-shutter frames rendered exactly, row by row, against the global-shutter render of the same instant.
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 
 #include <gtest/gtest.h>
 

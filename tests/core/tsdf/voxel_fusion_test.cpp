@@ -1,4 +1,4 @@
-#include "core/tsdf/voxel_update.hpp"
+#include "core/tsdf/voxel_fusion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ namespace {
 using testing::PlainBlock;
 using testing::PlainVoxelUpdate;
 
-const PinholeCamera kCamera = test_camera(160, 120, 60.0);
+const PinholeCamera kUpdateCamera = test_camera(160, 120, 60.0);
 
 // A block as the model stores it.
 struct StoredBlock {
@@ -44,8 +44,8 @@ struct StoredBlock {
 // Depth anywhere between nothing and too far, with damaged pixels among it.
 RgbdFrame random_frame(std::mt19937& random) {
   RgbdFrame frame;
-  frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px);
-  frame.color = ColorImage(kCamera.width_px, kCamera.height_px);
+  frame.depth_m = DepthImage(kUpdateCamera.width_px, kUpdateCamera.height_px);
+  frame.color = ColorImage(kUpdateCamera.width_px, kUpdateCamera.height_px);
   std::uniform_real_distribution<float> depth_m(0.2F, 1.4F);
   std::uniform_int_distribution<int> level(0, 255);
   for (float& z : frame.depth_m.data) {
@@ -71,8 +71,8 @@ TEST(VoxelUpdate, EightVoxelsAtOnceAreTheSameBitsAsOneByOne) {
     const RgbdFrame frame = random_frame(random);
     const auto frame_number = static_cast<std::uint32_t>(view);
     const SE3 T_world_camera{so3_exp({0.05 * view, -0.1, 0.3 * view}), {0.01 * view, 0.02, -0.03 * view}};
-    const VoxelUpdate update(frame, kCamera, T_world_camera, depth, tsdf, frame_number);
-    const PlainVoxelUpdate reference(frame, kCamera, T_world_camera, depth, tsdf, frame_number);
+    const VoxelUpdate update(frame, kUpdateCamera, T_world_camera, depth, tsdf, frame_number);
+    const PlainVoxelUpdate reference(frame, kUpdateCamera, T_world_camera, depth, tsdf, frame_number);
     for (std::size_t i = 0; i < indices.size(); ++i) {
       update.apply(indices[i], blocks[i].view());
       reference.apply(indices[i], plain[i]);
@@ -96,15 +96,15 @@ TEST(VoxelUpdate, EightVoxelsAtOnceAreTheSameBitsAsOneByOne) {
 
 TEST(VoxelUpdate, WhiteStaysWhiteHoweverItIsRounded) {
   RgbdFrame frame;
-  frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 1.0F);
-  frame.color = ColorImage(kCamera.width_px, kCamera.height_px, Rgb{255, 255, 255});
+  frame.depth_m = DepthImage(kUpdateCamera.width_px, kUpdateCamera.height_px, 1.0F);
+  frame.color = ColorImage(kUpdateCamera.width_px, kUpdateCamera.height_px, Rgb{255, 255, 255});
   const DepthConfig depth;
   const TsdfConfig tsdf;
   StoredBlock block;
   const BlockIndex before_camera(0, 0, 12);
   // Fibonacci numbers times the golden ratio are nearly whole; above or below by turns.
   for (const std::uint32_t frame_number : {0U, 46368U, 75025U, 150050U}) {
-    VoxelUpdate(frame, kCamera, SE3{}, depth, tsdf, frame_number).apply(before_camera, block.view());
+    VoxelUpdate(frame, kUpdateCamera, SE3{}, depth, tsdf, frame_number).apply(before_camera, block.view());
     const Voxel voxel = block.voxel(offset_in_block({1, 1, 4}));
     EXPECT_EQ(voxel.color, (Rgb{255, 255, 255})) << frame_number;
     EXPECT_GT(voxel.color_count, 0) << frame_number;

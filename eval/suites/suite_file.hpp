@@ -12,7 +12,7 @@
 #include "core/config/variants.hpp"
 #include "eval/run/run.hpp"
 #include "eval/suites/acceptance_criteria.hpp"
-#include "eval/suites/suite_runs.hpp"
+#include "eval/suites/run_selection.hpp"
 #include "eval/suites/suite_simulations.hpp"
 #include "eval/suites/sweep_design.hpp"
 

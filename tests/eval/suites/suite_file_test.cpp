@@ -1,4 +1,4 @@
-#include "eval/suites/experiment.hpp"
+#include "eval/suites/suite_file.hpp"
 
 #include <gtest/gtest.h>
 

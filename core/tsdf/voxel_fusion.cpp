@@ -1,4 +1,4 @@
-#include "core/tsdf/voxel_update.hpp"
+#include "core/tsdf/voxel_fusion.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "core/preprocessing/motion_compensation.hpp"
+#include "core/preprocessing/rolling_shutter_compensation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Covariances that come with a trajectory: honest ones, boastful ones, and files of them.
-#include "eval/trajectory_error/pose_consistency.hpp"
+#include "eval/trajectory_error/pose_nees.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <random>
 
 #include "core/base/geometry.hpp"
-#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/nees_metrics.hpp"
 
 namespace fusebench {
 
@@ -116,7 +116,7 @@ TEST(PoseConsistency, RefusesWhatHasNoMeaning) {
 }
 
 TEST(PoseConsistency, ReadsTheFormatOfOvEval) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "openvins.txt";
+  const auto file = std::filesystem::path(::testing::TempDir()) / "openvins.txt";
   const std::string pose = "2.5 1 2 3 0 0 0 1 ";
   std::ofstream(file) << "# timestamp(s) ...\n1.5 0 0 0 0 0 0 1 11 12 13 22 23 33 1.1 1.2 1.3 2.2 2.3 3.3\n"
                       << pose << "1 0 0 1 0 1 1 0 0 1 0 1\n";

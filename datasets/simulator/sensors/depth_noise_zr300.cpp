@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "datasets/simulator/random/random_numbers.hpp"
-#include "datasets/simulator/sensors/noise_depth.hpp"
+#include "datasets/simulator/sensors/depth_noise.hpp"
 
 namespace fusebench::simulator::sensors {
 

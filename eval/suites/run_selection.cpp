@@ -1,4 +1,4 @@
-#include "eval/suites/suite_runs.hpp"
+#include "eval/suites/run_selection.hpp"
 
 #include <fmt/format.h>
 

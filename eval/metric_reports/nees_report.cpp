@@ -1,4 +1,4 @@
-#include "eval/metric_reports/consistency_report.hpp"
+#include "eval/metric_reports/nees_report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
-#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/nees_metrics.hpp"
 #include "eval/metrics/statistics_json.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"

@@ -1,4 +1,4 @@
-#include "eval/trajectory_error/evaluation.hpp"
+#include "eval/trajectory_error/trajectory_evaluation.hpp"
 
 #include <fmt/format.h>
 

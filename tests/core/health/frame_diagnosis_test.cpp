@@ -1,4 +1,4 @@
-#include "core/health/frame_health.hpp"
+#include "core/health/frame_diagnosis.hpp"
 
 #include <gtest/gtest.h>
 

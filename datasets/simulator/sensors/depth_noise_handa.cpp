@@ -19,7 +19,7 @@
 #include <cmath>
 
 #include "datasets/simulator/random/random_numbers.hpp"
-#include "datasets/simulator/sensors/noise_depth.hpp"
+#include "datasets/simulator/sensors/depth_noise.hpp"
 
 namespace fusebench::simulator::sensors {
 

@@ -1,4 +1,4 @@
-#include "eval/trajectory_error/pose_consistency.hpp"
+#include "eval/trajectory_error/pose_nees.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/base/geometry.hpp"
-#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/nees_metrics.hpp"
 #include "eval/trajectory_error/trajectory_error.hpp"
 
 namespace fusebench::trajectory_error {

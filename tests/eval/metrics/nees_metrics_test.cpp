@@ -1,4 +1,4 @@
-#include "eval/metrics/consistency_metrics.hpp"
+#include "eval/metrics/nees_metrics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/page/page.hpp"
-#include "eval/trajectory_error/pose_consistency.hpp"
+#include "eval/trajectory_error/pose_nees.hpp"
 
 namespace fusebench::metric_reports {
 
