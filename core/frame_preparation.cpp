@@ -1,7 +1,9 @@
 #include "core/frame_preparation.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "core/alignment/reference_points.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::core {
@@ -25,7 +27,9 @@ void FramePreparation::prepare(const RgbdFrame& frame, const filter::FilterState
   } else {
     frame_ = frame;
   }
-  build_pyramid(frame_.grey, config_.patches.levels, pyramid_);
+  build_pyramid(frame_.grey,
+                std::max(config_.patches.levels, alignment::alignment_levels(rig_.camera, config_.alignment)),
+                pyramid_);
   preprocessing::gate_depth(frame_.depth_m, config_.depth, ungated_depth_m_);
   std::swap(frame_.depth_m, ungated_depth_m_);
 }

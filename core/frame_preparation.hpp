@@ -37,8 +37,13 @@ class FramePreparation {
   void prepare_color(const RgbdFrame& frame, health::StageTimes& stages);
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
-  [[nodiscard]] const std::vector<GreyImage>& pyramid() const { return pyramid_; }
-  [[nodiscard]] measurement::ObservedFrame observed() const { return {pyramid_, frame_.depth_m}; }
+  /// The levels that patches have.
+  [[nodiscard]] std::span<const GreyImage> pyramid() const {
+    return std::span(pyramid_).first(static_cast<std::size_t>(config_.patches.levels));
+  }
+  /// And the coarser ones that whole images are aligned by.
+  [[nodiscard]] std::span<const GreyImage> whole_pyramid() const { return pyramid_; }
+  [[nodiscard]] measurement::ObservedFrame observed() const { return {pyramid(), frame_.depth_m}; }
 
  private:
   const config::Config& config_;

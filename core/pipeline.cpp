@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/alignment/start_search.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
@@ -27,6 +28,7 @@ struct Pipeline::State final : RestartableEstimator {
         imu(imu_in),
         workers(workers_in),
         preparation(config, rig, workers),
+        search(config, rig),
         measurement(config, rig, workers),
         tracking(std::in_place, config, rig) {
     // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
@@ -52,6 +54,7 @@ struct Pipeline::State final : RestartableEstimator {
   std::span<const ImuSample> imu;
   const Workers& workers;
   FramePreparation preparation;               ///< of the current frame
+  alignment::StartSearch search;              ///< of where the update starts
   measurement::PatchMeasurement measurement;  ///< of the patches in the current frame
   patches::PatchWorkspace patch_workspace;
   std::optional<Tracking> tracking;                   ///< always there
@@ -91,7 +94,7 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
     refresh(report.stages);  // Sec. 2.3: patch update
   }
   if (report.status == health::FrameStatus::initialised)
-    report.health = health::judge_start(preparation.observed(), now.patches.size(), config);
+    report.health = health::judge_start(preparation.observed(), now.reference.patches.size(), config);
   health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
   return report;
@@ -125,15 +128,18 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
 bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, health::FrameReport& report) {
   const health::StageClock clock(report.stages, health::Stage::update);
   Tracking& now = *tracking;
-  filter::PoseMeasurement& deformed = deform();                                         // Eqs. 1-5
-  const filter::IekfResult update = filter::iekf_update(prior, deformed, config.iekf);  // Eqs. 15-23
+  const alignment::FoundStart found =
+      search.find(prior, now.reference.points, preparation.whole_pyramid(), false);
+  filter::PoseMeasurement& deformed = deform();  // Eqs. 1-5
+  const filter::IekfResult update =
+      filter::iekf_update(prior, deformed, config.iekf, found.start);  // Eqs. 15-23
   report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
   if (!filter::is_valid(update.posterior)) {
     report.health = health::FrameHealth::diverged;
     report.reason = fmt::format("{}: the update is not finite", health::to_string(report.health));
     return false;
   }
-  health::describe_update(measurement, update, now.patches, report);
+  health::describe_update(measurement, update, now.reference.patches, report);
   report.health =
       health::judge_health(preparation.observed(), measurement.outcomes(), report.blur_px, config);
   report.reason = health::rejection_reason(report, after_gap, config);
@@ -143,12 +149,12 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
                           std::max(1.0, now.residual_scale.geometric)};
     return false;
   }
-  report.evidence = health::PoseEvidence{now.reference_ns, prior.mean.T_world_imu_reference,
+  report.evidence = health::PoseEvidence{now.reference.timestamp_ns, prior.mean.T_world_imu_reference,
                                          update.posterior.mean.T_world_imu, update.measurement};
   now.estimate = update.posterior;
   if (report.health != health::FrameHealth::occluded)
     now.residual_scale = measurement::followed_scale(now.residual_scale, measurement.outcomes(), config);
-  health::find_survivors(now.patches, measurement.outcomes(), config.patches, now.survivors);
+  health::find_survivors(now.reference.patches, measurement.outcomes(), config.patches, now.survivors);
   return true;
 }
 
@@ -156,7 +162,7 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
 /// shrink and extend effects) and errors (Eqs. 3-5) are evaluated in PatchMeasurement::linearise(), again at
 /// each iterate (Eq. 18).
 filter::PoseMeasurement& Pipeline::State::deform() {
-  measurement.observe(preparation.observed(), tracking->patches, tracking->residual_scale);
+  measurement.observe(preparation.observed(), tracking->reference.patches, tracking->residual_scale);
   return measurement;
 }
 
@@ -170,13 +176,11 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
     found = now.relocalisation.find(preparation.frame().grey, prediction, now.model, workers);
   }
   if (!found) return false;
-  std::swap(now.patches, found->patches);
-  std::swap(now.reference_ns, found->reference_ns);
+  std::swap(now.reference, found->reference);
   health::FrameReport again = health::report_of(preparation.frame());
   again.stages = report.stages;
   if (!track(found->prior, true, again)) {
-    std::swap(now.patches, found->patches);
-    std::swap(now.reference_ns, found->reference_ns);
+    std::swap(now.reference, found->reference);
     report.stages = again.stages;
     return false;
   }
@@ -199,9 +203,10 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   const RgbdFrame& frame = preparation.frame();
   const patches::ReferenceFrame reference{preparation.pyramid(), frame.depth_m, rig.camera, T_world_camera()};
   patches::refresh_patches(reference, now.model, now.survivors, config, workers, patch_workspace,
-                           now.patches);
-  now.reference_ns = now.timestamp_ns;
-  const double share = patches::fused_share(now.model, now.patches, reference, config.depth);
+                           now.reference.patches);
+  now.reference.points.take(preparation.whole_pyramid(), frame.depth_m, rig.camera, config.alignment);
+  now.reference.timestamp_ns = now.timestamp_ns;
+  const double share = patches::fused_share(now.model, now.reference.patches, reference, config.depth);
   now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor});
   now.relocalisation.add_keyframe(
       frame, T_world_camera(), now.timestamp_ns,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/alignment/tracking_reference.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
@@ -30,8 +31,7 @@ struct Tracking {
   int lost_frames = 0;                            ///< in a row, before the current one
   health::OcclusionGate occlusion_gate;
   measurement::ResidualScale residual_scale;      ///< noise scale estimated from earlier frames
-  std::vector<patches::Patch> patches;            ///< cut from the last fused frame
-  std::int64_t reference_ns = 0;                  ///< capture instant of that frame
+  alignment::TrackingReference reference;         ///< from the last fused frame
   std::vector<patches::TrackedCentre> survivors;  ///< where the good patches are in the current frame
 };
 

@@ -4,6 +4,7 @@
 // all derive from the visit() of each struct (see options.hpp). A field without an option does not compile.
 #pragma once
 
+#include "core/config/evaluation_config.hpp"
 #include "core/config/filter_config.hpp"
 #include "core/config/health_config.hpp"
 #include "core/config/options.hpp"
@@ -26,12 +27,14 @@ struct Config {
   PatchConfig patches;
   PhotometricConfig photometric;
   GeometricConfig geometric;
+  AlignmentConfig alignment;
   IekfConfig iekf;
   HealthConfig health;
   RelocalisationConfig relocalisation;
   PlaceFeaturesConfig place_features;
   PlacePoseConfig place_pose;
   TsdfConfig tsdf;
+  EvaluationConfig evaluation;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.group("terms", self.terms);
@@ -42,19 +45,22 @@ struct Config {
     v.group("patches", self.patches);
     v.group("photometric", self.photometric);
     v.group("geometric", self.geometric);
+    v.group("alignment", self.alignment);
     v.group("iekf", self.iekf);
     v.group("health", self.health);
     v.group("relocalisation", self.relocalisation);
     v.group("place_features", self.place_features);
     v.group("place_pose", self.place_pose);
     v.group("tsdf", self.tsdf);
+    v.group("evaluation", self.evaluation);
   }
 };
 
-static_assert(options_cover_all_fields<TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
-                                       InitialisationConfig, PatchConfig, PhotometricConfig, GeometricConfig,
-                                       IekfConfig, HealthConfig, RelocalisationConfig, PlaceFeaturesConfig,
-                                       PlacePoseConfig, TsdfConfig, Config>(),
-              "each field of a configuration struct needs its option in visit()");
+static_assert(
+    options_cover_all_fields<TermsConfig, DepthConfig, CompensationConfig, MotionConfig, InitialisationConfig,
+                             PatchConfig, PhotometricConfig, GeometricConfig, AlignmentConfig, IekfConfig,
+                             HealthConfig, RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig,
+                             TsdfConfig, EvaluationConfig, Config>(),
+    "each field of a configuration struct needs its option in visit()");
 
 }  // namespace fusebench::config

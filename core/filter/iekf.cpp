@@ -18,6 +18,15 @@ struct Iterate {
   PoseHypothesis poses;
 };
 
+/// Tangents of the two poses at the prior: the reference pose was corrected by an earlier update of the same
+/// patches.
+MeasuredVector known_tangents(const FilterState& prior) {
+  MeasuredVector known = MeasuredVector::Zero();
+  known.head<kPoseSize>() =
+      -pose_transport(prior.T_world_imu, prior.T_world_imu_reference) * prior.reference_offset;
+  return known;
+}
+
 class Update {
  public:
   Update(const GaussianState& prior, PoseMeasurement& measurement, const config::IekfConfig& config)
@@ -26,11 +35,7 @@ class Update {
         config_(config),
         combinations_(measured_combinations(prior.mean)),
         gain_columns_(prior.covariance * combinations_.transpose()),
-        measured_covariance_(combinations_ * gain_columns_) {
-    // Correction of the reference pose by an earlier update of the same patches.
-    known_.head<kPoseSize>() = -pose_transport(prior.mean.T_world_imu, prior.mean.T_world_imu_reference) *
-                               prior.mean.reference_offset;
-  }
+        measured_covariance_(combinations_ * gain_columns_) {}
 
   IekfResult run(const MeasuredVector& start) {
     IekfResult result;
@@ -50,6 +55,7 @@ class Update {
     result.map_cost_posterior = map_cost(now, quadratic.cost());
     result.posterior = posterior(now, quadratic);
     result.measurement = at_posterior(now, quadratic);
+    result.solution = now.y;
     return result;
   }
 
@@ -172,11 +178,24 @@ class Update {
   const config::IekfConfig& config_;
   const Eigen::Matrix<double, kMeasuredSize, kStateSize> combinations_;  ///< B
   const Eigen::Matrix<double, kStateSize, kMeasuredSize> gain_columns_;  ///< P B^T
-  MeasuredVector known_ = MeasuredVector::Zero();  ///< tangents of the poses at the prior
-  const MeasuredMatrix measured_covariance_;       ///< S = B P B^T
+  const MeasuredVector known_ = known_tangents(prior_.mean);
+  const MeasuredMatrix measured_covariance_;  ///< S = B P B^T
 };
 
 }  // namespace
+
+MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu) {
+  // The covariance is singular where the prior knows a direction; 0.1 mrad and 0.1 mm will do for a start.
+  constexpr double kTolerance = 1e-8;
+  const auto combinations = measured_combinations(prior.mean);
+  const MeasuredMatrix covariance = combinations * prior.covariance * combinations.transpose();
+  const Vector6d tangent = pose_minus(T_world_imu, prior.mean.T_world_imu);
+  MeasuredVector wanted = -known_tangents(prior.mean);
+  wanted.head<kPoseSize>() += tangent;
+  wanted.tail<kPoseSize>() += tangent;
+  const MeasuredMatrix system = covariance + kTolerance * MeasuredMatrix::Identity();
+  return system.partialPivLu().solve(wanted);
+}
 
 IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
                        const config::IekfConfig& config, const MeasuredVector& start) {

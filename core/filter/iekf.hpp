@@ -72,12 +72,17 @@ class PoseMeasurement {
 
 struct IekfResult {
   GaussianState posterior;
+  MeasuredVector solution = MeasuredVector::Zero();  ///< y of the last iterate
   PoseQuadratic measurement;  ///< the last linearisation, at the posterior, without the prior
   int iterations = 0;         ///< accepted steps over all stages
   bool converged = false;     ///< the last step was below both thresholds
   double map_cost_prior = 0;  ///< J at the prediction (last stage only)
   double map_cost_posterior = 0;
 };
+
+/// The start of an update at another pose than the prediction's: the y that brings both poses of the
+/// hypothesis to T_world_imu, as far as the prior's covariance lets them.
+[[nodiscard]] MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu);
 
 /// Runs the update. The covariance is updated once, after the last iteration (Eq. 23 in its symmetric form),
 /// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the

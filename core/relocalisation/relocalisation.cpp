@@ -1,5 +1,8 @@
 #include "core/relocalisation/relocalisation.hpp"
 
+#include <algorithm>
+#include <span>
+
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
 #include "core/relocalisation/relocalisation_update.hpp"
@@ -54,11 +57,15 @@ std::optional<RelocalisedReference> Relocalisation::find(const GreyImage& grey,
   RelocalisedReference result;
   result.prior = relocalisation_update(prediction, pose, unknown_motion(config_));
   if (!filter::is_valid(result.prior)) return std::nullopt;
-  const std::vector<GreyImage> pyramid = build_pyramid(keyframe.grey, config_.patches.levels);
+  const int patch_levels = config_.patches.levels;
+  const std::vector<GreyImage> pyramid = build_pyramid(
+      keyframe.grey, std::max(patch_levels, alignment::alignment_levels(rig_.camera, config_.alignment)));
   const DepthImage depth_m = keyframe.depth.unpacked_m();
-  const patches::ReferenceFrame reference{pyramid, depth_m, rig_.camera, keyframe.T_world_camera};
-  result.patches = patches::refresh_patches(reference, model, {}, config_, workers);
-  result.reference_ns = keyframe.timestamp_ns;
+  const patches::ReferenceFrame reference{std::span(pyramid).first(static_cast<std::size_t>(patch_levels)),
+                                          depth_m, rig_.camera, keyframe.T_world_camera};
+  result.reference.patches = patches::refresh_patches(reference, model, {}, config_, workers);
+  result.reference.points.take(pyramid, depth_m, rig_.camera, config_.alignment);
+  result.reference.timestamp_ns = keyframe.timestamp_ns;
   return result;
 }
 

@@ -6,13 +6,12 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "core/alignment/tracking_reference.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
-#include "core/patches/patches.hpp"
 #include "core/relocalisation/keyframes.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
@@ -20,9 +19,8 @@ namespace fusebench::relocalisation {
 
 /// What tracking goes on from.
 struct RelocalisedReference {
-  filter::GaussianState prior;          ///< after the relocalisation update
-  std::vector<patches::Patch> patches;  ///< cut from the keyframe
-  std::int64_t reference_ns = 0;        ///< capture instant of the keyframe
+  filter::GaussianState prior;             ///< after the relocalisation update
+  alignment::TrackingReference reference;  ///< from the keyframe
 };
 
 class Relocalisation {

@@ -91,6 +91,7 @@ constexpr auto kFields = std::to_array<Field>({
     {"metrics.aie.aie", number<&RunNumbers::aie_grey>},
     {"metrics.mesh.accuracy.mean", number<&RunNumbers::mesh_accuracy_m>},
     {"metrics.mesh.completeness.mean", number<&RunNumbers::mesh_completeness_m>},
+    {"metrics.silent_failures.silent", number<&RunNumbers::silent_failures>},
     {"frames.total", count<&RunRow::total>, true},
     {"frames.tracked", count<&RunRow::tracked>, true},
     {"frames.lost", count<&RunRow::lost>, true},

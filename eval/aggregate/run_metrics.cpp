@@ -20,6 +20,7 @@ std::span<const RunMetric> run_metrics() {
        &RunNumbers::mesh_accuracy_m},
       {"mesh_completeness_m", "", "m", "mesh completeness [mm]", 1000, 2, false, true,
        &RunNumbers::mesh_completeness_m},
+      {"silent_failures", "silent", "frames", "silent", 1, 0, false, true, &RunNumbers::silent_failures},
       {"cpu_s", "cpu", "s", "CPU [s]", 1, 2, true, true, &RunNumbers::cpu_s},
       {"wall_s", "wall", "s", "wall clock [s]", 1, 2, true, true, &RunNumbers::wall_s},
       {"peak_rss_bytes", "memory", "bytes", "peak memory [MB]", 1e-6, 0, true, true,

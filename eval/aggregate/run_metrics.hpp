@@ -19,6 +19,7 @@ struct RunNumbers {
   std::optional<double> aie_grey;
   std::optional<double> mesh_accuracy_m;  ///< mean, aligned by all poses
   std::optional<double> mesh_completeness_m;
+  std::optional<double> silent_failures;  ///< frames
   std::optional<double> cpu_s;
   std::optional<double> wall_s;
   std::optional<double> peak_rss_bytes;

@@ -178,6 +178,11 @@ std::string_view to_string(RunStatus status) {
   return "unknown";
 }
 
+std::string status_text(RunStatus status, std::optional<std::size_t> silent) {
+  if (silent.value_or(0) == 0) return std::string(to_string(status));
+  return fmt::format("{} ({} silent)", to_string(status), *silent);
+}
+
 std::optional<RunStatus> parse_run_status(std::string_view text) {
   for (const RunStatus status : {RunStatus::ok, RunStatus::lost, RunStatus::failed}) {
     if (text == to_string(status)) return status;

@@ -19,6 +19,7 @@
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/record/duration_histogram.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
+#include "eval/trajectory_error/silent_failures.hpp"
 
 namespace fusebench::record {
 
@@ -34,6 +35,8 @@ enum class RunStatus {
 };
 [[nodiscard]] std::string_view to_string(RunStatus status);
 [[nodiscard]] std::optional<RunStatus> parse_run_status(std::string_view text);
+/// The status as people see it: "ok (12 silent)" where so many of the poses that were claimed are wrong.
+[[nodiscard]] std::string status_text(RunStatus status, std::optional<std::size_t> silent);
 
 /// A metric's result, or why there is none.
 template <class T>
@@ -88,6 +91,12 @@ struct RecordedMesh {
   std::vector<double> vertex_errors_m;
 };
 
+/// Poses that were claimed and are wrong.
+struct RecordedSilentFailures {
+  trajectory_error::SilentFailures failures;
+  std::optional<std::size_t> first_frame;  ///< the first one's, counted from the run's first frame
+};
+
 struct RecordedMetrics {
   Outcome<trajectory_error::AteResult> ate;
   Outcome<trajectory_error::RpeResult> rpe_frame;   ///< over one frame
@@ -96,6 +105,12 @@ struct RecordedMetrics {
   Outcome<RecordedMesh> mesh;
   RecordedNees nees;
   Outcome<metrics::ResidualSummary> residuals;
+  Outcome<RecordedSilentFailures> silent;
+
+  /// Number of silent failures, where there is truth to tell them by.
+  [[nodiscard]] std::optional<std::size_t> silent_frames() const {
+    return silent.value ? std::optional(silent.value->failures.silent) : std::nullopt;
+  }
 };
 
 struct RecordedFrames {

@@ -157,6 +157,32 @@ void read(const Json& json, metrics::ResidualSummary& summary) {
   summary.accepted_share = number_at(json, "accepted_share");
 }
 
+Json json_of(const RecordedSilentFailures& silent) {
+  const trajectory_error::SilentFailures& failures = silent.failures;
+  return {{"protocol", "claimed poses whose motion over the interval before is off by more than a limit"},
+          {"interval_s", failures.limits.interval_s},
+          {"max_translation_m", failures.limits.max_translation_m},
+          {"max_rotation_rad", failures.limits.max_rotation_rad},
+          {"judged", failures.judged},
+          {"silent", failures.silent},
+          {"first_frame", silent.first_frame ? Json(*silent.first_frame) : Json(nullptr)},
+          {"first_ns", failures.first_ns ? Json(*failures.first_ns) : Json(nullptr)},
+          {"worst_translation_m", failures.worst_translation_m},
+          {"worst_rotation_rad", failures.worst_rotation_rad}};
+}
+
+void read(const Json& json, RecordedSilentFailures& silent) {
+  trajectory_error::SilentFailures& failures = silent.failures;
+  failures.limits = {number_at(json, "interval_s"), number_at(json, "max_translation_m"),
+                     number_at(json, "max_rotation_rad")};
+  failures.judged = json.at("judged");
+  failures.silent = json.at("silent");
+  if (const Json& frame = json.at("first_frame"); !frame.is_null()) silent.first_frame = frame;
+  if (const Json& stamp = json.at("first_ns"); !stamp.is_null()) failures.first_ns = stamp;
+  failures.worst_translation_m = number_at(json, "worst_translation_m");
+  failures.worst_rotation_rad = number_at(json, "worst_rotation_rad");
+}
+
 mesh_error::MeshDistances distances_of(const Json& json) {
   if (json.is_null()) return {};
   return {statistics_of(json), number_at(json, "p90"), number_at(json, "p95")};
@@ -280,6 +306,7 @@ Json json_of_metrics(const RunRecord& record) {
       {"mesh", json_of(record.metrics.mesh)},
       {"nees", json_of_nees(record.metrics.nees)},
       {"residuals", json_of(record.metrics.residuals)},
+      {"silent_failures", json_of(record.metrics.silent)},
       {"coverage",
        {{"protocol", "tracked frames / frames of the recording"},
         {"tracked", record.frames.tracked},
@@ -295,6 +322,7 @@ void read_metrics(const Json& json, RecordedMetrics& metrics) {
   metrics.mesh = newer_outcome_of<RecordedMesh>(json, "mesh");
   metrics.nees = nees_of(json);
   metrics.residuals = newer_outcome_of<metrics::ResidualSummary>(json, "residuals");
+  metrics.silent = newer_outcome_of<RecordedSilentFailures>(json, "silent_failures");
 }
 
 }  // namespace fusebench::record

@@ -106,10 +106,11 @@ page::PageTable run_facts(Group group) {
   if (reasons) table.header.emplace_back("reason");
   for (const run_files::FoundRun& run : group) {
     const record::RunRecord& r = run.record;
-    table.rows.push_back({{label_of(run, group), std::string(record::to_string(r.status)),
-                           fmt::format("{}/{}", r.frames.tracked, r.frames.total),
-                           fmt::format("{}", r.frames.lost), r.recording.imu},
-                          r.status == record::RunStatus::ok ? "" : "warning"});
+    table.rows.push_back(
+        {{label_of(run, group), record::status_text(r.status, r.metrics.silent_frames()),
+          fmt::format("{}/{}", r.frames.tracked, r.frames.total), fmt::format("{}", r.frames.lost),
+          r.recording.imu},
+         r.status == record::RunStatus::ok && r.metrics.silent_frames().value_or(0) == 0 ? "" : "warning"});
     if (reasons) table.rows.back().cells.push_back(r.reason);
   }
   return table;

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/config/variants.hpp"
 #include "core/mesh/ply_file.hpp"
+#include "eval/record/record_origin.hpp"
 #include "eval/record/true_camera.hpp"
 #include "eval/run/recording_views.hpp"
 #include "eval/trajectory_error/pose_alignment.hpp"
+#include "eval/trajectory_error/silent_failures.hpp"
 
 namespace fusebench::run {
 
@@ -31,6 +35,28 @@ void add_trajectory_metrics(record::RecordedMetrics& metrics, const RunOutput& o
   metrics.rpe_second = record::Outcome<trajectory_error::RpeResult>::from(
       trajectory_error::relative_pose_error(recording.ground_truth, output.trajectory,
                                             {.delta = 1, .unit = trajectory_error::DeltaUnit::seconds}));
+}
+
+Result<record::RecordedSilentFailures> silent_failures_of(const RunOutput& output,
+                                                          const recording::Recording& recording,
+                                                          const config::EvaluationConfig& config) {
+  if (recording.ground_truth.empty())
+    return fail(ErrorCode::data_missing, "the recording has no ground truth");
+  // At the instants that the poses are of, which are not always those of the stamps.
+  const Trajectory truth = record::true_trajectory(recording, record::frame_stamps(recording));
+  const auto failures = trajectory_error::silent_failures(
+      truth, output.trajectory,
+      {config.silent_interval_s, config.silent_translation_m, radians(config.silent_rotation_deg)});
+  if (!failures) return tl::unexpected(failures.error());
+  record::RecordedSilentFailures silent{*failures, std::nullopt};
+  if (failures->first_ns) {
+    const auto first =
+        std::ranges::find(recording.frames, *failures->first_ns,
+                          [](const recording::FrameEntry& frame) { return frame.timestamp_ns; });
+    if (first != recording.frames.end())
+      silent.first_frame = static_cast<std::size_t>(first - recording.frames.begin());
+  }
+  return silent;
 }
 
 record::RecordedNees nees_of(const RunOutput& output, const recording::Recording& recording,
@@ -139,6 +165,8 @@ record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Rec
   metrics.residuals = {output.residuals.result(), {}};
   if (metrics.residuals.value->frames == 0) metrics.residuals = {std::nullopt, "no frame was tracked"};
   add_trajectory_metrics(metrics, output, recording);
+  metrics.silent = record::Outcome<record::RecordedSilentFailures>::from(
+      silent_failures_of(output, recording, config.evaluation));
   metrics.nees = nees_of(output, recording, config);
   metrics.mesh = record::Outcome<record::RecordedMesh>::from(
       mesh_error_of(output, recording, metrics.ate, config.depth, workers));

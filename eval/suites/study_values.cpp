@@ -26,6 +26,17 @@ std::optional<double> coverage(const record::RunRecord& record) {
   return static_cast<double>(record.frames.tracked) / static_cast<double>(record.frames.total);
 }
 
+std::optional<double> silent_failures(const record::RunRecord& record) {
+  const auto silent = record.metrics.silent_frames();
+  return silent ? std::optional(static_cast<double>(*silent)) : std::nullopt;
+}
+
+std::optional<double> silent_share(const record::RunRecord& record) {
+  const auto& silent = record.metrics.silent.value;
+  if (!silent) return std::nullopt;
+  return static_cast<double>(silent->failures.silent) / static_cast<double>(silent->failures.judged);
+}
+
 std::optional<double> ate(const record::RunRecord& record) {
   const auto& ate = record.metrics.ate.value;
   return ate ? finite(ate->stats.rmse) : std::nullopt;
@@ -67,6 +78,17 @@ constexpr auto kValues = std::to_array<StudyValue>({
      .higher_is_better = true,
      .of_every_run = true,
      .of = coverage},
+    {.name = "silent_failures",
+     .label = "silent failures",
+     .decimals = 1,
+     .of_every_run = true,
+     .of = silent_failures},
+    {.name = "silent_share",
+     .label = "silent [%]",
+     .shown_factor = 100,
+     .decimals = 2,
+     .of_every_run = true,
+     .of = silent_share},
     {.name = "ate_rmse_m", .label = "ATE [cm]", .shown_factor = 100, .of = ate},
     {.name = "rpe_second_m",
      .label = "RPE 1 s [cm]",

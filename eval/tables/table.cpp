@@ -39,6 +39,7 @@ TableRow row_of(const run_files::FoundRun& run) {
   row.run = run.folder.filename().string();
   row.status = record.status;
   row.reason = record.reason;
+  row.silent = record.metrics.silent_frames();
   if (record.metrics.aie.value) row.aie_grey = finite(record.metrics.aie.value->all.aie_grey);
   if (record.metrics.ate.value) row.ate_rmse_m = finite(record.metrics.ate.value->stats.rmse);
   if (record.metrics.rpe_second.value) {
@@ -105,7 +106,7 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows) {
     };
     const auto at = static_cast<std::size_t>(std::ranges::find_if(means, same) - means.begin());
     if (at == means.size()) {
-      means.push_back({row.data, row.imu, row.truth, row.variant, 0, 0, 0, {}});
+      means.push_back({row.data, row.imu, row.truth, row.variant, 0, 0, 0, 0, {}});
       recordings.emplace_back();
       counts.emplace_back();
     }
@@ -114,6 +115,7 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows) {
     ++mean.total;
     if (row.status != record::RunStatus::ok) continue;
     ++mean.ok;
+    if (row.silent.value_or(0) > 0) ++mean.silent;
     for (std::size_t c = 0; c < table_columns().size(); ++c) {
       const auto value = table_columns()[c].value;
       if (!(row.*value)) continue;
@@ -146,6 +148,12 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "tracked frames "
       "have a pose, so read it with the column tracked.",
       "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
+  if (std::ranges::any_of(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; })) {
+    footer.push_back(
+        "silent: frames with a pose whose motion over the second before is off by more than 5 cm or 3 "
+        "degrees "
+        "(evaluation.silent_*), which the method does not report.");
+  }
   if (!table.means.empty()) {
     footer.push_back(
         "mean: of the variant's runs that are ok, whose number stands before that of all; over data of one "

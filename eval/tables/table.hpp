@@ -45,6 +45,7 @@ struct TableRow : TableValues {
   std::string run;  ///< folder name, hash8
   record::RunStatus status = record::RunStatus::failed;
   std::string reason;
+  std::optional<std::size_t> silent;  ///< silent failures; absent without truth
   std::size_t tracked = 0;
   std::size_t total = 0;
   std::size_t vertices = 0;
@@ -60,7 +61,8 @@ struct TableMean {
   std::size_t recordings = 0;  ///< different ones
   std::size_t ok = 0;
   std::size_t total = 0;
-  TableValues values;  ///< each over all ok runs; absent where one of them does not have it
+  std::size_t silent = 0;  ///< runs with silent failures among the ok ones
+  TableValues values;      ///< each over all ok runs; absent where one of them does not have it
 };
 
 struct ResultTable {

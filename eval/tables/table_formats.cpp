@@ -41,7 +41,7 @@ bool repeated(const ResultTable& table, const TableRow& row) {
 Cells shown_cells(const ResultTable& table, const TableRow& row) {
   Cells cells = {row.recording, record::data_cell({row.data, row.imu, row.truth}), row.imu,
                  repeated(table, row) ? fmt::format("{} ({})", row.variant, row.run) : row.variant,
-                 std::string(record::to_string(row.status))};
+                 record::status_text(row.status, row.silent)};
   add_values(row, cells);
   cells.insert(cells.end(), {fmt::format("{}/{}", row.tracked, row.total), fmt::format("{}", row.vertices),
                              text::number_cell(row.fps, 1, 1)});
@@ -51,7 +51,8 @@ Cells shown_cells(const ResultTable& table, const TableRow& row) {
 Cells shown_cells(const TableMean& mean) {
   Cells cells = {fmt::format("mean over {} recordings", mean.recordings),
                  record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.variant,
-                 fmt::format("{}/{} ok", mean.ok, mean.total)};
+                 mean.silent > 0 ? fmt::format("{}/{} ok ({} silent)", mean.ok, mean.total, mean.silent)
+                                 : fmt::format("{}/{} ok", mean.ok, mean.total)};
   add_values(mean.values, cells);
   cells.insert(cells.end(), {"", "", ""});
   return cells;
@@ -60,7 +61,10 @@ Cells shown_cells(const TableMean& mean) {
 std::string count_line(const ResultTable& table) {
   const auto ok = std::count_if(table.rows.begin(), table.rows.end(),
                                 [](const TableRow& row) { return row.status == record::RunStatus::ok; });
-  return fmt::format("{} of {} runs ok.", ok, table.rows.size());
+  const auto silent =
+      std::ranges::count_if(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; });
+  return fmt::format("{} of {} runs ok{}.", ok, table.rows.size(),
+                     silent > 0 ? fmt::format(", {} with silent failures", silent) : "");
 }
 
 std::string markdown(const ResultTable& table) {
@@ -114,13 +118,13 @@ std::string csv_identity(const TableRow& row) {
 std::string csv(const ResultTable& table) {
   std::string text = "recording,data,imu,truth,variant,run,status,reason";
   for (const TableColumn& column : table_columns()) text += fmt::format(",{}", column.key);
-  text += ",tracked,total,vertices,fps\n";
+  text += ",silent,tracked,total,vertices,fps\n";
   for (const TableRow& row : table.rows) {
     text += fmt::format("{},{}", csv_identity(row), text::csv_cell(row.reason));
     for (const TableColumn& column : table_columns())
       text += row.*column.value ? fmt::format(",{}", *(row.*column.value)) : ",";
-    text += fmt::format(",{},{},{},{}\n", row.tracked, row.total, row.vertices,
-                        row.fps ? fmt::format("{}", *row.fps) : "");
+    text += fmt::format(",{},{},{},{},{}\n", row.silent ? fmt::format("{}", *row.silent) : "", row.tracked,
+                        row.total, row.vertices, row.fps ? fmt::format("{}", *row.fps) : "");
   }
   return text;
 }
@@ -134,6 +138,7 @@ std::string csv_long(const ResultTable& table) {
     for (const TableColumn& column : table_columns()) {
       if (row.*column.value) add(column.key, column.unit, *(row.*column.value));
     }
+    if (row.silent) add("silent", "frames", static_cast<double>(*row.silent));
     add("tracked", "frames", static_cast<double>(row.tracked));
     add("total", "frames", static_cast<double>(row.total));
     add("vertices", "", static_cast<double>(row.vertices));
@@ -161,7 +166,8 @@ std::string json(const ResultTable& table) {
                  {"status", record::to_string(row.status)},
                  {"reason", row.reason}};
     json.update(json_of(row));
-    json.update(Json{{"tracked", row.tracked},
+    json.update(Json{{"silent", row.silent ? Json(*row.silent) : Json(nullptr)},
+                     {"tracked", row.tracked},
                      {"total", row.total},
                      {"vertices", row.vertices},
                      {"fps", row.fps ? Json(*row.fps) : Json(nullptr)}});
@@ -175,7 +181,8 @@ std::string json(const ResultTable& table) {
                  {"variant", mean.variant},
                  {"recordings", mean.recordings},
                  {"n_ok", mean.ok},
-                 {"n_total", mean.total}};
+                 {"n_total", mean.total},
+                 {"n_silent", mean.silent}};
     json.update(json_of(mean.values));
     means.push_back(std::move(json));
   }

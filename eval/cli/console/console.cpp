@@ -104,6 +104,8 @@ std::string summary_line(const record::RunRecord& record) {
     line += fmt::format("ATE {:.2f} cm, ", 100 * ate->stats.rmse);
   line +=
       fmt::format("{}/{} frames, {:.1f} fps", record.frames.tracked, record.frames.total, record.timing.fps);
+  if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)
+    line += fmt::format(", {} silent failures", silent);
   return line;
 }
 

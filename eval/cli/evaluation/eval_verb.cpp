@@ -14,6 +14,7 @@ console::Verb add_eval_verb(CLI::App& app) {
   metrics->push_back(add_eval_ate_verb(*verb));
   metrics->push_back(add_eval_rpe_verb(*verb));
   metrics->push_back(add_eval_nees_verb(*verb));
+  metrics->push_back(add_eval_silent_verb(*verb));
   metrics->push_back(add_eval_mesh_verb(*verb));
   return {verb, [metrics]() -> Result<int> {
             for (const console::Verb& metric : *metrics) {

@@ -1,0 +1,53 @@
+// Direct alignment of whole small images with a reference frame, level by level (Steinbruecker, Sturm and
+// Cremers 2011; Kerl et al. 2013), as a measurement of the filter. It finds the basin of convergence that the
+// patches start in, and adds nothing to their information.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/alignment/reference_points.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/filter/iekf.hpp"
+#include "core/measurement/patch_brightness.hpp"
+#include "core/patches/posed_camera.hpp"
+
+namespace fusebench::alignment {
+
+class ImageAlignment final : public filter::PoseMeasurement {
+ public:
+  /// The references must outlive it.
+  ImageAlignment(const config::Config& config, const SensorRig& rig);
+
+  /// pyramid: of the frame to align. The views must stay valid.
+  void observe(std::span<const GreyImage> pyramid, const ReferencePoints& reference,
+               const SE3& T_world_reference, int coarsest_level);
+
+  [[nodiscard]] int stages() const override { return coarsest_ - reference_->finest_level() + 1; }
+  [[nodiscard]] filter::MeasurementQuadratic linearise(const filter::PoseHypothesis& poses, int stage,
+                                                       bool gate) override;
+  [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+                                  double fraction) override;
+  void accept() override { light_.value = light_.trial; }
+
+  /// Share of the points of the last level that the last linearisation saw in the image.
+  [[nodiscard]] double seen_share() const;
+
+ private:
+  [[nodiscard]] patches::PosedCamera posed(const filter::PoseHypothesis& poses) const;
+
+  const config::Config& config_;
+  const SensorRig& rig_;
+  measurement::BrightnessPrior brightness_prior_;
+  measurement::PatchBrightness light_;
+  std::span<const GreyImage> pyramid_;
+  const ReferencePoints* reference_ = nullptr;
+  SE3 T_world_reference_;
+  int coarsest_ = 0;
+  int level_ = 0;
+  std::vector<char> used_;  ///< points that the last linearisation saw in the image
+};
+
+}  // namespace fusebench::alignment

@@ -1,0 +1,80 @@
+#include "core/alignment/start_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/base/geometry.hpp"
+#include "core/filter/pose_clones.hpp"
+
+namespace fusebench::alignment {
+
+namespace {
+constexpr double kLeastShare = 0.1;  // of the reference that an image can be compared with
+}  // namespace
+
+double landing_sigma_px(const filter::GaussianState& prior, const ReferencePoints& reference,
+                        const SensorRig& rig) {
+  if (reference.empty()) return 0;
+  const auto by_reference = filter::measured_combinations(prior.mean).topRows<filter::kPoseSize>();
+  const Matrix6d covariance = by_reference * prior.covariance * by_reference.transpose();
+  const patches::PosedCamera camera(rig.camera, prior.mean.T_world_imu, rig.T_imu_camera);
+  const SE3 T_world_reference = prior.mean.T_world_imu_reference * rig.T_imu_camera;
+  double sum = 0;
+  int count = 0;
+  for (const ReferencePoint& point : reference.level(reference.coarsest_level())) {
+    const Vector3d in_camera = camera.to_camera(T_world_reference * point.point_camera);
+    if (in_camera.z() < 0.1) continue;
+    const Matrix2x3d by_point = camera.camera.projection_jacobian(in_camera);
+    Eigen::Matrix<double, 2, filter::kPoseSize> jacobian;
+    jacobian.leftCols<3>() = by_point * camera.R_camera_imu * hat(camera.to_imu(in_camera));
+    jacobian.rightCols<3>() = -by_point * camera.R_camera_world;
+    const Eigen::Matrix2d spread = jacobian * covariance * jacobian.transpose();
+    const double half_trace = 0.5 * spread.trace();
+    sum += half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - spread.determinant()));
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+StartSearch::StartSearch(const config::Config& config, const SensorRig& rig)
+    : config_(config), rig_(rig), alignment_(config, rig) {}
+
+int StartSearch::coarsest_level(double sigma_px, const ReferencePoints& reference) const {
+  const double distance_px = config_.alignment.reach_sigmas * sigma_px;
+  const auto reach_px = [&](int level) { return config_.alignment.reach_px * (1 << level); };
+  if (distance_px <= reach_px(config_.patches.levels - 1)) return -1;
+  int level = reference.finest_level();
+  while (level < reference.coarsest_level() && distance_px > reach_px(level)) ++level;
+  return level;
+}
+
+FoundStart StartSearch::find(const filter::GaussianState& prior, const ReferencePoints& reference,
+                             std::span<const GreyImage> pyramid, bool thorough) {
+  FoundStart found;
+  if (reference.empty()) return found;
+  found.landing_sigma_px = landing_sigma_px(prior, reference, rig_);
+  found.coarsest_level =
+      thorough ? reference.coarsest_level() : coarsest_level(found.landing_sigma_px, reference);
+  if (found.coarsest_level < 0) return found;
+  config::IekfConfig iterations = config_.iekf;
+  iterations.max_iterations = config_.alignment.max_iterations;
+  const SE3 T_world_reference = prior.mean.T_world_imu_reference * rig_.T_imu_camera;
+  // The camera moved on as before, or it stands still.
+  const std::array<filter::MeasuredVector, 2> starts = {
+      filter::MeasuredVector::Zero(), filter::start_at(prior, prior.mean.T_world_imu_reference)};
+  double least = std::numeric_limits<double>::infinity();
+  for (const filter::MeasuredVector& start : starts) {
+    alignment_.observe(pyramid, reference, T_world_reference, found.coarsest_level);
+    const filter::IekfResult result = filter::iekf_update(prior, alignment_, iterations, start);
+    // A start that sees less of the reference has fewer residuals, not a better fit.
+    const double cost = result.map_cost_posterior / std::max(kLeastShare, alignment_.seen_share());
+    if (!(cost < least)) continue;
+    least = cost;
+    found.start = result.solution;
+  }
+  return found;
+}
+
+}  // namespace fusebench::alignment

@@ -1,0 +1,18 @@
+// What the next frame is compared with: everything that was taken from one frame.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/alignment/reference_points.hpp"
+#include "core/patches/patches.hpp"
+
+namespace fusebench::alignment {
+
+struct TrackingReference {
+  std::vector<patches::Patch> patches;  ///< cut from the frame
+  ReferencePoints points;               ///< of its coarse levels
+  std::int64_t timestamp_ns = 0;        ///< its capture instant
+};
+
+}  // namespace fusebench::alignment

@@ -1,0 +1,24 @@
+// Options: what a run counts as a silent failure. No estimate depends on them.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures).
+struct EvaluationConfig {
+  double silent_interval_s = 1.0;
+  double silent_translation_m = 0.05;
+  double silent_rotation_deg = 3.0;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
+             "a claimed pose is judged by the motion since the one this long before (seconds)");
+    v.number("silent_translation_m", self.silent_translation_m, 1e-4, 100.0,
+             "it is a silent failure if that motion is off by more than this");
+    v.number("silent_rotation_deg", self.silent_rotation_deg, 0.01, 180.0,
+             "or if it is rotated by more than this");
+  }
+};
+
+}  // namespace fusebench::config

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/base/geometry.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/evaluation/eval_verbs.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/trajectory_error/silent_failures.hpp"
+#include "eval/trajectory_files/trajectory_formats.hpp"
+
+namespace fusebench::cli::evaluation {
+
+namespace {
+
+struct SilentOptions {
+  std::string reference;
+  std::string estimate;
+  double interval_s = 1.0;
+  double translation_m = 0.05;
+  double rotation_deg = 3.0;
+  bool json = false;
+};
+
+std::string to_text(const trajectory_error::SilentFailures& found) {
+  std::string text = fmt::format(
+      "silent failures: {} of {} poses, whose motion over {} s is off by more than {} m or {} deg\n",
+      found.silent, found.judged, found.limits.interval_s, found.limits.max_translation_m,
+      degrees(found.limits.max_rotation_rad));
+  if (found.first_ns)
+    text += fmt::format("first              {:.6f} s\n", 1e-9 * static_cast<double>(*found.first_ns));
+  text += fmt::format("worst translation  {:.6f} m\nworst rotation     {:.6f} deg\n",
+                      found.worst_translation_m, degrees(found.worst_rotation_rad));
+  return text;
+}
+
+std::string to_json(const trajectory_error::SilentFailures& found) {
+  using Json = nlohmann::ordered_json;
+  const Json json = {{"metric", "silent_failures"},
+                     {"interval_s", found.limits.interval_s},
+                     {"max_translation_m", found.limits.max_translation_m},
+                     {"max_rotation_rad", found.limits.max_rotation_rad},
+                     {"judged", found.judged},
+                     {"silent", found.silent},
+                     {"first_ns", found.first_ns ? Json(*found.first_ns) : Json(nullptr)},
+                     {"worst_translation_m", found.worst_translation_m},
+                     {"worst_rotation_rad", found.worst_rotation_rad}};
+  return text::json_text(json) + "\n";
+}
+
+Result<int> run(const SilentOptions& options) {
+  std::vector<std::string> warnings;
+  const auto load = [&](const std::string& file) {
+    return trajectory_files::load_trajectory(file, {}, trajectory::Duplicates::rare_last, warnings);
+  };
+  const auto reference = load(options.reference);
+  if (!reference) return tl::unexpected(reference.error());
+  const auto estimate = load(options.estimate);
+  if (!estimate) return tl::unexpected(estimate.error());
+  for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
+  if (!reference->has_stamps() || !estimate->has_stamps())
+    return fail(ErrorCode::usage, "silent failures need stamps, which the format kitti does not have",
+                "use TUM or EuRoC files");
+  const auto found = trajectory_error::silent_failures(
+      reference->poses, estimate->poses,
+      {options.interval_s, options.translation_m, radians(options.rotation_deg)});
+  if (!found) return tl::unexpected(found.error());
+  console::print_output(options.json ? to_json(*found) : to_text(*found));
+  return 0;
+}
+
+}  // namespace
+
+console::Verb add_eval_silent_verb(CLI::App& eval) {
+  auto options = std::make_shared<SilentOptions>();
+  CLI::App* verb = eval.add_subcommand(
+      "silent", "Counts the poses that an estimate claims although the motion before them is wrong");
+  verb->add_option("GT", options->reference, "Reference with stamps (TUM, EuRoC)")->required();
+  verb->add_option("EST", options->estimate, "Estimate with stamps; frames that were lost have no pose in it")
+      ->required();
+  verb->add_option("--interval", options->interval_s, "The motion over this long is judged")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--translation", options->translation_m, "It may be off by this much")
+      ->type_name("M")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--rotation", options->rotation_deg, "And be rotated by this much")
+      ->type_name("DEG")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  console::add_json_flag(*verb, options->json);
+  verb->footer("docs/metrics.md defines the numbers. Exit code 3 for files that cannot be compared.");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace fusebench::cli::evaluation

@@ -1,0 +1,63 @@
+#include "eval/trajectory_error/silent_failures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/base/geometry.hpp"
+#include "core/trajectory/trajectory.hpp"
+
+namespace fusebench::trajectory_error {
+
+namespace {
+
+constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
+
+/// A claimed pose and the true one at its instant.
+struct KnownPose {
+  std::int64_t timestamp_ns = 0;
+  SE3 estimate;
+  SE3 truth;
+};
+
+std::vector<KnownPose> known_poses(const Trajectory& ground_truth, const Trajectory& estimate) {
+  std::vector<KnownPose> known;
+  for (const StampedPose& pose : estimate) {
+    const auto truth = trajectory::interpolate_pose(ground_truth, pose.timestamp_ns, kMaxTruthGap_ns);
+    if (truth) known.push_back({pose.timestamp_ns, pose.T_world_camera, *truth});
+  }
+  return known;
+}
+
+}  // namespace
+
+Result<SilentFailures> silent_failures(const Trajectory& ground_truth, const Trajectory& estimate,
+                                       const SilentFailureLimits& limits) {
+  const std::vector<KnownPose> known = known_poses(ground_truth, estimate);
+  if (known.size() < 2)
+    return fail(ErrorCode::data_corrupt, "fewer than two poses of the estimate have ground truth");
+  const auto interval_ns = static_cast<std::int64_t>(std::llround(1e9 * limits.interval_s));
+  SilentFailures result;
+  result.limits = limits;
+  std::size_t before = 0;
+  for (std::size_t now = 1; now < known.size(); ++now) {
+    while (before + 1 < now && known[before + 1].timestamp_ns + interval_ns <= known[now].timestamp_ns)
+      ++before;
+    const SE3 claimed = known[before].estimate.inverse() * known[now].estimate;
+    const SE3 real = known[before].truth.inverse() * known[now].truth;
+    const SE3 error = real.inverse() * claimed;
+    const double translation_m = error.translation.norm();
+    const double rotation_rad = rotation_angle_rad(real.rotation, claimed.rotation);
+    ++result.judged;
+    result.worst_translation_m = std::max(result.worst_translation_m, translation_m);
+    result.worst_rotation_rad = std::max(result.worst_rotation_rad, rotation_rad);
+    // Written so that a pose that is not a number is a failure.
+    if (translation_m <= limits.max_translation_m && rotation_rad <= limits.max_rotation_rad) continue;
+    ++result.silent;
+    if (!result.first_ns) result.first_ns = known[now].timestamp_ns;
+  }
+  return result;
+}
+
+}  // namespace fusebench::trajectory_error
