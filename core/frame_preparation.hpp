@@ -10,6 +10,7 @@
 #include "core/health/stage_times.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/preprocessing/camera_motion.hpp"
+#include "core/repeated_images.hpp"
 
 namespace fusebench::core {
 
@@ -43,7 +44,9 @@ class FramePreparation {
   }
   /// And the coarser ones that whole images are aligned by.
   [[nodiscard]] std::span<const GreyImage> whole_pyramid() const { return pyramid_; }
-  [[nodiscard]] measurement::ObservedFrame observed() const { return {pyramid(), frame_.depth_m}; }
+  [[nodiscard]] measurement::ObservedFrame observed(const Novelty& novelty) const {
+    return {pyramid(), frame_.depth_m, novelty.color, novelty.depth};
+  }
 
  private:
   const config::Config& config_;

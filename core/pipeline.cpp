@@ -41,11 +41,14 @@ struct Pipeline::State final : RestartableEstimator {
 
   Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
   health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
-  bool track(const filter::GaussianState& prior, bool after_gap, health::FrameReport& report);
+  bool track(const filter::GaussianState& prior, bool after_gap, bool thorough, health::FrameReport& report);
+  bool track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
+                   health::FrameReport& report);
   filter::PoseMeasurement& deform();
   bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
   Result<void> fuse(const RgbdFrame& frame, health::StageTimes& stages);
   void refresh(health::StageTimes& stages);
+  void repeat_last(health::FrameReport& report);
   void keep_moving(std::int64_t now_ns, health::FrameReport& report);
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
@@ -53,6 +56,7 @@ struct Pipeline::State final : RestartableEstimator {
   SensorRig rig;
   std::span<const ImuSample> imu;
   const Workers& workers;
+  Novelty novelty;                            ///< of the current frame
   FramePreparation preparation;               ///< of the current frame
   alignment::StartSearch search;              ///< of where the update starts
   measurement::PatchMeasurement measurement;  ///< of the patches in the current frame
@@ -68,6 +72,12 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
   Tracking& now = *tracking;
   health::FrameReport report = health::report_of(frame);
   check(!now.estimate || frame.capture_ns() > now.timestamp_ns, "frames come in the order of time");
+
+  novelty = now.repeated_images.examine(frame);
+  if (now.estimate && !novelty.color && !novelty.depth) {
+    repeat_last(report);
+    return report;
+  }
 
   const Result<filter::GaussianState> predicted = predict(frame.capture_ns(), report.stages);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
@@ -85,7 +95,9 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
   now.timestamp_ns = frame.capture_ns();
   ++now.frames;
 
-  if (now.occlusion_gate.admits(report, config.health)) {
+  // Colour and depth of different instants belong neither into the model nor together into a patch.
+  const bool one_instant = novelty.color && novelty.depth;
+  if (now.occlusion_gate.admits(report, config.health) && one_instant) {
     const filter::FilterState& state = now.estimate->mean;
     if (preparation.is_outdated(frame, predicted->mean, state))
       preparation.prepare(frame, state, report.stages);
@@ -94,7 +106,7 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
     refresh(report.stages);  // Sec. 2.3: patch update
   }
   if (report.status == health::FrameStatus::initialised)
-    report.health = health::judge_start(preparation.observed(), now.reference.patches.size(), config);
+    report.health = health::judge_start(preparation.observed(novelty), now.reference.patches.size(), config);
   health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
   return report;
@@ -119,17 +131,20 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
   if (!tracking->estimate) return health::FrameStatus::initialised;
   // As after a gap, the velocity at the start of a recording is unknown.
   const bool after_gap = tracking->lost_frames > 0 || tracking->frames == 1;
-  if (track(predicted, after_gap, report)) return health::FrameStatus::tracked;
+  if (track(predicted, after_gap, false, report)) return health::FrameStatus::tracked;
+  if (novelty.color && track_again(predicted, after_gap, true, report)) return health::FrameStatus::tracked;
   return relocalise(predicted, report) ? health::FrameStatus::relocalised : health::FrameStatus::lost;
 }
 
 /// Secs. 2.1 and 2.2.2: the patches are deformed into the frame by each iterate of the update, which
-/// minimises what is left between them and the images. False if the result is not to be believed.
-bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, health::FrameReport& report) {
+/// minimises what is left between them and the images. It starts where a search found the basin; a thorough
+/// one begins at the coarsest level, whatever the prior says. False if the result is not to be believed.
+bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, bool thorough,
+                            health::FrameReport& report) {
   const health::StageClock clock(report.stages, health::Stage::update);
   Tracking& now = *tracking;
-  const alignment::FoundStart found =
-      search.find(prior, now.reference.points, preparation.whole_pyramid(), false);
+  alignment::FoundStart found;
+  if (novelty.color) found = search.find(prior, now.reference.points, preparation.whole_pyramid(), thorough);
   filter::PoseMeasurement& deformed = deform();  // Eqs. 1-5
   const filter::IekfResult update =
       filter::iekf_update(prior, deformed, config.iekf, found.start);  // Eqs. 15-23
@@ -141,7 +156,7 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   }
   health::describe_update(measurement, update, now.reference.patches, report);
   report.health =
-      health::judge_health(preparation.observed(), measurement.outcomes(), report.blur_px, config);
+      health::judge_health(preparation.observed(novelty), measurement.outcomes(), report.blur_px, config);
   report.reason = health::rejection_reason(report, after_gap, config);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
@@ -152,7 +167,9 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   report.evidence = health::PoseEvidence{now.reference.timestamp_ns, prior.mean.T_world_imu_reference,
                                          update.posterior.mean.T_world_imu, update.measurement};
   now.estimate = update.posterior;
-  if (report.health != health::FrameHealth::occluded)
+  if (report.health == health::FrameHealth::good && !(novelty.color && novelty.depth))
+    report.health = health::FrameHealth::repeated;
+  if (report.health != health::FrameHealth::occluded && novelty.color && novelty.depth)
     now.residual_scale = measurement::followed_scale(now.residual_scale, measurement.outcomes(), config);
   health::find_survivors(now.reference.patches, measurement.outcomes(), config.patches, now.survivors);
   return true;
@@ -162,8 +179,22 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
 /// shrink and extend effects) and errors (Eqs. 3-5) are evaluated in PatchMeasurement::linearise(), again at
 /// each iterate (Eq. 18).
 filter::PoseMeasurement& Pipeline::State::deform() {
-  measurement.observe(preparation.observed(), tracking->reference.patches, tracking->residual_scale);
+  measurement.observe(preparation.observed(novelty), tracking->reference.patches, tracking->residual_scale);
   return measurement;
+}
+
+/// The same once more with a report of its own; the report of the first attempt stays if this one fails.
+bool Pipeline::State::track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
+                                  health::FrameReport& report) {
+  health::FrameReport again = health::report_of(preparation.frame());
+  again.stages = report.stages;
+  const bool tracked = track(prior, after_gap, thorough, again);
+  if (tracked) {
+    report = std::move(again);
+  } else {
+    report.stages = again.stages;
+  }
+  return tracked;
 }
 
 /// Looks for the frame among the keyframes, and tracks it from there with their patches.
@@ -177,14 +208,10 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
   }
   if (!found) return false;
   std::swap(now.reference, found->reference);
-  health::FrameReport again = health::report_of(preparation.frame());
-  again.stages = report.stages;
-  if (!track(found->prior, true, again)) {
+  if (!track_again(found->prior, true, false, report)) {
     std::swap(now.reference, found->reference);
-    report.stages = again.stages;
     return false;
   }
-  report = std::move(again);
   report.pixels = {};  // the intensity error is one against the frame before
   return true;
 }
@@ -211,6 +238,16 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   now.relocalisation.add_keyframe(
       frame, T_world_camera(), now.timestamp_ns,
       preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));
+}
+
+/// Both images are those of the frame before, and so is the pose.
+void Pipeline::State::repeat_last(health::FrameReport& report) {
+  Tracking& now = *tracking;
+  report.status = now.lost_frames > 0 ? health::FrameStatus::lost : health::FrameStatus::tracked;
+  report.health = health::FrameHealth::repeated;
+  report.reason = "colour and depth are those of the frame before";
+  health::describe_state(*now.estimate, rig.T_imu_camera, report);
+  report.model_blocks = now.model.block_count();
 }
 
 /// The prediction is not finite: the frame is lost, and the velocity before carries the state to it.

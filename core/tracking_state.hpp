@@ -13,6 +13,7 @@
 #include "core/measurement/residual_scale.hpp"
 #include "core/patches/patches.hpp"
 #include "core/relocalisation/relocalisation.hpp"
+#include "core/repeated_images.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::core {
@@ -29,6 +30,7 @@ struct Tracking {
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
   int frames = 0;                                 ///< since the start
   int lost_frames = 0;                            ///< in a row, before the current one
+  RepeatedImages repeated_images;
   health::OcclusionGate occlusion_gate;
   measurement::ResidualScale residual_scale;      ///< noise scale estimated from earlier frames
   alignment::TrackingReference reference;         ///< from the last fused frame

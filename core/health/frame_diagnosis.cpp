@@ -52,6 +52,8 @@ std::string_view to_string(FrameHealth health) {
       return "blurred";
     case FrameHealth::diverged:
       return "diverged";
+    case FrameHealth::repeated:
+      return "repeated";
     case FrameHealth::good:
       break;
   }

@@ -21,6 +21,7 @@ enum class FrameHealth {
   short_of_patches,  ///< too few in view for another reason
   blurred,           ///< the predicted blur is longer than a patch
   diverged,          ///< the images were not asked: the state is not finite (state_validity.hpp)
+  repeated,          ///< colour, depth or both are those of the frame before
   good,
 };
 [[nodiscard]] std::string_view to_string(FrameHealth health);

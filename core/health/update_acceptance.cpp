@@ -13,6 +13,10 @@ std::string rejection_reason(const FrameReport& report, bool after_gap, const co
     return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
                        report.patches_accepted, report.patches, config.iekf.min_patches);
   }
+  if (report.health == FrameHealth::inconsistent && config.terms.relocalisation) {
+    return fmt::format("inconsistent: {} of {} tracked patches fit the pose", report.patches_accepted,
+                       report.patches_tracked);
+  }
   // Without relocalisation there is nothing better to turn to.
   if (after_gap && config.terms.relocalisation && fails_chi2_gate(report, config)) {
     return fmt::format("after a gap the patches do not fit: {:.1f} times the variance of their noise",

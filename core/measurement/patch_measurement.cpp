@@ -70,6 +70,8 @@ void PatchMeasurement::observe(const ObservedFrame& frame, std::span<const patch
   frame_.emplace(frame);
   patches_ = patches;
   scale_ = scale;
+  weights_ = {frame.color_is_new ? config_.terms.photometric_weight : 0.0,
+              frame.depth_is_new ? config_.terms.geometric_weight : 0.0};
   origin_world_ = origin_of(patches);
   gates_ = AssociationGates(config_.geometric, config_.depth, scale.geometric);
   states_.assign(patches.size(), {});
@@ -130,7 +132,7 @@ void PatchMeasurement::warp_all(const PosedLevels& posed) {
 }
 
 void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& posed) {
-  if (config_.terms.geometric_weight <= 0) return;
+  if (weights_.geometric <= 0) return;
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
@@ -141,12 +143,12 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
 }
 
 PatchMeasurement::Weighting PatchMeasurement::photometric_weighting() const {
-  return {static_cast<float>(config_.terms.photometric_weight / config_.photometric.pixels_per_measurement),
+  return {static_cast<float>(weights_.photometric / config_.photometric.pixels_per_measurement),
           static_cast<float>(config_.photometric.huber_sigmas)};
 }
 
 PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
-  return {static_cast<float>(config_.terms.geometric_weight / config_.geometric.pixels_per_measurement),
+  return {static_cast<float>(weights_.geometric / config_.geometric.pixels_per_measurement),
           static_cast<float>(config_.geometric.huber_sigmas)};
 }
 
@@ -226,7 +228,7 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
   outcome.gain = state.brightness.value.x();
   judge_visibility(levels_.front().lanes.pixels_of(patch), levels_.front().lanes.warped_of(patch),
                    frame_->pyramid.front(), config_.patches, outcome);
-  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_));
+  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_, weights_));
   if (!outcome.accepted) {
     // A rejected patch contributes neither its residuals nor its brightness prior.
     state.counts = false;

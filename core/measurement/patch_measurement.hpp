@@ -26,6 +26,8 @@ namespace fusebench::measurement {
 struct ObservedFrame {
   std::span<const GreyImage> pyramid;
   const DepthImage& depth_m;  ///< gated
+  bool color_is_new = true;   ///< otherwise it says nothing of this instant: no photometric residuals
+  bool depth_is_new = true;   ///< otherwise no geometric ones
 };
 
 class PatchMeasurement final : public filter::PoseMeasurement {
@@ -97,6 +99,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   std::optional<ObservedFrame> frame_;
   std::span<const patches::Patch> patches_;
   ResidualScale scale_;
+  TermWeights weights_;  ///< in this frame
   BrightnessPrior brightness_prior_;
   Vector3d origin_world_ = Vector3d::Zero();  ///< of the lanes' coordinates
   AssociationGates gates_;

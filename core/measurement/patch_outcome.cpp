@@ -44,10 +44,10 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
   }
 }
 
-bool is_consistent(const PatchOutcome& outcome, const config::Config& config) {
+bool is_consistent(const PatchOutcome& outcome, const config::Config& config, const TermWeights& weights) {
   const double limit = config.iekf.max_chi2_per_measurement;
-  const bool photometric = config.terms.photometric_weight <= 0 ||
-                           outcome.chi2_photometric <= limit * outcome.photometric_residuals;
+  const bool photometric =
+      weights.photometric <= 0 || outcome.chi2_photometric <= limit * outcome.photometric_residuals;
   // A patch with a gain near 0 fits any image: a gain far from 1 indicates a wrong match rather than a change
   // of brightness.
   constexpr double kMaxGain = 2.0;

@@ -39,7 +39,14 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
                       std::span<const patches::WarpedLanes> warped, const GreyImage& image,
                       const config::PatchConfig& config, PatchOutcome& outcome);
 
+/// Factors on the information of the two kinds of residuals in a frame; 0 switches a kind off.
+struct TermWeights {
+  double photometric = 1;
+  double geometric = 1;
+};
+
 /// The chi-square gate, and a plausible gain. Needs the sums of the residuals and the gain.
-[[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::Config& config);
+[[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::Config& config,
+                                 const TermWeights& weights);
 
 }  // namespace fusebench::measurement
