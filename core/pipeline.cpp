@@ -7,11 +7,12 @@
 #include <tuple>
 #include <utility>
 
-#include "core/alignment/start_search.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
 #include "core/frame_preparation.hpp"
+#include "core/frame_update.hpp"
+#include "core/frames_without_update.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/prediction/initialisation.hpp"
 #include "core/prediction/motion_prior.hpp"
@@ -28,8 +29,7 @@ struct Pipeline::State final : RestartableEstimator {
         imu(imu_in),
         workers(workers_in),
         preparation(config, rig, workers),
-        search(config, rig),
-        measurement(config, rig, workers),
+        deformed_update(config, rig, workers),
         tracking(std::in_place, config, rig) {
     // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
     if (config.terms.prior == config::Prior::constant_velocity) rig.T_imu_camera = SE3{};
@@ -44,22 +44,18 @@ struct Pipeline::State final : RestartableEstimator {
   bool track(const filter::GaussianState& prior, bool after_gap, bool thorough, health::FrameReport& report);
   bool track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
                    health::FrameReport& report);
-  filter::PoseMeasurement& deform();
   bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
   Result<void> fuse(const RgbdFrame& frame, health::StageTimes& stages);
   void refresh(health::StageTimes& stages);
-  void repeat_last(health::FrameReport& report);
-  void keep_moving(std::int64_t now_ns, health::FrameReport& report);
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
   config::Config config;
   SensorRig rig;
   std::span<const ImuSample> imu;
   const Workers& workers;
-  Novelty novelty;                            ///< of the current frame
-  FramePreparation preparation;               ///< of the current frame
-  alignment::StartSearch search;              ///< of where the update starts
-  measurement::PatchMeasurement measurement;  ///< of the patches in the current frame
+  Novelty novelty;               ///< of the current frame
+  FramePreparation preparation;  ///< of the current frame
+  FrameUpdate deformed_update;   ///< by the patches, deformed into the current frame
   patches::PatchWorkspace patch_workspace;
   std::optional<Tracking> tracking;                   ///< always there
   std::optional<filter::FilterState> initial_motion;  ///< after a restart
@@ -75,14 +71,14 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
 
   novelty = now.repeated_images.examine(frame);
   if (now.estimate && !novelty.color && !novelty.depth) {
-    repeat_last(report);
+    repeat_last(now, rig, report);
     return report;
   }
 
   const Result<filter::GaussianState> predicted = predict(frame.capture_ns(), report.stages);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
   if (!filter::is_valid(*predicted)) {
-    keep_moving(frame.capture_ns(), report);
+    keep_moving(now, frame.capture_ns(), rig, config, report);
     return report;
   }
   preparation.prepare(frame, predicted->mean, report.stages);
@@ -136,27 +132,25 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
   return relocalise(predicted, report) ? health::FrameStatus::relocalised : health::FrameStatus::lost;
 }
 
-/// Secs. 2.1 and 2.2.2: the patches are deformed into the frame by each iterate of the update, which
-/// minimises what is left between them and the images. It starts where a search found the basin; a thorough
-/// one begins at the coarsest level, whatever the prior says. False if the result is not to be believed.
+/// Secs. 2.1 and 2.2.2: the patches are deformed into the frame (Eqs. 1-2, shrink and extend effects) by each
+/// iterate of the update (Eq. 18), which minimises what is left between them and the images (Eqs. 3-5), in
+/// PatchMeasurement::linearise(). False if the result is not to be believed.
 bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, bool thorough,
                             health::FrameReport& report) {
   const health::StageClock clock(report.stages, health::Stage::update);
   Tracking& now = *tracking;
-  alignment::FoundStart found;
-  if (novelty.color) found = search.find(prior, now.reference.points, preparation.whole_pyramid(), thorough);
-  filter::PoseMeasurement& deformed = deform();  // Eqs. 1-5
+  // Eqs. 1-5, 15-23
   const filter::IekfResult update =
-      filter::iekf_update(prior, deformed, config.iekf, found.start);  // Eqs. 15-23
+      deformed_update.run(prior, now.reference, preparation, novelty, now.residual_scale, thorough);
   report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
   if (!filter::is_valid(update.posterior)) {
     report.health = health::FrameHealth::diverged;
     report.reason = fmt::format("{}: the update is not finite", health::to_string(report.health));
     return false;
   }
-  health::describe_update(measurement, update, now.reference.patches, report);
-  report.health =
-      health::judge_health(preparation.observed(novelty), measurement.outcomes(), report.blur_px, config);
+  const std::span<const measurement::PatchOutcome> outcomes = deformed_update.measurement().outcomes();
+  health::describe_update(deformed_update.measurement(), update, now.reference.patches, report);
+  report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config);
   report.reason = health::rejection_reason(report, after_gap, config);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
@@ -170,17 +164,9 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   if (report.health == health::FrameHealth::good && !(novelty.color && novelty.depth))
     report.health = health::FrameHealth::repeated;
   if (report.health != health::FrameHealth::occluded && novelty.color && novelty.depth)
-    now.residual_scale = measurement::followed_scale(now.residual_scale, measurement.outcomes(), config);
-  health::find_survivors(now.reference.patches, measurement.outcomes(), config.patches, now.survivors);
+    now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config);
+  health::find_survivors(now.reference.patches, outcomes, config.patches, now.survivors);
   return true;
-}
-
-/// Sec. 2.1: the patches in the current frame, at whatever pose the update asks for. Deformation (Eqs. 1-2,
-/// shrink and extend effects) and errors (Eqs. 3-5) are evaluated in PatchMeasurement::linearise(), again at
-/// each iterate (Eq. 18).
-filter::PoseMeasurement& Pipeline::State::deform() {
-  measurement.observe(preparation.observed(novelty), tracking->reference.patches, tracking->residual_scale);
-  return measurement;
 }
 
 /// The same once more with a report of its own; the report of the first attempt stays if this one fails.
@@ -238,34 +224,6 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   now.relocalisation.add_keyframe(
       frame, T_world_camera(), now.timestamp_ns,
       preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));
-}
-
-/// Both images are those of the frame before, and so is the pose.
-void Pipeline::State::repeat_last(health::FrameReport& report) {
-  Tracking& now = *tracking;
-  report.status = now.lost_frames > 0 ? health::FrameStatus::lost : health::FrameStatus::tracked;
-  report.health = health::FrameHealth::repeated;
-  report.reason = "colour and depth are those of the frame before";
-  health::describe_state(*now.estimate, rig.T_imu_camera, report);
-  report.model_blocks = now.model.block_count();
-}
-
-/// The prediction is not finite: the frame is lost, and the velocity before carries the state to it.
-void Pipeline::State::keep_moving(std::int64_t now_ns, health::FrameReport& report) {
-  Tracking& now = *tracking;
-  report.health = health::FrameHealth::diverged;
-  report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
-                              health::to_string(report.health));
-  std::ignore = now.occlusion_gate.admits(report, config.health);
-  if (!now.estimate) return;
-  now.estimate = prediction::predict_by_constant_velocity(
-                     *now.estimate, seconds_between(now.timestamp_ns, now_ns), config.motion)
-                     .state;
-  ++now.frames;
-  ++now.lost_frames;
-  now.timestamp_ns = now_ns;
-  health::describe_state(*now.estimate, rig.T_imu_camera, report);
-  report.model_blocks = now.model.block_count();
 }
 
 Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,

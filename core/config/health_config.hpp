@@ -12,6 +12,7 @@ struct HealthConfig {
   double min_depth_share = 0.1;
   int texture_gradient_grey = 4;
   double min_texture_share = 0.01;
+  double suspicious_misfit = 4.0;
   double max_chi2_after_gap = 2.5;
   int max_occluded_frames = 30;
 
@@ -33,6 +34,10 @@ struct HealthConfig {
     v.number("min_texture_share", self.min_texture_share, 0.0, 1.0,
              "a frame with texture on a smaller share of its pixels is short of texture: at 640x480 and 3 "
              "levels 1 % is 192 pixels, less than two patches");
+    v.number(
+        "suspicious_misfit", self.suspicious_misfit, 0.0, 1e6,
+        "an update is tried again from the coarsest level if the mean squared whitened photometric residual "
+        "of the patches in view exceeds this (rejected ones count as iekf.max_chi2_per_measurement)");
     v.number(
         "max_chi2_after_gap", self.max_chi2_after_gap, 0.1, 1e6,
         "after a gap an update with a larger mean squared whitened photometric residual is not believed: of "

@@ -13,7 +13,8 @@ std::string rejection_reason(const FrameReport& report, bool after_gap, const co
     return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
                        report.patches_accepted, report.patches, config.iekf.min_patches);
   }
-  if (report.health == FrameHealth::inconsistent && config.terms.relocalisation) {
+  // Whatever the frame suffers from: a pose that most of the patches contradict is none.
+  if (2 * report.patches_accepted < report.patches_tracked && config.terms.relocalisation) {
     return fmt::format("inconsistent: {} of {} tracked patches fit the pose", report.patches_accepted,
                        report.patches_tracked);
   }

@@ -1,0 +1,45 @@
+// The update of a frame: where it starts, and which of two basins it ends in. Around Eqs. 15-23, which are
+// those of filter::iekf_update().
+#pragma once
+
+#include "core/alignment/start_search.hpp"
+#include "core/alignment/tracking_reference.hpp"
+#include "core/base/parallel.hpp"
+#include "core/config/config.hpp"
+#include "core/filter/iekf.hpp"
+#include "core/frame_preparation.hpp"
+#include "core/measurement/patch_measurement.hpp"
+#include "core/repeated_images.hpp"
+
+namespace fusebench::core {
+
+class FrameUpdate {
+ public:
+  /// All references must outlive it.
+  FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers)
+      : config_(config), search_(config, rig), measurement_(config, rig, workers) {}
+
+  /// Updates the prior by the patches of the reference in the prepared frame. Where the result is suspicious
+  /// (a large misfit), the update starts once more from the coarsest level, and the better of the two counts;
+  /// thorough: it starts there at once.
+  [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior,
+                                       const alignment::TrackingReference& reference,
+                                       const FramePreparation& frame, const Novelty& novelty,
+                                       const measurement::ResidualScale& scale, bool thorough);
+
+  /// Of the update that run() returned.
+  [[nodiscard]] const measurement::PatchMeasurement& measurement() const { return measurement_; }
+
+ private:
+  const config::Config& config_;
+  alignment::StartSearch search_;
+  measurement::PatchMeasurement measurement_;
+};
+
+/// How badly the patches in view fit after an update: the mean squared whitened photometric residual,
+/// averaged over patches, of which one that was rejected counts as iekf.max_chi2_per_measurement. Zero
+/// without any.
+[[nodiscard]] double misfit(std::span<const measurement::PatchOutcome> outcomes,
+                            const config::IekfConfig& config);
+
+}  // namespace fusebench::core

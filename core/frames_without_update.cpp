@@ -1,0 +1,36 @@
+#include "core/frames_without_update.hpp"
+
+#include <fmt/format.h>
+
+#include <tuple>
+
+#include "core/prediction/motion_prior.hpp"
+
+namespace fusebench::core {
+
+void repeat_last(const Tracking& now, const SensorRig& rig, health::FrameReport& report) {
+  report.status = now.lost_frames > 0 ? health::FrameStatus::lost : health::FrameStatus::tracked;
+  report.health = health::FrameHealth::repeated;
+  report.reason = "colour and depth are those of the frame before";
+  health::describe_state(*now.estimate, rig.T_imu_camera, report);
+  report.model_blocks = now.model.block_count();
+}
+
+void keep_moving(Tracking& now, std::int64_t now_ns, const SensorRig& rig, const config::Config& config,
+                 health::FrameReport& report) {
+  report.health = health::FrameHealth::diverged;
+  report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
+                              health::to_string(report.health));
+  std::ignore = now.occlusion_gate.admits(report, config.health);
+  if (!now.estimate) return;
+  now.estimate = prediction::predict_by_constant_velocity(
+                     *now.estimate, seconds_between(now.timestamp_ns, now_ns), config.motion)
+                     .state;
+  ++now.frames;
+  ++now.lost_frames;
+  now.timestamp_ns = now_ns;
+  health::describe_state(*now.estimate, rig.T_imu_camera, report);
+  report.model_blocks = now.model.block_count();
+}
+
+}  // namespace fusebench::core

@@ -1,0 +1,20 @@
+// Frames whose images are not asked, and what becomes of the state.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/health/frame_report.hpp"
+#include "core/tracking_state.hpp"
+
+namespace fusebench::core {
+
+/// Both images are those of the frame before, and so is the pose: nothing changes.
+void repeat_last(const Tracking& tracking, const SensorRig& rig, health::FrameReport& report);
+
+/// The prediction is not finite: the frame is lost, and the velocity before carries the state to it.
+void keep_moving(Tracking& tracking, std::int64_t now_ns, const SensorRig& rig, const config::Config& config,
+                 health::FrameReport& report);
+
+}  // namespace fusebench::core
