@@ -10,11 +10,10 @@ double misfit(std::span<const measurement::PatchOutcome> outcomes, const config:
   for (const measurement::PatchOutcome& outcome : outcomes) {
     if (!outcome.in_view) continue;
     ++count;
-    const double chi2 = outcome.photometric_residuals > 0
-                            ? outcome.chi2_photometric / outcome.photometric_residuals
-                            : config.max_chi2_per_measurement;
-    sum +=
-        outcome.accepted ? std::min(chi2, config.max_chi2_per_measurement) : config.max_chi2_per_measurement;
+    const bool fits = outcome.tracked && !outcome.contradicts_color && outcome.photometric_residuals > 0;
+    sum += fits ? std::min(outcome.chi2_photometric / outcome.photometric_residuals,
+                           config.max_chi2_per_measurement)
+                : config.max_chi2_per_measurement;
   }
   return count > 0 ? sum / count : 0.0;
 }
@@ -27,7 +26,8 @@ filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior,
     measurement_.observe(frame.observed(novelty), reference.patches, scale);  // Eqs. 1-5, in each iterate
     return filter::iekf_update(prior, measurement_, config_.iekf, start);     // Eqs. 15-23
   };
-  if (!novelty.color) return update_from(filter::MeasuredVector::Zero());
+  if (!novelty.color || config_.terms.photometric_weight <= 0)
+    return update_from(filter::MeasuredVector::Zero());
   const alignment::FoundStart found = search_.find(prior, reference.points, frame.whole_pyramid(), thorough);
   filter::IekfResult first = update_from(found.start);
   const double first_misfit = misfit(measurement_.outcomes(), config_.iekf);

@@ -37,8 +37,8 @@ class FrameUpdate {
 };
 
 /// How badly the patches in view fit after an update: the mean squared whitened photometric residual,
-/// averaged over patches, of which one that was rejected counts as iekf.max_chi2_per_measurement. Zero
-/// without any.
+/// averaged over patches, of which one that is not tracked or contradicts the pose counts as
+/// iekf.max_chi2_per_measurement. Zero without any.
 [[nodiscard]] double misfit(std::span<const measurement::PatchOutcome> outcomes,
                             const config::IekfConfig& config);
 

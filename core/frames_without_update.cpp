@@ -9,7 +9,7 @@
 namespace fusebench::core {
 
 void repeat_last(const Tracking& now, const SensorRig& rig, health::FrameReport& report) {
-  report.status = now.lost_frames > 0 ? health::FrameStatus::lost : health::FrameStatus::tracked;
+  report.status = health::FrameStatus::tracked;
   report.health = health::FrameHealth::repeated;
   report.reason = "colour and depth are those of the frame before";
   health::describe_state(*now.estimate, rig.T_imu_camera, report);

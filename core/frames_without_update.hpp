@@ -10,7 +10,8 @@
 
 namespace fusebench::core {
 
-/// Both images are those of the frame before, and so is the pose: nothing changes.
+/// Both images are those of the frame before, which was tracked, and so is the pose: nothing changes. With an
+/// IMU the pose of the frame's own instant is predicted instead.
 void repeat_last(const Tracking& tracking, const SensorRig& rig, health::FrameReport& report);
 
 /// The prediction is not finite: the frame is lost, and the velocity before carries the state to it.

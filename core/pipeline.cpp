@@ -70,7 +70,9 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
   check(!now.estimate || frame.capture_ns() > now.timestamp_ns, "frames come in the order of time");
 
   novelty = now.repeated_images.examine(frame);
-  if (now.estimate && !novelty.color && !novelty.depth) {
+  const bool repeated = !novelty.color && !novelty.depth;
+  if (repeated && now.estimate && now.lost_frames == 0 &&
+      config.terms.prior == config::Prior::constant_velocity) {
     repeat_last(now, rig, report);
     return report;
   }
@@ -185,7 +187,8 @@ bool Pipeline::State::track_again(const filter::GaussianState& prior, bool after
 
 /// Looks for the frame among the keyframes, and tracks it from there with their patches.
 bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health::FrameReport& report) {
-  if (!config.terms.relocalisation || report.health == health::FrameHealth::dark) return false;
+  if (!config.terms.relocalisation || report.health == health::FrameHealth::dark || !novelty.color)
+    return false;
   Tracking& now = *tracking;
   std::optional<relocalisation::RelocalisedReference> found;
   {

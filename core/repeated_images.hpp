@@ -17,7 +17,8 @@ struct Novelty {
 
 class RepeatedImages {
  public:
-  /// Compares the content of grey and depth with that of the last frame that was examined.
+  /// Compares the content of grey and depth with that of the last frame that was examined. An image of one
+  /// value (no light, no depth) shows no instant and is never a repetition.
   [[nodiscard]] Novelty examine(const RgbdFrame& frame);
 
  private:

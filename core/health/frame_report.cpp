@@ -44,6 +44,7 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
     const measurement::PatchOutcome& outcome = measurement.outcomes()[p];
     report.patches += outcome.in_view ? 1 : 0;
     report.patches_tracked += outcome.tracked ? 1 : 0;
+    report.patches_contradicting += outcome.contradicts_color ? 1 : 0;
     report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
     report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
     if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());

@@ -50,10 +50,11 @@ struct FrameReport {
   Vector3d angular_velocity_radps = Vector3d::Zero();  ///< body frame
   int patches = 0;                                     ///< projected into this frame
   int patches_tracked = 0;                             ///< with enough usable pixels at the final pose
-  int patches_accepted = 0;    ///< that also passed the chi-square gate: those the update used
-  int patches_shrunk = 0;      ///< lost pixels to occlusion (shrink effect)
-  int patches_extended = 0;    ///< bounding box larger than the square (extend effect)
-  int pixels_photometric = 0;  ///< residuals of all levels in the update
+  int patches_accepted = 0;       ///< that also passed the chi-square gate: those the update used
+  int patches_contradicting = 0;  ///< tracked ones whose intensities do not fit
+  int patches_shrunk = 0;         ///< lost pixels to occlusion (shrink effect)
+  int patches_extended = 0;       ///< bounding box larger than the square (extend effect)
+  int pixels_photometric = 0;     ///< residuals of all levels in the update
   int pixels_geometric = 0;
   int iterations = 0;
   bool converged = false;

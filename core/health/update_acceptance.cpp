@@ -13,10 +13,10 @@ std::string rejection_reason(const FrameReport& report, bool after_gap, const co
     return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
                        report.patches_accepted, report.patches, config.iekf.min_patches);
   }
-  // Whatever the frame suffers from: a pose that most of the patches contradict is none.
-  if (2 * report.patches_accepted < report.patches_tracked && config.terms.relocalisation) {
-    return fmt::format("inconsistent: {} of {} tracked patches fit the pose", report.patches_accepted,
-                       report.patches_tracked);
+  // Whatever the frame suffers from: a pose that most of the intensities contradict is none.
+  if (2 * report.patches_contradicting > report.patches_tracked && config.terms.relocalisation) {
+    return fmt::format("inconsistent: the intensities of {} of {} tracked patches do not fit the pose",
+                       report.patches_contradicting, report.patches_tracked);
   }
   // Without relocalisation there is nothing better to turn to.
   if (after_gap && config.terms.relocalisation && fails_chi2_gate(report, config)) {

@@ -228,6 +228,7 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
   outcome.gain = state.brightness.value.x();
   judge_visibility(levels_.front().lanes.pixels_of(patch), levels_.front().lanes.warped_of(patch),
                    frame_->pyramid.front(), config_.patches, outcome);
+  outcome.contradicts_color = outcome.tracked && !fits_color(outcome, config_, weights_);
   outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_, weights_));
   if (!outcome.accepted) {
     // A rejected patch contributes neither its residuals nor its brightness prior.

@@ -44,16 +44,20 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
   }
 }
 
-bool is_consistent(const PatchOutcome& outcome, const config::Config& config, const TermWeights& weights) {
-  const double limit = config.iekf.max_chi2_per_measurement;
+bool fits_color(const PatchOutcome& outcome, const config::Config& config, const TermWeights& weights) {
   const bool photometric =
-      weights.photometric <= 0 || outcome.chi2_photometric <= limit * outcome.photometric_residuals;
+      weights.photometric <= 0 ||
+      outcome.chi2_photometric <= config.iekf.max_chi2_per_measurement * outcome.photometric_residuals;
   // A patch with a gain near 0 fits any image: a gain far from 1 indicates a wrong match rather than a change
   // of brightness.
   constexpr double kMaxGain = 2.0;
-  const bool plausible = outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
-  return photometric && plausible &&
-         outcome.chi2_geometric <= limit * std::max(1, outcome.geometric_residuals);
+  return photometric && outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
+}
+
+bool is_consistent(const PatchOutcome& outcome, const config::Config& config, const TermWeights& weights) {
+  return fits_color(outcome, config, weights) &&
+         outcome.chi2_geometric <=
+             config.iekf.max_chi2_per_measurement * std::max(1, outcome.geometric_residuals);
 }
 
 }  // namespace fusebench::measurement

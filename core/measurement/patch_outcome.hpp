@@ -12,10 +12,11 @@ namespace fusebench::measurement {
 
 /// Outcome of one patch at the last linearisation.
 struct PatchOutcome {
-  bool in_view = false;   ///< at least one pixel inside the image
-  bool tracked = false;   ///< enough usable pixels at level 0
-  bool accepted = false;  ///< tracked, and consistent (chi-square gate)
-  bool shrunk = false;    ///< lost pixels to occlusion
+  bool in_view = false;            ///< at least one pixel inside the image
+  bool tracked = false;            ///< enough usable pixels at level 0
+  bool accepted = false;           ///< tracked, and consistent (chi-square gate)
+  bool contradicts_color = false;  ///< tracked, and its intensities do not fit
+  bool shrunk = false;             ///< lost pixels to occlusion
   bool extended = false;
   int usable_pixels = 0;   ///< visible, level 0
   int covered_pixels = 0;  ///< in the image, behind something that was measured before them
@@ -48,5 +49,8 @@ struct TermWeights {
 /// The chi-square gate, and a plausible gain. Needs the sums of the residuals and the gain.
 [[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::Config& config,
                                  const TermWeights& weights);
+/// The part of it that is of colour.
+[[nodiscard]] bool fits_color(const PatchOutcome& outcome, const config::Config& config,
+                              const TermWeights& weights);
 
 }  // namespace fusebench::measurement
