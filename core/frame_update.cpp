@@ -4,16 +4,13 @@
 
 namespace fusebench::core {
 
-double misfit(std::span<const measurement::PatchOutcome> outcomes, const config::IekfConfig& config) {
+double agreement(std::span<const measurement::PatchOutcome> outcomes) {
   double sum = 0;
   int count = 0;
   for (const measurement::PatchOutcome& outcome : outcomes) {
     if (!outcome.in_view) continue;
     ++count;
-    const bool fits = outcome.tracked && !outcome.contradicts_color && outcome.photometric_residuals > 0;
-    sum += fits ? std::min(outcome.chi2_photometric / outcome.photometric_residuals,
-                           config.max_chi2_per_measurement)
-                : config.max_chi2_per_measurement;
+    if (outcome.tracked) sum += outcome.correlation;
   }
   return count > 0 ? sum / count : 0.0;
 }
@@ -30,11 +27,11 @@ filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior,
     return update_from(filter::MeasuredVector::Zero());
   const alignment::FoundStart found = search_.find(prior, reference.points, frame.whole_pyramid(), thorough);
   filter::IekfResult first = update_from(found.start);
-  const double first_misfit = misfit(measurement_.outcomes(), config_.iekf);
-  if (thorough || !(first_misfit > config_.health.suspicious_misfit)) return first;
+  const double first_agreement = agreement(measurement_.outcomes());
+  if (thorough || first_agreement >= config_.health.sure_correlation) return first;
   const alignment::FoundStart other = search_.find(prior, reference.points, frame.whole_pyramid(), true);
   filter::IekfResult second = update_from(other.start);
-  if (misfit(measurement_.outcomes(), config_.iekf) < first_misfit) return second;
+  if (agreement(measurement_.outcomes()) > first_agreement) return second;
   return update_from(first.solution);
 }
 

@@ -20,8 +20,8 @@ class FrameUpdate {
       : config_(config), search_(config, rig), measurement_(config, rig, workers) {}
 
   /// Updates the prior by the patches of the reference in the prepared frame. Where the result is suspicious
-  /// (a large misfit), the update starts once more from the coarsest level, and the better of the two counts;
-  /// thorough: it starts there at once.
+  /// (patches are hardly recognised), the update starts once more from the coarsest level, and the better of
+  /// the two counts; thorough: it starts there at once.
   [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior,
                                        const alignment::TrackingReference& reference,
                                        const FramePreparation& frame, const Novelty& novelty,
@@ -36,10 +36,8 @@ class FrameUpdate {
   measurement::PatchMeasurement measurement_;
 };
 
-/// How badly the patches in view fit after an update: the mean squared whitened photometric residual,
-/// averaged over patches, of which one that is not tracked or contradicts the pose counts as
-/// iekf.max_chi2_per_measurement. Zero without any.
-[[nodiscard]] double misfit(std::span<const measurement::PatchOutcome> outcomes,
-                            const config::IekfConfig& config);
+/// How well the patches in view are recognised after an update: their mean correlation with the reference, of
+/// which one that is not tracked counts as zero. Zero without any.
+[[nodiscard]] double agreement(std::span<const measurement::PatchOutcome> outcomes);
 
 }  // namespace fusebench::core

@@ -6,6 +6,18 @@
 
 namespace fusebench::health {
 
+namespace {
+
+/// Reorders the values; 0 if there are none.
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
 std::string_view to_string(FrameStatus status) {
   switch (status) {
     case FrameStatus::initialised:
@@ -38,7 +50,7 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
                      std::span<const patches::Patch> patches, FrameReport& report) {
   double chi2_photometric = 0;
   double chi2_geometric = 0;
-  std::vector<double> motion_px;
+  std::vector<double> motion_px, correlations;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const patches::Patch& patch = patches[p];
     const measurement::PatchOutcome& outcome = measurement.outcomes()[p];
@@ -47,6 +59,7 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
     report.patches_contradicting += outcome.contradicts_color ? 1 : 0;
     report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
     report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
+    if (outcome.tracked) correlations.push_back(outcome.correlation);
     if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());
     if (!outcome.accepted) continue;
     ++report.patches_accepted;
@@ -57,11 +70,8 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
   }
   if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
   if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
-  if (!motion_px.empty()) {
-    const auto middle = motion_px.begin() + static_cast<std::ptrdiff_t>(motion_px.size() / 2);
-    std::nth_element(motion_px.begin(), middle, motion_px.end());
-    report.patch_motion_px = *middle;
-  }
+  report.patch_motion_px = median(motion_px);
+  if (measurement.color_is_new()) report.correlation = median(correlations);
   report.variance_photometric = measurement.photometric_variance();
   report.variance_geometric = measurement.geometric_variance();
   report.iterations = result.iterations;

@@ -64,9 +64,11 @@ struct FrameReport {
   double variance_geometric = 1;
   std::size_t model_blocks = 0;
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
-  double blur_px = 0;          ///< predicted length of motion blur at the image centre
-  TrackedPixels pixels;        ///< of all tracked patches, by patch, then pixel
-  StageTimes stages;           ///< wall time; the only part that is not reproducible
+  /// Median ZNCC of the tracked patches with their reference; nothing where the colour is a repeated one.
+  std::optional<double> correlation;
+  double blur_px = 0;    ///< predicted length of motion blur at the image centre
+  TrackedPixels pixels;  ///< of all tracked patches, by patch, then pixel
+  StageTimes stages;     ///< wall time; the only part that is not reproducible
 };
 
 /// The report of a frame of which nothing is known yet.

@@ -18,6 +18,12 @@ std::string rejection_reason(const FrameReport& report, bool after_gap, const co
     return fmt::format("inconsistent: the intensities of {} of {} tracked patches do not fit the pose",
                        report.patches_contradicting, report.patches_tracked);
   }
+  if (config.terms.relocalisation && config.terms.photometric_weight > 0 && report.correlation &&
+      *report.correlation < config.health.min_correlation) {
+    return fmt::format(
+        "the patches are not recognised: their correlation is {:.2f} (health.min_correlation = {})",
+        *report.correlation, config.health.min_correlation);
+  }
   // Without relocalisation there is nothing better to turn to.
   if (after_gap && config.terms.relocalisation && fails_chi2_gate(report, config)) {
     return fmt::format("after a gap the patches do not fit: {:.1f} times the variance of their noise",

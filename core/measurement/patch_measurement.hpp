@@ -49,6 +49,8 @@ class PatchMeasurement final : public filter::PoseMeasurement {
 
   /// One outcome a patch, from the last linearise() (which must have been of the last stage).
   [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
+  /// False where the frame repeats an earlier colour image.
+  [[nodiscard]] bool color_is_new() const { return frame_ && frame_->color_is_new; }
   /// Ratios of the measured to the nominal variance of the residuals there (patch_scatter.hpp).
   [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
   [[nodiscard]] double geometric_variance() const { return geometric_variance_; }

@@ -2,11 +2,38 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "core/patches/patch_deformation.hpp"
 #include "core/simd/image_lanes.hpp"
 
 namespace fusebench::measurement {
+
+namespace {
+
+/// Sums for the correlation of two intensities, less a middle grey so that single precision will do.
+struct Correlation {
+  void add(simd::Float8 observed, simd::Float8 reference, simd::Int8 used) {
+    const simd::Float8 a = used ? observed - 128.0F : simd::Float8{};
+    const simd::Float8 b = used ? reference - 128.0F : simd::Float8{};
+    sum_a += a;
+    sum_b += b;
+    sum_aa += a * a;
+    sum_bb += b * b;
+    sum_ab += a * b;
+  }
+  [[nodiscard]] double value(int count) const {
+    const double a = simd::sum_of_lanes(sum_a) / count;
+    const double b = simd::sum_of_lanes(sum_b) / count;
+    const double aa = simd::sum_of_lanes(sum_aa) / count - a * a;
+    const double bb = simd::sum_of_lanes(sum_bb) / count - b * b;
+    if (aa < 1e-3 || bb < 1e-3) return 0;  // of one grey
+    return (simd::sum_of_lanes(sum_ab) / count - a * b) / std::sqrt(aa * bb);
+  }
+  simd::Float8 sum_a{}, sum_b{}, sum_aa{}, sum_bb{}, sum_ab{};
+};
+
+}  // namespace
 
 simd::Float8 grey_at(const GreyImage& image, const patches::WarpedLanes& warped) {
   return simd::sample_bilinear_value(image, warped.visible ? warped.x : simd::all_lanes(1.0F),
@@ -19,6 +46,7 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
   const auto count = [](simd::Int8 condition) { return std::popcount(simd::lane_bits(condition)); };
   int in_image = 0;
   simd::Float8 difference{}, sum_x{}, sum_y{};
+  Correlation correlation;
   for (std::size_t i = 0; i < warped.size(); ++i) {
     const patches::WarpedLanes& w = warped[i];
     in_image += count(w.in_image);
@@ -26,7 +54,9 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
     outcome.usable_pixels += count(w.visible);
     sum_x += w.visible ? w.x : simd::Float8{};
     sum_y += w.visible ? w.y : simd::Float8{};
-    const simd::Float8 apart = simd::abs(grey_at(image, w) - pixels[i].intensity);
+    const simd::Float8 observed = grey_at(image, w);
+    const simd::Float8 apart = simd::abs(observed - pixels[i].intensity);
+    correlation.add(observed, pixels[i].intensity, w.visible);
     difference += w.visible ? apart : simd::Float8{};
   }
   outcome.centre_px = {simd::sum_of_lanes(sum_x), simd::sum_of_lanes(sum_y)};
@@ -40,6 +70,7 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
     // An even square [c - s/2, c + s/2) has the mean of its pixel centres half a pixel before c.
     outcome.centre_px =
         outcome.centre_px / outcome.usable_pixels + Vector2d::Constant(config.size_px % 2 == 0 ? 0.5 : 0.0);
+    outcome.correlation = correlation.value(outcome.usable_pixels);
     outcome.mean_error_grey = simd::sum_of_lanes(difference) / outcome.usable_pixels;
   }
 }

@@ -26,7 +26,10 @@ struct PatchOutcome {
   double chi2_geometric = 0;
   double robust_photometric = 0;  ///< sum of min(r^2, k |r|) of the same, with Huber's k
   double robust_geometric = 0;
-  double gain = 1;             ///< brightness of the frame against the patch's reference
+  double gain = 1;  ///< brightness of the frame against the patch's reference
+  /// Correlation of intensities with those of the reference at level 0 (ZNCC, -1 to 1): unlike the
+  /// chi-squares it depends neither on the noise that is assumed or learnt nor on brightness.
+  double correlation = 0;
   double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
   Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
 };

@@ -36,7 +36,7 @@ std::string frame_table_header() {
       "pixels_photometric,pixels_geometric,aie_grey,aie_pixels,iterations,converged,chi2_photometric,chi2_"
       "geometric,variance_photometric,variance_geometric,"
       "speed_mps,angular_speed_radps,blur_px,patch_motion_px,position_sigma_m,rotation_sigma_rad,"
-      "imu_time_offset_s,model_blocks,decode_ms";
+      "imu_time_offset_s,correlation,model_blocks,decode_ms";
   for (const std::string_view stage : health::kStageNames) header += fmt::format(",{}_ms", stage);
   return header + "\n";
 }
@@ -49,7 +49,7 @@ std::string frame_table_row(std::size_t frame, const health::FrameReport& report
     return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(block).eigenvalues().maxCoeff());
   };
   std::string row = fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}", frame,
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}", frame,
       trajectory::stamp_text(report.timestamp_ns), health::to_string(report.status),
       health::to_string(report.health), text_cell(report.reason), report.patches, report.patches_tracked,
       report.patches_accepted, report.patches_shrunk, report.patches_extended, report.pixels_photometric,
@@ -60,7 +60,7 @@ std::string frame_table_row(std::size_t frame, const health::FrameReport& report
       number_cell(report.velocity_world_mps.norm()), number_cell(angular_speed), number_cell(report.blur_px),
       number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)),
       number_cell(sigma(filter::kRotation)), number_cell(report.estimate.mean.imu_time_offset_s),
-      report.model_blocks, decode_ms);
+      report.correlation ? number_cell(*report.correlation) : "", report.model_blocks, decode_ms);
   for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
   return row + "\n";
 }

@@ -47,6 +47,29 @@ TEST(UpdateAcceptance, HowBadlyPatchesMayFitIsAnOption) {
   EXPECT_EQ(rejection_reason(report_with(30, 3), true, config), "");
 }
 
+TEST(UpdateAcceptance, PatchesThatAreNotRecognisedAreNotBelieved) {
+  Config config;
+  FrameReport report = report_with(30, 1);
+  report.correlation = 0.29;
+  EXPECT_NE(rejection_reason(report, false, config).find("correlation is 0.29"), std::string::npos);
+  report.correlation = 0.31;
+  EXPECT_EQ(rejection_reason(report, false, config), "");
+  config.health.min_correlation = 0.4;
+  EXPECT_NE(rejection_reason(report, false, config), "");
+  config.terms.photometric_weight = 0;
+  EXPECT_EQ(rejection_reason(report, false, config), "");
+}
+
+TEST(UpdateAcceptance, APoseThatMostIntensitiesContradictIsNotBelieved) {
+  const Config config;
+  FrameReport report = report_with(30, 1);
+  report.patches_tracked = 36;
+  report.patches_contradicting = 18;
+  EXPECT_EQ(rejection_reason(report, false, config), "");
+  report.patches_contradicting = 19;
+  EXPECT_NE(rejection_reason(report, false, config).find("19 of 36 tracked patches"), std::string::npos);
+}
+
 TEST(UpdateAcceptance, HowLongAnOcclusionIsKeptOutIsAnOption) {
   FrameReport report;
   report.status = FrameStatus::tracked;
