@@ -27,8 +27,10 @@ filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior,
     return update_from(filter::MeasuredVector::Zero());
   const alignment::FoundStart found = search_.find(prior, reference.points, frame.whole_pyramid(), thorough);
   filter::IekfResult first = update_from(found.start);
+  // With a prediction that is near enough there is no other basin.
   const double first_agreement = agreement(measurement_.outcomes());
-  if (thorough || first_agreement >= config_.health.sure_correlation) return first;
+  if (thorough || found.coarsest_level < 0 || first_agreement >= config_.health.sure_correlation)
+    return first;
   const alignment::FoundStart other = search_.find(prior, reference.points, frame.whole_pyramid(), true);
   filter::IekfResult second = update_from(other.start);
   if (agreement(measurement_.outcomes()) > first_agreement) return second;

@@ -19,9 +19,9 @@ class FrameUpdate {
   FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers)
       : config_(config), search_(config, rig), measurement_(config, rig, workers) {}
 
-  /// Updates the prior by the patches of the reference in the prepared frame. Where the result is suspicious
-  /// (patches are hardly recognised), the update starts once more from the coarsest level, and the better of
-  /// the two counts; thorough: it starts there at once.
+  /// Updates the prior by the patches of the reference in the prepared frame. Where the prediction is
+  /// uncertain and the patches are hardly recognised, the update starts once more from the coarsest level,
+  /// and the better of the two counts; thorough: it starts there at once.
   [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior,
                                        const alignment::TrackingReference& reference,
                                        const FramePreparation& frame, const Novelty& novelty,

@@ -14,7 +14,7 @@ constexpr int kLeastHeight_px = 8;
 /// The nearest surface over the footprint of a coarse pixel, which covers what is behind it.
 float nearest_depth_m(const DepthImage& depth_m, int x, int y, int reach_px) {
   float nearest = 0;
-  const int step = std::max(1, reach_px / 2);
+  const int step = std::max(1, reach_px);
   for (int v = std::max(0, y - reach_px); v <= std::min(depth_m.height - 1, y + reach_px); v += step) {
     for (int u = std::max(0, x - reach_px); u <= std::min(depth_m.width - 1, x + reach_px); u += step) {
       const float z = depth_m(u, v);
