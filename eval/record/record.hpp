@@ -19,6 +19,7 @@
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/record/duration_histogram.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
+#include "eval/trajectory_error/fitted_offset.hpp"
 #include "eval/trajectory_error/silent_failures.hpp"
 
 namespace fusebench::record {
@@ -99,8 +100,9 @@ struct RecordedSilentFailures {
 
 struct RecordedMetrics {
   Outcome<trajectory_error::AteResult> ate;
-  Outcome<trajectory_error::RpeResult> rpe_frame;   ///< over one frame
-  Outcome<trajectory_error::RpeResult> rpe_second;  ///< over one second
+  Outcome<trajectory_error::FittedOffset> ate_fitted;  ///< with a fitted offset of the reference's body
+  Outcome<trajectory_error::RpeResult> rpe_frame;      ///< over one frame
+  Outcome<trajectory_error::RpeResult> rpe_second;     ///< over one second
   Outcome<metrics::IntensityResult> aie;
   Outcome<RecordedMesh> mesh;
   RecordedNees nees;

@@ -59,6 +59,31 @@ void read(const Json& json, trajectory_error::AteResult& ate) {
   ate.stats = statistics_of(json.at("stats"));
 }
 
+Json json_of(const trajectory_error::FittedOffset& fit) {
+  const Vector3d sigma_m = fit.covariance_m2.diagonal().cwiseSqrt();
+  return {{"protocol",
+           "positions after SE3 alignment and an offset of the reference's body, both by least squares"},
+          {"unit", "m"},
+          {"pairs", fit.pairs},
+          {"offset_m", {fit.offset_m.x(), fit.offset_m.y(), fit.offset_m.z()}},
+          {"offset_sigma_m", {sigma_m.x(), sigma_m.y(), sigma_m.z()}},
+          {"alignment", trajectory_error::json_of({"se3", fit.T_reference_estimate})},
+          {"stats", metrics::json_of(fit.stats)}};
+}
+
+void read(const Json& json, trajectory_error::FittedOffset& fit) {
+  fit.pairs = json.at("pairs");
+  const auto offset_m = json.at("offset_m").get<std::array<double, 3>>();
+  const auto sigma_m = json.at("offset_sigma_m").get<std::array<double, 3>>();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    fit.offset_m[axis] = offset_m[at];
+    fit.covariance_m2(axis, axis) = sigma_m[at] * sigma_m[at];
+  }
+  fit.T_reference_estimate = alignment_of(json.at("alignment")).T_reference_estimate;
+  fit.stats = statistics_of(json.at("stats"));
+}
+
 Json json_of(const trajectory_error::RpeResult& rpe) {
   return {{"protocol", rpe.protocol},
           {"delta", rpe.delta},
@@ -301,6 +326,7 @@ Json json_of_metrics(const RunRecord& record) {
                                                       static_cast<double>(record.frames.total);
   return {
       {"ate", json_of(record.metrics.ate)},
+      {"ate_fitted_offset", json_of(record.metrics.ate_fitted)},
       {"rpe", {{"frame", json_of(record.metrics.rpe_frame)}, {"second", json_of(record.metrics.rpe_second)}}},
       {"aie", json_of(record.metrics.aie)},
       {"mesh", json_of(record.metrics.mesh)},
@@ -316,6 +342,7 @@ Json json_of_metrics(const RunRecord& record) {
 
 void read_metrics(const Json& json, RecordedMetrics& metrics) {
   metrics.ate = outcome_of<trajectory_error::AteResult>(json.at("ate"));
+  metrics.ate_fitted = newer_outcome_of<trajectory_error::FittedOffset>(json, "ate_fitted_offset");
   metrics.rpe_frame = outcome_of<trajectory_error::RpeResult>(json.at("rpe").at("frame"));
   metrics.rpe_second = outcome_of<trajectory_error::RpeResult>(json.at("rpe").at("second"));
   metrics.aie = outcome_of<metrics::IntensityResult>(json.at("aie"));

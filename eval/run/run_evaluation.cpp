@@ -9,6 +9,7 @@
 #include "eval/record/record_origin.hpp"
 #include "eval/record/true_camera.hpp"
 #include "eval/run/recording_views.hpp"
+#include "eval/trajectory_error/fitted_offset.hpp"
 #include "eval/trajectory_error/pose_alignment.hpp"
 #include "eval/trajectory_error/silent_failures.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 void add_trajectory_metrics(record::RecordedMetrics& metrics, const RunOutput& output,
                             const recording::Recording& recording) {
   if (recording.ground_truth.empty()) {
-    metrics.ate.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
+    metrics.ate.reason = metrics.ate_fitted.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
         "the recording has no ground truth";
     return;
   }
@@ -29,6 +30,8 @@ void add_trajectory_metrics(record::RecordedMetrics& metrics, const RunOutput& o
   ate.expected_ns = expected;
   metrics.ate = record::Outcome<trajectory_error::AteResult>::from(
       trajectory_error::absolute_trajectory_error(recording.ground_truth, output.trajectory, ate));
+  metrics.ate_fitted = record::Outcome<trajectory_error::FittedOffset>::from(
+      trajectory_error::fitted_offset(recording.ground_truth, output.trajectory, ate));
   metrics.rpe_frame = record::Outcome<trajectory_error::RpeResult>::from(
       trajectory_error::relative_pose_error(recording.ground_truth, output.trajectory,
                                             {.delta = 1, .unit = trajectory_error::DeltaUnit::frames}));

@@ -42,6 +42,11 @@ std::optional<double> ate(const record::RunRecord& record) {
   return ate ? finite(ate->stats.rmse) : std::nullopt;
 }
 
+std::optional<double> ate_fitted(const record::RunRecord& record) {
+  const auto& fit = record.metrics.ate_fitted.value;
+  return fit ? finite(fit->stats.rmse) : std::nullopt;
+}
+
 template <record::Outcome<trajectory_error::RpeResult> record::RecordedMetrics::*Delta,
           metrics::Statistics trajectory_error::RpeResult::*Part>
 std::optional<double> rpe(const record::RunRecord& record) {
@@ -90,6 +95,7 @@ constexpr auto kValues = std::to_array<StudyValue>({
      .of_every_run = true,
      .of = silent_share},
     {.name = "ate_rmse_m", .label = "ATE [cm]", .shown_factor = 100, .of = ate},
+    {.name = "ate_fitted_m", .label = "ATE, offset fitted [cm]", .shown_factor = 100, .of = ate_fitted},
     {.name = "rpe_second_m",
      .label = "RPE 1 s [cm]",
      .shown_factor = 100,

@@ -1,0 +1,106 @@
+#include "eval/trajectory_error/fitted_offset.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/geometry.hpp"
+#include "core/trajectory/association.hpp"
+#include "eval/trajectory_files/stamps.hpp"
+
+namespace fusebench::trajectory_error {
+
+namespace {
+
+constexpr int kIterations = 20;
+constexpr int kSize = 9;  // rotation, translation, offset
+using Vector9d = Eigen::Matrix<double, kSize, 1>;
+using Matrix9d = Eigen::Matrix<double, kSize, kSize>;
+
+struct Pair {
+  SE3 reference;
+  Vector3d estimate;
+};
+
+struct NormalEquations {
+  Matrix9d information = Matrix9d::Zero();
+  Vector9d gradient = Vector9d::Zero();
+  double squares = 0;
+};
+
+Vector3d residual(const Pair& pair, const FittedOffset& fit) {
+  return pair.reference * fit.offset_m - fit.T_reference_estimate * pair.estimate;
+}
+
+NormalEquations linearised(const std::vector<Pair>& pairs, const FittedOffset& fit) {
+  NormalEquations sum;
+  for (const Pair& pair : pairs) {
+    const Vector3d r = residual(pair, fit);
+    Eigen::Matrix<double, 3, kSize> jacobian;
+    // Rotation of the alignment on the left: R p moves by phi x R p.
+    jacobian.leftCols<3>() = hat(fit.T_reference_estimate.rotation * pair.estimate);
+    jacobian.middleCols<3>(3) = -Matrix3d::Identity();
+    jacobian.rightCols<3>() = pair.reference.rotation_matrix();
+    sum.information += jacobian.transpose() * jacobian;
+    sum.gradient += jacobian.transpose() * r;
+    sum.squares += r.squaredNorm();
+  }
+  return sum;
+}
+
+}  // namespace
+
+Result<FittedOffset> fitted_offset(const Trajectory& ground_truth, const Trajectory& estimate,
+                                   const AteOptions& options, double max_sigma_m) {
+  const auto plain = absolute_trajectory_error(ground_truth, estimate, options);
+  if (!plain) return tl::unexpected(plain.error());
+  const auto associated =
+      trajectory::associate(trajectory_files::stamps_of(ground_truth), trajectory_files::stamps_of(estimate),
+                            trajectory_files::nanoseconds(options.max_difference_s),
+                            trajectory_files::nanoseconds(options.offset_s));
+  std::vector<Pair> pairs;
+  for (const trajectory::AssociatedPair& pair : associated) {
+    pairs.push_back(
+        {ground_truth[pair.first].T_world_camera, estimate[pair.second].T_world_camera.translation});
+  }
+  const double duration_s = seconds_between(estimate[associated.front().second].timestamp_ns,
+                                            estimate[associated.back().second].timestamp_ns);
+  FittedOffset fit;
+  fit.pairs = pairs.size();
+  fit.T_reference_estimate = plain->alignment.T_reference_estimate;
+  // A weak pull towards no offset keeps directions that nothing tells from running away.
+  Matrix9d pull = Matrix9d::Zero();
+  pull.diagonal().tail<3>().setConstant(1e-9 * static_cast<double>(pairs.size()));
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const NormalEquations normal = linearised(pairs, fit);
+    const Vector9d step = (normal.information + pull).ldlt().solve(-normal.gradient);
+    fit.T_reference_estimate.rotation =
+        (so3_exp(step.head<3>()) * fit.T_reference_estimate.rotation).normalized();
+    fit.T_reference_estimate.translation += step.segment<3>(3);
+    fit.offset_m += step.tail<3>();
+    if (step.norm() < 1e-12) break;
+  }
+  const NormalEquations at = linearised(pairs, fit);
+  const auto count = static_cast<double>(pairs.size());
+  const double independent = std::clamp(duration_s, 1.0, count);
+  const double variance_m2 = at.squares / std::max(1.0, 3.0 * count - kSize) * (count / independent);
+  const Matrix9d covariance = (at.information + pull).ldlt().solve(Matrix9d::Identity());
+  fit.covariance_m2 = variance_m2 * covariance.bottomRightCorner<3, 3>();
+  const double sigma_m =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(fit.covariance_m2).eigenvalues().maxCoeff());
+  if (!(sigma_m <= max_sigma_m)) {
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("the motion does not tell an offset of the body: one standard deviation is {:.3f} m, "
+                    "allowed is {} m",
+                    sigma_m, max_sigma_m));
+  }
+  for (const Pair& pair : pairs) fit.errors_m.push_back(residual(pair, fit).norm());
+  fit.stats = metrics::statistics(fit.errors_m);
+  return fit;
+}
+
+}  // namespace fusebench::trajectory_error
