@@ -21,16 +21,13 @@ class FramePreparation {
   FramePreparation(const config::Config& config, const SensorRig& rig, const Workers& workers)
       : config_(config), rig_(rig), workers_(workers) {}
 
-  /// True if rows or depth of the frame are of other instants than the frame, and the variant undoes that.
-  [[nodiscard]] bool compensates(const RgbdFrame& frame) const;
-
   /// True if the frame that was prepared for the predicted motion has to be prepared again for the estimated
   /// one before it is fused.
-  [[nodiscard]] bool is_outdated(const RgbdFrame& frame, const filter::FilterState& predicted,
+  [[nodiscard]] bool is_outdated(const filter::FilterState& predicted,
                                  const filter::FilterState& estimated) const;
 
-  /// Grey and depth, compensated for the motion (if there is anything to compensate) and gated. Colour has to
-  /// wait for prepare_color().
+  /// Grey and depth, compensated for the motion (if rows or depth are of other instants than the frame, as
+  /// far as the state knows, and the variant undoes that) and gated. Colour has to wait for prepare_color().
   void prepare(const RgbdFrame& frame, const filter::FilterState& motion, health::StageTimes& stages);
 
   /// Colour of the frame that was prepared last, if it was compensated. Apart, since only frames that are
@@ -55,7 +52,9 @@ class FramePreparation {
   std::vector<GreyImage> pyramid_;
   RgbdFrame frame_;             ///< compensated ones have the colour of an earlier one until prepare_color()
   DepthImage ungated_depth_m_;  ///< before the gates
-  preprocessing::CameraVelocity velocity_;  ///< that it was compensated for, if at all
+  bool compensated_ = false;
+  preprocessing::FrameTiming timing_;  ///< these two: that it was compensated for, if at all
+  preprocessing::CameraVelocity velocity_;
 };
 
 }  // namespace fusebench::core

@@ -1,8 +1,13 @@
 #include "core/frame_update.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace fusebench::core {
+
+namespace {
+/// Noise in what the residuals are regressed on pulls the result towards nothing: at this ratio by 4 %.
+constexpr double kLeastSignal = 5;
+}  // namespace
 
 double agreement(std::span<const measurement::PatchOutcome> outcomes) {
   double sum = 0;
@@ -15,13 +20,29 @@ double agreement(std::span<const measurement::PatchOutcome> outcomes) {
   return count > 0 ? sum / count : 0.0;
 }
 
-filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior,
-                                    const alignment::TrackingReference& reference,
-                                    const FramePreparation& frame, const Novelty& novelty,
-                                    const measurement::ResidualScale& scale, bool thorough) {
+measurement::ReadoutMotion readout_motion(const filter::FilterState& prior) {
+  measurement::ReadoutMotion motion;
+  motion.rate = filter::pose_rate(prior);
+  motion.reference_rate =
+      filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference) * prior.reference_rate;
+  // That of the IMU has its noise twice; its bias drops out.
+  const double change_radps = (motion.rate - motion.reference_rate).head<3>().norm();
+  const double noise_radps = std::sqrt(2.0) * prior.angular_velocity_noise_radps;
+  motion.tells_color_readout = change_radps > kLeastSignal * noise_radps;
+  return motion;
+}
+
+filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior, const Tracking& last,
+                                    const FramePreparation& frame, const Novelty& novelty, bool thorough) {
+  const alignment::TrackingReference& reference = last.reference;
+  measurement::ObservedFrame observed = frame.observed(novelty);
+  if (config_.terms.motion_compensation) observed.motion = readout_motion(prior.mean);
+  const auto constants = last.turned_rad < config_.self_calibration.turn_before_rad
+                             ? filter::SensorConstants::considered
+                             : filter::SensorConstants::estimated;
   const auto update_from = [&](const filter::MeasuredVector& start) {
-    measurement_.observe(frame.observed(novelty), reference.patches, scale);  // Eqs. 1-5, in each iterate
-    return filter::iekf_update(prior, measurement_, config_.iekf, start);     // Eqs. 15-23
+    measurement_.observe(observed, reference.patches, last.residual_scale);  // Eqs. 1-5, in each iterate
+    return filter::iekf_update(prior, measurement_, config_.iekf, start, constants);  // Eqs. 15-23
   };
   if (!novelty.color || config_.terms.photometric_weight <= 0)
     return update_from(filter::MeasuredVector::Zero());

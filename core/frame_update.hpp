@@ -3,13 +3,13 @@
 #pragma once
 
 #include "core/alignment/start_search.hpp"
-#include "core/alignment/tracking_reference.hpp"
 #include "core/base/parallel.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/frame_preparation.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/repeated_images.hpp"
+#include "core/tracking_state.hpp"
 
 namespace fusebench::core {
 
@@ -19,13 +19,11 @@ class FrameUpdate {
   FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers)
       : config_(config), search_(config, rig), measurement_(config, rig, workers) {}
 
-  /// Updates the prior by the patches of the reference in the prepared frame. Where the prediction is
+  /// Updates the prior by the patches of the last frames in the prepared frame. Where the prediction is
   /// uncertain and the patches are hardly recognised, the update starts once more from the coarsest level,
   /// and the better of the two counts; thorough: it starts there at once.
-  [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior,
-                                       const alignment::TrackingReference& reference,
-                                       const FramePreparation& frame, const Novelty& novelty,
-                                       const measurement::ResidualScale& scale, bool thorough);
+  [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior, const Tracking& last,
+                                       const FramePreparation& frame, const Novelty& novelty, bool thorough);
 
   /// Of the update that run() returned.
   [[nodiscard]] const measurement::PatchMeasurement& measurement() const { return measurement_; }
@@ -35,6 +33,9 @@ class FrameUpdate {
   alignment::StartSearch search_;
   measurement::PatchMeasurement measurement_;
 };
+
+/// The motion during the frame's read-out and that of the reference, as the prior knows it.
+[[nodiscard]] measurement::ReadoutMotion readout_motion(const filter::FilterState& prior);
 
 /// How well the patches in view are recognised after an update: their mean correlation with the reference, of
 /// which one that is not tracked counts as zero. Zero without any.

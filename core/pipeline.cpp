@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "core/filter/iekf.hpp"
@@ -94,11 +93,9 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
   ++now.frames;
 
   // Colour and depth of different instants belong neither into the model nor together into a patch.
-  const bool one_instant = novelty.color && novelty.depth;
-  if (now.occlusion_gate.admits(report, config.health) && one_instant) {
+  if (now.occlusion_gate.admits(report, config.health) && novelty.complete()) {
     const filter::FilterState& state = now.estimate->mean;
-    if (preparation.is_outdated(frame, predicted->mean, state))
-      preparation.prepare(frame, state, report.stages);
+    if (preparation.is_outdated(predicted->mean, state)) preparation.prepare(frame, state, report.stages);
     const Result<void> fused = fuse(frame, report.stages);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(report.stages);  // Sec. 2.3: patch update
@@ -142,8 +139,7 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   const health::StageClock clock(report.stages, health::Stage::update);
   Tracking& now = *tracking;
   // Eqs. 1-5, 15-23
-  const filter::IekfResult update =
-      deformed_update.run(prior, now.reference, preparation, novelty, now.residual_scale, thorough);
+  const filter::IekfResult update = deformed_update.run(prior, now, preparation, novelty, thorough);
   report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
   if (!filter::is_valid(update.posterior)) {
     report.health = health::FrameHealth::diverged;
@@ -162,10 +158,12 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   }
   report.evidence = health::PoseEvidence{now.reference.timestamp_ns, prior.mean.T_world_imu_reference,
                                          update.posterior.mean.T_world_imu, update.measurement};
+  now.turned_rad +=
+      rotation_angle_rad(now.estimate->mean.T_world_imu.rotation, update.posterior.mean.T_world_imu.rotation);
   now.estimate = update.posterior;
-  if (report.health == health::FrameHealth::good && !(novelty.color && novelty.depth))
+  if (report.health == health::FrameHealth::good && !novelty.complete())
     report.health = health::FrameHealth::repeated;
-  if (report.health != health::FrameHealth::occluded && novelty.color && novelty.depth)
+  if (report.health != health::FrameHealth::occluded && novelty.complete())
     now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config);
   health::find_survivors(now.reference.patches, outcomes, config.patches, now.survivors);
   return true;

@@ -13,6 +13,8 @@ namespace fusebench::core {
 struct Novelty {
   bool color = true;
   bool depth = true;
+
+  [[nodiscard]] bool complete() const { return color && depth; }
 };
 
 class RepeatedImages {

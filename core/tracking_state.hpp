@@ -29,6 +29,7 @@ struct Tracking {
   std::optional<filter::GaussianState> estimate;  ///< after the last frame
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
   int frames = 0;                                 ///< since the start
+  double turned_rad = 0;                          ///< since then, in all
   int lost_frames = 0;                            ///< in a row, before the current one
   RepeatedImages repeated_images;
   health::OcclusionGate occlusion_gate;

@@ -69,12 +69,9 @@ filter::MeasurementQuadratic ImageAlignment::linearise(const filter::PoseHypothe
     const double residual = seen.value - (light_.value.x() * reference + light_.value.y());
     const Robust robust = huber(residual * per_noise, config_.photometric.huber_sigmas);
     const double weight = share * per_noise * per_noise * robust.weight;
-    // d(point in camera) by (rotation of the IMU on the right, its position in the world).
     const Eigen::RowVector3d by_point =
         Eigen::RowVector2d(seen.dx, seen.dy) * camera.camera.projection_jacobian(in_camera);
-    Eigen::Matrix<double, 1, filter::kPoseSize> jacobian;
-    jacobian.head<3>() = by_point * camera.R_camera_imu * hat(camera.to_imu(in_camera));
-    jacobian.tail<3>() = -by_point * camera.R_camera_world;
+    const Eigen::Matrix<double, 1, filter::kPoseSize> jacobian = camera.by_pose(by_point, in_camera);
     pose.information += weight * jacobian.transpose() * jacobian;
     pose.gradient += weight * residual * jacobian.transpose();
     pose.cost += share * robust.cost;
@@ -92,7 +89,7 @@ double ImageAlignment::seen_share() const {
   return static_cast<double>(std::ranges::count(used_, 1)) / static_cast<double>(used_.size());
 }
 
-double ImageAlignment::trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+double ImageAlignment::trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
                                   double fraction) {
   light_.try_step(step.head<filter::kPoseSize>(), fraction);
   const patches::PosedCamera camera = posed(poses);

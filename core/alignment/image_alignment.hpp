@@ -3,7 +3,6 @@
 // patches start in, and adds nothing to their information.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,7 +27,7 @@ class ImageAlignment final : public filter::PoseMeasurement {
   [[nodiscard]] int stages() const override { return coarsest_ - reference_->finest_level() + 1; }
   [[nodiscard]] filter::MeasurementQuadratic linearise(const filter::PoseHypothesis& poses, int stage,
                                                        bool gate) override;
-  [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+  [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
                                   double fraction) override;
   void accept() override { light_.value = light_.trial; }
 

@@ -24,6 +24,14 @@ float nearest_depth_m(const DepthImage& depth_m, int x, int y, int reach_px) {
   return nearest;
 }
 
+/// Zero where alignment is switched off.
+int alignment_levels(const PinholeCamera& camera, const config::AlignmentConfig& config) {
+  if (config.coarsest_level < config.finest_level) return 0;
+  int levels = 1;
+  while (levels <= config.coarsest_level && (camera.height_px >> levels) >= kLeastHeight_px) ++levels;
+  return levels > config.finest_level ? levels : 0;
+}
+
 }  // namespace
 
 void ReferencePoints::take(std::span<const GreyImage> pyramid, const DepthImage& depth_m,
@@ -54,11 +62,8 @@ std::span<const ReferencePoint> ReferencePoints::level(int level) const {
   return levels_[static_cast<std::size_t>(level - finest_)];
 }
 
-int alignment_levels(const PinholeCamera& camera, const config::AlignmentConfig& config) {
-  if (config.coarsest_level < config.finest_level) return 0;
-  int levels = 1;
-  while (levels <= config.coarsest_level && (camera.height_px >> levels) >= kLeastHeight_px) ++levels;
-  return levels > config.finest_level ? levels : 0;
+int pyramid_levels(const PinholeCamera& camera, const config::Config& config) {
+  return std::max(config.patches.levels, alignment_levels(camera, config.alignment));
 }
 
 }  // namespace fusebench::alignment

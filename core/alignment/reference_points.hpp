@@ -32,8 +32,8 @@ class ReferencePoints {
   std::vector<std::vector<ReferencePoint>> levels_;  ///< from the finest on
 };
 
-/// Number of pyramid levels that alignment needs for images of this size: levels below eight pixels in
-/// height are of no use. Zero where it is switched off.
-[[nodiscard]] int alignment_levels(const PinholeCamera& camera, const config::AlignmentConfig& config);
+/// Number of pyramid levels of a frame: those of the patches, and those that alignment needs (none where it
+/// is switched off; levels below eight pixels in height are of no use).
+[[nodiscard]] int pyramid_levels(const PinholeCamera& camera, const config::Config& config);
 
 }  // namespace fusebench::alignment

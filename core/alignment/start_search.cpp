@@ -26,10 +26,8 @@ double landing_sigma_px(const filter::GaussianState& prior, const ReferencePoint
   for (const ReferencePoint& point : reference.level(reference.coarsest_level())) {
     const Vector3d in_camera = camera.to_camera(T_world_reference * point.point_camera);
     if (in_camera.z() < 0.1) continue;
-    const Matrix2x3d by_point = camera.camera.projection_jacobian(in_camera);
-    Eigen::Matrix<double, 2, filter::kPoseSize> jacobian;
-    jacobian.leftCols<3>() = by_point * camera.R_camera_imu * hat(camera.to_imu(in_camera));
-    jacobian.rightCols<3>() = -by_point * camera.R_camera_world;
+    const Eigen::Matrix<double, 2, filter::kPoseSize> jacobian =
+        camera.by_pose(camera.camera.projection_jacobian(in_camera), in_camera);
     const Eigen::Matrix2d spread = jacobian * covariance * jacobian.transpose();
     const double half_trace = 0.5 * spread.trace();
     sum += half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - spread.determinant()));

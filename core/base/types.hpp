@@ -80,6 +80,10 @@ struct SensorTiming {
   double depth_readout_s = 0;  ///< the same for depth
   double depth_delay_s =
       0;  ///< delay of the depth image behind its stamp, relative to colour (readers apply it)
+  // Standard deviations: how well these are known. Zero is exactly.
+  double color_readout_sigma_s = 0;
+  double depth_readout_sigma_s = 0;
+  double depth_delay_sigma_s = 0;
 };
 
 /// Calibration of a recording's sensors, as the estimator needs it.
@@ -88,6 +92,7 @@ struct SensorRig {
   SensorTiming timing;
   SE3 T_imu_camera;
   ImuNoise imu_noise;
+  bool imu_axes_are_exact = false;  ///< their scale and rotation: of an IMU that was made from a trajectory
 };
 
 struct StampedPose {

@@ -24,6 +24,7 @@ struct Config {
   CompensationConfig compensation;
   MotionConfig motion;
   InitialisationConfig initialisation;
+  SelfCalibrationConfig self_calibration;
   PatchConfig patches;
   PhotometricConfig photometric;
   GeometricConfig geometric;
@@ -42,6 +43,7 @@ struct Config {
     v.group("compensation", self.compensation);
     v.group("motion", self.motion);
     v.group("initialisation", self.initialisation);
+    v.group("self_calibration", self.self_calibration);
     v.group("patches", self.patches);
     v.group("photometric", self.photometric);
     v.group("geometric", self.geometric);
@@ -58,9 +60,9 @@ struct Config {
 
 static_assert(
     options_cover_all_fields<TermsConfig, DepthConfig, CompensationConfig, MotionConfig, InitialisationConfig,
-                             PatchConfig, PhotometricConfig, GeometricConfig, AlignmentConfig, IekfConfig,
-                             HealthConfig, RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig,
-                             TsdfConfig, EvaluationConfig, Config>(),
+                             SelfCalibrationConfig, PatchConfig, PhotometricConfig, GeometricConfig,
+                             AlignmentConfig, IekfConfig, HealthConfig, RelocalisationConfig,
+                             PlaceFeaturesConfig, PlacePoseConfig, TsdfConfig, EvaluationConfig, Config>(),
     "each field of a configuration struct needs its option in visit()");
 
 }  // namespace fusebench::config

@@ -86,4 +86,33 @@ struct InitialisationConfig {
   }
 };
 
+/// The constants of the sensors that are estimated with the motion.
+struct SelfCalibrationConfig {
+  bool color_readout = true;
+  bool depth_readout = true;
+  bool depth_delay = true;
+  double imu_rotation_sigma_rad = 0.01;
+  double gyroscope_scale_sigma = 0.01;
+  double accelerometer_scale_sigma = 0.01;
+  double turn_before_rad = 0.2;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.flag("color_readout", self.color_readout,
+           "estimate the read-out time of colour around what the calibration says, as far as that is "
+           "uncertain (readout_sigma_s there); false holds it");
+    v.flag("depth_readout", self.depth_readout, "the same for depth");
+    v.flag("depth_delay", self.depth_delay, "the same for the delay of depth against colour");
+    v.number("imu_rotation_sigma_rad", self.imu_rotation_sigma_rad, 0.0, 0.5,
+             "prior of the rotation of the IMU against what the calibration says, by axis (rad); 0 holds it");
+    v.number("gyroscope_scale_sigma", self.gyroscope_scale_sigma, 0.0, 0.2,
+             "prior of the scale errors of the gyroscope's axes (data sheets of consumer IMUs say 1 to 3 %); "
+             "0 holds them");
+    v.number("accelerometer_scale_sigma", self.accelerometer_scale_sigma, 0.0, 0.2,
+             "the same for the accelerometer");
+    v.number("turn_before_rad", self.turn_before_rad, 0.0, 100.0,
+             "all of these, and the offset of the IMU's clock, stay as they are until the camera has turned "
+             "by so much in all (rad); their uncertainty counts from the first frame on");
+  }
+};
+
 }  // namespace fusebench::config

@@ -11,6 +11,13 @@ FilterState plus(const FilterState& state, const StateVector& delta) {
   result.gravity_direction_world = s2_plus(state.gravity_direction_world, delta.segment<2>(kGravity));
   result.angular_velocity_imu_radps += delta.segment<3>(kAngularVelocity);
   result.imu_time_offset_s += delta[kImuTimeOffset];
+  SensorErrors& sensors = result.sensors;
+  sensors.imu_rotation_rad += delta.segment<3>(kImuRotation);
+  sensors.gyroscope_scale += delta.segment<3>(kGyroscopeScale);
+  sensors.accelerometer_scale += delta.segment<3>(kAccelerometerScale);
+  sensors.color_readout_s += delta[kColorReadout];
+  sensors.depth_readout_s += delta[kDepthReadout];
+  sensors.depth_delay_s += delta[kDepthDelay];
   result.reference_offset += delta.segment<kPoseSize>(kReferencePose);
   result.model_offset += delta.segment<kPoseSize>(kModelPose);
   return result;
@@ -25,9 +32,23 @@ StateVector minus(const FilterState& to, const FilterState& from) {
   delta.segment<2>(kGravity) = s2_minus(to.gravity_direction_world, from.gravity_direction_world);
   delta.segment<3>(kAngularVelocity) = to.angular_velocity_imu_radps - from.angular_velocity_imu_radps;
   delta[kImuTimeOffset] = to.imu_time_offset_s - from.imu_time_offset_s;
+  const SensorErrors& a = from.sensors;
+  const SensorErrors& b = to.sensors;
+  delta.segment<3>(kImuRotation) = b.imu_rotation_rad - a.imu_rotation_rad;
+  delta.segment<3>(kGyroscopeScale) = b.gyroscope_scale - a.gyroscope_scale;
+  delta.segment<3>(kAccelerometerScale) = b.accelerometer_scale - a.accelerometer_scale;
+  delta[kColorReadout] = b.color_readout_s - a.color_readout_s;
+  delta[kDepthReadout] = b.depth_readout_s - a.depth_readout_s;
+  delta[kDepthDelay] = b.depth_delay_s - a.depth_delay_s;
   delta.segment<kPoseSize>(kReferencePose) = to.reference_offset - from.reference_offset;
   delta.segment<kPoseSize>(kModelPose) = to.model_offset - from.model_offset;
   return delta;
+}
+
+Vector6d pose_rate(const FilterState& state) {
+  Vector6d rate;
+  rate << state.angular_velocity_imu_radps, state.velocity_world_mps;
+  return rate;
 }
 
 StateMatrix chart_transport(const FilterState& state, const StateVector& delta) {

@@ -1,4 +1,4 @@
-// The state of the filter and its 33-dimensional error state.
+// The state of the filter and its 45-dimensional error state.
 //
 // x (+) d: rotation and gravity move on their manifolds (R Exp(d), S2), everything else adds. The order of
 // the error state is the order of StateOffset. World is the first camera frame, so gravity's direction is a
@@ -21,14 +21,35 @@ enum StateOffset : int {
   kGravity = 15,            ///< rad, tangent of S2 at the gravity direction
   kAngularVelocity = 17,    ///< rad/s, IMU
   kImuTimeOffset = 20,      ///< s
-  kReferencePose = 21,      ///< rad and m as the pose: error of the pose that the patches were cut at
-  kModelPose = 27,          ///< the same: error of the model's pose in the world, at that pose
-  kStateSize = 33,
+  kImuRotation = 21,        ///< rad: this and what follows are those of SensorErrors
+  kGyroscopeScale = 24,
+  kAccelerometerScale = 27,
+  kColorReadout = 30,   ///< s
+  kDepthReadout = 31,   ///< s
+  kDepthDelay = 32,     ///< s
+  kReferencePose = 33,  ///< rad and m as the pose: error of the pose that the patches were cut at
+  kModelPose = 39,      ///< the same: error of the model's pose in the world, at that pose
+  kStateSize = 45,
 };
-inline constexpr int kPoseSize = 6;  ///< rotation and position lead the error state
+inline constexpr int kPoseSize = 6;    ///< rotation and position lead the error state
+inline constexpr int kTimingSize = 3;  ///< from kColorReadout on
+/// The constants of the sensors: from kImuTimeOffset on.
+inline constexpr int kSensorSize = kReferencePose - kImuTimeOffset;
 
 using StateVector = Eigen::Matrix<double, kStateSize, 1>;
 using StateMatrix = Eigen::Matrix<double, kStateSize, kStateSize>;
+
+/// What the calibration of the sensors leaves out: constants, estimated with the motion.
+struct SensorErrors {
+  /// Rotation vector from the axes in which the IMU measures to those of T_imu_camera.
+  Vector3d imu_rotation_rad = Vector3d::Zero();
+  Vector3d gyroscope_scale = Vector3d::Zero();      ///< what is measured is 1 + scale times the rate, by axis
+  Vector3d accelerometer_scale = Vector3d::Zero();  ///< the same
+  // Beyond what SensorRig::timing says.
+  double color_readout_s = 0;
+  double depth_readout_s = 0;
+  double depth_delay_s = 0;
+};
 
 struct FilterState {
   SE3 T_world_imu;
@@ -38,9 +59,12 @@ struct FilterState {
   Vector3d gravity_direction_world = Vector3d::UnitY();  ///< unit, downwards
   /// Body rate. With an IMU it follows the gyroscope; without one it is what constant velocity extrapolates.
   Vector3d angular_velocity_imu_radps = Vector3d::Zero();
+  double angular_velocity_noise_radps = 0;  ///< of it, by axis, that is new in each frame; no state
   /// IMU clock minus camera clock: a frame stamped t shows the pose at t + offset of the IMU's clock.
   double imu_time_offset_s = 0;
+  SensorErrors sensors;
   SE3 T_world_imu_reference;                     ///< where the patches were cut; no error of its own
+  Vector6d reference_rate = Vector6d::Zero();    ///< motion there, see pose_rate()
   Vector6d reference_offset = Vector6d::Zero();  ///< correction of that pose since, in its tangent
   Vector6d model_offset = Vector6d::Zero();  ///< pose offset of the model in the world, in the same tangent
 };
@@ -60,6 +84,10 @@ struct GaussianState {
 /// Derivative of ((x (+) (d + e)) (-) (x (+) d)) by e at e = 0: carries a covariance from the chart at x to
 /// the tangent space at x (+) d.
 [[nodiscard]] StateMatrix chart_transport(const FilterState& state, const StateVector& delta);
+
+/// The tangent of the pose that a second of the current motion adds: rotation (rad/s, IMU axes) and position
+/// (m/s, world).
+[[nodiscard]] Vector6d pose_rate(const FilterState& state);
 
 /// Makes a covariance exactly symmetric again after a product.
 [[nodiscard]] inline StateMatrix symmetrised(const StateMatrix& covariance) {

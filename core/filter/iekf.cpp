@@ -13,15 +13,18 @@ struct Iterate {
   MeasuredVector y = MeasuredVector::Zero();
   StateVector delta = StateVector::Zero();
   MeasuredVector measured = MeasuredVector::Zero();  ///< B d
-  MeasuredVector tangents = MeasuredVector::Zero();  ///< of the poses, at the prior's pose
+  TangentVector tangents = TangentVector::Zero();    ///< of the poses, at the prior's pose
   FilterState state;
   PoseHypothesis poses;
+
+  /// Since the images were prepared by the prior's.
+  [[nodiscard]] Vector3d timing_s() const { return measured.tail<kTimingSize>(); }
 };
 
 /// Tangents of the two poses at the prior: the reference pose was corrected by an earlier update of the same
 /// patches.
-MeasuredVector known_tangents(const FilterState& prior) {
-  MeasuredVector known = MeasuredVector::Zero();
+TangentVector known_tangents(const FilterState& prior) {
+  TangentVector known = TangentVector::Zero();
   known.head<kPoseSize>() =
       -pose_transport(prior.T_world_imu, prior.T_world_imu_reference) * prior.reference_offset;
   return known;
@@ -37,7 +40,7 @@ class Update {
         gain_columns_(prior.covariance * combinations_.transpose()),
         measured_covariance_(combinations_ * gain_columns_) {}
 
-  IekfResult run(const MeasuredVector& start) {
+  IekfResult run(const MeasuredVector& start, SensorConstants constants) {
     IekfResult result;
     Iterate now = at(start);
     MeasurementQuadratic quadratic;
@@ -52,8 +55,8 @@ class Update {
       if (budget <= 0) continue;
       iterate_stage(stage, budget, last, now, quadratic, result);
     }
-    result.map_cost_posterior = map_cost(now, quadratic.cost());
-    result.posterior = posterior(now, quadratic);
+    result.map_cost_posterior = map_cost(now, quadratic.cost(now.timing_s()));
+    result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
     result.solution = now.y;
     return result;
@@ -66,7 +69,7 @@ class Update {
     iterate.delta = gain_columns_ * y;
     iterate.measured = measured_covariance_ * y;
     iterate.state = plus(prior_.mean, iterate.delta);
-    iterate.tangents = iterate.measured + known_;
+    iterate.tangents = iterate.measured.head<2 * kPoseSize>() + known_;
     iterate.poses = {pose_plus(prior_.mean.T_world_imu, iterate.tangents.head<kPoseSize>()),
                      pose_plus(prior_.mean.T_world_imu, iterate.tangents.tail<kPoseSize>())};
     return iterate;
@@ -77,7 +80,8 @@ class Update {
     return prior_cost + measurement_cost;
   }
 
-  /// Derivative of the poses' tangents at the iterate by the chart coordinates at the prior.
+  /// Derivative of the poses' tangents (and of the timing) at the iterate by the chart coordinates at the
+  /// prior.
   static MeasuredMatrix chart_jacobian(const Iterate& iterate) {
     MeasuredMatrix jacobian = MeasuredMatrix::Identity();
     jacobian.topLeftCorner<3, 3>() = so3_right_jacobian(iterate.tangents.head<3>());
@@ -90,12 +94,20 @@ class Update {
     MeasuredMatrix information = MeasuredMatrix::Zero();
     MeasuredVector gradient;
   };
-  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const MeasuredMatrix& chart) {
+  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const Iterate& now) {
+    const MeasuredMatrix chart = chart_jacobian(now);
+    const TimingQuadratic& timing = quadratic.timing;
+    constexpr int kPoses = 2 * kPoseSize;
     ChartQuadratic result;
-    result.information.topLeftCorner<kPoseSize, kPoseSize>() = quadratic.by_reference.information;
-    result.information.bottomRightCorner<kPoseSize, kPoseSize>() = quadratic.by_model.information;
-    result.information = chart.transpose() * result.information * chart;
-    result.gradient << quadratic.by_reference.gradient, quadratic.by_model.gradient;
+    MeasuredMatrix& information = result.information;
+    information.topLeftCorner<kPoseSize, kPoseSize>() = quadratic.by_reference.information;
+    information.block<kPoseSize, kPoseSize>(kPoseSize, kPoseSize) = quadratic.by_model.information;
+    information.topRightCorner<kPoses, kTimingSize>() = timing.with_poses;
+    information.bottomLeftCorner<kTimingSize, kPoses>() = timing.with_poses.transpose();
+    information.bottomRightCorner<kTimingSize, kTimingSize>() = timing.information;
+    result.gradient << quadratic.by_reference.gradient, quadratic.by_model.gradient, timing.gradient;
+    result.gradient += information.rightCols<kTimingSize>() * now.timing_s();
+    information = chart.transpose() * information * chart;
     result.gradient = chart.transpose() * result.gradient;
     return result;
   }
@@ -103,7 +115,7 @@ class Update {
   void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,
                      IekfResult& result) {
     quadratic = measurement_.linearise(now.poses, stage, false);
-    if (last) result.map_cost_prior = map_cost(now, quadratic.cost());
+    if (last) result.map_cost_prior = map_cost(now, quadratic.cost(now.timing_s()));
     result.converged = false;
     bool gated = false;
     for (int iteration = 0; iteration < budget && !result.converged; ++iteration) {
@@ -130,6 +142,10 @@ class Update {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     PoseQuadratic sum = quadratic.by_model;
     sum.add(quadratic.by_reference, 1.0);
+    const TangentVector by_timing = quadratic.timing.with_poses * now.timing_s();
+    sum.gradient += by_timing.head<kPoseSize>() + by_timing.tail<kPoseSize>();
+    sum.cost +=
+        step.dot(by_timing.head<kPoseSize>()) + quadratic.timing.cost(now.timing_s(), TangentVector::Zero());
     const Vector6d change = quadratic.by_reference.information * step;
     sum.cost += step.dot(quadratic.by_reference.gradient) + 0.5 * step.dot(change);
     sum.gradient += change;
@@ -138,8 +154,7 @@ class Update {
 
   /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.
   bool step(Iterate& now, const MeasurementQuadratic& quadratic) {
-    const MeasuredMatrix chart = chart_jacobian(now);
-    const ChartQuadratic local = in_chart(quadratic, chart);
+    const ChartQuadratic local = in_chart(quadratic, now);
     // Stationarity of J in y: (I + Lambda S) y = Lambda S y_now - g, with S = B P B^T. Eq. 22 of the paper
     // takes each iterate for a new prediction: (I + Lambda S) (y - y_now) = -g.
     const MeasuredMatrix system = MeasuredMatrix::Identity() + local.information * measured_covariance_;
@@ -149,11 +164,14 @@ class Update {
     } else {
       full = -system.partialPivLu().solve(local.gradient);
     }
-    const MeasuredVector tangent_step = chart * (measured_covariance_ * full);
-    const double cost_now = map_cost(now, quadratic.cost());
+    const TangentVector tangent_step =
+        (chart_jacobian(now) * (measured_covariance_ * full)).head<2 * kPoseSize>();
+    const double cost_now = map_cost(now, quadratic.cost(now.timing_s()));
     for (double fraction = 1.0; fraction > 0.05; fraction *= 0.5) {
       const Iterate trial = at(now.y + fraction * full);
-      const double cost = map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction));
+      const double cost =
+          map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction) +
+                              quadratic.timing.cost(trial.timing_s(), fraction * tangent_step));
       if (cost <= cost_now) {
         measurement_.accept();
         now = trial;
@@ -163,14 +181,21 @@ class Update {
     return false;
   }
 
-  GaussianState posterior(const Iterate& now, const MeasurementQuadratic& quadratic) const {
-    const MeasuredMatrix information = in_chart(quadratic, chart_jacobian(now)).information;
+  GaussianState posterior(const Iterate& now, const MeasurementQuadratic& quadratic,
+                          SensorConstants constants) const {
+    const MeasuredMatrix information = in_chart(quadratic, now).information;
     const MeasuredMatrix system = MeasuredMatrix::Identity() + information * measured_covariance_;
     const MeasuredMatrix reduction = system.partialPivLu().solve(information);
-    const StateMatrix in_chart_at_prior =
-        prior_.covariance - gain_columns_ * reduction * gain_columns_.transpose();
-    const StateMatrix transport = chart_transport(prior_.mean, now.delta);
-    return {now.state, symmetrised(transport * in_chart_at_prior * transport.transpose())};
+    StateMatrix in_chart_at_prior = prior_.covariance - gain_columns_ * reduction * gain_columns_.transpose();
+    StateVector delta = now.delta;
+    if (constants == SensorConstants::considered) {
+      // Their gain is zero: the other states, and how they correlate with them, are updated all the same.
+      delta.segment<kSensorSize>(kImuTimeOffset).setZero();
+      in_chart_at_prior.block<kSensorSize, kSensorSize>(kImuTimeOffset, kImuTimeOffset) =
+          prior_.covariance.block<kSensorSize, kSensorSize>(kImuTimeOffset, kImuTimeOffset);
+    }
+    const StateMatrix transport = chart_transport(prior_.mean, delta);
+    return {plus(prior_.mean, delta), symmetrised(transport * in_chart_at_prior * transport.transpose())};
   }
 
   const GaussianState& prior_;
@@ -178,7 +203,7 @@ class Update {
   const config::IekfConfig& config_;
   const Eigen::Matrix<double, kMeasuredSize, kStateSize> combinations_;  ///< B
   const Eigen::Matrix<double, kStateSize, kMeasuredSize> gain_columns_;  ///< P B^T
-  const MeasuredVector known_ = known_tangents(prior_.mean);
+  const TangentVector known_ = known_tangents(prior_.mean);
   const MeasuredMatrix measured_covariance_;  ///< S = B P B^T
 };
 
@@ -190,16 +215,18 @@ MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu) {
   const auto combinations = measured_combinations(prior.mean);
   const MeasuredMatrix covariance = combinations * prior.covariance * combinations.transpose();
   const Vector6d tangent = pose_minus(T_world_imu, prior.mean.T_world_imu);
-  MeasuredVector wanted = -known_tangents(prior.mean);
+  MeasuredVector wanted = MeasuredVector::Zero();
+  wanted.head<2 * kPoseSize>() -= known_tangents(prior.mean);
   wanted.head<kPoseSize>() += tangent;
-  wanted.tail<kPoseSize>() += tangent;
+  wanted.segment<kPoseSize>(kPoseSize) += tangent;
   const MeasuredMatrix system = covariance + kTolerance * MeasuredMatrix::Identity();
   return system.partialPivLu().solve(wanted);
 }
 
 IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
-                       const config::IekfConfig& config, const MeasuredVector& start) {
-  return Update(prior, measurement, config).run(start);
+                       const config::IekfConfig& config, const MeasuredVector& start,
+                       SensorConstants constants) {
+  return Update(prior, measurement, config).run(start, constants);
 }
 
 }  // namespace fusebench::filter

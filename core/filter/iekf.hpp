@@ -3,8 +3,8 @@
 //   J(x) = 1/2 |x (-) x_prior|^2_P + cost(pose of x)
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
-// every one (iekf.prior_in_every_iteration). A measurement depends on two linear combinations B d of the
-// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^12: the update
+// every one (iekf.prior_in_every_iteration). A measurement depends on few linear combinations B d of the
+// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^15: the update
 // iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity along by
 // their correlations.
 #pragma once
@@ -36,15 +36,35 @@ struct PoseHypothesis {
   SE3 T_world_imu_by_model;
 };
 
-/// The cost of a measurement, in the tangents of the two poses of a hypothesis.
+/// Tangents of the two poses of a hypothesis: by reference, then by model.
+using TangentVector = Eigen::Matrix<double, 2 * kPoseSize, 1>;
+
+/// How the cost of a measurement depends on errors of the timing (read-out of colour, read-out of depth,
+/// delay of depth; s), around none.
+struct TimingQuadratic {
+  Eigen::Matrix<double, 2 * kPoseSize, kTimingSize> with_poses =
+      Eigen::Matrix<double, 2 * kPoseSize, kTimingSize>::Zero();  ///< information shared with the tangents
+  Matrix3d information = Matrix3d::Zero();
+  Vector3d gradient = Vector3d::Zero();
+
+  /// What a timing error adds to the cost if the poses have moved on by a step.
+  [[nodiscard]] double cost(const Vector3d& timing_s, const TangentVector& step) const {
+    return timing_s.dot(gradient + with_poses.transpose() * step + 0.5 * information * timing_s);
+  }
+};
+
+/// The cost of a measurement, in the tangents of the two poses of a hypothesis and in the timing. The poses'
+/// parts are those without a timing error.
 struct MeasurementQuadratic {
   PoseQuadratic by_reference;
   PoseQuadratic by_model;
+  TimingQuadratic timing = {};
 
-  [[nodiscard]] double cost() const { return by_reference.cost + by_model.cost; }
+  [[nodiscard]] double cost(const Vector3d& timing_s = Vector3d::Zero()) const {
+    return by_reference.cost + by_model.cost + timing.cost(timing_s, TangentVector::Zero());
+  }
 };
 
-inline constexpr int kMeasuredSize = 2 * kPoseSize;
 using MeasuredVector = Eigen::Matrix<double, kMeasuredSize, 1>;
 using MeasuredMatrix = Eigen::Matrix<double, kMeasuredSize, kMeasuredSize>;
 
@@ -62,9 +82,9 @@ class PoseMeasurement {
   /// Fixes associations, visibility and robust weights at the pose (those of an earlier linearisation may
   /// do). `gate`: reject what is inconsistent.
   [[nodiscard]] virtual MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) = 0;
-  /// Cost at other poses with associations and weights of the last linearise(); `step` is the full tangent
-  /// step from there (by reference, then by model), of which `fraction` was taken.
-  [[nodiscard]] virtual double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step,
+  /// Cost at other poses with associations and weights of the last linearise(), without a timing error;
+  /// `step` is the full tangent step from there, of which `fraction` was taken.
+  [[nodiscard]] virtual double trial_cost(const PoseHypothesis& poses, const TangentVector& step,
                                           double fraction) = 0;
   /// The last trial becomes the current estimate.
   virtual void accept() = 0;
@@ -84,11 +104,20 @@ struct IekfResult {
 /// hypothesis to T_world_imu, as far as the prior's covariance lets them.
 [[nodiscard]] MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu);
 
+/// What an update does with the constants of the sensors (kImuTimeOffset to kDepthDelay).
+enum class SensorConstants {
+  estimated,
+  /// Their uncertainty counts and they stay as they are (Schmidt 1966): before there was motion, what seems
+  /// to be measured of them is mostly the error of something else.
+  considered,
+};
+
 /// Runs the update. The covariance is updated once, after the last iteration (Eq. 23 in its symmetric form),
 /// and carried to the tangent space at the posterior. `start` is the y of the first iterate (zero: the
 /// prediction).
 [[nodiscard]] IekfResult iekf_update(const GaussianState& prior, PoseMeasurement& measurement,
                                      const config::IekfConfig& config,
-                                     const MeasuredVector& start = MeasuredVector::Zero());
+                                     const MeasuredVector& start = MeasuredVector::Zero(),
+                                     SensorConstants constants = SensorConstants::estimated);
 
 }  // namespace fusebench::filter

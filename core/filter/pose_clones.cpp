@@ -32,13 +32,14 @@ Matrix6d pose_transport(const SE3& to, const SE3& from) {
   return transport;
 }
 
-Eigen::Matrix<double, 2 * kPoseSize, kStateSize> measured_combinations(const FilterState& state) {
-  Eigen::Matrix<double, 2 * kPoseSize, kStateSize> rows =
-      Eigen::Matrix<double, 2 * kPoseSize, kStateSize>::Zero();
+Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const FilterState& state) {
+  Eigen::Matrix<double, kMeasuredSize, kStateSize> rows =
+      Eigen::Matrix<double, kMeasuredSize, kStateSize>::Zero();
   rows.topLeftCorner<kPoseSize, kPoseSize>().setIdentity();
   rows.block<kPoseSize, kPoseSize>(0, kReferencePose) =
       -pose_transport(state.T_world_imu, state.T_world_imu_reference);
-  rows.bottomLeftCorner<kPoseSize, kPoseSize>().setIdentity();
+  rows.block<kPoseSize, kPoseSize>(kPoseSize, 0).setIdentity();
+  rows.block<kTimingSize, kTimingSize>(2 * kPoseSize, kColorReadout).setIdentity();
   return rows;
 }
 
@@ -62,6 +63,7 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   result.mean.model_offset =
       to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) * state.mean.model_offset;
   result.mean.T_world_imu_reference = state.mean.T_world_imu;
+  result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();
   return result;
 }

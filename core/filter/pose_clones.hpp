@@ -16,9 +16,13 @@ namespace fusebench::filter {
 /// (right rotation in rad, world position in m).
 [[nodiscard]] Matrix6d pose_transport(const SE3& to, const SE3& from);
 
-/// The two quantities that images measure, as linear combinations of the error state: the pose against the
-/// reference frame (rows 0-5) and against the model (rows 6-11), both in the tangent of the pose.
-[[nodiscard]] Eigen::Matrix<double, 2 * kPoseSize, kStateSize> measured_combinations(
+/// Two poses and the timing of the sensors.
+inline constexpr int kMeasuredSize = 2 * kPoseSize + kTimingSize;
+
+/// What images measure, as linear combinations of the error state: the pose against the reference frame (rows
+/// 0-5) and against the model (rows 6-11), both in the tangent of the pose, and the timing of the sensors
+/// (rows 12-14: read-out of colour, read-out of depth, delay of depth).
+[[nodiscard]] Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(
     const FilterState& state);
 
 /// How the model follows the frames that are fused into it.

@@ -9,6 +9,12 @@ namespace {
 /// False for NaN as well.
 bool within(const auto& values, double largest) { return (values.array().abs() <= largest).all(); }
 
+bool is_valid(const SensorErrors& errors) {
+  const Vector3d timing(errors.color_readout_s, errors.depth_readout_s, errors.depth_delay_s);
+  return within(errors.imu_rotation_rad, kMaxMean) && within(errors.gyroscope_scale, kMaxScale) &&
+         within(errors.accelerometer_scale, kMaxScale) && within(timing, kMaxTiming_s);
+}
+
 }  // namespace
 
 bool is_valid(const GaussianState& state) {
@@ -19,7 +25,8 @@ bool is_valid(const GaussianState& state) {
   return is_valid_pose(x.T_world_imu) && within(x.velocity_world_mps, kMaxMean) &&
          within(x.gyroscope_bias_radps, kMaxMean) && within(x.accelerometer_bias_mps2, kMaxMean) &&
          within(x.gravity_direction_world, kMaxMean) && within(x.angular_velocity_imu_radps, kMaxMean) &&
-         std::abs(x.imu_time_offset_s) <= kMaxMean && is_valid_pose(x.T_world_imu_reference) &&
+         std::abs(x.imu_time_offset_s) <= kMaxMean && is_valid(x.sensors) &&
+         is_valid_pose(x.T_world_imu_reference) && within(x.reference_rate, kMaxMean) &&
          within(x.reference_offset, kMaxMean) && within(x.model_offset, kMaxMean) &&
          within(state.covariance, kMaxVariance);
 }

@@ -13,6 +13,10 @@ inline constexpr double kMaxMean = 1e4;
 /// in double precision (1e-16 of 1e9 is a third of a millimetre, squared).
 inline constexpr double kMaxVariance = 1e9;
 
+/// Scale errors of an IMU, and errors of its timing, that no sensor has: there is something else.
+inline constexpr double kMaxScale = 0.5;
+inline constexpr double kMaxTiming_s = 1.0;
+
 /// True if mean and covariance are finite and within these bounds.
 [[nodiscard]] bool is_valid(const GaussianState& state);
 

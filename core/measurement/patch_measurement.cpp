@@ -103,11 +103,46 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   photometric_variance_ = measured_variance(&PatchState::photometric);
   geometric_variance_ = measured_variance(&PatchState::geometric);
   filter::MeasurementQuadratic sum;
-  for (const PatchState& state : states_) {
-    sum.by_reference.add(state.photometric, 1.0 / photometric_variance_);
-    sum.by_model.add(state.geometric, 1.0 / geometric_variance_);
+  const patches::PosedCamera camera(rig_.camera, poses.T_world_imu_by_reference, rig_.T_imu_camera);
+  for (std::size_t p = 0; p < states_.size(); ++p) {
+    sum.by_reference.add(states_[p].photometric, 1.0 / photometric_variance_);
+    sum.by_model.add(states_[p].geometric, 1.0 / geometric_variance_);
+    add_timing(p, camera, sum.timing);
   }
   return sum;
+}
+
+/// A row that was read later than supposed shows the scene from where the camera was then: for a patch, a
+/// timing error of t displaces the pose by the motion during t. The reference was displaced likewise.
+void PatchMeasurement::add_timing(std::size_t patch, const patches::PosedCamera& camera,
+                                  filter::TimingQuadratic& sum) const {
+  const auto& pixels = patches_[patch].levels.front().pixels;
+  if (!states_[patch].counts || pixels.empty()) return;
+  const Vector3d centre = camera.to_camera(pixels[pixels.size() / 2].point_world);
+  if (centre.z() <= 0) return;
+  const double last_row = rig_.camera.height_px - 1;
+  const auto share = [&](double row) { return std::clamp(row / last_row, 0.0, 1.0) - 0.5; };
+  const double now = share(rig_.camera.project(centre).y());
+  const double before = share(patches_[patch].centre_px.y());
+  const ReadoutMotion& motion = frame_->motion;
+  constexpr int kPose = filter::kPoseSize;
+
+  if (motion.tells_color_readout) {
+    const filter::PoseQuadratic& color = states_[patch].photometric;
+    const Vector6d by_color = now * motion.rate - before * motion.reference_rate;
+    const Vector6d color_information = color.information * by_color / photometric_variance_;
+    sum.with_poses.col(0).head<kPose>() += color_information;
+    sum.information(0, 0) += by_color.dot(color_information);
+    sum.gradient[0] += by_color.dot(color.gradient) / photometric_variance_;
+  }
+  const filter::PoseQuadratic& depth = states_[patch].geometric;
+  const Eigen::RowVector2d by_readout_and_delay(now, 1.0);
+  const Vector6d depth_information = depth.information * motion.rate / geometric_variance_;
+  sum.with_poses.bottomRightCorner<kPose, 2>() += depth_information * by_readout_and_delay;
+  sum.information.bottomRightCorner<2, 2>() +=
+      motion.rate.dot(depth_information) * by_readout_and_delay.transpose() * by_readout_and_delay;
+  sum.gradient.tail<2>() +=
+      motion.rate.dot(depth.gradient) / geometric_variance_ * by_readout_and_delay.transpose();
 }
 
 double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*kind) const {
@@ -238,7 +273,7 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
   }
 }
 
-double PatchMeasurement::trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+double PatchMeasurement::trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
                                     double fraction) {
   const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
   std::vector<double> costs(states_.size(), 0.0);

@@ -19,8 +19,18 @@
 #include "core/measurement/residual_scale.hpp"
 #include "core/patches/patch_deformation.hpp"
 #include "core/patches/patches.hpp"
+#include "core/patches/posed_camera.hpp"
 
 namespace fusebench::measurement {
+
+/// How the camera moved while the images were read, as the tangent of its pose by time (filter::pose_rate()),
+/// both around the prior's pose. Zero where the read-out is not undone: then nothing is learnt of it.
+struct ReadoutMotion {
+  Vector6d rate = Vector6d::Zero();            ///< in the frame
+  Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
+  /// The rates differ by more than their noise. Two frames are distorted alike unless they do.
+  bool tells_color_readout = false;
+};
 
 /// The current frame: input of the measurement.
 struct ObservedFrame {
@@ -28,6 +38,7 @@ struct ObservedFrame {
   const DepthImage& depth_m;  ///< gated
   bool color_is_new = true;   ///< otherwise it says nothing of this instant: no photometric residuals
   bool depth_is_new = true;   ///< otherwise no geometric ones
+  ReadoutMotion motion = {};
 };
 
 class PatchMeasurement final : public filter::PoseMeasurement {
@@ -43,7 +54,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   [[nodiscard]] int stages() const override { return config_.patches.levels; }
   [[nodiscard]] filter::MeasurementQuadratic linearise(const filter::PoseHypothesis& poses, int stage,
                                                        bool gate) override;
-  [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::MeasuredVector& step,
+  [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
                                   double fraction) override;
   void accept() override;
 
@@ -84,6 +95,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   };
 
   void warp_all(const PosedLevels& posed);
+  void add_timing(std::size_t patch, const patches::PosedCamera& camera, filter::TimingQuadratic& sum) const;
   void judge(std::size_t patch, bool gate);
   void associate_planes(std::size_t patch, const PosedLevels& posed);
   void sum_photometric(std::size_t patch, const PosedLevels& posed);

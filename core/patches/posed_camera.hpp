@@ -25,6 +25,18 @@ struct PosedCamera {
   [[nodiscard]] Vector3d to_imu(const Vector3d& point_camera) const {
     return R_imu_camera * point_camera + t_imu_camera_m;
   }
+
+  /// The derivative of what is measured of a point, by the pose (rotation of the IMU on the right, its
+  /// position in the world), from that by the point in the camera's frame: the camera's point is
+  /// R_ci (R_wi^T (P - p_wi) - p_ic), and turning the IMU by phi moves it by R_ci [X_i]x phi.
+  template <int Rows>
+  [[nodiscard]] Eigen::Matrix<double, Rows, 6> by_pose(const Eigen::Matrix<double, Rows, 3>& by_point,
+                                                       const Vector3d& point_camera) const {
+    Eigen::Matrix<double, Rows, 6> jacobian;
+    jacobian.template leftCols<3>() = by_point * R_camera_imu * hat(to_imu(point_camera));
+    jacobian.template rightCols<3>() = -by_point * R_camera_world;
+    return jacobian;
+  }
 };
 
 /// The camera of a pyramid level: pixel (x, y) of level l is (x, y) * 2^l of level 0.

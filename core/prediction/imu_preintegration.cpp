@@ -18,6 +18,10 @@ constexpr std::int64_t kMaxHoldNs = 50'000'000;
 // Half the window of smoothed samples: takes away four fifths of the noise at 200 Hz.
 constexpr double kSmoothedS = 0.1;
 
+// The same for the rate at a frame, by which its rows are compensated: takes away two thirds of the noise at
+// 200 Hz and follows motion of 4 Hz to a hundredth.
+constexpr double kRateWindow_s = 0.04;
+
 /// The sample at an instant, interpolated linearly or, outside the span, the nearest one.
 ImuSample sample_at(std::span<const ImuSample> samples, std::int64_t timestamp_ns) {
   const auto after = std::ranges::lower_bound(samples, timestamp_ns, {}, &ImuSample::timestamp_ns);
@@ -47,8 +51,33 @@ std::vector<ImuSample> cut(std::span<const ImuSample> samples, std::int64_t begi
   return result;
 }
 
-/// One mid-point step from sample a to sample b (biases removed). Position first, with the old velocity.
-void integrate_step(PreintegratedImu& sum, const ImuSample& a, const ImuSample& b, const ImuNoise& noise) {
+/// A corrected sample, and how it depends on the errors of the IMU.
+struct CorrectedSample {
+  CorrectedSample(const ImuSample& measured, const InertialErrors& errors)
+      : sample(corrected(measured, errors)), R(so3_exp(errors.rotation_rad).toRotationMatrix()) {
+    const Matrix3d by_rotation = so3_right_jacobian(-errors.rotation_rad);  // on the left of Exp(rotation)
+    const Vector3d rate = sample.angular_velocity_radps + errors.gyroscope_bias_radps;
+    const Vector3d force = sample.specific_force_mps2 + errors.accelerometer_bias_mps2;
+    const auto by_scale = [&](const Vector3d& value, const Vector3d& scale) -> Matrix3d {
+      return -R * ((R.transpose() * value).array() / (1.0 + scale.array())).matrix().asDiagonal();
+    };
+    rate_by_errors << -Matrix3d::Identity(), Matrix3d::Zero(), -hat(rate) * by_rotation,
+        by_scale(rate, errors.gyroscope_scale), Matrix3d::Zero();
+    force_by_errors << Matrix3d::Zero(), -Matrix3d::Identity(), -hat(force) * by_rotation, Matrix3d::Zero(),
+        by_scale(force, errors.accelerometer_scale);
+  }
+
+  ImuSample sample;
+  Matrix3d R;
+  ByInertialErrors rate_by_errors;
+  ByInertialErrors force_by_errors;
+};
+
+/// One mid-point step from sample to sample. Position first, with the old velocity.
+void integrate_step(PreintegratedImu& sum, const CorrectedSample& from, const CorrectedSample& to,
+                    const ImuNoise& noise) {
+  const ImuSample& a = from.sample;
+  const ImuSample& b = to.sample;
   const double dt = seconds_between(a.timestamp_ns, b.timestamp_ns);
   const Vector3d turn = 0.5 * dt * (a.angular_velocity_radps + b.angular_velocity_radps);
   const Matrix3d R0 = sum.delta_rotation.toRotationMatrix();
@@ -62,17 +91,15 @@ void integrate_step(PreintegratedImu& sum, const ImuSample& a, const ImuSample& 
   const Matrix3d force_by_rotation1 = -0.5 * R1 * hat(b.specific_force_mps2);
   const Matrix3d force_by_noise = -0.5 * (R0 + R1);
 
-  // Bias Jacobians: the chain rule through the same step.
-  const Matrix3d rotation1_by_bias = step.transpose() * sum.rotation_by_gyroscope_bias - Jr * dt;
-  const Matrix3d force_by_gyroscope_bias =
-      force_by_rotation0 * sum.rotation_by_gyroscope_bias + force_by_rotation1 * rotation1_by_bias;
-  sum.position_by_gyroscope_bias +=
-      dt * sum.velocity_by_gyroscope_bias + 0.5 * dt * dt * force_by_gyroscope_bias;
-  sum.position_by_accelerometer_bias +=
-      dt * sum.velocity_by_accelerometer_bias + 0.5 * dt * dt * force_by_noise;
-  sum.velocity_by_gyroscope_bias += dt * force_by_gyroscope_bias;
-  sum.velocity_by_accelerometer_bias += dt * force_by_noise;
-  sum.rotation_by_gyroscope_bias = rotation1_by_bias;
+  // By the errors of the IMU: the chain rule through the same step.
+  const ByInertialErrors rotation1_by_errors =
+      step.transpose() * sum.rotation_by_errors + 0.5 * dt * Jr * (from.rate_by_errors + to.rate_by_errors);
+  const ByInertialErrors force_by_errors = force_by_rotation0 * sum.rotation_by_errors +
+                                           force_by_rotation1 * rotation1_by_errors +
+                                           0.5 * (R0 * from.force_by_errors + R1 * to.force_by_errors);
+  sum.position_by_errors += dt * sum.velocity_by_errors + 0.5 * dt * dt * force_by_errors;
+  sum.velocity_by_errors += dt * force_by_errors;
+  sum.rotation_by_errors = rotation1_by_errors;
 
   // Covariance of (rotation, velocity, position); white noise of density s has variance s^2 / dt over a step.
   Matrix9d A = Matrix9d::Identity();
@@ -116,9 +143,21 @@ void differentiate_by_time_offset(PreintegratedImu& sum, const ImuSample& begin,
 
 }  // namespace
 
+ImuSample corrected(const ImuSample& sample, const InertialErrors& errors) {
+  const Quaterniond R = so3_exp(errors.rotation_rad);
+  ImuSample result = sample;
+  result.angular_velocity_radps =
+      R * (sample.angular_velocity_radps.array() / (1.0 + errors.gyroscope_scale.array())).matrix() -
+      errors.gyroscope_bias_radps;
+  result.specific_force_mps2 =
+      R * (sample.specific_force_mps2.array() / (1.0 + errors.accelerometer_scale.array())).matrix() -
+      errors.accelerometer_bias_mps2;
+  return result;
+}
+
 Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::int64_t begin_ns,
-                                      std::int64_t end_ns, const Vector3d& gyroscope_bias_radps,
-                                      const Vector3d& accelerometer_bias_mps2, const ImuNoise& noise) {
+                                      std::int64_t end_ns, const InertialErrors& errors,
+                                      const ImuNoise& noise) {
   check(begin_ns < end_ns, "pre-integration runs forwards in time");
   if (samples.empty() || samples.front().timestamp_ns > begin_ns + kMaxHoldNs ||
       samples.back().timestamp_ns < end_ns - kMaxHoldNs) {
@@ -132,22 +171,21 @@ Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::i
             samples.empty() ? 0.0 : 1e-9 * static_cast<double>(samples.back().timestamp_ns)),
         "check that images and IMU share a clock, or choose the frames with --frames A:B");
   }
-  std::vector<ImuSample> window = cut(samples, begin_ns, end_ns);
-  const auto without_bias = [&](ImuSample sample) {
-    sample.angular_velocity_radps -= gyroscope_bias_radps;
-    sample.specific_force_mps2 -= accelerometer_bias_mps2;
-    return sample;
-  };
-  for (ImuSample& sample : window) sample = without_bias(sample);
+  std::vector<CorrectedSample> window;
+  for (const ImuSample& sample : cut(samples, begin_ns, end_ns)) window.emplace_back(sample, errors);
   PreintegratedImu sum;
   sum.duration_s = seconds_between(begin_ns, end_ns);
   for (std::size_t i = 1; i < window.size(); ++i) integrate_step(sum, window[i - 1], window[i], noise);
-  differentiate_by_time_offset(sum, without_bias(smoothed_sample(samples, begin_ns, kSmoothedS)),
-                               without_bias(smoothed_sample(samples, end_ns, kSmoothedS)));
-  const ImuSample& before = window[window.size() - 2];
-  sum.angular_velocity_end_radps = window.back().angular_velocity_radps;
+  differentiate_by_time_offset(sum, corrected(smoothed_sample(samples, begin_ns, kSmoothedS), errors),
+                               corrected(smoothed_sample(samples, end_ns, kSmoothedS), errors));
+  const ImuSample& before = window[window.size() - 2].sample;
+  const CorrectedSample end(smoothed_sample(samples, end_ns, kRateWindow_s), errors);
+  // A parabola's value at its middle has 9/4 of the variance of a mean (Savitzky & Golay 1964).
+  sum.rate_averaged_s = 2 * kRateWindow_s * 4 / 9;
+  sum.angular_velocity_end_radps = end.sample.angular_velocity_radps;
+  sum.angular_velocity_end_by_errors = end.rate_by_errors;
   sum.angular_acceleration_end_radps2 =
-      (window.back().angular_velocity_radps - before.angular_velocity_radps) / sum.last_step_s;
+      (window.back().sample.angular_velocity_radps - before.angular_velocity_radps) / sum.last_step_s;
   return sum;
 }
 

@@ -14,33 +14,47 @@ namespace fusebench::prediction {
 
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-/// Motion between two instants as measured by the IMU, with first-order dependence on the biases.
+/// What an IMU measures wrongly. A rate w (or specific force) in the axes of T_imu_camera is measured as
+/// (1 + scale) . (Exp(-rotation) (w + bias)), by axis.
+struct InertialErrors {
+  Vector3d gyroscope_bias_radps = Vector3d::Zero();
+  Vector3d accelerometer_bias_mps2 = Vector3d::Zero();
+  Vector3d rotation_rad = Vector3d::Zero();
+  Vector3d gyroscope_scale = Vector3d::Zero();
+  Vector3d accelerometer_scale = Vector3d::Zero();
+};
+inline constexpr int kInertialErrors = 15;  ///< in this order
+using ByInertialErrors = Eigen::Matrix<double, 3, kInertialErrors>;
+
+/// The sample without these errors.
+[[nodiscard]] ImuSample corrected(const ImuSample& sample, const InertialErrors& errors);
+
+/// Motion between two instants as measured by the IMU, with first-order dependence on its errors.
 struct PreintegratedImu {
   double duration_s = 0;
   Quaterniond delta_rotation = Quaterniond::Identity();  ///< R_begin_end
   Vector3d delta_velocity_mps = Vector3d::Zero();  ///< without gravity, in the IMU frame at the beginning
   Vector3d delta_position_m = Vector3d::Zero();    ///< without gravity and initial velocity, same frame
   Matrix9d covariance = Matrix9d::Zero();          ///< of (rotation (right), velocity, position)
-  Matrix3d rotation_by_gyroscope_bias = Matrix3d::Zero();
-  Matrix3d velocity_by_gyroscope_bias = Matrix3d::Zero();
-  Matrix3d velocity_by_accelerometer_bias = Matrix3d::Zero();
-  Matrix3d position_by_gyroscope_bias = Matrix3d::Zero();
-  Matrix3d position_by_accelerometer_bias = Matrix3d::Zero();
+  ByInertialErrors rotation_by_errors = ByInertialErrors::Zero();
+  ByInertialErrors velocity_by_errors = ByInertialErrors::Zero();
+  ByInertialErrors position_by_errors = ByInertialErrors::Zero();
   Vector3d rotation_by_time_offset =
       Vector3d::Zero();  ///< rad/s: when both instants shift together on the IMU's clock
-  Vector3d velocity_by_time_offset = Vector3d::Zero();          ///< m/s^2
-  Vector3d position_by_time_offset = Vector3d::Zero();          ///< m/s
-  Vector3d angular_velocity_end_radps = Vector3d::Zero();       ///< bias-corrected rate at the end
+  Vector3d velocity_by_time_offset = Vector3d::Zero();     ///< m/s^2
+  Vector3d position_by_time_offset = Vector3d::Zero();     ///< m/s
+  Vector3d angular_velocity_end_radps = Vector3d::Zero();  ///< corrected rate at the end
+  ByInertialErrors angular_velocity_end_by_errors = ByInertialErrors::Zero();
   Vector3d angular_acceleration_end_radps2 = Vector3d::Zero();  ///< its slope there
   double last_step_s = 0;                                       ///< spacing of the samples there
+  double rate_averaged_s = 0;  ///< the rate there has the noise of a mean over so long
 };
 
 /// Integrates from begin to end by the mid-point rule; the samples at both ends are interpolated to the exact
 /// instants. `samples` are sorted by time. Where they end up to 50 ms short of either instant, the nearest
 /// one is held; beyond that the error data_corrupt names the times.
 [[nodiscard]] Result<PreintegratedImu> preintegrate(std::span<const ImuSample> samples, std::int64_t begin_ns,
-                                                    std::int64_t end_ns, const Vector3d& gyroscope_bias_radps,
-                                                    const Vector3d& accelerometer_bias_mps2,
+                                                    std::int64_t end_ns, const InertialErrors& errors,
                                                     const ImuNoise& noise);
 
 }  // namespace fusebench::prediction

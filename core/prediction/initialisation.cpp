@@ -102,6 +102,21 @@ Result<filter::GaussianState> initialise_with_imu(std::span<const ImuSample> sam
   return state;
 }
 
+void set_timing_priors(filter::GaussianState& state, const SensorTiming& timing,
+                       const config::Config& config) {
+  if (!config.terms.motion_compensation) return;  // nothing is learnt of it, and nothing depends on it
+  const config::SelfCalibrationConfig& estimated = config.self_calibration;
+  set_variance(state, filter::kColorReadout, 1, estimated.color_readout ? timing.color_readout_sigma_s : 0.0);
+  set_variance(state, filter::kDepthReadout, 1, estimated.depth_readout ? timing.depth_readout_sigma_s : 0.0);
+  set_variance(state, filter::kDepthDelay, 1, estimated.depth_delay ? timing.depth_delay_sigma_s : 0.0);
+}
+
+void set_imu_priors(filter::GaussianState& state, const config::SelfCalibrationConfig& config) {
+  set_variance(state, filter::kImuRotation, 3, config.imu_rotation_sigma_rad);
+  set_variance(state, filter::kGyroscopeScale, 3, config.gyroscope_scale_sigma);
+  set_variance(state, filter::kAccelerometerScale, 3, config.accelerometer_scale_sigma);
+}
+
 filter::GaussianState initialise_without_imu(const config::InitialisationConfig& config) {
   filter::GaussianState state;
   set_variance(state, filter::kVelocity, 3, config.moving_velocity_sigma_mps);
@@ -116,7 +131,13 @@ Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples, 
   Result<filter::GaussianState> initial =
       inertial ? initialise_with_imu(samples, first_frame_ns, rig, config.initialisation)
                : initialise_without_imu(config.initialisation);
-  if (initial && motion) {
+  if (!initial) return initial;
+  // Without an IMU the motion during a read-out is known from the images alone, which the read-out distorts.
+  if (inertial) {
+    set_timing_priors(*initial, rig.timing, config);
+    if (!rig.imu_axes_are_exact) set_imu_priors(*initial, config.self_calibration);
+  }
+  if (motion) {
     initial->mean.velocity_world_mps = motion->velocity_world_mps;
     if (!inertial) initial->mean.angular_velocity_imu_radps = motion->angular_velocity_imu_radps;
   }

@@ -26,8 +26,16 @@ namespace fusebench::prediction {
 /// Initial state without an IMU: at rest with wide velocity covariances. The "IMU" frame is the camera's.
 [[nodiscard]] filter::GaussianState initialise_without_imu(const config::InitialisationConfig& config);
 
-/// Selects one of these two by the configured prior. `motion`, if known, gives the velocities; only the
-/// means, since the frames that they were estimated from are used as measurements next.
+/// Read-out times and delay of depth: errors of zero, as uncertain as the rig says, where they are estimated.
+void set_timing_priors(filter::GaussianState& state, const SensorTiming& timing,
+                       const config::Config& config);
+
+/// Rotation and scale of the IMU.
+void set_imu_priors(filter::GaussianState& state, const config::SelfCalibrationConfig& config);
+
+/// Selects one of these two by the configured prior, with the priors of the sensors' constants. `motion`, if
+/// known, gives the velocities; only the means, since the frames that they were estimated from are used as
+/// measurements next.
 [[nodiscard]] Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples,
                                                           std::int64_t first_frame_ns, const SensorRig& rig,
                                                           const config::Config& config,

@@ -13,6 +13,11 @@ void add_random_walk(filter::StateMatrix& noise, int offset, int size, double de
 }
 }  // namespace
 
+InertialErrors inertial_errors(const filter::FilterState& state) {
+  return {state.gyroscope_bias_radps, state.accelerometer_bias_mps2, state.sensors.imu_rotation_rad,
+          state.sensors.gyroscope_scale, state.sensors.accelerometer_scale};
+}
+
 Prediction predict_by_imu(const filter::GaussianState& state, const PreintegratedImu& imu,
                           const ImuNoise& noise, const config::MotionConfig& config) {
   const filter::FilterState& x = state.mean;
@@ -27,25 +32,28 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   y.T_world_imu.translation += dt * x.velocity_world_mps + 0.5 * dt * dt * gravity + R * imu.delta_position_m;
   y.velocity_world_mps += dt * gravity + R * imu.delta_velocity_mps;
   y.angular_velocity_imu_radps = imu.angular_velocity_end_radps;
+  y.angular_velocity_noise_radps =
+      config.imu_noise_factor * noise.gyroscope_radps_sqrthz / std::sqrt(imu.rate_averaged_s);
 
   filter::StateMatrix& F = result.transition;
   const Eigen::Matrix<double, 3, 2> gravity_by_delta =
       -kGravity_mps2 * hat(x.gravity_direction_world) * s2_basis(x.gravity_direction_world);
   F.block<3, 3>(filter::kRotation, filter::kRotation) = imu.delta_rotation.toRotationMatrix().transpose();
-  F.block<3, 3>(filter::kRotation, filter::kGyroscopeBias) = imu.rotation_by_gyroscope_bias;
   F.block<3, 3>(filter::kVelocity, filter::kRotation) = -R * hat(imu.delta_velocity_mps);
-  F.block<3, 3>(filter::kVelocity, filter::kGyroscopeBias) = R * imu.velocity_by_gyroscope_bias;
-  F.block<3, 3>(filter::kVelocity, filter::kAccelerometerBias) = R * imu.velocity_by_accelerometer_bias;
   F.block<3, 2>(filter::kVelocity, filter::kGravity) = dt * gravity_by_delta;
   F.block<3, 3>(filter::kPosition, filter::kRotation) = -R * hat(imu.delta_position_m);
   F.block<3, 3>(filter::kPosition, filter::kVelocity) = dt * Matrix3d::Identity();
-  F.block<3, 3>(filter::kPosition, filter::kGyroscopeBias) = R * imu.position_by_gyroscope_bias;
-  F.block<3, 3>(filter::kPosition, filter::kAccelerometerBias) = R * imu.position_by_accelerometer_bias;
   F.block<3, 2>(filter::kPosition, filter::kGravity) = 0.5 * dt * dt * gravity_by_delta;
-  // The body rate is re-measured: its previous error is dropped and it is fully correlated with the bias
-  // error.
+  // The body rate is measured again: its previous error is dropped, and it has that of the IMU.
   F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity).setZero();
-  F.block<3, 3>(filter::kAngularVelocity, filter::kGyroscopeBias) = -Matrix3d::Identity();
+  const auto by_errors = [&F](int row, const ByInertialErrors& jacobian) {
+    F.block<3, 6>(row, filter::kGyroscopeBias) = jacobian.leftCols<6>();
+    F.block<3, 9>(row, filter::kImuRotation) = jacobian.rightCols<9>();
+  };
+  by_errors(filter::kRotation, imu.rotation_by_errors);
+  by_errors(filter::kVelocity, R * imu.velocity_by_errors);
+  by_errors(filter::kPosition, R * imu.position_by_errors);
+  by_errors(filter::kAngularVelocity, imu.angular_velocity_end_by_errors);
   F.block<3, 1>(filter::kRotation, filter::kImuTimeOffset) = imu.rotation_by_time_offset;
   F.block<3, 1>(filter::kVelocity, filter::kImuTimeOffset) = R * imu.velocity_by_time_offset;
   F.block<3, 1>(filter::kPosition, filter::kImuTimeOffset) = R * imu.position_by_time_offset;
@@ -63,8 +71,7 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   add_random_walk(Q, filter::kAccelerometerBias, 3,
                   config.imu_noise_factor * noise.accelerometer_bias_mps3_sqrthz, dt);
   add_random_walk(Q, filter::kGravity, 2, config.gravity_noise_rad_sqrthz, dt);
-  Q.diagonal().segment<3>(filter::kAngularVelocity).array() +=
-      factor * square(noise.gyroscope_radps_sqrthz) / imu.last_step_s;
+  Q.diagonal().segment<3>(filter::kAngularVelocity).array() += square(y.angular_velocity_noise_radps);
 
   result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
   return result;
@@ -114,8 +121,8 @@ Result<filter::GaussianState> predict_state(const filter::GaussianState& state, 
   const filter::FilterState& x = state.mean;
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
   const Result<PreintegratedImu> increments =  // Eqs. 11-13
-      preintegrate(samples, interval.begin_ns + offset_ns, interval.end_ns + offset_ns,
-                   x.gyroscope_bias_radps, x.accelerometer_bias_mps2, noise);
+      preintegrate(samples, interval.begin_ns + offset_ns, interval.end_ns + offset_ns, inertial_errors(x),
+                   noise);
   if (!increments) return tl::unexpected(increments.error());
   return predict_by_imu(state, *increments, noise, config.motion).state;  // Eqs. 8-10, 14
 }

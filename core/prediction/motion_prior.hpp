@@ -18,8 +18,11 @@ struct Prediction {
       filter::StateMatrix::Identity();  ///< F, tangent at the old mean to tangent at the new one
 };
 
+/// What the state says of the IMU.
+[[nodiscard]] InertialErrors inertial_errors(const filter::FilterState& state);
+
 /// Propagates by pre-integrated samples. The velocity term and gravity, which Eq. 13 leaves out or misplaces,
-/// are in. The increments must have been integrated with the biases of the state.
+/// are in. The increments must have been integrated with the errors of the state.
 [[nodiscard]] Prediction predict_by_imu(const filter::GaussianState& state, const PreintegratedImu& imu,
                                         const ImuNoise& noise, const config::MotionConfig& config);
 

@@ -10,6 +10,15 @@ CameraVelocity camera_velocity(const filter::FilterState& state, const SE3& T_im
   return {R_camera_imu * rate_imu, R_camera_imu * velocity_imu};
 }
 
+FrameTiming estimated_timing(const RgbdFrame& frame, const SensorTiming& timing,
+                             const filter::SensorErrors& errors) {
+  FrameTiming result = frame_timing(frame, timing);
+  result.color_readout_s += errors.color_readout_s;
+  result.depth_readout_s += errors.depth_readout_s;
+  result.depth_delay_s += errors.depth_delay_s;
+  return result;
+}
+
 double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig, double exposure_s) {
   return rig.camera.fx_px * camera_velocity(state, rig.T_imu_camera).angular_radps.head<2>().norm() *
          exposure_s;

@@ -11,6 +11,10 @@ namespace fusebench::preprocessing {
 /// Velocities of the camera in its own axes, lever arm included.
 [[nodiscard]] CameraVelocity camera_velocity(const filter::FilterState& state, const SE3& T_imu_camera);
 
+/// The timing of a frame as the rig says and the state corrects it.
+[[nodiscard]] FrameTiming estimated_timing(const RgbdFrame& frame, const SensorTiming& timing,
+                                           const filter::SensorErrors& errors);
+
 /// Length of the motion blur at the image centre, by rotation alone (the depth is not known yet), pixels.
 [[nodiscard]] double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
                                        double exposure_s);

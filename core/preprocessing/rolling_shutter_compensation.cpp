@@ -299,18 +299,18 @@ void check_sizes(const RgbdFrame& frame, const PinholeCamera& camera) {
         "images have the camera's size");
 }
 
-Readout color_readout(const PinholeCamera& camera, const SensorTiming& timing,
+Readout color_readout(const PinholeCamera& camera, const FrameTiming& timing,
                       const CameraVelocity& velocity) {
   return {camera, RowTimes(camera.height_px, 0.0, timing.color_readout_s), velocity};
 }
 
 }  // namespace
 
-bool needs_compensation(const RgbdFrame& frame, const SensorTiming& timing) {
-  return timing.color_readout_s != 0 || timing.depth_readout_s != 0 || frame.depth_offset_ns != 0;
+FrameTiming frame_timing(const RgbdFrame& frame, const SensorTiming& timing) {
+  return {timing.color_readout_s, timing.depth_readout_s, seconds_between(0, frame.depth_offset_ns)};
 }
 
-void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, const SensorTiming& timing,
+void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, const FrameTiming& timing,
                        const CameraVelocity& velocity, const Workers& workers, RgbdFrame& result) {
   check_sizes(frame, camera);
   result.timestamp_ns = frame.timestamp_ns;
@@ -318,8 +318,7 @@ void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, cons
   result.depth_offset_ns = 0;
   result.grey.resize(camera.width_px, camera.height_px);
   result.depth_m.resize(camera.width_px, camera.height_px);
-  const RowTimes depth_times(camera.height_px, seconds_between(0, frame.depth_offset_ns),
-                             timing.depth_readout_s);
+  const RowTimes depth_times(camera.height_px, timing.depth_delay_s, timing.depth_readout_s);
   const DepthCarrier carrier(frame, camera, Readout(camera, depth_times, velocity));
   const ColorSource colors(frame, camera, color_readout(camera, timing, velocity));
   for_each_tile(camera, workers, [&](int first_column, int first_row, int end_row) {
@@ -327,7 +326,7 @@ void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, cons
   });
 }
 
-void compensate_color(const RgbdFrame& frame, const PinholeCamera& camera, const SensorTiming& timing,
+void compensate_color(const RgbdFrame& frame, const PinholeCamera& camera, const FrameTiming& timing,
                       const CameraVelocity& velocity, const DepthImage& depth_m, const Workers& workers,
                       ColorImage& result) {
   check_sizes(frame, camera);

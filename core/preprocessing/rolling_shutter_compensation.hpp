@@ -16,8 +16,20 @@ struct CameraVelocity {
   Vector3d linear_mps = Vector3d::Zero();
 };
 
-/// True if frames of this rig need compensation at all.
-[[nodiscard]] bool needs_compensation(const RgbdFrame& frame, const SensorTiming& timing);
+/// When the images of a frame were read, after the frame's instant.
+struct FrameTiming {
+  double color_readout_s = 0;
+  double depth_readout_s = 0;
+  double depth_delay_s = 0;  ///< of the middle row of depth
+
+  /// True if there is nothing to compensate.
+  [[nodiscard]] bool is_one_instant() const {
+    return color_readout_s == 0 && depth_readout_s == 0 && depth_delay_s == 0;
+  }
+};
+
+/// As the frame and its rig say.
+[[nodiscard]] FrameTiming frame_timing(const RgbdFrame& frame, const SensorTiming& timing);
 
 /// Depth and grey of the frame as a global shutter at frame.capture_ns() would have seen them. Row v of an
 /// image was read (v / (height - 1) - 1/2) * read-out after the image's own instant. Depth is taken from the
@@ -26,12 +38,12 @@ struct CameraVelocity {
 /// depth 0 and the nearest border grey, so that nothing uses them. Images have at least 8 columns and 2 rows.
 /// Places are good to a hundredth of a pixel for motion as of a hand (1 rad/s, 0.5 m/s), to some tenths in
 /// corners at thrice that. `result` is another frame, whose memory is used again; its colour is left alone.
-void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, const SensorTiming& timing,
+void compensate_motion(const RgbdFrame& frame, const PinholeCamera& camera, const FrameTiming& timing,
                        const CameraVelocity& velocity, const Workers& workers, RgbdFrame& result);
 
 /// The same for the colour of the frame, by depth that was compensated already (where there is none, as if
 /// far away); empty if the frame has none. Apart because tracking needs none.
-void compensate_color(const RgbdFrame& frame, const PinholeCamera& camera, const SensorTiming& timing,
+void compensate_color(const RgbdFrame& frame, const PinholeCamera& camera, const FrameTiming& timing,
                       const CameraVelocity& velocity, const DepthImage& depth_m, const Workers& workers,
                       ColorImage& result);
 

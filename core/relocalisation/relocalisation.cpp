@@ -58,8 +58,8 @@ std::optional<RelocalisedReference> Relocalisation::find(const GreyImage& grey,
   result.prior = relocalisation_update(prediction, pose, unknown_motion(config_));
   if (!filter::is_valid(result.prior)) return std::nullopt;
   const int patch_levels = config_.patches.levels;
-  const std::vector<GreyImage> pyramid = build_pyramid(
-      keyframe.grey, std::max(patch_levels, alignment::alignment_levels(rig_.camera, config_.alignment)));
+  const std::vector<GreyImage> pyramid =
+      build_pyramid(keyframe.grey, alignment::pyramid_levels(rig_.camera, config_));
   const DepthImage depth_m = keyframe.depth.unpacked_m();
   const patches::ReferenceFrame reference{std::span(pyramid).first(static_cast<std::size_t>(patch_levels)),
                                           depth_m, rig_.camera, keyframe.T_world_camera};

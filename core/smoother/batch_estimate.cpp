@@ -82,8 +82,8 @@ Result<std::vector<prediction::PreintegratedImu>> integrate(const BatchInput& in
   std::vector<prediction::PreintegratedImu> increments;
   for (std::size_t k = 0; k + 1 < input.instants_ns.size(); ++k) {
     auto imu = prediction::preintegrate(input.imu, input.instants_ns[k] + offset_ns,
-                                        input.instants_ns[k + 1] + offset_ns, x.bias[k].head<3>(),
-                                        x.bias[k].tail<3>(), input.imu_noise);
+                                        input.instants_ns[k + 1] + offset_ns,
+                                        {x.bias[k].head<3>(), x.bias[k].tail<3>()}, input.imu_noise);
     if (!imu) return tl::unexpected(imu.error());
     increments.push_back(*imu);
   }

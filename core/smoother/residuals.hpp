@@ -56,14 +56,14 @@ struct InertialResidual {
     const Vector3<T> by_gyroscope = as_vector(bias_i) - gyroscope_bias;
     const Vector3<T> by_accelerometer = as_vector(bias_i + 3) - accelerometer_bias;
     const Vector3<T> turn =
-        imu.rotation_by_gyroscope_bias * by_gyroscope + imu.rotation_by_time_offset * shift;
+        imu.rotation_by_errors.leftCols<3>() * by_gyroscope + imu.rotation_by_time_offset * shift;
     const Eigen::Quaternion<T> R_measured = imu.delta_rotation.cast<T>() * rotation_by<T>(turn);
     const Vector3<T> velocity_change =
-        imu.delta_velocity_mps + imu.velocity_by_gyroscope_bias * by_gyroscope +
-        imu.velocity_by_accelerometer_bias * by_accelerometer + imu.velocity_by_time_offset * shift;
-    const Vector3<T> position_change = imu.delta_position_m + imu.position_by_gyroscope_bias * by_gyroscope +
-                                       imu.position_by_accelerometer_bias * by_accelerometer +
-                                       imu.position_by_time_offset * shift;
+        imu.delta_velocity_mps + imu.velocity_by_errors.leftCols<3>() * by_gyroscope +
+        imu.velocity_by_errors.middleCols<3>(3) * by_accelerometer + imu.velocity_by_time_offset * shift;
+    const Vector3<T> position_change =
+        imu.delta_position_m + imu.position_by_errors.leftCols<3>() * by_gyroscope +
+        imu.position_by_errors.middleCols<3>(3) * by_accelerometer + imu.position_by_time_offset * shift;
 
     const double dt = imu.duration_s;
     const Eigen::Quaternion<T> R_imu_world = as_rotation(rotation_i).conjugate();

@@ -8,6 +8,9 @@
 
 namespace fusebench::trajectory {
 
+/// Truth that pauses for longer than this (ten samples at 100 Hz) does not determine the motion in between.
+inline constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
+
 /// The pose at a time between two stamps, interpolated geodesically. Nothing if the time lies before the
 /// first or after the last pose, or between two that are more than max_gap_ns apart. The stamps must
 /// increase.

@@ -13,6 +13,10 @@ namespace fusebench::calibration {
 /// Brown-Conrady distortion (OpenCV's "plumb bob", five coefficients) on the plane z = 1:
 ///   x_d = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2),  r2 = x^2 + y^2
 ///   y_d = y (1 + k1 r2 + k2 r2^2 + k3 r2^3) + p1 (r2 + 2 y^2) + 2 p2 x y
+/// How far a timing that nobody said may be from zero, as a standard deviation.
+inline constexpr double kUnknownReadoutSigma_s = 0.015;
+inline constexpr double kUnknownDelaySigma_s = 0.01;
+
 struct BrownConrady {
   double k1 = 0;
   double k2 = 0;

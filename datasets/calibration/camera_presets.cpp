@@ -21,8 +21,13 @@ constexpr std::string_view kDefaultName = "default";
 // project on 8 s of freiburg1_rpy: frames that see the same place while turning in opposite directions,
 // warped onto each other by the ground truth, agree best in depth (12.3 -> 5.5 mm median) and in colour (45
 // -> 30 grey levels) with these read-outs and depth taken 18 ms earlier than the stamps say. The Xtion of
-// freiburg3 has the same sensors; its delay was not measured apart.
-constexpr SensorTiming kPrimeSense{0.0261, 0.0305, -0.018};
+// freiburg3 has the same sensors; its delay was not measured apart. The uncertainties are those of other
+// devices and recordings: drivers stamp as they like.
+constexpr SensorTiming kPrimeSense{0.0261, 0.0305, -0.018, 0.002, 0.002, 0.005};
+
+// A rolling shutter reads within the time of a frame; which, and how its depth is stamped, is not known.
+constexpr SensorTiming kUnknown{
+    0, 0, 0, kUnknownReadoutSigma_s, kUnknownReadoutSigma_s, kUnknownDelaySigma_s};
 
 // The images of freiburg3 are published without distortion.
 const std::array<CameraPreset, 4> kPresets = {{
@@ -70,8 +75,9 @@ Result<CalibratedCamera> camera_from_numbers(std::string_view text,
     return fail(ErrorCode::configuration, fmt::format("camera = {}: focal lengths must be positive", text),
                 "images are stored top down, so fy is positive even where a renderer's is not");
   }
-  return CalibratedCamera{
-      {0, 0, value[0], value[1], value[2], value[3]}, {value[4], value[5], value[6], value[7], value[8]}, {}};
+  return CalibratedCamera{{0, 0, value[0], value[1], value[2], value[3]},
+                          {value[4], value[5], value[6], value[7], value[8]},
+                          kUnknown};
 }
 
 }  // namespace

@@ -18,11 +18,12 @@ namespace fusebench::calibration {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kColorKeys = {"width_px", "height_px", "fx_px",      "fy_px",
-                                                        "cx_px",    "cy_px",     "distortion", "readout_s"};
-constexpr std::array<std::string_view, 10> kDepthKeys = {
-    "units_per_metre", "width_px", "height_px",     "fx_px",     "fy_px",
-    "cx_px",           "cy_px",    "T_color_depth", "readout_s", "delay_s"};
+constexpr std::array<std::string_view, 9> kColorKeys = {"width_px",   "height_px", "fx_px",
+                                                        "fy_px",      "cx_px",     "cy_px",
+                                                        "distortion", "readout_s", "readout_sigma_s"};
+constexpr std::array<std::string_view, 12> kDepthKeys = {
+    "units_per_metre", "width_px",      "height_px", "fx_px",           "fy_px",   "cx_px",
+    "cy_px",           "T_color_depth", "readout_s", "readout_sigma_s", "delay_s", "delay_sigma_s"};
 constexpr std::array<std::string_view, 7> kDepthCameraKeys = {
     "width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px", "T_color_depth"};
 constexpr std::array<std::string_view, 7> kImuKeys = {"T_imu_color",
@@ -167,6 +168,12 @@ PinholeCamera read_pinhole(Section& section, bool size_needed) {
   return camera;
 }
 
+/// What is said is exact unless it says otherwise.
+double sigma_of(Section& section, const std::string& name, const Range& range, double unknown) {
+  const double otherwise = section.has(name + "_s") ? 0.0 : unknown;
+  return section.number(name + "_sigma_s", {0.0, range.most}, otherwise);
+}
+
 CalibratedCamera read_color_table(Section& section) {
   CalibratedCamera camera;
   section.allow(kColorKeys);
@@ -174,6 +181,7 @@ CalibratedCamera read_color_table(Section& section) {
   if (const auto k = section.numbers("distortion", 5); !k.empty())
     camera.distortion = {k[0], k[1], k[2], k[3], k[4]};
   camera.timing.color_readout_s = section.number("readout_s", kReadout, 0.0);
+  camera.timing.color_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
   return camera;
 }
 
@@ -181,8 +189,11 @@ void read_depth_table(Section& section, RigCalibration& calibration) {
   section.allow(kDepthKeys);
   if (section.has("units_per_metre"))
     calibration.depth_units_per_metre = section.number("units_per_metre", {1e-3, 1e6});
-  calibration.color.timing.depth_readout_s = section.number("readout_s", kReadout, 0.0);
-  calibration.color.timing.depth_delay_s = section.number("delay_s", kOffset, 0.0);
+  SensorTiming& timing = calibration.color.timing;
+  timing.depth_readout_s = section.number("readout_s", kReadout, 0.0);
+  timing.depth_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
+  timing.depth_delay_s = section.number("delay_s", kOffset, 0.0);
+  timing.depth_delay_sigma_s = sigma_of(section, "delay", kOffset, kUnknownDelaySigma_s);
   const bool own_camera = std::ranges::any_of(
       kDepthCameraKeys, [&](std::string_view key) { return section.has(std::string(key)); });
   if (!own_camera) return;
@@ -226,6 +237,12 @@ std::string pinhole_text(const PinholeCamera& p) {
   if (p.width_px > 0) text += fmt::format("width_px = {}\nheight_px = {}\n", p.width_px, p.height_px);
   return text +
          fmt::format("fx_px = {}\nfy_px = {}\ncx_px = {}\ncy_px = {}\n", p.fx_px, p.fy_px, p.cx_px, p.cy_px);
+}
+
+/// What is said without an uncertainty is exact.
+std::string timing_text(std::string_view name, double value_s, double sigma_s) {
+  const std::string text = fmt::format("{}_s = {}\n", name, value_s);
+  return sigma_s > 0 ? text + fmt::format("{}_sigma_s = {}\n", name, sigma_s) : text;
 }
 
 }  // namespace
@@ -293,15 +310,16 @@ std::string to_toml(const RigCalibration& calibration) {
   std::string text = fmt::format("calibration_source = {}\n\n[color]\n{}",
                                  config::to_toml(config::OptionValue(calibration.source)),
                                  pinhole_text(calibration.color.pinhole));
-  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\nreadout_s = {}\n\n[depth]\n", d.k1, d.k2, d.p1,
-                      d.p2, d.k3, timing.color_readout_s);
+  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\n{}\n[depth]\n", d.k1, d.k2, d.p1, d.p2, d.k3,
+                      timing_text("readout", timing.color_readout_s, timing.color_readout_sigma_s));
   if (calibration.depth_units_per_metre)
     text += fmt::format("units_per_metre = {}\n", *calibration.depth_units_per_metre);
   if (calibration.depth) {
     text += pinhole_text(calibration.depth->pinhole) +
             fmt::format("T_color_depth = {}\n", matrix_text(calibration.depth->T_color_depth));
   }
-  text += fmt::format("readout_s = {}\ndelay_s = {}\n", timing.depth_readout_s, timing.depth_delay_s);
+  text += timing_text("readout", timing.depth_readout_s, timing.depth_readout_sigma_s) +
+          timing_text("delay", timing.depth_delay_s, timing.depth_delay_sigma_s);
   if (!calibration.imu) return text;
   const ImuNoise& noise = calibration.imu->noise;
   return text + fmt::format(

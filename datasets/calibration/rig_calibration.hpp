@@ -7,14 +7,16 @@
 //     height_px = 480
 //     fx_px = 608.446           # also fy_px, cx_px, cy_px
 //     distortion = [0.0644, -0.114, 0.00127, 0.00203, 0]  # k1 k2 p1 p2 k3 (Brown-Conrady); none: 0
-//     readout_s = 0.0           # rolling shutter, first to last row
+//     readout_s = 0.0           # rolling shutter, first to last row; without the key it is not known
+//     readout_sigma_s = 0.0     # its uncertainty; none: 0, or 0.015 where readout_s is not known
 //     [depth]
 //     units_per_metre = 1000
 //     width_px = 640            # intrinsics (the keys of [color], no distortion): depth is in a camera of
 //     fx_px = 583.98            # its own, and T_color_depth is needed; without, it is registered to colour
 //     T_color_depth = [r11, r12, r13, tx, r21, ...]       # row-major 3x4, metres
-//     readout_s = 0.0
-//     delay_s = 0.0             # see SensorTiming
+//     readout_s = 0.0           # and readout_sigma_s, as above
+//     delay_s = 0.0             # see SensorTiming; without the key it is not known
+//     delay_sigma_s = 0.0       # its uncertainty; none: 0, or 0.01 where delay_s is not known
 //     [imu]
 //     T_imu_color = [...]       # or T_imu_depth; row-major 3x4, metres
 //     gyroscope_noise_radps_sqrthz = 1.1e-3

@@ -94,6 +94,11 @@ void add_sensors(io::Fingerprint& fingerprint, const recording::Recording& recor
   fingerprint.add(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", recording.format, decoding.identity,
                               text_of(camera.pinhole), d.k1, d.k2, d.p1, d.p2, d.k3, timing.color_readout_s,
                               timing.depth_readout_s, timing.depth_delay_s));
+  if (timing.color_readout_sigma_s > 0 || timing.depth_readout_sigma_s > 0 ||
+      timing.depth_delay_sigma_s > 0) {
+    fingerprint.add(fmt::format("timing sigmas {} {} {}", timing.color_readout_sigma_s,
+                                timing.depth_readout_sigma_s, timing.depth_delay_sigma_s));
+  }
   if (const auto& depth = decoding.calibration.depth) {
     fingerprint.add(
         fmt::format("depth camera {} {}", text_of(depth->pinhole), text_of(depth->T_color_depth)));

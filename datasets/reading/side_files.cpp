@@ -18,9 +18,6 @@ namespace fusebench::reading {
 
 namespace {
 
-// A truth that pauses for longer than this (ten samples at 100 Hz) does not determine the motion in between.
-constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
-
 /// Positions of the truth are used in double precision only, but they must leave room for squares.
 Result<void> check_positions(const Trajectory& truth, const std::filesystem::path& source) {
   for (const StampedPose& pose : truth) {
@@ -57,7 +54,7 @@ Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
                 "the truth must be of the same recording and clock, in seconds");
   }
   const auto is_uncovered = [&](const recording::FrameEntry& frame) {
-    return !trajectory::interpolate_pose(truth, frame.timestamp_ns, kMaxTruthGap_ns);
+    return !trajectory::interpolate_pose(truth, frame.timestamp_ns, trajectory::kMaxTruthGap_ns);
   };
   const auto uncovered = static_cast<std::size_t>(std::ranges::count_if(recording.frames, is_uncovered));
   const bool as_published = uncovered <= published_without && is_uncovered(recording.frames.front());
@@ -65,7 +62,7 @@ Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
     (as_published ? recording.notes : recording.warnings)
         .push_back(fmt::format("{}: {} of {} frames have no ground truth around them within {} s",
                                source.string(), uncovered, recording.frames.size(),
-                               seconds_between(0, kMaxTruthGap_ns)));
+                               seconds_between(0, trajectory::kMaxTruthGap_ns)));
   }
   recording.ground_truth = std::move(truth);
   return {};

@@ -167,6 +167,7 @@ Result<void> add_synthetic_imu(recording::Recording& recording, const SyntheticI
   recording.imu_note = note(options, *fit);
   recording.rig.T_imu_camera = SE3{};
   const ImuNoise uncertainty = truth_noise(*fit, options);
+  recording.rig.imu_axes_are_exact = true;
   ImuNoise& noise = recording.rig.imu_noise;
   noise = options.sensor.noise;
   noise.gyroscope_radps_sqrthz = combine(noise.gyroscope_radps_sqrthz, uncertainty.gyroscope_radps_sqrthz);

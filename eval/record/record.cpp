@@ -69,6 +69,13 @@ std::vector<RecordedOption> config_of(const Json& json) {
   return config;
 }
 
+Json json_of(const std::vector<filter::SensorConstant>& sensors) {
+  Json json = Json::object();
+  for (const filter::SensorConstant& constant : sensors)
+    json[constant.name] = {{"value", constant.value}, {"sigma", constant.sigma}};
+  return json;
+}
+
 Json json_of(const std::vector<RecordedFile>& files) {
   Json json = Json::object();
   for (const RecordedFile& file : files) json[file.name] = {{"bytes", file.bytes}, {"xxh3", file.xxh3}};
@@ -158,6 +165,11 @@ RunRecord record_of(const Json& json) {
   record.frames = {frames.at("total"), frames.at("tracked"), frames.at("lost")};
   const Json& model = json.at("model");
   record.model = {model.at("vertices"), model.at("triangles"), model.at("blocks")};
+  const auto sensors = json.find("sensors");  // older records have none
+  if (sensors != json.end()) {
+    for (const auto& [name, constant] : sensors->items())
+      record.sensors.push_back({name, constant.at("value"), constant.at("sigma")});
+  }
   record.files = files_of(json);
   read(json.at("timing"), record.timing);
   read(json.at("provenance"), record.provenance);
@@ -207,6 +219,7 @@ std::string to_json(const RunRecord& record) {
        {{"vertices", record.model.vertices},
         {"triangles", record.model.triangles},
         {"blocks", record.model.blocks}}},
+      {"sensors", json_of(record.sensors)},
       {"files", json_of(record.files)},
       {"config", json_of(record.config)},
       {"timing", json_of(record.timing)},

@@ -13,6 +13,7 @@
 
 #include "core/base/error.hpp"
 #include "core/config/options.hpp"
+#include "core/filter/sensor_constants.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/metrics/nees_metrics.hpp"
@@ -173,6 +174,7 @@ struct RunRecord {
   RecordedMetrics metrics;
   RecordedFrames frames;
   RecordedModel model;
+  std::vector<filter::SensorConstant> sensors;  ///< after the last tracked frame; those that were estimated
   std::vector<RecordedFile> files;  ///< by name, without those that hold times; empty in older records
   RecordedTiming timing;
   RecordedProvenance provenance;

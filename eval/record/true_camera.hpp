@@ -9,13 +9,10 @@
 
 namespace fusebench::record {
 
-/// Ground truth further apart than this is not interpolated.
-inline constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
-
 /// T_truth_camera at an instant; nothing where the ground truth does not reach.
 [[nodiscard]] inline std::optional<SE3> true_camera(const recording::Recording& recording,
                                                     std::int64_t instant_ns) {
-  return trajectory::interpolate_pose(recording.ground_truth, instant_ns, kMaxTruthGap_ns);
+  return trajectory::interpolate_pose(recording.ground_truth, instant_ns, trajectory::kMaxTruthGap_ns);
 }
 
 }  // namespace fusebench::record

@@ -120,7 +120,7 @@ Result<std::string> hash_of(const ImportSpec& spec, trajectory_files::Trajectory
   return identity.hex();
 }
 
-Result<void> write(ImportedRun& run, const RunOutput& output, const Trajectory& truth) {
+Result<void> write(ImportedRun& run, RunOutput& output, const Trajectory& truth) {
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
   const std::array<NamedText, 3> texts = {
@@ -172,10 +172,6 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.frames.lost = record.frames.total - record.frames.tracked;
   record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
   record.metrics = metrics_of_import(output, *recording, Workers(spec.threads));
-  if (record.metrics.mesh.value) {
-    const auto& errors_m = record.metrics.mesh.value->vertex_errors_m;
-    output.mesh.quality.assign(errors_m.begin(), errors_m.end());
-  }
   record.provenance = record::provenance_here(spec.threads);
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
   std::vector<record::StampAndInstant> stamps = record::frame_stamps(*recording);

@@ -57,13 +57,6 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
   return timing;
 }
 
-/// The error of each vertex, where there is a true scene.
-void colour_by_error(Mesh& mesh, const record::RecordedMetrics& metrics) {
-  if (!metrics.mesh.value) return;
-  const std::vector<double>& errors_m = metrics.mesh.value->vertex_errors_m;
-  mesh.quality.assign(errors_m.begin(), errors_m.end());
-}
-
 }  // namespace
 
 Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
@@ -83,11 +76,14 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   record.status = progress->status;
   record.reason = progress->reason;
   record.frames = progress->frames;
+  record.sensors = estimated_sensors(progress->output, run.recording.rig.timing);
+  for (const filter::SensorConstant& constant : record.sensors)
+    progress->log +=
+        fmt::format("sensor {} = {:.6g} +- {:.2g}\n", constant.name, constant.value, constant.sigma);
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
   if (all) {
-    colour_by_error(progress->output.mesh, record.metrics);
     if (auto written = run_files::write_patch_table(folder->path(), progress->fastest.frames()); !written)
       return tl::unexpected(written.error());
   }
@@ -109,7 +105,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
        {"nees.csv", run_files::nees_table(record.metrics.nees)},
        {profile::kTraceFile, run.spec.profile ? profile::trace_text(progress->profile, title) : ""},
        {"log.txt", progress->log}}};
-  const Mesh* const mesh = all ? &progress->output.mesh : nullptr;
+  Mesh* const mesh = all ? &progress->output.mesh : nullptr;
   if (auto written = write_run_folder(*folder, mesh, texts, record); !written)
     return tl::unexpected(written.error());
   return record;

@@ -176,4 +176,12 @@ record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Rec
   return metrics;
 }
 
+std::vector<filter::SensorConstant> estimated_sensors(const RunOutput& output, const SensorTiming& timing) {
+  if (output.states.empty()) return {};
+  std::vector<filter::SensorConstant> constants =
+      filter::sensor_constants(output.states.back().estimate, timing);
+  std::erase_if(constants, [](const filter::SensorConstant& constant) { return constant.sigma == 0; });
+  return constants;
+}
+
 }  // namespace fusebench::run

@@ -6,6 +6,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/filter/sensor_constants.hpp"
 #include "core/filter/stamped_state.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
@@ -28,5 +29,9 @@ struct RunOutput {
 [[nodiscard]] record::RecordedMetrics metrics_of(const RunOutput& output,
                                                  const recording::Recording& recording,
                                                  const config::Config& config, const Workers& workers);
+
+/// The constants of the sensors after the last tracked frame, as far as they were estimated.
+[[nodiscard]] std::vector<filter::SensorConstant> estimated_sensors(const RunOutput& output,
+                                                                    const SensorTiming& timing);
 
 }  // namespace fusebench::run

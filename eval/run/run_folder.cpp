@@ -1,13 +1,19 @@
 #include "eval/run/run_folder.hpp"
 
+#include <vector>
+
 #include "core/mesh/ply_file.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::run {
 
-Result<void> write_run_folder(io::StagedFolder& folder, const Mesh* mesh, std::span<const NamedText> texts,
+Result<void> write_run_folder(io::StagedFolder& folder, Mesh* mesh, std::span<const NamedText> texts,
                               record::RunRecord& record) {
   if (mesh != nullptr) {
+    if (record.metrics.mesh.value) {
+      const std::vector<double>& errors_m = record.metrics.mesh.value->vertex_errors_m;
+      mesh->quality.assign(errors_m.begin(), errors_m.end());
+    }
     if (auto written = mesh::write_ply(*mesh, folder.file("mesh.ply")); !written) return written;
   }
   for (const auto& [name, text] : texts) {

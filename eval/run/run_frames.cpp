@@ -39,7 +39,7 @@ void forget_earlier_start(RunProgress& progress, std::size_t frame, const health
 void take_report(RunProgress& progress, std::size_t frame, const health::FrameReport& report,
                  const PreparedRun& run, double decode_ms) {
   progress.frame_table += run_files::frame_table_row(frame, report, decode_ms);
-  progress.state_table += run_files::state_table_row(report);
+  progress.state_table += run_files::state_table_row(report, run.recording.rig.timing);
   progress.decode_ms += decode_ms;
   for (std::size_t stage = 0; stage < health::kStageNames.size(); ++stage) {
     progress.stage_ms[stage] += report.stages.sums_ms()[stage];

@@ -4,6 +4,7 @@
 
 #include <iterator>
 
+#include "core/filter/sensor_constants.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 
 namespace fusebench::run_files {
@@ -21,10 +22,12 @@ std::string state_table_header() {
   for (int i = 0; i < kWritten; ++i) {
     for (int j = i; j < kWritten; ++j) header += fmt::format(",P_{}_{}", i, j);
   }
+  for (const filter::SensorConstant& constant : filter::sensor_constants({}, {}))
+    header += fmt::format(",{0},sigma_{0}", constant.name);
   return header + "\n";
 }
 
-std::string state_table_row(const health::FrameReport& report) {
+std::string state_table_row(const health::FrameReport& report, const SensorTiming& timing) {
   const filter::FilterState& mean = report.estimate.mean;
   const Quaterniond& q = mean.T_world_imu.rotation;
   std::string row =
@@ -44,6 +47,8 @@ std::string state_table_row(const health::FrameReport& report) {
       fmt::format_to(std::back_inserter(row), ",{:.9g}", report.estimate.covariance(i, j));
     }
   }
+  for (const filter::SensorConstant& constant : filter::sensor_constants(report.estimate, timing))
+    fmt::format_to(std::back_inserter(row), ",{:.9g},{:.9g}", constant.value, constant.sigma);
   return row + "\n";
 }
 

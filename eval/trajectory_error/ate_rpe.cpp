@@ -22,6 +22,14 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+std::vector<trajectory::AssociatedPair> associate(const Trajectory& ground_truth,
+                                                  std::span<const std::int64_t> stamps_ns,
+                                                  const AteOptions& options) {
+  return trajectory::associate(trajectory_files::stamps_of(ground_truth), stamps_ns,
+                               trajectory_files::nanoseconds(options.max_difference_s),
+                               trajectory_files::nanoseconds(options.offset_s));
+}
+
 /// Index of the stamp nearest to `wanted` in a sorted, non-empty list; the earlier of two at the same
 /// distance.
 std::size_t nearest_stamp(std::span<const std::int64_t> stamps, std::int64_t wanted) {
@@ -151,29 +159,31 @@ std::array<double, 16> matrix_of(const SE3& transform) {
           r(2, 0), r(2, 1), r(2, 2), t.z(), 0,       0,       0,       1};
 }
 
+Result<std::vector<trajectory::AssociatedPair>> associated_poses(const Trajectory& ground_truth,
+                                                                 const Trajectory& estimate,
+                                                                 const AteOptions& options) {
+  std::vector<trajectory::AssociatedPair> pairs =
+      associate(ground_truth, trajectory_files::stamps_of(estimate), options);
+  if (!pairs.empty()) return pairs;
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format("no stamps of the estimate ({} poses) and the ground truth ({} poses) match within {} s",
+                  estimate.size(), ground_truth.size(), options.max_difference_s),
+      "do both use the same clock?");
+}
+
 Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth, const Trajectory& estimate,
                                             const AteOptions& options) {
-  const std::vector<std::int64_t> truth_ns = trajectory_files::stamps_of(ground_truth);
-  const std::vector<std::int64_t> estimate_ns = trajectory_files::stamps_of(estimate);
-  const std::int64_t limit = trajectory_files::nanoseconds(options.max_difference_s);
-  const std::int64_t offset = trajectory_files::nanoseconds(options.offset_s);
-  const std::vector<trajectory::AssociatedPair> pairs =
-      trajectory::associate(truth_ns, estimate_ns, limit, offset);
-
+  const auto associated = associated_poses(ground_truth, estimate, options);
+  if (!associated) return tl::unexpected(associated.error());
+  const std::vector<trajectory::AssociatedPair>& pairs = *associated;
   AteResult result;
   result.max_difference_s = options.max_difference_s;
   result.pairs = pairs.size();
   result.possible = options.expected_ns.empty()
                         ? estimate.size()
-                        : trajectory::associate(truth_ns, options.expected_ns, limit, offset).size();
+                        : associate(ground_truth, options.expected_ns, options).size();
   result.coverage = share(result.pairs, result.possible);
-  if (pairs.empty()) {
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("no stamps of the estimate ({} poses) and the ground truth ({} poses) match within {} s",
-                    estimate.size(), ground_truth.size(), options.max_difference_s),
-        "do both use the same clock?");
-  }
 
   std::vector<Vector3d> truth_positions;
   std::vector<Vector3d> estimate_positions;

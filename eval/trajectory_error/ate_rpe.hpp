@@ -13,6 +13,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
+#include "core/trajectory/association.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/motion_pairs.hpp"
 #include "eval/trajectory_error/streamed_statistics.hpp"
@@ -49,6 +50,11 @@ struct AteResult {
   std::vector<double> errors_m;  ///< in order of time
   metrics::Statistics stats;
 };
+
+/// The poses of both that belong together. Error data_corrupt: no stamps match.
+[[nodiscard]] Result<std::vector<trajectory::AssociatedPair>> associated_poses(const Trajectory& ground_truth,
+                                                                               const Trajectory& estimate,
+                                                                               const AteOptions& options);
 
 /// Errors data_corrupt: no matching stamps, or positions that cannot be aligned (see align_positions).
 [[nodiscard]] Result<AteResult> absolute_trajectory_error(const Trajectory& ground_truth,

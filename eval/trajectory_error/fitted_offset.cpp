@@ -8,8 +8,7 @@
 #include <cmath>
 
 #include "core/base/geometry.hpp"
-#include "core/trajectory/association.hpp"
-#include "eval/trajectory_files/stamps.hpp"
+#include "eval/trajectory_error/alignment.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -55,22 +54,24 @@ NormalEquations linearised(const std::vector<Pair>& pairs, const FittedOffset& f
 
 Result<FittedOffset> fitted_offset(const Trajectory& ground_truth, const Trajectory& estimate,
                                    const AteOptions& options, double max_sigma_m) {
-  const auto plain = absolute_trajectory_error(ground_truth, estimate, options);
-  if (!plain) return tl::unexpected(plain.error());
-  const auto associated =
-      trajectory::associate(trajectory_files::stamps_of(ground_truth), trajectory_files::stamps_of(estimate),
-                            trajectory_files::nanoseconds(options.max_difference_s),
-                            trajectory_files::nanoseconds(options.offset_s));
+  const auto associated = associated_poses(ground_truth, estimate, options);
+  if (!associated) return tl::unexpected(associated.error());
   std::vector<Pair> pairs;
-  for (const trajectory::AssociatedPair& pair : associated) {
+  std::vector<Vector3d> truth_m;
+  std::vector<Vector3d> estimate_m;
+  for (const trajectory::AssociatedPair& pair : *associated) {
     pairs.push_back(
         {ground_truth[pair.first].T_world_camera, estimate[pair.second].T_world_camera.translation});
+    truth_m.push_back(pairs.back().reference.translation);
+    estimate_m.push_back(pairs.back().estimate);
   }
-  const double duration_s = seconds_between(estimate[associated.front().second].timestamp_ns,
-                                            estimate[associated.back().second].timestamp_ns);
+  const auto without_offset = align_positions(truth_m, estimate_m, false);
+  if (!without_offset) return tl::unexpected(without_offset.error());
+  const double duration_s = seconds_between(estimate[associated->front().second].timestamp_ns,
+                                            estimate[associated->back().second].timestamp_ns);
   FittedOffset fit;
   fit.pairs = pairs.size();
-  fit.T_reference_estimate = plain->alignment.T_reference_estimate;
+  fit.T_reference_estimate = without_offset->rigid;
   // A weak pull towards no offset keeps directions that nothing tells from running away.
   Matrix9d pull = Matrix9d::Zero();
   pull.diagonal().tail<3>().setConstant(1e-9 * static_cast<double>(pairs.size()));

@@ -12,8 +12,6 @@ namespace fusebench::trajectory_error {
 
 namespace {
 
-constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
-
 /// A claimed pose and the true one at its instant.
 struct KnownPose {
   std::int64_t timestamp_ns = 0;
@@ -24,7 +22,8 @@ struct KnownPose {
 std::vector<KnownPose> known_poses(const Trajectory& ground_truth, const Trajectory& estimate) {
   std::vector<KnownPose> known;
   for (const StampedPose& pose : estimate) {
-    const auto truth = trajectory::interpolate_pose(ground_truth, pose.timestamp_ns, kMaxTruthGap_ns);
+    const auto truth =
+        trajectory::interpolate_pose(ground_truth, pose.timestamp_ns, trajectory::kMaxTruthGap_ns);
     if (truth) known.push_back({pose.timestamp_ns, pose.T_world_camera, *truth});
   }
   return known;

@@ -88,9 +88,9 @@ void make_recording(BenchScene& scene) {
     scene.T_world_camera = report->T_world_camera;
     scene.velocity = camera_velocity(*report, recording->rig.T_imu_camera);
     scene.sensed = std::move(*sensed);
-    compensate_motion(scene.sensed, scene.camera, scene.timing, scene.velocity, workers, scene.frame);
-    compensate_color(scene.sensed, scene.camera, scene.timing, scene.velocity, scene.frame.depth_m, workers,
-                     scene.frame.color);
+    compensate_motion(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity, workers, scene.frame);
+    compensate_color(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity, scene.frame.depth_m,
+                     workers, scene.frame.color);
     scene.ungated_depth_m = scene.frame.depth_m;
     gate_depth(scene.ungated_depth_m, scene.config.depth, scene.frame.depth_m);
     if (i < kRecordedViews)

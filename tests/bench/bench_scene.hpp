@@ -36,6 +36,10 @@ struct BenchScene {
   DepthImage ungated_depth_m;    ///< of `frame`, before that
   std::vector<FusedView> views;  ///< in the model; patches are cut from the last one
   tsdf::TsdfVolume model{config.tsdf};
+
+  [[nodiscard]] preprocessing::FrameTiming frame_timing() const {
+    return preprocessing::frame_timing(sensed, timing);
+  }
 };
 
 /// Made once. The room: 67 degrees of view at a width of 320 or 640 pixels, three near views, the last of

@@ -23,7 +23,7 @@ void motion_compensation(benchmark::State& state) {
   const Workers workers = testing::workers_of(state);
   RgbdFrame frame;
   const auto compensate = [&] {
-    compensate_motion(scene.sensed, scene.camera, scene.timing, scene.velocity, workers, frame);
+    compensate_motion(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity, workers, frame);
   };
   compensate();
   if (!testing::is_compensated(frame, scene)) return state.SkipWithError("not what the plain search finds");
@@ -41,8 +41,8 @@ void color_compensation(benchmark::State& state) {
   const Workers workers = testing::workers_of(state);
   ColorImage color;
   const auto compensate = [&] {
-    compensate_color(scene.sensed, scene.camera, scene.timing, scene.velocity, scene.ungated_depth_m, workers,
-                     color);
+    compensate_color(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity, scene.ungated_depth_m,
+                     workers, color);
   };
   compensate();
   if (!testing::is_color_compensated(color, scene.ungated_depth_m, scene))

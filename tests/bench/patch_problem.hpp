@@ -55,7 +55,7 @@ struct PatchProblem {
   /// The Gauss-Newton step from a pose, where it leads, and its tangents.
   struct Step {
     SE3 T_world_camera;
-    filter::MeasuredVector tangents;
+    filter::TangentVector tangents;
   };
   [[nodiscard]] static Step step_by(const filter::MeasurementQuadratic& at_pose, const SE3& T_world_camera) {
     filter::PoseQuadratic quadratic = at_pose.by_reference;
@@ -74,7 +74,7 @@ struct PatchProblem {
     prior.covariance.diagonal().setConstant(1e-4);
     // What the patches were cut from, and the model, are known to fractions of a millimetre: else the update
     // would move these instead, where colour and depth do not agree.
-    prior.covariance.diagonal().segment<filter::kMeasuredSize>(filter::kReferencePose).setConstant(1e-7);
+    prior.covariance.diagonal().segment<2 * filter::kPoseSize>(filter::kReferencePose).setConstant(1e-7);
     return prior;
   }
   /// A frame's update, from its patches on.
@@ -137,12 +137,12 @@ inline bool is_slope_of_cost(measurement::PatchMeasurement& measurement,
   constexpr double kSmall = 1e-4;  // rad, m: some hundredths of a pixel
   const auto cost_at = [&](const Vector6d& step) {
     const SE3 pose = pose_plus(T_world_camera, step);
-    filter::MeasuredVector tangents;
+    filter::TangentVector tangents;
     tangents << step, step;
     return measurement.trial_cost({pose, pose}, tangents, 1.0);
   };
   const double cost =
-      measurement.trial_cost({T_world_camera, T_world_camera}, filter::MeasuredVector::Zero(), 0.0);
+      measurement.trial_cost({T_world_camera, T_world_camera}, filter::TangentVector::Zero(), 0.0);
   if (!(std::abs(cost - parts.cost()) < 1e-3 * cost)) return false;
   const Vector6d gradient = parts.by_reference.gradient + parts.by_model.gradient;
   Vector6d slope;

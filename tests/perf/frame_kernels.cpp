@@ -29,7 +29,9 @@ void count_motion_compensation(KernelCounts& counts, const testing::BenchScene& 
   RgbdFrame frame;
   counts.count(
       "motion_compensation", "pixel",
-      [&] { compensate_motion(scene.sensed, scene.camera, scene.timing, scene.velocity, workers, frame); },
+      [&] {
+        compensate_motion(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity, workers, frame);
+      },
       [&] {
         check(testing::is_as_rendered(frame, scene), "the rolling shutter is undone");
         return frame.grey.data.size();
@@ -42,8 +44,8 @@ void count_color_compensation(KernelCounts& counts, const testing::BenchScene& s
   counts.count(
       "color_compensation", "pixel",
       [&] {
-        compensate_color(scene.sensed, scene.camera, scene.timing, scene.velocity, scene.ungated_depth_m,
-                         workers, color);
+        compensate_color(scene.sensed, scene.camera, scene.frame_timing(), scene.velocity,
+                         scene.ungated_depth_m, workers, color);
       },
       [&] {
         check(testing::is_color_compensated(color, scene.ungated_depth_m, scene),

@@ -54,7 +54,7 @@ const PinholeCamera kCamera{322, 241, 241.0, 239.0, 160.3, 119.8};  // neither s
 const SE3 kTWorldCamera{so3_exp({0.05, -0.08, 0.03}), {0.1, -0.1, -0.4}};
 
 RgbdFrame compensated(const RgbdFrame& frame, const Workers& workers) {
-  const SensorTiming timing{.color_readout_s = 0.026, .depth_readout_s = 0.021};
+  const FrameTiming timing{.color_readout_s = 0.026, .depth_readout_s = 0.021};
   RgbdFrame result;
   const CameraVelocity velocity{{-1.2, 1.5, 0.8}, {0.5, -0.4, 0.6}};
   compensate_motion(frame, kCamera, timing, velocity, workers, result);

@@ -19,12 +19,9 @@ struct Projection {
   Eigen::Matrix<double, 2, 6> jacobian;
 };
 inline Projection project_with_jacobian(const patches::PosedCamera& posed, const Vector3d& point_camera) {
-  // X_c = R_ci (R_wi^T (P - p_wi) - p_ic): turning the IMU by phi moves X_c by R_ci [X_i]x phi.
   Projection projection;
   projection.pixel_px = posed.camera.project(point_camera);
-  const Matrix2x3d by_point = posed.camera.projection_jacobian(point_camera);
-  projection.jacobian.leftCols<3>() = by_point * posed.R_camera_imu * hat(posed.to_imu(point_camera));
-  projection.jacobian.rightCols<3>() = -by_point * posed.R_camera_world;
+  projection.jacobian = posed.by_pose(posed.camera.projection_jacobian(point_camera), point_camera);
   return projection;
 }
 

@@ -12,6 +12,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
+#include "eval/cli/evaluation/loaded_sides.hpp"
 #include "eval/metric_reports/nees_report.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/text/text_file.hpp"
@@ -68,21 +69,15 @@ Result<void> write_files(const NeesOptions& options, const trajectory_error::Pos
 }
 
 Result<int> run(const NeesOptions& options) {
-  std::vector<std::string> warnings;
-  const auto reference =
-      trajectory_files::load_trajectory(options.reference, {}, trajectory::Duplicates::rare_last, warnings);
-  if (!reference) return tl::unexpected(reference.error());
-  const auto estimate =
-      trajectory_files::load_trajectory(options.estimate, {}, trajectory::Duplicates::rare_last, warnings);
-  if (!estimate) return tl::unexpected(estimate.error());
-  for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
-  if (!reference->has_stamps())
+  const auto sides = load_sides(options.reference, options.estimate);
+  if (!sides) return tl::unexpected(sides.error());
+  if (!sides->reference.has_stamps())
     return fail(ErrorCode::usage, "the reference has no stamps (kitti)", "use a TUM or EuRoC file");
   metric_reports::ConsistencyQuestion question;
-  question.files = {options.reference, reference->format, options.estimate, estimate->format};
+  question.files = {options.reference, sides->reference.format, options.estimate, sides->estimate.format};
   question.association = options.association;
   question.alignment.mode = alignment_named(options.align);
-  const auto consistency = trajectory_error::pose_consistency(reference->poses, *estimate,
+  const auto consistency = trajectory_error::pose_consistency(sides->reference.poses, sides->estimate,
                                                               question.association, question.alignment);
   if (!consistency) return tl::unexpected(consistency.error());
   if (auto written = write_files(options, *consistency); !written) return tl::unexpected(written.error());

@@ -4,15 +4,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "core/base/geometry.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
+#include "eval/cli/evaluation/loaded_sides.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/trajectory_error/silent_failures.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::cli::evaluation {
 
@@ -54,20 +53,13 @@ std::string to_json(const trajectory_error::SilentFailures& found) {
 }
 
 Result<int> run(const SilentOptions& options) {
-  std::vector<std::string> warnings;
-  const auto load = [&](const std::string& file) {
-    return trajectory_files::load_trajectory(file, {}, trajectory::Duplicates::rare_last, warnings);
-  };
-  const auto reference = load(options.reference);
-  if (!reference) return tl::unexpected(reference.error());
-  const auto estimate = load(options.estimate);
-  if (!estimate) return tl::unexpected(estimate.error());
-  for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
-  if (!reference->has_stamps() || !estimate->has_stamps())
+  const auto sides = load_sides(options.reference, options.estimate);
+  if (!sides) return tl::unexpected(sides.error());
+  if (!sides->have_stamps())
     return fail(ErrorCode::usage, "silent failures need stamps, which the format kitti does not have",
                 "use TUM or EuRoC files");
   const auto found = trajectory_error::silent_failures(
-      reference->poses, estimate->poses,
+      sides->reference.poses, sides->estimate.poses,
       {options.interval_s, options.translation_m, radians(options.rotation_deg)});
   if (!found) return tl::unexpected(found.error());
   console::print_output(options.json ? to_json(*found) : to_text(*found));

@@ -33,20 +33,14 @@ Result<Sides> load(const TrajectoryOptions& options, trajectory_error::Protocol 
     if (!parsed) return tl::unexpected(parsed.error());
     format = *parsed;
   }
-  std::vector<std::string> warnings;
   const trajectory::Duplicates usual = protocol == trajectory_error::Protocol::evo
                                            ? trajectory::Duplicates::rare_kept
                                            : trajectory::Duplicates::rare_last;
   const trajectory::Duplicates duplicates =
       options.duplicates.empty() ? usual : named(kDuplicates, options.duplicates);
-  auto reference = trajectory_files::load_trajectory(options.files[0], format, duplicates, warnings);
-  if (!reference) return tl::unexpected(reference.error());
   // evo's euroc: the reference is a data.csv, the estimate may be TUM text.
   const auto estimate_format = format == trajectory_files::TrajectoryFormat::euroc ? std::nullopt : format;
-  auto estimate = trajectory_files::load_trajectory(options.files[1], estimate_format, duplicates, warnings);
-  if (!estimate) return tl::unexpected(estimate.error());
-  for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
-  return Sides{std::move(*reference), std::move(*estimate)};
+  return load_sides(options.files[0], options.files[1], {format, estimate_format, duplicates});
 }
 
 std::string errors_text(const trajectory_error::ErrorSeries& series) {

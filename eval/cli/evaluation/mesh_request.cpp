@@ -34,20 +34,14 @@ Result<mesh_error::MeshSampling> sampling_of(const MeshVerbOptions& options) {
 
 /// What moves the reconstruction so that its cameras come to the true ones.
 Result<SE3> alignment_of_trajectories(const std::vector<std::filesystem::path>& files) {
-  std::vector<std::string> warnings;
-  const auto reference =
-      trajectory_files::load_trajectory(files[0], std::nullopt, trajectory::Duplicates::rare_last, warnings);
-  if (!reference) return tl::unexpected(reference.error());
-  const auto estimate =
-      trajectory_files::load_trajectory(files[1], std::nullopt, trajectory::Duplicates::rare_last, warnings);
-  if (!estimate) return tl::unexpected(estimate.error());
-  for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
-  const bool stamps = reference->has_stamps() && estimate->has_stamps();
+  const auto sides = load_sides(files[0], files[1]);
+  if (!sides) return tl::unexpected(sides.error());
   constexpr double kMaxGap_s = 0.1;
-  const auto pair = trajectory_files::pair_up(
-      reference->poses, estimate->poses,
-      {stamps ? trajectory_files::AssociationRule::interpolated : trajectory_files::AssociationRule::index,
-       kMaxGap_s});
+  const auto pair =
+      trajectory_files::pair_up(sides->reference.poses, sides->estimate.poses,
+                                {sides->have_stamps() ? trajectory_files::AssociationRule::interpolated
+                                                      : trajectory_files::AssociationRule::index,
+                                 kMaxGap_s});
   if (!pair) return tl::unexpected(pair.error());
   std::vector<SE3> T_truth_camera;
   std::vector<SE3> T_estimate_camera;

@@ -11,6 +11,7 @@
 
 #include "core/base/error.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/cli/evaluation/loaded_sides.hpp"
 #include "eval/trajectory_error/trajectory_evaluation.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
@@ -82,12 +83,6 @@ T named(const std::array<std::pair<const char*, T>, N>& names, const std::string
 /// errors of read_stamps() for --images.
 [[nodiscard]] Result<trajectory_error::TrajectoryRequest> request_of(
     const TrajectoryOptions& options, trajectory_error::TrajectoryMetric metric);
-
-/// The two files.
-struct Sides {
-  trajectory_files::LoadedTrajectory reference;
-  trajectory_files::LoadedTrajectory estimate;
-};
 
 /// Poses without stamps are associated by their index, whatever the protocol does otherwise. Error usage if
 /// that is not possible.

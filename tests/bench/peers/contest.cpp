@@ -56,11 +56,12 @@ Result<std::vector<PlannedFrame>> plan(const Recording& recording, const Config&
 RgbdFrame fusible(const RgbdFrame& frame, const Recording& recording, const Config& config,
                   const CameraVelocity& velocity) {
   RgbdFrame result = frame;
-  if (config.terms.motion_compensation && needs_compensation(frame, recording.rig.timing)) {
+  if (config.terms.motion_compensation && !frame_timing(frame, recording.rig.timing).is_one_instant()) {
     const Workers workers(1);
     const SensorRig& rig = recording.rig;
-    compensate_motion(frame, rig.camera, rig.timing, velocity, workers, result);
-    compensate_color(frame, rig.camera, rig.timing, velocity, result.depth_m, workers, result.color);
+    compensate_motion(frame, rig.camera, frame_timing(frame, rig.timing), velocity, workers, result);
+    compensate_color(frame, rig.camera, frame_timing(frame, rig.timing), velocity, result.depth_m, workers,
+                     result.color);
   }
   result.depth_m = testing::gated_depth(result.depth_m, config.depth);
   return result;

@@ -50,7 +50,7 @@ TEST(ImageAlignment, TheGradientIsThatOfTheCost) {
   const auto cost = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
     const SE3 moved = pose_plus(T_world_imu, e);
     return Eigen::VectorXd::Constant(
-        1, measurement.trial_cost({moved, moved}, filter::MeasuredVector::Zero(), 0.0));
+        1, measurement.trial_cost({moved, moved}, filter::TangentVector::Zero(), 0.0));
   };
   const Eigen::MatrixXd numeric = testing::numeric_jacobian(cost, 6, 1e-7);
   EXPECT_LT(testing::relative_difference(at.by_reference.gradient.transpose(), numeric), 2e-3);
@@ -70,7 +70,7 @@ TEST(ImageAlignment, TheReferenceHasAPointForEachPixelWithDepth) {
 TEST(ImageAlignment, ItCanBeSwitchedOff) {
   Config config;
   config.alignment.coarsest_level = 0;
-  EXPECT_EQ(alignment_levels(testing::small_camera(), config.alignment), 0);
+  EXPECT_EQ(pyramid_levels(testing::small_camera(), config), config.patches.levels);
   const TwoFrames frames(SE3{}, config);
   EXPECT_TRUE(frames.reference.empty());
 }

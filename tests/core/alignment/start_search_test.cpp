@@ -34,7 +34,7 @@ struct Search {
     frame = room.render(rig.camera, T_world_camera, 0);
   }
 
-  [[nodiscard]] int levels() const { return alignment_levels(rig.camera, config.alignment); }
+  [[nodiscard]] int levels() const { return pyramid_levels(rig.camera, config); }
 
   FoundStart find(const filter::GaussianState& prior, bool thorough = false) {
     const std::vector<GreyImage> pyramid = build_pyramid(frame.grey, levels());

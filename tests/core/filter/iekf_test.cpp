@@ -52,7 +52,7 @@ class PositionMeasurement final : public PoseMeasurement {
     q.cost = 0.5 * information_ * error.squaredNorm();
     return {{}, q};
   }
-  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+  double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
     return 0.5 * information_ * (poses.T_world_imu_by_model.translation - z_).squaredNorm();
   }
   void accept() override {}
@@ -71,8 +71,9 @@ class StagedMeasurement final : public PoseMeasurement {
     linearised.push_back(stage);
     return one_.linearise(poses, stage, gate);
   }
-  double trial_cost(const PoseHypothesis& poses, const MeasuredVector& step, double fraction) override {
-    return one_.trial_cost(poses, step, fraction);
+  double trial_cost(const PoseHypothesis& poses, const TangentVector& step, double fraction) override {
+    // Rounding must not refuse the last steps, which change nothing.
+    return one_.trial_cost(poses, step, fraction) - 1e-9;
   }
   void accept() override { ++accepted; }
 
@@ -126,7 +127,7 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
   const StateMatrix expected = transport * in_chart * transport.transpose();
 
   MeasuredVector far_start;
-  far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300;
+  far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300, 200, -100, 400;
   for (const MeasuredVector& start : {MeasuredVector(MeasuredVector::Zero()), far_start}) {
     PositionMeasurement measurement(z, sigma);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
@@ -134,6 +135,83 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
     EXPECT_LT((minus(result.posterior.mean, prior.mean) - delta).norm(), 1e-9);
     EXPECT_LT((result.posterior.covariance - expected).norm() / expected.norm(), 1e-9);
   }
+}
+
+/// A linear measurement of the pose by the model, to which errors of the timing add.
+class TimedMeasurement final : public PoseMeasurement {
+ public:
+  TimedMeasurement(Vector3d z, double sigma, const Matrix3d& by_timing)
+      : z_(std::move(z)), information_(1.0 / (sigma * sigma)), by_timing_(by_timing) {}
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
+    const Vector3d error = poses.T_world_imu_by_model.translation - z_;
+    MeasurementQuadratic q;
+    q.by_model.information.bottomRightCorner<3, 3>().diagonal().setConstant(information_);
+    q.by_model.gradient.tail<3>() = information_ * error;
+    q.by_model.cost = 0.5 * information_ * error.squaredNorm();
+    q.timing.with_poses.bottomRows<3>() = information_ * by_timing_;
+    q.timing.information = information_ * by_timing_.transpose() * by_timing_;
+    q.timing.gradient = information_ * by_timing_.transpose() * error;
+    return q;
+  }
+  double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
+    return 0.5 * information_ * (poses.T_world_imu_by_model.translation - z_).squaredNorm();
+  }
+  void accept() override {}
+
+ private:
+  Vector3d z_;
+  double information_;
+  Matrix3d by_timing_;
+};
+
+/// z = p + by_timing * t + noise, by the textbook.
+struct TimedUpdate {
+  Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
+  Eigen::Matrix<double, kStateSize, 3> K;
+  StateVector delta;
+
+  TimedUpdate(const GaussianState& prior, const Vector3d& z, double sigma, const Matrix3d& by_timing) {
+    H.block<3, 3>(0, kPosition).setIdentity();
+    H.block<3, 3>(0, kColorReadout) = by_timing;
+    const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
+    K = prior.covariance * H.transpose() * S.inverse();
+    delta = K * (z - prior.mean.T_world_imu.translation);
+  }
+};
+
+const Matrix3d kByTiming = (Matrix3d() << 0.8, -0.3, 0.1, 0.2, 0.5, -0.4, -0.1, 0.6, 0.9).finished();
+
+TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndTiming) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const Vector3d z(0.13, -0.68, 0.47);
+  const TimedUpdate expected(prior, z, 0.02, kByTiming);
+  TimedMeasurement measurement(z, 0.02, kByTiming);
+  const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT((minus(result.posterior.mean, prior.mean) - expected.delta).norm(), 1e-9);
+  const StateMatrix transport = chart_transport(prior.mean, expected.delta);
+  const StateMatrix covariance = transport * (StateMatrix::Identity() - expected.K * expected.H) *
+                                 prior.covariance * transport.transpose();
+  EXPECT_LT((result.posterior.covariance - covariance).norm() / covariance.norm(), 1e-9);
+}
+
+TEST(Iekf, ConsideredConstantsStayAndAreNotForgotten) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const Vector3d z(0.13, -0.68, 0.47);
+  TimedUpdate schmidt(prior, z, 0.02, kByTiming);
+  // Schmidt's filter: their rows of the gain are zero, and the covariance is Joseph's for that gain.
+  schmidt.K.middleRows<kSensorSize>(kImuTimeOffset).setZero();
+  schmidt.delta.segment<kSensorSize>(kImuTimeOffset).setZero();
+  TimedMeasurement measurement(z, 0.02, kByTiming);
+  const IekfResult result =
+      iekf_update(prior, measurement, IekfConfig{}, MeasuredVector::Zero(), SensorConstants::considered);
+  EXPECT_LT((minus(result.posterior.mean, prior.mean) - schmidt.delta).norm(), 1e-9);
+  const StateMatrix rest = StateMatrix::Identity() - schmidt.K * schmidt.H;
+  const StateMatrix joseph =
+      rest * prior.covariance * rest.transpose() + 0.02 * 0.02 * schmidt.K * schmidt.K.transpose();
+  const StateMatrix transport = chart_transport(prior.mean, schmidt.delta);
+  const StateMatrix covariance = transport * joseph * transport.transpose();
+  EXPECT_LT((result.posterior.covariance - covariance).norm() / covariance.norm(), 1e-9);
 }
 
 TEST(Iekf, WithoutInformationKeepsThePriorToTheLastBit) {
@@ -193,7 +271,7 @@ class PlaneMeasurement final : public PoseMeasurement {
     }
     return {{}, q};
   }
-  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+  double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
     return linearise(poses, 0, false).cost();
   }
   void accept() override {}

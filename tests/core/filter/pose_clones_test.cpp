@@ -56,7 +56,7 @@ TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
   const auto combinations = measured_combinations(state.mean);
   const MeasuredMatrix measured = combinations * state.covariance * combinations.transpose();
   EXPECT_LT((measured.topLeftCorner<kPoseSize, kPoseSize>()).norm(), 1e-15);
-  EXPECT_NEAR((measured.bottomRightCorner<kPoseSize, kPoseSize>()).trace(), 6e-4, 1e-12);
+  EXPECT_NEAR((measured.block<kPoseSize, kPoseSize>(kPoseSize, kPoseSize)).trace(), 6e-4, 1e-12);
 }
 
 /// Sees the motion since the reference frame, or the place against the model, with a given error.
@@ -71,7 +71,7 @@ class KnownMeasurement final : public PoseMeasurement {
     return {quadratic(poses.T_world_imu_by_reference, by_reference_, reference_),
             quadratic(poses.T_world_imu_by_model, by_model_, model_)};
   }
-  double trial_cost(const PoseHypothesis& poses, const MeasuredVector&, double) override {
+  double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
     return linearise(poses, 0, false).cost();
   }
   void accept() override {}

@@ -90,7 +90,7 @@ TEST(PatchMeasurement, NothingOfAnEarlierFrameShows) {
     // Something else before: another frame, a step, another brightness.
     kept.observe(scene.aside.observed(), rigid, {2.0, 2.0});
     static_cast<void>(kept.linearise({}, 0, false));
-    static_cast<void>(kept.trial_cost({}, MeasuredVector::Constant(1e-3), 1.0));
+    static_cast<void>(kept.trial_cost({}, TangentVector::Constant(1e-3), 1.0));
     kept.accept();
 
     PatchMeasurement fresh(scene.config, scene.rig, scene.workers);

@@ -22,10 +22,9 @@ using testing::relative_difference;
 const Vector3d kNone = Vector3d::Zero();
 
 PreintegratedImu integrate(std::span<const ImuSample> samples, double begin_s, double end_s,
-                           const Vector3d& bg = kNone, const Vector3d& ba = kNone,
-                           const ImuNoise& noise = {}) {
+                           const InertialErrors& errors = {}, const ImuNoise& noise = {}) {
   const auto ns = [](double s) { return static_cast<std::int64_t>(std::llround(1e9 * s)); };
-  const auto result = preintegrate(samples, ns(begin_s), ns(end_s), bg, ba, noise);
+  const auto result = preintegrate(samples, ns(begin_s), ns(end_s), errors, noise);
   EXPECT_TRUE(result.has_value());
   return result.value_or(PreintegratedImu{});
 }
@@ -78,26 +77,47 @@ TEST(ImuPreintegration, IsAdditiveOverASplit) {
       1e-12);
 }
 
-TEST(ImuPreintegration, BiasJacobiansEqualNumericOnes) {
+InertialErrors some_errors() {
+  return {
+      {0.02, -0.01, 0.03}, {0.1, 0.2, -0.1}, {0.02, -0.03, 0.01}, {0.02, -0.01, 0.03}, {-0.02, 0.01, 0.02}};
+}
+
+TEST(ImuPreintegration, ErrorJacobiansEqualNumericOnes) {
   const HelixMotion motion;
   const auto samples = motion.samples(0, 1, 200);
-  const Vector3d bg(0.02, -0.01, 0.03);
-  const Vector3d ba(0.1, 0.2, -0.1);
-  const PreintegratedImu at = integrate(samples, 0.2, 0.6, bg, ba);
+  const InertialErrors errors = some_errors();
+  const PreintegratedImu at = integrate(samples, 0.2, 0.6, errors);
   const auto f = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
-    const PreintegratedImu moved = integrate(samples, 0.2, 0.6, bg + e.head<3>(), ba + e.tail<3>());
-    Eigen::VectorXd result(9);
+    const InertialErrors more{errors.gyroscope_bias_radps + e.segment<3>(0),
+                              errors.accelerometer_bias_mps2 + e.segment<3>(3),
+                              errors.rotation_rad + e.segment<3>(6), errors.gyroscope_scale + e.segment<3>(9),
+                              errors.accelerometer_scale + e.segment<3>(12)};
+    const PreintegratedImu moved = integrate(samples, 0.2, 0.6, more);
+    Eigen::VectorXd result(12);
     result << so3_log(at.delta_rotation.conjugate() * moved.delta_rotation), moved.delta_velocity_mps,
-        moved.delta_position_m;
+        moved.delta_position_m, moved.angular_velocity_end_radps;
     return result;
   };
-  Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(9, 6);
-  analytic.block<3, 3>(0, 0) = at.rotation_by_gyroscope_bias;
-  analytic.block<3, 3>(3, 0) = at.velocity_by_gyroscope_bias;
-  analytic.block<3, 3>(3, 3) = at.velocity_by_accelerometer_bias;
-  analytic.block<3, 3>(6, 0) = at.position_by_gyroscope_bias;
-  analytic.block<3, 3>(6, 3) = at.position_by_accelerometer_bias;
-  EXPECT_LT(relative_difference(analytic, numeric_jacobian(f, 6)), 1e-8);
+  Eigen::MatrixXd analytic(12, kInertialErrors);
+  analytic << at.rotation_by_errors, at.velocity_by_errors, at.position_by_errors,
+      at.angular_velocity_end_by_errors;
+  EXPECT_LT(relative_difference(analytic, numeric_jacobian(f, kInertialErrors)), 1e-7);
+}
+
+TEST(ImuPreintegration, CorrectionUndoesTheErrorsOfASample) {
+  const InertialErrors errors = some_errors();
+  const Vector3d rate(0.4, -1.1, 0.7);
+  const Vector3d force(1.5, -9.2, 2.0);
+  const auto measured = [&](const Vector3d& value, const Vector3d& bias, const Vector3d& scale) -> Vector3d {
+    const Vector3d in_its_axes = so3_exp(errors.rotation_rad).conjugate() * (value + bias);
+    return (1.0 + scale.array()) * in_its_axes.array();
+  };
+  const ImuSample sample =
+      corrected({0, measured(rate, errors.gyroscope_bias_radps, errors.gyroscope_scale),
+                 measured(force, errors.accelerometer_bias_mps2, errors.accelerometer_scale)},
+                errors);
+  EXPECT_LT((sample.angular_velocity_radps - rate).norm(), 1e-14);
+  EXPECT_LT((sample.specific_force_mps2 - force).norm(), 1e-14);
 }
 
 TEST(ImuPreintegration, CovarianceEqualsMonteCarlo) {
@@ -105,7 +125,7 @@ TEST(ImuPreintegration, CovarianceEqualsMonteCarlo) {
   const double rate_hz = 200;
   const ImuNoise noise{.gyroscope_radps_sqrthz = 0.02, .accelerometer_mps2_sqrthz = 0.3};
   const auto clean = motion.samples(0, 0.4, rate_hz);
-  const PreintegratedImu mean = integrate(clean, 0.1, 0.3, kNone, kNone, noise);
+  const PreintegratedImu mean = integrate(clean, 0.1, 0.3, {}, noise);
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   Matrix9d sampled = Matrix9d::Zero();
@@ -132,13 +152,13 @@ TEST(ImuPreintegration, CovarianceEqualsMonteCarlo) {
 TEST(ImuPreintegration, RefusesFramesThatTheImuDoesNotCover) {
   const HelixMotion motion;
   const auto samples = motion.samples(1, 2, 200);
-  const auto late = preintegrate(samples, 1'900'000'000, 2'200'000'000, kNone, kNone, {});
+  const auto late = preintegrate(samples, 1'900'000'000, 2'200'000'000, {}, {});
   ASSERT_FALSE(late.has_value());
   EXPECT_EQ(late.error().code, ErrorCode::data_corrupt);
   EXPECT_NE(late.error().message.find("2.200000 s"), std::string::npos);
-  EXPECT_FALSE(preintegrate(samples, 800'000'000, 1'200'000'000, kNone, kNone, {}).has_value());
-  EXPECT_FALSE(preintegrate({}, 0, 1, kNone, kNone, {}).has_value());
-  EXPECT_TRUE(preintegrate(samples, 1'900'000'000, 2'040'000'000, kNone, kNone, {}).has_value());
+  EXPECT_FALSE(preintegrate(samples, 800'000'000, 1'200'000'000, {}, {}).has_value());
+  EXPECT_FALSE(preintegrate({}, 0, 1, {}, {}).has_value());
+  EXPECT_TRUE(preintegrate(samples, 1'900'000'000, 2'040'000'000, {}, {}).has_value());
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ std::vector<ImuSample> wobble() {
 GaussianState predict_imu(const GaussianState& state, std::span<const ImuSample> samples,
                           const ImuNoise& noise = {}) {
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * state.mean.imu_time_offset_s));
-  const auto imu = preintegrate(samples, kBeginNs + offset_ns, kEndNs + offset_ns,
-                                state.mean.gyroscope_bias_radps, state.mean.accelerometer_bias_mps2, noise);
+  const auto imu =
+      preintegrate(samples, kBeginNs + offset_ns, kEndNs + offset_ns, inertial_errors(state.mean), noise);
   return predict_by_imu(state, *imu, noise, MotionConfig{}).state;
 }
 
@@ -73,8 +73,7 @@ Eigen::MatrixXd numeric_transition(const GaussianState& state, const Predict& pr
 TEST(MotionPrior, ImuTransitionEqualsNumericJacobian) {
   const GaussianState state = some_state();
   const auto samples = wobble();
-  const auto imu = preintegrate(samples, kBeginNs, kEndNs, state.mean.gyroscope_bias_radps,
-                                state.mean.accelerometer_bias_mps2, {});
+  const auto imu = preintegrate(samples, kBeginNs, kEndNs, inertial_errors(state.mean), {});
   StateMatrix F = predict_by_imu(state, *imu, {}, {}).transition;
   Eigen::MatrixXd numeric =
       numeric_transition(state, [&](const GaussianState& s) { return predict_imu(s, samples); });

@@ -51,8 +51,9 @@ RgbdFrame compensated(const RgbdFrame& frame, const CameraVelocity& velocity, co
                       int threads = 2) {
   RgbdFrame result;
   const Workers workers(threads);
-  compensate_motion(frame, small_camera(), timing, velocity, workers, result);
-  compensate_color(frame, small_camera(), timing, velocity, result.depth_m, workers, result.color);
+  compensate_motion(frame, small_camera(), frame_timing(frame, timing), velocity, workers, result);
+  compensate_color(frame, small_camera(), frame_timing(frame, timing), velocity, result.depth_m, workers,
+                   result.color);
   return result;
 }
 
@@ -229,8 +230,9 @@ TEST(MotionCompensation, AnySizeAndVelocityStaysInsideTheImage) {
         const CameraVelocity velocity{turn_radps, move_mps};
         const Workers workers(1);
         RgbdFrame result;
-        compensate_motion(frame, camera, kTiming, velocity, workers, result);
-        compensate_color(frame, camera, kTiming, velocity, result.depth_m, workers, result.color);
+        compensate_motion(frame, camera, frame_timing(frame, kTiming), velocity, workers, result);
+        compensate_color(frame, camera, frame_timing(frame, kTiming), velocity, result.depth_m, workers,
+                         result.color);
         ASSERT_EQ(result.grey.data.size(), frame.grey.data.size());
         ASSERT_EQ(result.color.data.size(), frame.color.data.size());
         for (const float depth_m : result.depth_m.data) ASSERT_TRUE(depth_m >= 0.0F) << width;
@@ -259,12 +261,12 @@ TEST(MotionCompensation, IsNeededIfAnythingIsReadAtAnotherTime) {
   RgbdFrame together;
   RgbdFrame apart;
   apart.depth_offset_ns = -1;
-  EXPECT_FALSE(needs_compensation(together, {}));
-  EXPECT_TRUE(needs_compensation(together, {.color_readout_s = 0.02}));
-  EXPECT_TRUE(needs_compensation(together, {.depth_readout_s = 0.02}));
-  EXPECT_TRUE(needs_compensation(apart, {}));
+  EXPECT_TRUE(frame_timing(together, {}).is_one_instant());
+  EXPECT_FALSE(frame_timing(together, {.color_readout_s = 0.02}).is_one_instant());
+  EXPECT_FALSE(frame_timing(together, {.depth_readout_s = 0.02}).is_one_instant());
+  EXPECT_FALSE(frame_timing(apart, {}).is_one_instant());
   // Readers have applied the delay to the offset, so by itself it says nothing.
-  EXPECT_FALSE(needs_compensation(together, {.depth_delay_s = 0.02}));
+  EXPECT_TRUE(frame_timing(together, {.depth_delay_s = 0.02}).is_one_instant());
 }
 
 /// Largest angle between an estimated orientation and the truth.

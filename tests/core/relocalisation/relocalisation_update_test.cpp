@@ -108,7 +108,7 @@ TEST(Resumption, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
   // Against the model that error comes on top.
   const Matrix6d carried = pose_transport(kPredicted, kReference);
   const Matrix6d both = place.covariance + carried * place.reference_covariance * carried.transpose();
-  const Matrix6d by_model = measured.bottomRightCorner<kPoseSize, kPoseSize>();
+  const Matrix6d by_model = measured.block<kPoseSize, kPoseSize>(kPoseSize, kPoseSize);
   EXPECT_GT(by_model.trace(), 0.9 * both.trace());
   EXPECT_LT(by_model.trace(), both.trace());
   const Eigen::SelfAdjointEigenSolver<StateMatrix> eigen(state.covariance);

@@ -123,7 +123,7 @@ TEST(InertialResidual, VanishesOnTheHelixAndFollowsBiasAndOffset) {
   const std::int64_t begin_ns = 500'000'000;
   const std::int64_t end_ns = 533'333'333;
   // Integrated with neither the biases nor the offset: the first order has to bring them in.
-  const auto imu = preintegrate(samples, begin_ns, end_ns, Vector3d::Zero(), Vector3d::Zero(), kNoise);
+  const auto imu = preintegrate(samples, begin_ns, end_ns, {}, kNoise);
   ASSERT_TRUE(imu.has_value());
   const InertialResidual residual{*imu, Vector3d::Zero(), Vector3d::Zero(), 0, Matrix9d::Identity()};
   const double begin_s = 1e-9 * begin_ns;

@@ -173,6 +173,17 @@ TEST(RigCalibration, ErrorsNameThePlace) {
             "c.toml:6: [imu] needs the key gyroscope_noise_radps_sqrthz");
 }
 
+TEST(RigCalibration, ATimingThatIsNotSaidIsUncertain) {
+  const auto timing = [](const std::string& keys) {
+    const auto calibration = read(with_color(keys));
+    EXPECT_TRUE(calibration.has_value());
+    return calibration->color.timing;
+  };
+  EXPECT_EQ(timing("").color_readout_sigma_s, kUnknownReadoutSigma_s);
+  EXPECT_EQ(timing("readout_s = 0.02\n").color_readout_sigma_s, 0);
+  EXPECT_EQ(timing("readout_s = 0.02\nreadout_sigma_s = 0.003\n").color_readout_sigma_s, 0.003);
+}
+
 TEST(RigCalibration, RefusesAnImuWithoutNoise) {
   EXPECT_EQ(refusal(with_color("[imu]\nT_imu_color = " + std::string(kIdentity) +
                                "gyroscope_noise_radps_sqrthz = 0\n")),

@@ -202,7 +202,7 @@ TEST_F(RunTest, StatesHaveARowAFrame) {
   std::vector<std::string_view> fields;
   for (std::string line; std::getline(table, line);) {
     split_fields(line, fields);
-    ASSERT_EQ(fields.size(), 2U + 19U + 120U);
+    ASSERT_EQ(fields.size(), 2U + 19U + 120U + 2U * filter::kSensorSize);
     if (rows.empty() && fields[0] == "capture_timestamp") continue;
     rows.emplace_back();
     for (std::size_t i = 2; i < fields.size(); ++i) rows.back().push_back(parse_number(fields[i]).value());

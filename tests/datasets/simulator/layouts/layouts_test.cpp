@@ -171,8 +171,8 @@ TEST_P(Layouts, ImuFromTheTrueStateFollowsTheTruth) {
   const std::vector<StateRow> states = read_states(path() / "state_groundtruth.csv");
   const StateRow& a = states[2];
   const StateRow& b = states[states.size() - 3];
-  const auto sum = preintegrate(recording.imu, a.timestamp_ns, b.timestamp_ns, a.gyroscope_bias_radps,
-                                a.accelerometer_bias_mps2, recording.rig.imu_noise);
+  const auto sum = preintegrate(recording.imu, a.timestamp_ns, b.timestamp_ns,
+                                {a.gyroscope_bias_radps, a.accelerometer_bias_mps2}, recording.rig.imu_noise);
   ASSERT_TRUE(sum);
   const double t = sum->duration_s;
   EXPECT_GT(t, 0.5);

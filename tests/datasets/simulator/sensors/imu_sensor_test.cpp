@@ -54,7 +54,7 @@ Drift drift(const SimulatedImu& imu, std::int64_t begin_ns, std::int64_t end_ns,
   const ImuState& a = state_at(begin_ns);
   const ImuState& b = state_at(end_ns);
   const auto sum =
-      preintegrate(imu.samples, begin_ns, end_ns, a.bias.gyroscope_radps, a.bias.accelerometer_mps2, noise);
+      preintegrate(imu.samples, begin_ns, end_ns, {a.bias.gyroscope_radps, a.bias.accelerometer_mps2}, noise);
   EXPECT_TRUE(sum);
   const double t = sum->duration_s;
   const Quaterniond& R = a.motion.T_world_body.rotation;
