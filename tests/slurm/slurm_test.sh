@@ -31,10 +31,27 @@ complain() {
   failures=$((failures + 1))
   printf 'FAILED: %s\n' "$1" >&2
   if [[ -s stderr ]]; then tail -n 8 stderr | sed 's/^/    stderr: /' >&2; fi
+  show_cluster
 }
 
-environment=$("$here/cluster.sh" up "$work/cluster") || exit $?
-eval "$environment"
+# Why jobs wait, and why nodes take none: states with reasons, and the ends of the daemons' logs.
+show_cluster() {
+  {
+    timeout 5 sinfo -N -o '%N %T %E'
+    timeout 5 squeue -r -o '%i %T %N %r' | head -n 30
+    tail -n 15 cluster/log/*
+  } 2>&1 | sed 's/^/    cluster: /' >&2
+}
+
+# A fresh cluster for each loss, so that one that does not recover cannot spoil the next.
+fresh_cluster() {
+  local environment status
+  environment=$("$here/cluster.sh" up "$work/cluster")
+  status=$?
+  if ((status == 0)); then eval "$environment"; fi
+  return "$status"
+}
+fresh_cluster || exit $?
 
 cat >sweep.toml <<'TEXT'
 name = "cluster"
@@ -84,6 +101,7 @@ table node node.csv
 cmp -s local.csv node.csv || complain "with a killed node: not the table of the local sweep"
 "$here/cluster.sh" join-node "$work/cluster" 2 || complain "join-node"
 
+fresh_cluster || complain "a second cluster"
 # The controller is killed and comes back. The engine that only submitted is long gone.
 on_slurm --out controller --submit >stdout 2>stderr || complain "--submit: exit code $?"
 until_finished controller 3
@@ -94,6 +112,7 @@ on_slurm --out controller >stdout 2>stderr || complain "with a killed controller
 table controller controller.csv
 cmp -s local.csv controller.csv || complain "with a killed controller: not the table of the local sweep"
 
+fresh_cluster || complain "a third cluster"
 # A node that is cut off goes on writing while its runs are made again elsewhere.
 on_slurm --out cut >stdout 2>stderr &
 engine=$!
