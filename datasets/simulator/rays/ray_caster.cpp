@@ -3,8 +3,12 @@
 #include <embree3/rtcore.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "core/base/error.hpp"
 
@@ -15,15 +19,50 @@ namespace {
 constexpr std::size_t kLanes = 8;
 using Lanes = Eigen::Array<float, kLanes, 1>;
 
-/// The instruction set affects the last bits, so it is fixed rather than taken from the machine. "threads" is
-/// not set: Embree would limit oneTBB for the whole program for as long as the device lives.
+/// The instruction set decides which rays hit exactly on an edge, so it is fixed rather than taken from the
+/// machine. "threads" is not set: Embree would limit oneTBB for the whole program for as long as the device
+/// lives.
 constexpr const char* kDeviceConfiguration = "isa=avx2,start_threads=0,set_affinity=0";
+
+struct Triangle {
+  Eigen::Vector3d corner, to_second, to_third;
+  double twice_area;
+};
+
+std::vector<Triangle> triangles_of(const Mesh& mesh) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& indices : mesh.triangles) {
+    const auto vertex = [&](std::size_t k) { return mesh.vertices[indices[k]].cast<double>().eval(); };
+    const Eigen::Vector3d to_second = vertex(1) - vertex(0), to_third = vertex(2) - vertex(0);
+    triangles.push_back({vertex(0), to_second, to_third, to_second.cross(to_third).norm()});
+  }
+  return triangles;
+}
+
+/// Where a ray meets the plane of a triangle that it is known to hit (Moeller and Trumbore 1997). Embree's
+/// own numbers come from the CPU's approximate reciprocals, which differ from vendor to vendor in their last
+/// bits.
+RayHit hit_on(const Triangle& triangle, std::uint32_t index, const Eigen::Vector3d& origin,
+              const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d across = direction.cross(triangle.to_third);
+  const double volume = triangle.to_second.dot(across);
+  if (volume == 0) return {};  // the ray lies in the plane
+  const Eigen::Vector3d from_corner = origin - triangle.corner;
+  const Eigen::Vector3d lift = from_corner.cross(triangle.to_second);
+  const double u = std::clamp(from_corner.dot(across) / volume, 0.0, 1.0);
+  const double v = std::clamp(direction.dot(lift) / volume, 0.0, 1 - u);
+  const double cosine = std::abs(volume) / (direction.norm() * triangle.twice_area);
+  return {static_cast<float>(triangle.to_third.dot(lift) / volume), static_cast<float>(u),
+          static_cast<float>(v), static_cast<float>(std::min(1.0, cosine)), index};
+}
 
 }  // namespace
 
 struct RayCaster::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  std::vector<Triangle> triangles;
 
   State() = default;
   State(const State&) = delete;
@@ -35,6 +74,7 @@ struct RayCaster::State {
 };
 
 RayCaster::RayCaster(const Mesh& mesh) : state_(std::make_unique<State>()) {
+  state_->triangles = triangles_of(mesh);
   state_->device = rtcNewDevice(kDeviceConfiguration);
   check(state_->device != nullptr, "Embree needs a CPU with AVX2, as this program does");
   state_->scene = rtcNewScene(state_->device);
@@ -94,17 +134,13 @@ void RayCaster::cast(const Eigen::Vector3f& origin, std::span<const float> x, st
     }
     lanes(packet.ray.tfar) = std::numeric_limits<float>::infinity();
     rtcIntersect8(valid.data(), state_->scene, &context, &packet);
-    const auto dx = lanes(packet.ray.dir_x), dy = lanes(packet.ray.dir_y), dz = lanes(packet.ray.dir_z);
-    const auto nx = lanes(packet.hit.Ng_x), ny = lanes(packet.hit.Ng_y), nz = lanes(packet.hit.Ng_z);
-    const Lanes squares = (dx * dx + dy * dy + dz * dz) * (nx * nx + ny * ny + nz * nz);
-    const Lanes cosine = (dx * nx + dy * ny + dz * nz).abs() / squares.sqrt();
     for (std::size_t i = 0; i < count; ++i) {
-      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
-        hits[begin + i] = {};
-      } else {
-        hits[begin + i] = {packet.ray.tfar[i], packet.hit.u[i], packet.hit.v[i],
-                           std::min(1.0F, cosine[static_cast<Eigen::Index>(i)]), packet.hit.primID[i]};
-      }
+      const std::uint32_t index = packet.hit.primID[i];
+      hits[begin + i] =
+          packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+              ? RayHit{}
+              : hit_on(state_->triangles[index], index, origin.cast<double>(),
+                       Eigen::Vector3f(x[begin + i], y[begin + i], z[begin + i]).cast<double>());
     }
   }
 }
