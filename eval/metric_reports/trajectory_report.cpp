@@ -11,6 +11,7 @@
 #include "eval/metrics/statistics_json.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"
+#include "eval/trajectory_error/alignment_json.hpp"
 
 namespace fusebench::metric_reports {
 
@@ -71,6 +72,15 @@ std::string alignment_text(const trajectory_error::TrajectoryEvaluation& e) {
                      e.alignment.scale);
 }
 
+std::string offset_text(const trajectory_error::FittedOffset& fit) {
+  const Vector3d& offset_m = fit.offset_m;
+  const Vector3d sigma_m = fit.covariance_m2.diagonal().cwiseSqrt();
+  return fmt::format(
+      "({:.4f}, {:.4f}, {:.4f}) +- ({:.4f}, {:.4f}, {:.4f}) m, the camera in the reference's body; with SE3 "
+      "alignment",
+      offset_m.x(), offset_m.y(), offset_m.z(), sigma_m.x(), sigma_m.y(), sigma_m.z());
+}
+
 std::string motions_text(const trajectory_error::TrajectoryEvaluation& e) {
   const trajectory_error::TrajectoryRequest& r = e.request;
   if (r.motions == trajectory_error::MotionRule::segments)
@@ -97,6 +107,7 @@ Lines heading(const trajectory_error::TrajectoryEvaluation& e, const ComparedFil
       {pairs_of_tum(e.request) ? "compared" : "pairs",
        fmt::format("{} of {} possible (coverage {:.1f} %)", e.pairs, e.possible, 100 * e.coverage)},
       {"alignment", alignment_text(e)}};
+  if (e.fitted_offset) lines.push_back({"fitted offset", offset_text(*e.fitted_offset)});
   if (relative) lines.push_back({"motions", motions_text(e)});
   if (e.request.plane != trajectory_error::Plane::none)
     lines.push_back({"plane", std::string(trajectory_error::to_string(e.request.plane))});
@@ -217,6 +228,7 @@ std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, co
                        {"first", request.alignment.first},
                        {"scale", evaluation.alignment.scale},
                        {"matrix", json_of(evaluation.alignment)}};
+  if (evaluation.fitted_offset) json["fitted_offset"] = trajectory_error::json_of(*evaluation.fitted_offset);
   json["plane"] = trajectory_error::to_string(request.plane);
   if (request.metric == trajectory_error::TrajectoryMetric::rpe) json["motions"] = motions_json(request);
   Json series = json_of(first);

@@ -59,18 +59,6 @@ void read(const Json& json, trajectory_error::AteResult& ate) {
   ate.stats = statistics_of(json.at("stats"));
 }
 
-Json json_of(const trajectory_error::FittedOffset& fit) {
-  const Vector3d sigma_m = fit.covariance_m2.diagonal().cwiseSqrt();
-  return {{"protocol",
-           "positions after SE3 alignment and an offset of the reference's body, both by least squares"},
-          {"unit", "m"},
-          {"pairs", fit.pairs},
-          {"offset_m", {fit.offset_m.x(), fit.offset_m.y(), fit.offset_m.z()}},
-          {"offset_sigma_m", {sigma_m.x(), sigma_m.y(), sigma_m.z()}},
-          {"alignment", trajectory_error::json_of({"se3", fit.T_reference_estimate})},
-          {"stats", metrics::json_of(fit.stats)}};
-}
-
 void read(const Json& json, trajectory_error::FittedOffset& fit) {
   fit.pairs = json.at("pairs");
   const auto offset_m = json.at("offset_m").get<std::array<double, 3>>();

@@ -16,6 +16,8 @@ namespace {
 
 constexpr int kIterations = 20;
 constexpr int kSize = 9;  // rotation, translation, offset
+/// Files of trajectories have as many decimals: a copy without any error does not tell more than they do.
+constexpr double kRounding_m = 1e-4;
 using Vector9d = Eigen::Matrix<double, kSize, 1>;
 using Matrix9d = Eigen::Matrix<double, kSize, kSize>;
 
@@ -50,28 +52,12 @@ NormalEquations linearised(const std::vector<Pair>& pairs, const FittedOffset& f
   return sum;
 }
 
-}  // namespace
-
-Result<FittedOffset> fitted_offset(const Trajectory& ground_truth, const Trajectory& estimate,
-                                   const AteOptions& options, double max_sigma_m) {
-  const auto associated = associated_poses(ground_truth, estimate, options);
-  if (!associated) return tl::unexpected(associated.error());
-  std::vector<Pair> pairs;
-  std::vector<Vector3d> truth_m;
-  std::vector<Vector3d> estimate_m;
-  for (const trajectory::AssociatedPair& pair : *associated) {
-    pairs.push_back(
-        {ground_truth[pair.first].T_world_camera, estimate[pair.second].T_world_camera.translation});
-    truth_m.push_back(pairs.back().reference.translation);
-    estimate_m.push_back(pairs.back().estimate);
-  }
-  const auto without_offset = align_positions(truth_m, estimate_m, false);
-  if (!without_offset) return tl::unexpected(without_offset.error());
-  const double duration_s = seconds_between(estimate[associated->front().second].timestamp_ns,
-                                            estimate[associated->back().second].timestamp_ns);
+/// From no offset and the alignment that belongs to it.
+FittedOffset least_squares(const std::vector<Pair>& pairs, const SE3& T_reference_estimate,
+                           double duration_s) {
   FittedOffset fit;
   fit.pairs = pairs.size();
-  fit.T_reference_estimate = without_offset->rigid;
+  fit.T_reference_estimate = T_reference_estimate;
   // A weak pull towards no offset keeps directions that nothing tells from running away.
   Matrix9d pull = Matrix9d::Zero();
   pull.diagonal().tail<3>().setConstant(1e-9 * static_cast<double>(pairs.size()));
@@ -87,21 +73,54 @@ Result<FittedOffset> fitted_offset(const Trajectory& ground_truth, const Traject
   const NormalEquations at = linearised(pairs, fit);
   const auto count = static_cast<double>(pairs.size());
   const double independent = std::clamp(duration_s, 1.0, count);
-  const double variance_m2 = at.squares / std::max(1.0, 3.0 * count - kSize) * (count / independent);
+  const double scatter_m2 =
+      std::max(at.squares / std::max(1.0, 3.0 * count - kSize), kRounding_m * kRounding_m);
+  const double variance_m2 = scatter_m2 * (count / independent);
   const Matrix9d covariance = (at.information + pull).ldlt().solve(Matrix9d::Identity());
   fit.covariance_m2 = variance_m2 * covariance.bottomRightCorner<3, 3>();
+  return fit;
+}
+
+}  // namespace
+
+Result<FittedOffset> fitted_offset(const trajectory_files::TrajectoryPair& pair) {
+  std::vector<Pair> pairs;
+  std::vector<Vector3d> truth_m;
+  std::vector<Vector3d> estimate_m;
+  for (std::size_t i = 0; i < pair.size(); ++i) {
+    pairs.push_back({pair.reference[i].T_world_camera, pair.estimate[i].T_world_camera.translation});
+    truth_m.push_back(pairs.back().reference.translation);
+    estimate_m.push_back(pairs.back().estimate);
+  }
+  const auto without_offset = align_positions(truth_m, estimate_m, false);
+  if (!without_offset) return tl::unexpected(without_offset.error());
+  const double duration_s =
+      seconds_between(pair.estimate.front().timestamp_ns, pair.estimate.back().timestamp_ns);
+  FittedOffset fit = least_squares(pairs, without_offset->rigid, duration_s);
   const double sigma_m =
       std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(fit.covariance_m2).eigenvalues().maxCoeff());
-  if (!(sigma_m <= max_sigma_m)) {
+  if (!(sigma_m <= kMaxOffsetSigma_m)) {
     return fail(
         ErrorCode::data_corrupt,
         fmt::format("the motion does not tell an offset of the body: one standard deviation is {:.3f} m, "
                     "allowed is {} m",
-                    sigma_m, max_sigma_m));
+                    sigma_m, kMaxOffsetSigma_m));
   }
-  for (const Pair& pair : pairs) fit.errors_m.push_back(residual(pair, fit).norm());
+  for (const Pair& each : pairs) fit.errors_m.push_back(residual(each, fit).norm());
   fit.stats = metrics::statistics(fit.errors_m);
   return fit;
+}
+
+Result<FittedOffset> fitted_offset(const Trajectory& ground_truth, const Trajectory& estimate,
+                                   const AteOptions& options) {
+  const auto associated = associated_poses(ground_truth, estimate, options);
+  if (!associated) return tl::unexpected(associated.error());
+  trajectory_files::TrajectoryPair pair;
+  for (const trajectory::AssociatedPair& indices : *associated) {
+    pair.reference.push_back(ground_truth[indices.first]);
+    pair.estimate.push_back(estimate[indices.second]);
+  }
+  return fitted_offset(pair);
 }
 
 }  // namespace fusebench::trajectory_error

@@ -9,6 +9,7 @@
 #include "core/base/types.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
+#include "eval/trajectory_files/trajectory_pair.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -21,13 +22,18 @@ struct FittedOffset {
   metrics::Statistics stats;
 };
 
+/// A larger standard deviation of the offset, in any direction, means that the motion does not tell it.
+inline constexpr double kMaxOffsetSigma_m = 0.01;
+
 /// Least squares over the alignment (R, t) and the offset o of |g_i + R_gi o - (R p_i + t)| for positions g,
-/// p and orientations R_g of the reference, associated as absolute_trajectory_error() does (hand-eye
-/// calibration, of the translation alone). The covariance is that of the residuals' scatter, with as many
-/// independent poses as the trajectory has seconds. Errors: those of absolute_trajectory_error();
-/// data_corrupt if the motion does not tell the offset: a standard deviation above `max_sigma_m` in some
-/// direction.
+/// p and orientations R_g of the reference (hand-eye calibration, of the translation alone). The covariance
+/// is that of the residuals' scatter (at least 0.1 mm, the rounding of files), with as many independent poses
+/// as the trajectory has seconds. Errors: data_corrupt for positions that cannot be aligned, and if the
+/// motion does not tell the offset.
+[[nodiscard]] Result<FittedOffset> fitted_offset(const trajectory_files::TrajectoryPair& pair);
+
+/// The same of poses associated as absolute_trajectory_error() does. Errors: also those of it.
 [[nodiscard]] Result<FittedOffset> fitted_offset(const Trajectory& ground_truth, const Trajectory& estimate,
-                                                 const AteOptions& options = {}, double max_sigma_m = 0.01);
+                                                 const AteOptions& options = {});
 
 }  // namespace fusebench::trajectory_error

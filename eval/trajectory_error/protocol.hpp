@@ -61,6 +61,7 @@ struct TrajectoryRequest {
   double delta_tolerance = 0.1;
   bool from_reference = false;
   MotionListing listing = {};
+  bool fit_offset = false;  ///< absolute errors: also with a fitted offset of the body, see fitted_offset()
 };
 
 /// What the protocol does if nothing else is asked for. Error usage: it has no such metric.

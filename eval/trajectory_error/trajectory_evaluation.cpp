@@ -63,6 +63,13 @@ Result<TrajectoryEvaluation> of_poses(const trajectory_files::TrajectoryPair& pa
   if (!error) return tl::unexpected(error.error());
   TrajectoryEvaluation result = described(request, pair, error->alignment);
   result.series.push_back(series_of(std::move(*error)));
+  if (!request.fit_offset) return result;
+  Result<FittedOffset> fit = fitted_offset(pair);
+  if (!fit) return tl::unexpected(fit.error());
+  std::vector<std::int64_t> at_ns;
+  for (const StampedPose& pose : pair.estimate) at_ns.push_back(pose.timestamp_ns);
+  result.series.push_back(series_of("trans_part_offset_fitted", "m", fit->errors_m, std::move(at_ns)));
+  result.fitted_offset = std::move(*fit);
   return result;
 }
 

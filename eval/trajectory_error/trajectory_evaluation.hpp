@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/base/types.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/alignment.hpp"
+#include "eval/trajectory_error/fitted_offset.hpp"
 #include "eval/trajectory_error/protocol.hpp"
 #include "eval/trajectory_error/streamed_statistics.hpp"
 
@@ -48,6 +50,7 @@ struct TrajectoryEvaluation {
   Similarity alignment;              ///< reference from estimate
   std::vector<ErrorSeries> series;   ///< the first is the protocol's own number
   std::vector<SegmentRow> segments;  ///< where segments are what is compared
+  std::optional<FittedOffset> fitted_offset;  ///< where it was asked for; its errors are the second series
 };
 
 /// The same errors in another unit of the kind: mm, cm or km of metres, degrees of radians or the other way
@@ -55,7 +58,7 @@ struct TrajectoryEvaluation {
 [[nodiscard]] Result<void> change_unit(ErrorSeries& series, const std::string& unit);
 
 /// Errors: configuration for deltas that make no sense, data_corrupt for trajectories that do not match or do
-/// not determine the alignment, and where no motion is left.
+/// not determine the alignment or an offset that was asked for, and where no motion is left.
 [[nodiscard]] Result<TrajectoryEvaluation> evaluate(const Trajectory& reference, const Trajectory& estimate,
                                                     const TrajectoryRequest& request);
 

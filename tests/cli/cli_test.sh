@@ -401,6 +401,17 @@ curve() {
   }'
 }
 
+# A camera that turns about two axes, one after the other, in TUM's format.
+tumble() {
+  awk 'BEGIN {
+    for (i = 0; i < 60; i++) {
+      a = 0.025 * (i % 30)
+      printf "%.4f %.4f %.4f %.4f %.9f 0 %.9f %.9f\n", 1305031100 + 0.1 * i, cos(0.05 * i), sin(0.05 * i), sin(0.1 * i),
+             i < 30 ? 0 : sin(a), i < 30 ? sin(a) : 0, cos(a)
+    }
+  }'
+}
+
 # prints PATTERN NAME ARGUMENT...: the program succeeds, says nothing on standard error, and prints the pattern.
 prints() {
   local pattern=$1 name=$2
@@ -423,6 +434,9 @@ check_evaluation() {
   prints 'alignment +sim3 from all pairs.*scale 0.90909' "evo's -as" eval ate gt.txt est.txt -as
   prints 'rmse +[0-9.]+e-1[0-9]' "a scaled copy" eval ate gt.txt est.txt -vas
   prints 'alignment +se3 from the first 10 pairs' "n_to_align" eval ate gt.txt est.txt -a --n_to_align 10
+  tumble >tumble.txt
+  prints 'fitted offset +\(.*the camera in the reference' "a fitted offset" eval ate tumble.txt tumble.txt --fit_offset
+  prints 'trans_part_offset_fitted \[mm\]' "a fitted offset in mm" eval ate tumble.txt tumble.txt --fit_offset --change_unit mm
   prints 'trans_part \[cm\]' "change_unit" eval ate gt.txt est.txt --change_unit cm
   prints 'angle_deg \[deg\]' "relation" eval ate gt.txt est.txt --pose_relation angle_deg
   prints 'data.csv \(euroc\): 60 poses' "euroc" eval ate data.csv est.txt -a
@@ -472,6 +486,8 @@ check_evaluation() {
   refused "unit of another kind" 2 'change_unit deg' 'hint:mm' -- eval ate gt.txt est.txt --change_unit deg
   refused "half a frame" 2 'delta = 0.5' -- eval rpe gt.txt est.txt -d 0.5
   refused "deltas of segments" 2 'lengths' -- eval rpe gt.txt est.txt --protocol rpg -d 1
+  refused "an offset of a motion about one axis" 3 'does not tell' -- eval ate gt.txt est.txt -a --fit_offset
+  refused "a fitted offset of relative errors" 2 'fit_offset' -- eval rpe gt.txt est.txt --fit_offset
   refused "kitti's absolute error" 2 'no absolute error' -- eval ate gt.txt est.txt --protocol kitti
   refused "two alignments" 2 'exclude each other' -- eval ate gt.txt est.txt -a --align sim3
   refused "stamps on one side" 2 'no stamps' -- eval ate gt.txt kitti.txt

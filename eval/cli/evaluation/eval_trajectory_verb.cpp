@@ -70,9 +70,12 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
   auto evaluation = trajectory_error::evaluate(sides->reference.poses, sides->estimate.poses, *request);
   if (!evaluation) return tl::unexpected(evaluation.error());
   if (!options.change_unit.empty()) {
-    if (auto converted = trajectory_error::change_unit(evaluation->series.front(), options.change_unit);
-        !converted)
-      return tl::unexpected(converted.error());
+    const std::string unit = evaluation->series.front().unit;
+    for (trajectory_error::ErrorSeries& series : evaluation->series) {
+      if (series.unit != unit) continue;
+      if (auto converted = trajectory_error::change_unit(series, options.change_unit); !converted)
+        return tl::unexpected(converted.error());
+    }
   }
   warn_of_few(*evaluation);
   if (!options.errors.empty()) {
@@ -144,6 +147,13 @@ void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("--change_unit", options.change_unit, "mm, cm, km, rad or deg")->type_name("UNIT");
 }
 
+void add_offset_option(CLI::App& verb, TrajectoryOptions& options) {
+  verb.add_flag(
+      "--fit_offset", options.fit_offset,
+      "Also gives the error after SE3 alignment and a fitted offset of the reference's body from the "
+      "camera (markers of a motion capture), with its standard deviations");
+}
+
 void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("-d,--delta", options.delta,
                   "Interval between the poses of a pair; default: 1 frame (evo), 1 s (tum)")
@@ -164,7 +174,10 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
   CLI::App* verb = eval.add_subcommand(std::string(trajectory_error::to_string(metric)), description);
   add_protocol_options(*verb, *options);
   add_selection_options(*verb, *options);
-  if (metric == trajectory_error::TrajectoryMetric::rpe) add_motion_options(*verb, *options);
+  if (metric == trajectory_error::TrajectoryMetric::rpe)
+    add_motion_options(*verb, *options);
+  else
+    add_offset_option(*verb, *options);
   verb->add_flag("-v", options->verbose,
                  "Accepted for compatibility with evo; the output is always complete");
   verb->add_option("--errors", options->errors, "Writes each error with its stamp")->type_name("FILE.csv");

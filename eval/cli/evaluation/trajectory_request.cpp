@@ -97,6 +97,7 @@ Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& 
   request->relation = *relation;
   request->plane = named(kPlanes, options.plane);
   request->downsample = options.downsample;
+  request->fit_offset = options.fit_offset;
   request->listing.needed = !options.errors.empty();
   constexpr std::size_t kMostInJson = std::size_t{1} << 20;  // 240 bytes each while the document is made
   if (options.json && options.errors.empty()) request->listing.most = kMostInJson;

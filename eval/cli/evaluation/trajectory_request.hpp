@@ -44,6 +44,7 @@ struct TrajectoryOptions {
   double delta_tol = 0.1;
   bool all_pairs = false;
   bool pairs_from_reference = false;
+  bool fit_offset = false;
   bool verbose = false;
   std::filesystem::path errors;
   bool json = false;

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/base/geometry.hpp"
+#include "eval/trajectory_error/trajectory_evaluation.hpp"
 
 namespace fusebench {
 
@@ -70,6 +71,28 @@ TEST(FittedOffset, AMotionThatDoesNotTurnIsRefused) {
   EXPECT_NE(still.error().message.find("does not tell"), std::string::npos) << still.error().message;
   const Trajectory about_z = hand_held({0, 0, 0.5});  // the offset along z cannot be told
   EXPECT_FALSE(fitted_offset(about_z, seen_from(about_z, kOffset, 0.004)));
+  EXPECT_FALSE(fitted_offset(about_z, about_z)) << "without any error nothing else is told";
+}
+
+TEST(FittedOffset, AnEvaluationThatAsksForItHasItBesideItsOwnNumber) {
+  const Trajectory truth = hand_held({0.5, 0.6, 0.4});
+  const Trajectory estimate = seen_from(truth, kOffset, 0.004);
+  TrajectoryRequest request = request_for(Protocol::tum, TrajectoryMetric::ate).value();
+  const auto plain = evaluate(truth, estimate, request);
+  request.fit_offset = true;
+  const auto both = evaluate(truth, estimate, request);
+  ASSERT_TRUE(plain && both);
+  EXPECT_FALSE(plain->fitted_offset);
+  ASSERT_EQ(plain->series.size(), 1U);
+  ASSERT_EQ(both->series.size(), 2U);
+  EXPECT_EQ(both->series[0].errors, plain->series[0].errors);
+  EXPECT_EQ(both->series[1].unit, "m");
+  EXPECT_EQ(both->series[1].errors, fitted_offset(truth, estimate)->errors_m);
+  EXPECT_EQ(both->series[1].at_ns, both->series[0].at_ns);
+  EXPECT_LT((both->fitted_offset->offset_m - kOffset).norm(), 0.005);
+
+  const Trajectory about_z = hand_held({0, 0, 0.5});
+  EXPECT_FALSE(evaluate(about_z, seen_from(about_z, kOffset, 0.004), request));
 }
 
 TEST(FittedOffset, WithoutAnOffsetItIsTheAte) {
