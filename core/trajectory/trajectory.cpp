@@ -17,4 +17,9 @@ std::optional<SE3> interpolate_pose(const Trajectory& trajectory, std::int64_t t
   return interpolate(before->T_world_camera, after->T_world_camera, fraction);
 }
 
+Trajectory of_point(Trajectory trajectory, const Vector3d& point_m) {
+  for (StampedPose& pose : trajectory) pose.T_world_camera.translation = pose.T_world_camera * point_m;
+  return trajectory;
+}
+
 }  // namespace fusebench::trajectory

@@ -1,4 +1,4 @@
-// Look-up in a trajectory.
+// Look-up in a trajectory, and the trajectory of another point.
 #pragma once
 
 #include <cstdint>
@@ -16,5 +16,8 @@ inline constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
 /// increase.
 [[nodiscard]] std::optional<SE3> interpolate_pose(const Trajectory& trajectory, std::int64_t timestamp_ns,
                                                   std::int64_t max_gap_ns);
+
+/// The poses of the point `point_m` of the body, with the body's axes.
+[[nodiscard]] Trajectory of_point(Trajectory trajectory, const Vector3d& point_m);
 
 }  // namespace fusebench::trajectory

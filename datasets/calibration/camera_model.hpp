@@ -10,13 +10,13 @@
 
 namespace fusebench::calibration {
 
-/// Brown-Conrady distortion (OpenCV's "plumb bob", five coefficients) on the plane z = 1:
-///   x_d = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2),  r2 = x^2 + y^2
-///   y_d = y (1 + k1 r2 + k2 r2^2 + k3 r2^3) + p1 (r2 + 2 y^2) + 2 p2 x y
 /// How far a timing that nobody said may be from zero, as a standard deviation.
 inline constexpr double kUnknownReadoutSigma_s = 0.015;
 inline constexpr double kUnknownDelaySigma_s = 0.01;
 
+/// Brown-Conrady distortion (OpenCV's "plumb bob", five coefficients) on the plane z = 1:
+///   x_d = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2),  r2 = x^2 + y^2
+///   y_d = y (1 + k1 r2 + k2 r2^2 + k3 r2^3) + p1 (r2 + 2 y^2) + 2 p2 x y
 struct BrownConrady {
   double k1 = 0;
   double k2 = 0;
@@ -38,6 +38,8 @@ struct CalibratedCamera {
   PinholeCamera pinhole;
   BrownConrady distortion;
   SensorTiming timing;
+  /// Of the optical centre, in the frame of the body whose poses the ground truth gives.
+  Vector3d ground_truth_offset_m = Vector3d::Zero();
 };
 
 /// Resamples distorted images to the pinhole camera with the same intrinsics and size.

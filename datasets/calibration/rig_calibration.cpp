@@ -18,9 +18,9 @@ namespace fusebench::calibration {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kColorKeys = {"width_px",   "height_px", "fx_px",
-                                                        "fy_px",      "cx_px",     "cy_px",
-                                                        "distortion", "readout_s", "readout_sigma_s"};
+constexpr std::array<std::string_view, 10> kColorKeys = {
+    "width_px", "height_px",  "fx_px",     "fy_px",           "cx_px",
+    "cy_px",    "distortion", "readout_s", "readout_sigma_s", "ground_truth_offset_m"};
 constexpr std::array<std::string_view, 12> kDepthKeys = {
     "units_per_metre", "width_px",      "height_px", "fx_px",           "fy_px",   "cx_px",
     "cy_px",           "T_color_depth", "readout_s", "readout_sigma_s", "delay_s", "delay_sigma_s"};
@@ -116,6 +116,19 @@ class Section {
     return {};
   }
 
+  /// Zero if the key is not there.
+  [[nodiscard]] Vector3d translation(const std::string& key) {
+    const std::vector<double> xyz = numbers(key, 3);
+    if (xyz.empty()) return Vector3d::Zero();
+    const Vector3d offset_m(xyz[0], xyz[1], xyz[2]);
+    if (offset_m.cwiseAbs().maxCoeff() > kMaxTranslation_m) {
+      report(fmt::format("{}: {} has a component of {:g} m (allowed up to {} m)", entries_.at(key)->place,
+                         entries_.at(key)->key, offset_m.cwiseAbs().maxCoeff(), kMaxTranslation_m),
+             "offsets are in metres");
+    }
+    return offset_m;
+  }
+
   [[nodiscard]] SE3 transform(const std::string& key) {
     const std::vector<double> rows = numbers(key, 12);
     if (rows.empty()) return {};
@@ -182,6 +195,7 @@ CalibratedCamera read_color_table(Section& section) {
     camera.distortion = {k[0], k[1], k[2], k[3], k[4]};
   camera.timing.color_readout_s = section.number("readout_s", kReadout, 0.0);
   camera.timing.color_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
+  camera.ground_truth_offset_m = section.translation("ground_truth_offset_m");
   return camera;
 }
 
@@ -310,8 +324,11 @@ std::string to_toml(const RigCalibration& calibration) {
   std::string text = fmt::format("calibration_source = {}\n\n[color]\n{}",
                                  config::to_toml(config::OptionValue(calibration.source)),
                                  pinhole_text(calibration.color.pinhole));
-  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\n{}\n[depth]\n", d.k1, d.k2, d.p1, d.p2, d.k3,
+  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\n{}", d.k1, d.k2, d.p1, d.p2, d.k3,
                       timing_text("readout", timing.color_readout_s, timing.color_readout_sigma_s));
+  if (const Vector3d& offset_m = calibration.color.ground_truth_offset_m; !offset_m.isZero(0))
+    text += fmt::format("ground_truth_offset_m = [{}, {}, {}]\n", offset_m.x(), offset_m.y(), offset_m.z());
+  text += "\n[depth]\n";
   if (calibration.depth_units_per_metre)
     text += fmt::format("units_per_metre = {}\n", *calibration.depth_units_per_metre);
   if (calibration.depth) {

@@ -9,6 +9,7 @@
 //     distortion = [0.0644, -0.114, 0.00127, 0.00203, 0]  # k1 k2 p1 p2 k3 (Brown-Conrady); none: 0
 //     readout_s = 0.0           # rolling shutter, first to last row; without the key it is not known
 //     readout_sigma_s = 0.0     # its uncertainty; none: 0, or 0.015 where readout_s is not known
+//     ground_truth_offset_m = [0, 0, 0]  # of the camera in the body of the ground truth's poses; none: 0
 //     [depth]
 //     units_per_metre = 1000
 //     width_px = 640            # intrinsics (the keys of [color], no distortion): depth is in a camera of

@@ -28,6 +28,11 @@ Recording named_recording(const std::filesystem::path& folder, std::string_view 
   return recording;
 }
 
+Vector3d ground_truth_offset_m(const Recording& recording) {
+  const bool of_camera = !recording.calibration || recording.truth_label == kPseudoGroundTruth;
+  return of_camera ? Vector3d::Zero() : recording.calibration->color.ground_truth_offset_m;
+}
+
 Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end) {
   const std::size_t count = recording.frames.size();
   if (begin >= end || end > count) {

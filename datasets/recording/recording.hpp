@@ -71,6 +71,10 @@ struct Recording {
 /// A recording with its name (that of the folder) and format set, and nothing else.
 [[nodiscard]] Recording named_recording(const std::filesystem::path& folder, std::string_view format);
 
+/// Of the colour camera in the body whose poses ground_truth gives: the calibration's. Zero for pseudo ground
+/// truth, which is of the camera itself.
+[[nodiscard]] Vector3d ground_truth_offset_m(const Recording& recording);
+
 /// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part
 /// of a recording gets its own fingerprint. Errors: usage (an empty range, or one that leaves the recording).
 [[nodiscard]] Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end);

@@ -165,7 +165,7 @@ Result<void> add_synthetic_imu(recording::Recording& recording, const SyntheticI
   add_imu_noise(recording.imu, options.sensor, options.rate_hz, options.seed);
   recording.imu_source = recording::ImuSource::synthetic;
   recording.imu_note = note(options, *fit);
-  recording.rig.T_imu_camera = SE3{};
+  recording.rig.T_imu_camera = {Quaterniond::Identity(), recording::ground_truth_offset_m(recording)};
   const ImuNoise uncertainty = truth_noise(*fit, options);
   recording.rig.imu_axes_are_exact = true;
   ImuNoise& noise = recording.rig.imu_noise;

@@ -69,12 +69,12 @@ std::vector<ImuBias> add_imu_noise(std::vector<ImuSample>& samples, const ImuSen
 /// about it, since the error is that of the truth's mounting on the camera rather than jitter.
 [[nodiscard]] ImuNoise truth_noise(const SplineFit& fit, const SyntheticImuOptions& options);
 
-/// Gives a recording an IMU that is made from its ground truth, in the colour camera's axes (T_imu_camera =
-/// identity), in place of any other. Sets imu, imu_source, imu_note, and in the rig T_imu_camera and
-/// imu_noise (the sensor's noise and the fit's uncertainty, root of the sum of squares). Motion in gaps of
-/// the truth is the smoothest one, with a warning. Call it after select_frames(). Errors: configuration (an
-/// option out of range), data_missing (no ground truth), data_corrupt (frames outside of the truth's time, or
-/// the fit failed).
+/// Gives a recording an IMU that is made from its ground truth, in the colour camera's axes, at the point
+/// that the ground truth is of (T_imu_camera: recording::ground_truth_offset_m()), in place of any other.
+/// Sets imu, imu_source, imu_note, and in the rig T_imu_camera and imu_noise (the sensor's noise and the
+/// fit's uncertainty, root of the sum of squares). Motion in gaps of the truth is the smoothest one, with a
+/// warning. Call it after select_frames(). Errors: configuration (an option out of range), data_missing (no
+/// ground truth), data_corrupt (frames outside of the truth's time, or the fit failed).
 [[nodiscard]] Result<void> add_synthetic_imu(recording::Recording& recording,
                                              const SyntheticImuOptions& options = {});
 

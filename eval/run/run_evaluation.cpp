@@ -46,7 +46,9 @@ Result<record::RecordedSilentFailures> silent_failures_of(const RunOutput& outpu
   if (recording.ground_truth.empty())
     return fail(ErrorCode::data_missing, "the recording has no ground truth");
   // At the instants that the poses are of, which are not always those of the stamps.
-  const Trajectory truth = record::true_trajectory(recording, record::frame_stamps(recording));
+  const Trajectory truth =
+      trajectory::of_point(record::true_trajectory(recording, record::frame_stamps(recording)),
+                           recording::ground_truth_offset_m(recording));
   const auto failures = trajectory_error::silent_failures(
       truth, output.trajectory,
       {config.silent_interval_s, config.silent_translation_m, radians(config.silent_rotation_deg)});

@@ -4,8 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
@@ -23,6 +25,7 @@ struct SilentOptions {
   double interval_s = 1.0;
   double translation_m = 0.05;
   double rotation_deg = 3.0;
+  std::vector<double> offset_m = {0, 0, 0};
   bool json = false;
 };
 
@@ -59,7 +62,7 @@ Result<int> run(const SilentOptions& options) {
     return fail(ErrorCode::usage, "silent failures need stamps, which the format kitti does not have",
                 "use TUM or EuRoC files");
   const auto found = trajectory_error::silent_failures(
-      sides->reference.poses, sides->estimate.poses,
+      trajectory::of_point(sides->reference.poses, Vector3d(options.offset_m.data())), sides->estimate.poses,
       {options.interval_s, options.translation_m, radians(options.rotation_deg)});
   if (!found) return tl::unexpected(found.error());
   console::print_output(options.json ? to_json(*found) : to_text(*found));
@@ -86,6 +89,11 @@ console::Verb add_eval_silent_verb(CLI::App& eval) {
   verb->add_option("--rotation", options->rotation_deg, "And be rotated by this much")
       ->type_name("DEG")
       ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--offset", options->offset_m,
+                   "Of the camera in the reference's body, as `eval ate --fit_offset` finds it")
+      ->type_name("X Y Z")
+      ->expected(3)
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
   verb->footer("docs/metrics.md defines the numbers. Exit code 3 for files that cannot be compared.");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace fusebench {
 
 using namespace trajectory;
@@ -31,6 +33,21 @@ TEST(InterpolatePose, NothingOutsideOrAcrossAGap) {
   EXPECT_FALSE(interpolate_pose(trajectory, 300, 299));
   EXPECT_TRUE(interpolate_pose(trajectory, 300, 300));
   EXPECT_FALSE(interpolate_pose({}, 0, 1000));
+}
+
+TEST(OfPoint, APointOfATurningBodyMovesOnACircle) {
+  Trajectory turning;
+  for (int i = 0; i < 12; ++i)
+    turning.push_back({i * 1000LL, {so3_exp(Vector3d(0, 0, 0.5 * i)), Vector3d(1, 2, 3)}});
+  const Trajectory moved = of_point(turning, {0.1, 0, 0.02});
+  ASSERT_EQ(moved.size(), turning.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const double angle = 0.5 * static_cast<double>(i);
+    const Vector3d expected(1 + 0.1 * std::cos(angle), 2 + 0.1 * std::sin(angle), 3.02);
+    EXPECT_LT((moved[i].T_world_camera.translation - expected).norm(), 1e-12) << i;
+    EXPECT_EQ(moved[i].T_world_camera.rotation.coeffs(), turning[i].T_world_camera.rotation.coeffs());
+    EXPECT_EQ(moved[i].timestamp_ns, turning[i].timestamp_ns);
+  }
 }
 
 }  // namespace

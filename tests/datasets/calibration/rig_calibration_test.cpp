@@ -19,6 +19,7 @@ RigCalibration whole_calibration() {
   c.source = "measured \"by hand\", 2019";
   c.color.pinhole = {640, 480, 608.446, 607.847, 331.332, 245.549};
   c.color.distortion = {0.0644, -0.114, 0.00127, 0.00203, 1.0 / 3.0};
+  c.color.ground_truth_offset_m = {0.034, -1.0 / 3.0, 0.014};
   c.color.timing = {0.0261, 0.0305, -0.018};
   c.depth_units_per_metre = 1000.5;
   c.depth = DepthCamera{{628, 468, 583.98, 583.98, 325.103, 240.718},
@@ -72,6 +73,7 @@ TEST(RigCalibration, ReadsBackWhatItWrites) {
   const auto after = read(to_toml(before));
   ASSERT_TRUE(after) << after.error().message;
   EXPECT_EQ(after->source, before.source);
+  EXPECT_EQ(after->color.ground_truth_offset_m, before.color.ground_truth_offset_m);
   expect_equal(after->color.pinhole, before.color.pinhole);
   const BrownConrady& d = after->color.distortion;
   EXPECT_EQ(d.k1, 0.0644);
@@ -182,6 +184,13 @@ TEST(RigCalibration, ATimingThatIsNotSaidIsUncertain) {
   EXPECT_EQ(timing("").color_readout_sigma_s, kUnknownReadoutSigma_s);
   EXPECT_EQ(timing("readout_s = 0.02\n").color_readout_sigma_s, 0);
   EXPECT_EQ(timing("readout_s = 0.02\nreadout_sigma_s = 0.003\n").color_readout_sigma_s, 0.003);
+}
+
+TEST(RigCalibration, TheCameraMayBeBesideThePointThatTheTruthIsOf) {
+  EXPECT_EQ(refusal(with_color("ground_truth_offset_m = [0.03, 0]\n")),
+            "c.toml:6: color.ground_truth_offset_m must be a list of 3 finite numbers");
+  EXPECT_EQ(refusal(with_color("ground_truth_offset_m = [30, 2000, 10]\n")),
+            "c.toml:6: color.ground_truth_offset_m has a component of 2000 m (allowed up to 1000 m)");
 }
 
 TEST(RigCalibration, RefusesAnImuWithoutNoise) {

@@ -205,6 +205,19 @@ TEST(SyntheticImu, InitialBiasIsOneForAllSamples) {
   EXPECT_EQ(samples[0].specific_force_mps2, samples[2].specific_force_mps2);
 }
 
+TEST(SyntheticImu, SitsAtThePointThatTheTruthIsOf) {
+  const Vector3d offset_m(0.03, -0.01, 0.02);
+  Recording recording = recording_of(sampled(helix(), 4.0, 100));
+  recording.calibration.emplace();
+  recording.calibration->color.ground_truth_offset_m = offset_m;
+  Recording pseudo = recording;
+  pseudo.truth_label = kPseudoGroundTruth;
+  ASSERT_TRUE(add_synthetic_imu(recording));
+  ASSERT_TRUE(add_synthetic_imu(pseudo));
+  EXPECT_EQ(recording.rig.T_imu_camera.translation, offset_m);
+  EXPECT_EQ(pseudo.rig.T_imu_camera.translation, kZero) << "a batch estimate is of the camera";
+}
+
 TEST(SyntheticImu, FillsTheRecording) {
   Recording recording = recording_of(sampled(helix(), 4.0, 100));
   recording.rig.T_imu_camera.translation = {1, 2, 3};
