@@ -161,6 +161,7 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   now.turned_rad +=
       rotation_angle_rad(now.estimate->mean.T_world_imu.rotation, update.posterior.mean.T_world_imu.rotation);
   now.estimate = update.posterior;
+  if (novelty.complete()) now.color_drift.observe(filter::correction_in_imu(update), config.color_drift);
   if (report.health == health::FrameHealth::good && !novelty.complete())
     report.health = health::FrameHealth::repeated;
   if (report.health != health::FrameHealth::occluded && novelty.complete())
@@ -221,7 +222,8 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   now.reference.points.take(preparation.whole_pyramid(), frame.depth_m, rig.camera, config.alignment);
   now.reference.timestamp_ns = now.timestamp_ns;
   const double share = patches::fused_share(now.model, now.reference.patches, reference, config.depth);
-  now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor});
+  now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor},
+                                             now.color_drift.noise(config.color_drift));
   now.relocalisation.add_keyframe(
       frame, T_world_camera(), now.timestamp_ns,
       preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));

@@ -8,6 +8,7 @@
 #include "core/alignment/tracking_reference.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/filter/color_drift.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/health/update_acceptance.hpp"
 #include "core/measurement/residual_scale.hpp"
@@ -33,6 +34,7 @@ struct Tracking {
   int lost_frames = 0;                            ///< in a row, before the current one
   RepeatedImages repeated_images;
   health::OcclusionGate occlusion_gate;
+  filter::ColorDrift color_drift;
   measurement::ResidualScale residual_scale;      ///< noise scale estimated from earlier frames
   alignment::TrackingReference reference;         ///< from the last fused frame
   std::vector<patches::TrackedCentre> survivors;  ///< where the good patches are in the current frame

@@ -30,6 +30,7 @@ struct Config {
   GeometricConfig geometric;
   AlignmentConfig alignment;
   IekfConfig iekf;
+  ColorDriftConfig color_drift;
   HealthConfig health;
   RelocalisationConfig relocalisation;
   PlaceFeaturesConfig place_features;
@@ -49,6 +50,7 @@ struct Config {
     v.group("geometric", self.geometric);
     v.group("alignment", self.alignment);
     v.group("iekf", self.iekf);
+    v.group("color_drift", self.color_drift);
     v.group("health", self.health);
     v.group("relocalisation", self.relocalisation);
     v.group("place_features", self.place_features);
@@ -58,11 +60,11 @@ struct Config {
   }
 };
 
-static_assert(
-    options_cover_all_fields<TermsConfig, DepthConfig, CompensationConfig, MotionConfig, InitialisationConfig,
-                             SelfCalibrationConfig, PatchConfig, PhotometricConfig, GeometricConfig,
-                             AlignmentConfig, IekfConfig, HealthConfig, RelocalisationConfig,
-                             PlaceFeaturesConfig, PlacePoseConfig, TsdfConfig, EvaluationConfig, Config>(),
-    "each field of a configuration struct needs its option in visit()");
+static_assert(options_cover_all_fields<
+                  TermsConfig, DepthConfig, CompensationConfig, MotionConfig, InitialisationConfig,
+                  SelfCalibrationConfig, PatchConfig, PhotometricConfig, GeometricConfig, AlignmentConfig,
+                  IekfConfig, ColorDriftConfig, HealthConfig, RelocalisationConfig, PlaceFeaturesConfig,
+                  PlacePoseConfig, TsdfConfig, EvaluationConfig, Config>(),
+              "each field of a configuration struct needs its option in visit()");
 
 }  // namespace fusebench::config

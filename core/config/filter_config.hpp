@@ -80,4 +80,22 @@ struct IekfConfig {
   }
 };
 
+/// Errors that all patches of a colour image share, measured by what depth keeps correcting (not in the
+/// paper).
+struct ColorDriftConfig {
+  double factor = 1.0;
+  int lag_frames = 10;
+  int memory_frames = 100;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("factor", self.factor, 0.0, 100.0,
+             "colour loses weight against the model by so many times the drift that the corrections by depth "
+             "show (standard deviations); 0 leaves it the weight that the scatter of the patches gives it");
+    v.number("lag_frames", self.lag_frames, 1, 1000,
+             "corrections so many frames apart are compared: what they have in common is drift, no noise");
+    v.number("memory_frames", self.memory_frames, 1, 100000,
+             "their covariance is averaged over about so many frames");
+  }
+};
+
 }  // namespace fusebench::config

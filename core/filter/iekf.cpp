@@ -58,6 +58,7 @@ class Update {
     result.map_cost_posterior = map_cost(now, quadratic.cost(now.timing_s()));
     result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
+    result.correction_by_model = correction_by_model(now, quadratic);
     result.solution = now.y;
     return result;
   }
@@ -152,6 +153,18 @@ class Update {
     return sum;
   }
 
+  /// The difference to the optimum of the same cost without its part by model.
+  Vector6d correction_by_model(const Iterate& now, const MeasurementQuadratic& quadratic) const {
+    ChartQuadratic others = in_chart(quadratic, now);
+    others.information.middleRows<kPoseSize>(kPoseSize).setZero();
+    others.information.middleCols<kPoseSize>(kPoseSize).setZero();
+    others.gradient.segment<kPoseSize>(kPoseSize).setZero();
+    const MeasuredMatrix system = MeasuredMatrix::Identity() + others.information * measured_covariance_;
+    const MeasuredVector without =
+        system.partialPivLu().solve(others.information * now.measured - others.gradient);
+    return (now.measured - measured_covariance_ * without).segment<kPoseSize>(kPoseSize);
+  }
+
   /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.
   bool step(Iterate& now, const MeasurementQuadratic& quadratic) {
     const ChartQuadratic local = in_chart(quadratic, now);
@@ -208,6 +221,12 @@ class Update {
 };
 
 }  // namespace
+
+Vector6d correction_in_imu(const IekfResult& update) {
+  Vector6d correction = update.correction_by_model;
+  correction.tail<3>() = update.posterior.mean.T_world_imu.rotation.conjugate() * correction.tail<3>();
+  return correction;
+}
 
 MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu) {
   // The covariance is singular where the prior knows a direction; 0.1 mrad and 0.1 mm will do for a start.

@@ -94,11 +94,17 @@ struct IekfResult {
   GaussianState posterior;
   MeasuredVector solution = MeasuredVector::Zero();  ///< y of the last iterate
   PoseQuadratic measurement;  ///< the last linearisation, at the posterior, without the prior
+  /// How the measurement by the model moved the pose, which without it would be elsewhere: tangent of
+  /// T_world_imu (rotation in rad, world position in m).
+  Vector6d correction_by_model = Vector6d::Zero();
   int iterations = 0;         ///< accepted steps over all stages
   bool converged = false;     ///< the last step was below both thresholds
   double map_cost_prior = 0;  ///< J at the prediction (last stage only)
   double map_cost_posterior = 0;
 };
+
+/// Its correction_by_model with the translation along the axes of the IMU.
+[[nodiscard]] Vector6d correction_in_imu(const IekfResult& update);
 
 /// The start of an update at another pose than the prediction's: the y that brings both poses of the
 /// hypothesis to T_world_imu, as far as the prior's covariance lets them.

@@ -43,7 +43,8 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
   return rows;
 }
 
-GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift) {
+GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
+                                  const ReferenceNoise& noise) {
   StateMatrix to_model = StateMatrix::Identity();
   to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
   to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * Matrix6d::Identity();
@@ -60,6 +61,9 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
   result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
       excess * state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
+  result.covariance.diagonal().segment<3>(kReferencePose).array() += noise.rotation_rad * noise.rotation_rad;
+  result.covariance.diagonal().segment<3>(kReferencePose + 3).array() +=
+      noise.translation_m * noise.translation_m;
   result.mean.model_offset =
       to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) * state.mean.model_offset;
   result.mean.T_world_imu_reference = state.mean.T_world_imu;

@@ -8,6 +8,7 @@
 // relative to the first camera (kModelPose).
 #pragma once
 
+#include "core/filter/color_drift.hpp"
 #include "core/filter/filter_state.hpp"
 
 namespace fusebench::filter {
@@ -32,8 +33,9 @@ struct ModelDrift {
 };
 
 /// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its
-/// pose.
-[[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift);
+/// pose, which colour knows with an error of its own.
+[[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
+                                                const ReferenceNoise& noise = {});
 
 /// The estimate in the world of the first camera: the uncertainty of the model's pose is added to that of the
 /// pose, the velocity and the direction of gravity.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/filter/iekf.hpp"
+#include "tests/support/known_measurement.hpp"
 
 namespace fusebench {
 
@@ -58,33 +59,6 @@ TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
   EXPECT_LT((measured.topLeftCorner<kPoseSize, kPoseSize>()).norm(), 1e-15);
   EXPECT_NEAR((measured.block<kPoseSize, kPoseSize>(kPoseSize, kPoseSize)).trace(), 6e-4, 1e-12);
 }
-
-/// Sees the motion since the reference frame, or the place against the model, with a given error.
-class KnownMeasurement final : public PoseMeasurement {
- public:
-  KnownMeasurement(SE3 by_reference, SE3 by_model, double sigma_reference, double sigma_model)
-      : by_reference_(by_reference),
-        by_model_(by_model),
-        reference_(information(sigma_reference)),
-        model_(information(sigma_model)) {}
-  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
-    return {quadratic(poses.T_world_imu_by_reference, by_reference_, reference_),
-            quadratic(poses.T_world_imu_by_model, by_model_, model_)};
-  }
-  double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
-    return linearise(poses, 0, false).cost();
-  }
-  void accept() override {}
-
- private:
-  static double information(double sigma) { return sigma > 0 ? 1.0 / (sigma * sigma) : 0.0; }
-  static PoseQuadratic quadratic(const SE3& at, const SE3& measured, double weight) {
-    const Vector6d error = pose_minus(at, measured);
-    return {weight * Matrix6d::Identity(), weight * error, 0.5 * weight * error.squaredNorm()};
-  }
-  SE3 by_reference_, by_model_;
-  double reference_, model_;
-};
 
 /// Steps of a camera that stands still, seen with noise: against the last frame alone its error grows like a
 /// random walk, against the model it stays; the filter must know both.
