@@ -32,9 +32,11 @@ constexpr std::array kVariants = {
     Variant{
         "literal", "",
         "as close to the letter of the paper as runs: Eq. 22 without the prior after the first iteration, "
-        "independent pixels of fixed noise, squared residuals, no brightness, self-calibration, motion "
-        "compensation or relocalisation",
+        "independent pixels of fixed noise, squared residuals, no brightness, drift of colour, "
+        "self-calibration, "
+        "motion compensation or relocalisation",
         "iekf.prior_in_every_iteration=false iekf.scatter_prior_freedom=1e9 iekf.scale_share=0 "
+        "color_drift.factor=0 "
         "photometric.pixels_per_measurement=1 geometric.pixels_per_measurement=1 "
         "photometric.huber_sigmas=1e6 geometric.huber_sigmas=1e6 photometric.gain_sigma=0 "
         "photometric.offset_sigma_grey=0 initialisation.imu_time_offset_sigma_s=0 "

@@ -42,6 +42,7 @@ TableRow row_of(const run_files::FoundRun& run) {
   row.silent = record.metrics.silent_frames();
   if (record.metrics.aie.value) row.aie_grey = finite(record.metrics.aie.value->all.aie_grey);
   if (record.metrics.ate.value) row.ate_rmse_m = finite(record.metrics.ate.value->stats.rmse);
+  if (record.metrics.ate_fitted.value) row.ate_fitted_m = finite(record.metrics.ate_fitted.value->stats.rmse);
   if (record.metrics.rpe_second.value) {
     row.rpe_second_m = finite(record.metrics.rpe_second.value->translation.rmse);
     row.rpe_second_rad = finite(record.metrics.rpe_second.value->rotation.rmse);
@@ -99,7 +100,7 @@ void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable
 std::vector<TableMean> means_of(const std::vector<TableRow>& rows) {
   std::vector<TableMean> means;
   std::vector<std::set<std::string>> recordings;
-  std::vector<std::array<std::size_t, 5>> counts;
+  std::vector<std::array<std::size_t, 6>> counts;
   for (const TableRow& row : rows) {
     const auto same = [&](const TableMean& m) {
       return m.data == row.data && m.imu == row.imu && m.truth == row.truth && m.variant == row.variant;
@@ -147,6 +148,9 @@ std::vector<std::string> footer_of(const ResultTable& table) {
       "ATE: rmse of positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM). Only "
       "tracked frames "
       "have a pose, so read it with the column tracked.",
+      "ATE fitted: the same after the offset between the camera and the body that the truth is of was fitted "
+      "as "
+      "well (markers of a motion capture); - where the motion does not tell it.",
       "RPE: rmse over 1 s (TUM, fixed delta), no alignment. fps: whole run, reading included."};
   if (std::ranges::any_of(table.rows, [](const TableRow& row) { return row.silent.value_or(0) > 0; })) {
     footer.push_back(
@@ -183,10 +187,11 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
 }
 
 std::span<const TableColumn> table_columns() {
-  static constexpr std::array<TableColumn, 5> kColumns = {
+  static constexpr std::array<TableColumn, 6> kColumns = {
       {{"aie_grey", "grey", "AIE", 1, 3, &TableValues::aie_grey},
        {"aie_common_grey", "grey", "AIE common", 1, 3, &TableValues::aie_common_grey},
        {"ate_rmse_m", "m", "ATE [cm]", 100, 2, &TableValues::ate_rmse_m},
+       {"ate_fitted_m", "m", "ATE fitted [cm]", 100, 2, &TableValues::ate_fitted_m},
        {"rpe_1s_m", "m", "RPE [cm/s]", 100, 2, &TableValues::rpe_second_m},
        {"rpe_1s_rad", "rad", "RPE [deg/s]", kDegreesPerRadian, 2, &TableValues::rpe_second_rad}}};
   return kColumns;

@@ -20,6 +20,7 @@ struct TableValues {
   std::optional<double> aie_grey;
   std::optional<double> aie_common_grey;  ///< on the pixels that all ok runs of this recording share
   std::optional<double> ate_rmse_m;
+  std::optional<double> ate_fitted_m;  ///< with a fitted offset of the body, where the motion tells it
   std::optional<double> rpe_second_m;  ///< rmse over 1 s
   std::optional<double> rpe_second_rad;
 };

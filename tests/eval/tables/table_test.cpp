@@ -38,6 +38,12 @@ class TableTest : public testing::InTemporaryFolder {
       AteResult ate;
       ate.stats = statistics(std::vector<double>{ate_m});
       record.metrics.ate = {ate, {}};
+      record.metrics.ate_fitted.reason = "the motion does not tell it";
+      if (variant == "full") {
+        trajectory_error::FittedOffset fit;
+        fit.stats = statistics(std::vector<double>{ate_m / 2});
+        record.metrics.ate_fitted = {fit, {}};
+      }
       IntensityAccumulator sums;
       sums.add_frame(pixels);
       record.metrics.aie = {sums.result(), {}};
@@ -140,7 +146,7 @@ TEST_F(TableTest, MarkdownLinesAreAligned) {
   for (std::string line; std::getline(lines, line) && line.starts_with("|"); ++rows) {
     if (rows == 0) width = line.size();
     EXPECT_EQ(line.size(), width) << line;
-    EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 14) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), '|'), 15) << line;
   }
   EXPECT_EQ(rows, 5);
 }
@@ -153,6 +159,8 @@ TEST_F(TableTest, CsvAndJsonCarryTheSameNumbers) {
   EXPECT_EQ(document.at("n_total"), 3);
   EXPECT_EQ(document.at("rows").at(0).at("ate_rmse_m"), 0.0123);
   EXPECT_TRUE(document.at("rows").at(2).at("ate_rmse_m").is_null());
+  EXPECT_EQ(document.at("rows").at(0).at("ate_fitted_m"), 0.0123 / 2);
+  EXPECT_TRUE(document.at("rows").at(1).at("ate_fitted_m").is_null());
   std::istringstream lines(render_table(*table, TableFormat::csv));
   std::string header, full;
   std::getline(lines, header);
