@@ -58,6 +58,7 @@ class Update {
     result.map_cost_posterior = map_cost(now, quadratic.cost(now.timing_s()));
     result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
+    result.timing = timing_at_posterior(now, quadratic.timing);
     result.solution = now.y;
     return result;
   }
@@ -150,6 +151,19 @@ class Update {
     sum.cost += step.dot(quadratic.by_reference.gradient) + 0.5 * step.dot(change);
     sum.gradient += change;
     return sum;
+  }
+
+  PoseTimingQuadratic timing_at_posterior(const Iterate& now, const TimingQuadratic& timing) const {
+    const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
+    const SensorErrors& prior = prior_.mean.sensors;
+    PoseTimingQuadratic result;
+    result.timing_s =
+        Vector3d(prior.color_readout_s, prior.depth_readout_s, prior.depth_delay_s) + now.timing_s();
+    const auto by_reference = timing.with_poses.topRows<kPoseSize>();
+    result.with_pose = by_reference + timing.with_poses.bottomRows<kPoseSize>();
+    result.information = timing.information;
+    result.gradient = timing.gradient + by_reference.transpose() * step + timing.information * now.timing_s();
+    return result;
   }
 
   /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.
