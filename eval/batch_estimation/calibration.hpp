@@ -27,7 +27,7 @@ struct CalibrationOptions {
   double translation_prior_m = 0.1;
   double time_offset_prior_s = 0.05;
   double scale_prior = 0.03;  ///< of the IMU's axes, around the recording's; that of timing is the rig's
-  int max_rounds = 3;         ///< 2 or more: the first one is loose on purpose, and never the result
+  int max_rounds = 4;         ///< 2 or more: the first one is loose on purpose, and never the result
 };
 
 /// A value with its standard deviation.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -68,6 +69,53 @@ TEST(Calibration, RecoversWhatWasDisturbed) {
   EXPECT_GT(along, 0.9);
 }
 
+/// Depth that is later than its stamps say and read row by row, and an IMU whose scales are off.
+TEST(Calibration, FindsTheTimingOfDepthAndTheScalesOfTheImu) {
+  const SensorTiming truth{.depth_readout_s = 0.02, .depth_delay_s = 0.006};
+  const testing::SimulatedRun run = testing::simulate(kFrames, truth, {1.0, 1.5, -1.2});
+  Recording recording = recording_of(run);
+  const auto load = recording.load_frame;
+  recording.load_frame = [load](std::size_t k) {
+    auto frame = load(k);
+    if (frame) frame->depth_offset_ns = 0;
+    return frame;
+  };
+  recording.rig.timing = {.depth_readout_sigma_s = kUnknownReadoutSigma_s,
+                          .depth_delay_sigma_s = kUnknownDelaySigma_s};
+  for (ImuSample& sample : recording.imu) sample.angular_velocity_radps *= 1.02;
+  const Workers workers(1);
+  Config config;
+  config.photometric.noise_grey = 4;
+  const auto found = calibrate(recording, config, {}, workers, {});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  const SensorTiming& timing = found->timing;
+  EXPECT_NEAR(timing.depth_delay_s, truth.depth_delay_s, 0.001);
+  EXPECT_NEAR(timing.depth_readout_s, truth.depth_readout_s, 0.002);
+  EXPECT_EQ(timing.color_readout_s, 0.0);  // told as exact
+  EXPECT_EQ(timing.color_readout_sigma_s, 0.0);
+  // The body turns about one axis, so that only the scale along it is found.
+  const Vector3d axis = Vector3d(1.0, 1.5, -1.2).normalized();
+  EXPECT_NEAR(axis.cwiseAbs2().dot(found->gyroscope_scale.value), 1.02, 0.004);
+  EXPECT_TRUE(std::ranges::any_of(found->undetermined,
+                                  [](const Undetermined& u) { return u.parameter == "gyroscope_scale"; }));
+  const auto document = nlohmann::json::parse(to_json(*found, recording));
+  EXPECT_EQ(document["timing"]["depth_delay"]["value_s"], timing.depth_delay_s);
+  EXPECT_EQ(document["gyroscope_scale"]["value"][0], found->gyroscope_scale.value[0]);
+}
+
+/// Frames of one angular rate are distorted alike: the read-out of colour does not show.
+TEST(Calibration, SaysWhatSteadyMotionDoesNotTell) {
+  const testing::SimulatedRun run = testing::simulate(20);
+  Recording recording = recording_of(run);
+  recording.rig.timing.color_readout_sigma_s = kUnknownReadoutSigma_s;
+  const Workers workers(1);
+  const auto found = calibrate(recording, Config{}, {.max_rounds = 2}, workers, {});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  EXPECT_GT(found->timing.color_readout_sigma_s, 0.5 * kUnknownReadoutSigma_s);
+  EXPECT_NE(to_text(*found, recording).find("not determined by this motion: color_readout"),
+            std::string::npos);
+}
+
 TEST(Calibration, SaysThatAnImuIsMadeOfTheTruth) {
   Recording recording;
   EXPECT_EQ(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
@@ -82,11 +130,17 @@ TEST(Calibration, WritesAFileThatReadsBack) {
   found.frames = 100;
   found.T_imu_camera = {so3_exp({0.1, -0.2, 0.3}), {0.01, 0.02, 0.03}};
   found.time_offset_s = 0.0075;
+  found.timing = {0.0331, 0.0302, -0.018, 0.0002, 0.0003, 0.0004};
+  found.gyroscope_scale.value = {1.01, 0.99, 1.02};
+  found.accelerometer_scale.value = {1, 1, 1};
   const RigCalibration rig = calibrated_rig(recording, found);
   ASSERT_TRUE(rig.imu.has_value());
   EXPECT_EQ(rig.imu->T_imu_camera.translation, found.T_imu_camera.translation);
   EXPECT_EQ(rig.imu->time_offset_s, 0.0075);
   EXPECT_EQ(rig.imu->noise.gyroscope_radps_sqrthz, run.rig.imu_noise.gyroscope_radps_sqrthz);
+  EXPECT_EQ(rig.color.timing.depth_delay_s, -0.018);
+  EXPECT_EQ(rig.color.timing.depth_delay_sigma_s, 0.0004);
+  EXPECT_EQ(rig.imu->gyroscope_scale, Vector3d(1.01, 0.99, 1.02));
   EXPECT_NE(rig.source.find("100 frames of textured room"), std::string::npos);
 }
 
