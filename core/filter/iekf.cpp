@@ -58,7 +58,7 @@ class Update {
     result.map_cost_posterior = map_cost(now, quadratic.cost(now.timing_s()));
     result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
-    result.timing = timing_at_posterior(now, timing_);
+    result.timing = timing_at_posterior(now, quadratic.timing);
     result.solution = now.y;
     return result;
   }
@@ -113,23 +113,9 @@ class Update {
     return result;
   }
 
-  /// Of the measurement, without what it does not tell.
-  MeasurementQuadratic linearise(const PoseHypothesis& poses, int stage, bool gate) {
-    MeasurementQuadratic quadratic = measurement_.linearise(poses, stage, gate);
-    timing_ = quadratic.timing;
-    if (!timing_.tells_color_readout) {
-      TimingQuadratic& timing = quadratic.timing;
-      timing.with_poses.col(0).setZero();
-      timing.information.row(0).setZero();
-      timing.information.col(0).setZero();
-      timing.gradient[0] = 0;
-    }
-    return quadratic;
-  }
-
   void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,
                      IekfResult& result) {
-    quadratic = linearise(now.poses, stage, false);
+    quadratic = measurement_.linearise(now.poses, stage, false);
     if (last) result.map_cost_prior = map_cost(now, quadratic.cost(now.timing_s()));
     result.converged = false;
     bool gated = false;
@@ -141,10 +127,10 @@ class Update {
                          is_small_step(before.T_world_imu_by_model, now.poses.T_world_imu_by_model);
       // The next stage linearises by itself where this one ends.
       if (!last && (result.converged || iteration + 1 == budget)) break;
-      quadratic = linearise(now.poses, stage, last);
+      quadratic = measurement_.linearise(now.poses, stage, last);
       gated = last;
     }
-    if (last && !gated) quadratic = linearise(now.poses, stage, true);
+    if (last && !gated) quadratic = measurement_.linearise(now.poses, stage, true);
   }
 
   bool is_small_step(const SE3& from, const SE3& to) const {
@@ -171,7 +157,6 @@ class Update {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     const SensorErrors& prior = prior_.mean.sensors;
     PoseTimingQuadratic result;
-    result.tells_color_readout = timing.tells_color_readout;
     result.timing_s =
         Vector3d(prior.color_readout_s, prior.depth_readout_s, prior.depth_delay_s) + now.timing_s();
     const auto by_reference = timing.with_poses.topRows<kPoseSize>();
@@ -234,7 +219,6 @@ class Update {
   const Eigen::Matrix<double, kStateSize, kMeasuredSize> gain_columns_;  ///< P B^T
   const TangentVector known_ = known_tangents(prior_.mean);
   const MeasuredMatrix measured_covariance_;  ///< S = B P B^T
-  TimingQuadratic timing_;                    ///< all of it, of the last linearisation
 };
 
 }  // namespace

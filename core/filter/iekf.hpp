@@ -46,8 +46,6 @@ struct TimingQuadratic {
       Eigen::Matrix<double, 2 * kPoseSize, kTimingSize>::Zero();  ///< information shared with the tangents
   Matrix3d information = Matrix3d::Zero();
   Vector3d gradient = Vector3d::Zero();
-  /// False: what depends on the read-out of colour is too noisy to learn from, and an update leaves it out.
-  bool tells_color_readout = true;
 
   /// What a timing error adds to the cost if the poses have moved on by a step.
   [[nodiscard]] double cost(const Vector3d& timing_s, const TangentVector& step) const {
@@ -71,7 +69,6 @@ struct MeasurementQuadratic {
 /// estimators that put a pose and a timing of their own in.
 struct PoseTimingQuadratic {
   Vector3d timing_s = Vector3d::Zero();  ///< around which: as SensorErrors count it
-  bool tells_color_readout = true;       ///< false: that is to be eliminated, not learnt
   Eigen::Matrix<double, kPoseSize, kTimingSize> with_pose =
       Eigen::Matrix<double, kPoseSize, kTimingSize>::Zero();  ///< information shared with the pose's tangent
   Matrix3d information = Matrix3d::Zero();

@@ -127,14 +127,14 @@ void PatchMeasurement::add_timing(std::size_t patch, const patches::PosedCamera&
   const ReadoutMotion& motion = frame_->motion;
   constexpr int kPose = filter::kPoseSize;
 
-  const filter::PoseQuadratic& color = states_[patch].photometric;
-  const Vector6d by_color = now * motion.rate - before * motion.reference_rate;
-  const Vector6d color_information = color.information * by_color / photometric_variance_;
-  sum.tells_color_readout = motion.tells_color_readout;
-  sum.with_poses.col(0).head<kPose>() += color_information;
-  sum.information(0, 0) += by_color.dot(color_information);
-  sum.gradient[0] += by_color.dot(color.gradient) / photometric_variance_;
-
+  if (motion.tells_color_readout) {
+    const filter::PoseQuadratic& color = states_[patch].photometric;
+    const Vector6d by_color = now * motion.rate - before * motion.reference_rate;
+    const Vector6d color_information = color.information * by_color / photometric_variance_;
+    sum.with_poses.col(0).head<kPose>() += color_information;
+    sum.information(0, 0) += by_color.dot(color_information);
+    sum.gradient[0] += by_color.dot(color.gradient) / photometric_variance_;
+  }
   const filter::PoseQuadratic& depth = states_[patch].geometric;
   const Eigen::RowVector2d by_readout_and_delay(now, 1.0);
   const Vector6d depth_information = depth.information * motion.rate / geometric_variance_;

@@ -47,20 +47,9 @@ VisualTiming visual_timing(const health::PoseEvidence& evidence) {
   const filter::PoseTimingQuadratic& timing = evidence.timing;
   const Matrix6d known = inverse_of_known(
       Eigen::SelfAdjointEigenSolver<Matrix6d>(evidence.quadratic.information), kMinInformation);
-  Matrix3d information = timing.information - timing.with_pose.transpose() * known * timing.with_pose;
-  Vector3d gradient = timing.gradient - timing.with_pose.transpose() * known * evidence.quadratic.gradient;
-  if (!timing.tells_color_readout) {
-    // As unknown in this frame as it pleases: depth must not be blamed for it.
-    const double color = information(0, 0);
-    const Vector3d with_color = information.col(0);
-    if (color > kLeast) {
-      gradient -= with_color * (gradient[0] / color);
-      information -= with_color * with_color.transpose() / color;
-    }
-    information.row(0).setZero();
-    information.col(0).setZero();
-    gradient[0] = 0;
-  }
+  const Matrix3d information = timing.information - timing.with_pose.transpose() * known * timing.with_pose;
+  const Vector3d gradient =
+      timing.gradient - timing.with_pose.transpose() * known * evidence.quadratic.gradient;
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(information);
   VisualTiming result;
   result.timing_s = timing.timing_s;
