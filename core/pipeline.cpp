@@ -156,8 +156,9 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
                           std::max(1.0, now.residual_scale.geometric)};
     return false;
   }
-  report.evidence = health::PoseEvidence{now.reference.timestamp_ns, prior.mean.T_world_imu_reference,
-                                         update.posterior.mean.T_world_imu, update.measurement};
+  report.evidence =
+      health::PoseEvidence{now.reference.timestamp_ns, prior.mean.T_world_imu_reference,
+                           update.posterior.mean.T_world_imu, update.measurement, update.timing};
   now.turned_rad +=
       rotation_angle_rad(now.estimate->mean.T_world_imu.rotation, update.posterior.mean.T_world_imu.rotation);
   now.estimate = update.posterior;

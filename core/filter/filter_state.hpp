@@ -59,7 +59,7 @@ struct FilterState {
   Vector3d gravity_direction_world = Vector3d::UnitY();  ///< unit, downwards
   /// Body rate. With an IMU it follows the gyroscope; without one it is what constant velocity extrapolates.
   Vector3d angular_velocity_imu_radps = Vector3d::Zero();
-  double angular_velocity_noise_radps = 0;  ///< of it, by axis, that is new in each frame; no state
+  double angular_velocity_noise_radps = 0;  ///< of it, by axis, new in each frame, by data sheet; no state
   /// IMU clock minus camera clock: a frame stamped t shows the pose at t + offset of the IMU's clock.
   double imu_time_offset_s = 0;
   SensorErrors sensors;

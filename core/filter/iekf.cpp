@@ -59,6 +59,7 @@ class Update {
     result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
     result.correction_by_model = correction_by_model(now, quadratic);
+    result.timing = timing_at_posterior(now, quadratic.timing);
     result.solution = now.y;
     return result;
   }
@@ -163,6 +164,19 @@ class Update {
     const MeasuredVector without =
         system.partialPivLu().solve(others.information * now.measured - others.gradient);
     return (now.measured - measured_covariance_ * without).segment<kPoseSize>(kPoseSize);
+  }
+
+  PoseTimingQuadratic timing_at_posterior(const Iterate& now, const TimingQuadratic& timing) const {
+    const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
+    const SensorErrors& prior = prior_.mean.sensors;
+    PoseTimingQuadratic result;
+    result.timing_s =
+        Vector3d(prior.color_readout_s, prior.depth_readout_s, prior.depth_delay_s) + now.timing_s();
+    const auto by_reference = timing.with_poses.topRows<kPoseSize>();
+    result.with_pose = by_reference + timing.with_poses.bottomRows<kPoseSize>();
+    result.information = timing.information;
+    result.gradient = timing.gradient + by_reference.transpose() * step + timing.information * now.timing_s();
+    return result;
   }
 
   /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.

@@ -65,6 +65,16 @@ struct MeasurementQuadratic {
   }
 };
 
+/// How the cost depends on the timing around a pose and a timing, in addition to a PoseQuadratic there: for
+/// estimators that put a pose and a timing of their own in.
+struct PoseTimingQuadratic {
+  Vector3d timing_s = Vector3d::Zero();  ///< around which: as SensorErrors count it
+  Eigen::Matrix<double, kPoseSize, kTimingSize> with_pose =
+      Eigen::Matrix<double, kPoseSize, kTimingSize>::Zero();  ///< information shared with the pose's tangent
+  Matrix3d information = Matrix3d::Zero();
+  Vector3d gradient = Vector3d::Zero();
+};
+
 using MeasuredVector = Eigen::Matrix<double, kMeasuredSize, 1>;
 using MeasuredMatrix = Eigen::Matrix<double, kMeasuredSize, kMeasuredSize>;
 
@@ -93,7 +103,8 @@ class PoseMeasurement {
 struct IekfResult {
   GaussianState posterior;
   MeasuredVector solution = MeasuredVector::Zero();  ///< y of the last iterate
-  PoseQuadratic measurement;  ///< the last linearisation, at the posterior, without the prior
+  PoseQuadratic measurement;   ///< the last linearisation, at the posterior, without the prior
+  PoseTimingQuadratic timing;  ///< the same, around the timing of the last iterate
   /// How the measurement by the model moved the pose, which without it would be elsewhere: tangent of
   /// T_world_imu (rotation in rad, world position in m).
   Vector6d correction_by_model = Vector6d::Zero();

@@ -34,6 +34,7 @@ struct PoseEvidence {
   SE3 T_world_imu_reference;      ///< the pose that they were cut at
   SE3 T_world_imu;                ///< where the quadratic was taken: the posterior
   filter::PoseQuadratic quadratic;
+  filter::PoseTimingQuadratic timing;  ///< there
 };
 
 /// What happened in one frame.

@@ -32,8 +32,7 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   y.T_world_imu.translation += dt * x.velocity_world_mps + 0.5 * dt * dt * gravity + R * imu.delta_position_m;
   y.velocity_world_mps += dt * gravity + R * imu.delta_velocity_mps;
   y.angular_velocity_imu_radps = imu.angular_velocity_end_radps;
-  y.angular_velocity_noise_radps =
-      config.imu_noise_factor * noise.gyroscope_radps_sqrthz / std::sqrt(imu.rate_averaged_s);
+  y.angular_velocity_noise_radps = noise.gyroscope_radps_sqrthz / std::sqrt(imu.rate_averaged_s);
 
   filter::StateMatrix& F = result.transition;
   const Eigen::Matrix<double, 3, 2> gravity_by_delta =
@@ -71,7 +70,8 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
   add_random_walk(Q, filter::kAccelerometerBias, 3,
                   config.imu_noise_factor * noise.accelerometer_bias_mps3_sqrthz, dt);
   add_random_walk(Q, filter::kGravity, 2, config.gravity_noise_rad_sqrthz, dt);
-  Q.diagonal().segment<3>(filter::kAngularVelocity).array() += square(y.angular_velocity_noise_radps);
+  Q.diagonal().segment<3>(filter::kAngularVelocity).array() +=
+      square(config.imu_noise_factor * y.angular_velocity_noise_radps);
 
   result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
   return result;

@@ -10,18 +10,13 @@
 
 #include "core/prediction/imu_preintegration.hpp"
 #include "core/smoother/batch_problem.hpp"
+#include "core/smoother/block_scatter.hpp"
 #include "core/smoother/selected_inverse.hpp"
+#include "core/smoother/visual_scale.hpp"
 
 namespace fusebench::smoother {
 
 namespace {
-
-/// The two factors that the visual information is divided by.
-struct VisualScale {
-  double variance = 1;
-  double correlation = 1;
-  [[nodiscard]] double product() const { return variance * correlation; }
-};
 
 Result<void> check_input(const BatchInput& input, const BatchOptions& options) {
   check(input.initial.size() == input.instants_ns.size(), "each frame has a state");
@@ -39,10 +34,16 @@ Result<void> check_input(const BatchInput& input, const BatchOptions& options) {
     double low;
     double high;
   };
+  for (const VisualTiming& timing : input.timing)
+    check(timing.frame < input.instants_ns.size(), "a timing is of a frame of the recording");
   for (const Range& r :
        {Range{"rotation_prior_rad", options.rotation_prior_rad, 0, 10},
         Range{"translation_prior_m", options.translation_prior_m, 0, 100},
         Range{"time_offset_prior_s", options.time_offset_prior_s, 0, 10},
+        Range{"gyroscope_scale_prior", options.gyroscope_scale_prior, 0, 1},
+        Range{"accelerometer_scale_prior", options.accelerometer_scale_prior, 0, 1},
+        Range{"timing_prior_s (least)", options.timing_prior_s.minCoeff(), 0, 10},
+        Range{"timing_prior_s (most)", options.timing_prior_s.maxCoeff(), 0, 10},
         Range{"gyroscope_bias_sigma_radps", options.gyroscope_bias_sigma_radps, 1e-9, 10},
         Range{"accelerometer_bias_sigma_mps2", options.accelerometer_bias_sigma_mps2, 1e-9, 100},
         Range{"outlier_sigmas", options.outlier_sigmas, 0.1, 1e6}}) {
@@ -74,6 +75,7 @@ BatchUnknowns initial_unknowns(const BatchInput& input) {
   x.gravity_direction_world = input.initial.back().gravity_direction_world;
   x.T_imu_camera = input.T_imu_camera;
   x.time_offset_s = input.time_offset_s;
+  x.scales = input.scales;
   return x;
 }
 
@@ -82,8 +84,8 @@ Result<std::vector<prediction::PreintegratedImu>> integrate(const BatchInput& in
   std::vector<prediction::PreintegratedImu> increments;
   for (std::size_t k = 0; k + 1 < input.instants_ns.size(); ++k) {
     auto imu = prediction::preintegrate(input.imu, input.instants_ns[k] + offset_ns,
-                                        input.instants_ns[k + 1] + offset_ns,
-                                        {x.bias[k].head<3>(), x.bias[k].tail<3>()}, input.imu_noise);
+                                        input.instants_ns[k + 1] + offset_ns, BatchProblem::errors_at(x, k),
+                                        input.imu_noise);
     if (!imu) return tl::unexpected(imu.error());
     increments.push_back(*imu);
   }
@@ -125,35 +127,6 @@ double squared(const std::vector<double>& residuals, std::size_t begin, std::siz
   return sum;
 }
 
-/// 1 + 2 sum of the autocorrelation of residuals over frames, to the first lag below 0.05 (initial positive
-/// sequence, Geyer 1992).
-double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_of_frame) {
-  constexpr double kNegligible = 0.05;
-  constexpr std::size_t kMaxLag = 30;
-  double power = 0;
-  double count = 0;
-  for (const auto& r : residual_of_frame) {
-    if (!r) continue;
-    power += r->squaredNorm();
-    count += 1;
-  }
-  double factor = 1;
-  for (std::size_t lag = 1; lag <= kMaxLag; ++lag) {
-    double product = 0;
-    double pairs = 0;
-    for (std::size_t k = lag; k < residual_of_frame.size(); ++k) {
-      if (!residual_of_frame[k] || !residual_of_frame[k - lag]) continue;
-      product += residual_of_frame[k]->dot(*residual_of_frame[k - lag]);
-      pairs += 1;
-    }
-    if (pairs < 8) break;  // too few for an estimate
-    const double correlation = (product / pairs) / (power / count);
-    if (!(correlation > kNegligible)) break;
-    factor += 2 * correlation;
-  }
-  return factor;
-}
-
 class BatchSearch {
  public:
   BatchSearch(const BatchInput& input, const BatchOptions& options)
@@ -164,6 +137,7 @@ class BatchSearch {
  private:
   Result<void> round();
   void rescale(BatchProblem& problem, const BatchLinearisation& at, const SelectedInverse& inverse);
+  void rescale_timing(const BatchLinearisation& at, const SelectedInverse& inverse);
   void describe_frames(const BatchLinearisation& at, const SelectedInverse& inverse);
   void describe_common(const BatchLinearisation& at, const SelectedInverse& inverse);
 
@@ -171,6 +145,7 @@ class BatchSearch {
   const BatchOptions& options_;
   BatchUnknowns unknowns_;
   VisualScale scale_;
+  VisualScale timing_scale_;
   std::vector<prediction::PreintegratedImu> increments_;
   BatchEstimate estimate_;
 };
@@ -184,8 +159,8 @@ Result<void> BatchSearch::round() {
   auto increments = integrate(input_, unknowns_);
   if (!increments) return tl::unexpected(increments.error());
   increments_ = std::move(*increments);
-  BatchProblem problem(input_, options_, increments_, scale_.product(),
-                       options_.outlier_sigmas / std::sqrt(scale_.correlation), unknowns_);
+  BatchProblem problem(input_, options_, increments_, scale_.weighting(options_.outlier_sigmas),
+                       timing_scale_.weighting(options_.outlier_sigmas), unknowns_);
   if (!problem.solve()) return search_failed();
   const BatchLinearisation at = problem.linearise();
   const auto inverse = SelectedInverse::of(information_of(at));
@@ -193,6 +168,7 @@ Result<void> BatchSearch::round() {
   describe_frames(at, *inverse);
   describe_common(at, *inverse);
   rescale(problem, at, *inverse);
+  rescale_timing(at, *inverse);
   return {};
 }
 
@@ -227,6 +203,32 @@ void BatchSearch::rescale(BatchProblem& problem, const BatchLinearisation& at,
   scale_.correlation = correlation_factor(residual_of_frame);
 }
 
+/// The same for what the frames say of the timing. What few of them know is left as it is.
+void BatchSearch::rescale_timing(const BatchLinearisation& at, const SelectedInverse& inverse) {
+  constexpr double kLeastRedundancy = 10;
+  const std::size_t begin = 6 * input_.visual.size() + 9 * increments_.size();
+  const std::size_t end = begin + 3 * input_.timing.size();
+  std::vector<std::optional<Vector6d>> residual_of_frame(input_.instants_ns.size());
+  const double per_sigma = std::sqrt(timing_scale_.product());
+  double rank = 0;
+  for (std::size_t m = 0; m < input_.timing.size(); ++m) {
+    const VisualTiming& timing = input_.timing[m];
+    rank += timing.rank;
+    if (timing.rank == 0) continue;
+    Vector6d residual = Vector6d::Zero();
+    residual.head<3>() = Eigen::Map<const Vector3d>(&at.residuals[begin + 3 * m]) * per_sigma;
+    residual_of_frame[timing.frame] = residual;
+  }
+  estimate_.timing_variance_factor = timing_scale_.variance;
+  estimate_.timing_correlation_factor = timing_scale_.correlation;
+  const double redundancy =
+      rank - leverage(at.jacobian, static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end), inverse);
+  if (redundancy < kLeastRedundancy) return;
+  timing_scale_.variance =
+      std::clamp(timing_scale_.product() * squared(at.residuals, begin, end) / redundancy, 1e-6, 1e6);
+  timing_scale_.correlation = correlation_factor(residual_of_frame);
+}
+
 void BatchSearch::describe_frames(const BatchLinearisation& at, const SelectedInverse& inverse) {
   const BatchUnknowns& x = unknowns_;
   estimate_.frames.assign(x.position_world_m.size(), {});
@@ -251,6 +253,8 @@ void BatchSearch::describe_frames(const BatchLinearisation& at, const SelectedIn
 void BatchSearch::describe_common(const BatchLinearisation& at, const SelectedInverse& inverse) {
   estimate_.T_imu_camera = unknowns_.T_imu_camera;
   estimate_.time_offset_s = unknowns_.time_offset_s;
+  estimate_.scales = unknowns_.scales;
+  estimate_.timing_s = unknowns_.timing_s;
   estimate_.gravity_direction_world = unknowns_.gravity_direction_world;
   struct Part {
     int column;
@@ -258,16 +262,23 @@ void BatchSearch::describe_common(const BatchLinearisation& at, const SelectedIn
     int place;
   };
   const BatchColumns& columns = at.columns;
-  const std::array<Part, 4> parts = {Part{columns.gravity, 2, kCommonGravity},
+  const std::array<Part, 9> parts = {Part{columns.gravity, 2, kCommonGravity},
                                      Part{columns.imu_camera_rotation, 3, kCommonRotation},
                                      Part{columns.imu_camera_translation, 3, kCommonTranslation},
-                                     Part{columns.time_offset, 1, kCommonTimeOffset}};
+                                     Part{columns.time_offset, 1, kCommonTimeOffset},
+                                     Part{columns.gyroscope_scale, 3, kCommonGyroscopeScale},
+                                     Part{columns.accelerometer_scale, 3, kCommonAccelerometerScale},
+                                     Part{columns.timing[0], 1, kCommonTiming},
+                                     Part{columns.timing[1], 1, kCommonTiming + 1},
+                                     Part{columns.timing[2], 1, kCommonTiming + 2}};
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(columns.count, kBatchCommonSize);
   for (const Part& part : parts) {
     if (part.column >= 0) unit.block(part.column, part.place, part.size, part.size).setIdentity();
   }
-  const Eigen::MatrixXd covariance = unit.transpose() * inverse.columns(unit);
-  estimate_.common_covariance = 0.5 * (covariance + covariance.transpose());
+  const Eigen::MatrixXd to_common = inverse.columns(unit);
+  const Eigen::MatrixXd covariance = unit.transpose() * to_common;
+  estimate_.common_covariance =
+      enlarged_by_scatter(0.5 * (covariance + covariance.transpose()), at, to_common, blocks_in_time(input_));
 }
 
 Result<BatchEstimate> BatchSearch::run() {
@@ -277,6 +288,7 @@ Result<BatchEstimate> BatchSearch::run() {
   while (estimate_.rounds < options_.max_rounds && !estimate_.converged) {
     const BatchUnknowns before = unknowns_;
     const double scale_before = scale_.product();
+    const double timing_scale_before = timing_scale_.product();
     if (auto done = round(); !done) return tl::unexpected(done.error());
     ++estimate_.rounds;
     double bias_change = 0;
@@ -284,7 +296,8 @@ Result<BatchEstimate> BatchSearch::run() {
       bias_change = std::max(bias_change, (unknowns_.bias[k] - before.bias[k]).cwiseAbs().maxCoeff());
     estimate_.converged = std::abs(unknowns_.time_offset_s - before.time_offset_s) < kSteadyOffsetS &&
                           bias_change < kSteadyBias &&
-                          std::abs(scale_.product() / scale_before - 1) < kSteadyScale;
+                          std::abs(scale_.product() / scale_before - 1) < kSteadyScale &&
+                          std::abs(timing_scale_.product() / timing_scale_before - 1) < kSteadyScale;
   }
   return estimate_;
 }

@@ -45,12 +45,13 @@ ceres::CostFunction* vector_prior(const Eigen::Matrix<double, Size, 1>& expected
 }  // namespace
 
 BatchProblem::BatchProblem(const BatchInput& input, const BatchOptions& options,
-                           const std::vector<prediction::PreintegratedImu>& increments, double visual_scale,
-                           double outlier_sigmas, BatchUnknowns& unknowns)
+                           const std::vector<prediction::PreintegratedImu>& increments,
+                           const Weighting& visual, const Weighting& timing, BatchUnknowns& unknowns)
     : input_(input), options_(options), increments_(increments), unknowns_(unknowns) {
   add_unknowns();
-  add_visual(visual_scale, outlier_sigmas);
+  add_visual(visual);
   add_inertial();
+  add_timing(timing);
   add_priors();
 }
 
@@ -66,6 +67,9 @@ void BatchProblem::add_unknowns() {
   problem_.AddParameterBlock(x.T_imu_camera.rotation.coeffs().data(), 4, new RotationManifold);
   problem_.AddParameterBlock(x.T_imu_camera.translation.data(), 3);
   problem_.AddParameterBlock(&x.time_offset_s, 1);
+  problem_.AddParameterBlock(x.scales.gyroscope.data(), 3);
+  problem_.AddParameterBlock(x.scales.accelerometer.data(), 3);
+  for (double& timing_s : x.timing_s) problem_.AddParameterBlock(&timing_s, 1);
 
   problem_.SetParameterBlockConstant(x.rotation_world_imu.front().coeffs().data());
   problem_.SetParameterBlockConstant(x.position_world_m.front().data());
@@ -74,19 +78,31 @@ void BatchProblem::add_unknowns() {
   if (!(options_.translation_prior_m > 0))
     problem_.SetParameterBlockConstant(x.T_imu_camera.translation.data());
   if (!(options_.time_offset_prior_s > 0)) problem_.SetParameterBlockConstant(&x.time_offset_s);
+  if (!(options_.gyroscope_scale_prior > 0)) problem_.SetParameterBlockConstant(x.scales.gyroscope.data());
+  if (!(options_.accelerometer_scale_prior > 0))
+    problem_.SetParameterBlockConstant(x.scales.accelerometer.data());
+  for (int i = 0; i < 3; ++i)
+    if (!(options_.timing_prior_s[i] > 0)) problem_.SetParameterBlockConstant(&x.timing_s[i]);
+}
+
+prediction::InertialErrors BatchProblem::errors_at(const BatchUnknowns& unknowns, std::size_t frame) {
+  return {unknowns.bias[frame].head<3>(), unknowns.bias[frame].tail<3>(), Vector3d::Zero(),
+          unknowns.scales.gyroscope, unknowns.scales.accelerometer};
 }
 
 void BatchProblem::add_inertial() {
   BatchUnknowns& x = unknowns_;
   for (std::size_t k = 0; k < increments_.size(); ++k) {
     const prediction::PreintegratedImu& imu = increments_[k];
-    auto* residual = new InertialResidual{imu, x.bias[k].head<3>(), x.bias[k].tail<3>(), x.time_offset_s,
-                                          whitening_of(imu.covariance)};
+    auto* residual =
+        new InertialResidual{imu, errors_at(x, k), x.time_offset_s, whitening_of(imu.covariance)};
     inertial_.push_back(problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<InertialResidual, 9, 4, 3, 3, 6, 4, 3, 3, 3, 1>(residual), nullptr,
-        x.rotation_world_imu[k].coeffs().data(), x.position_world_m[k].data(), x.velocity_world_mps[k].data(),
-        x.bias[k].data(), x.rotation_world_imu[k + 1].coeffs().data(), x.position_world_m[k + 1].data(),
-        x.velocity_world_mps[k + 1].data(), x.gravity_direction_world.data(), &x.time_offset_s));
+        new ceres::AutoDiffCostFunction<InertialResidual, 9, 4, 3, 3, 6, 4, 3, 3, 3, 1, 3, 3>(residual),
+        nullptr, x.rotation_world_imu[k].coeffs().data(), x.position_world_m[k].data(),
+        x.velocity_world_mps[k].data(), x.bias[k].data(), x.rotation_world_imu[k + 1].coeffs().data(),
+        x.position_world_m[k + 1].data(), x.velocity_world_mps[k + 1].data(),
+        x.gravity_direction_world.data(), &x.time_offset_s, x.scales.gyroscope.data(),
+        x.scales.accelerometer.data()));
     auto* walk =
         new BiasWalkResidual{step_sigma(input_.imu_noise.gyroscope_bias_radps2_sqrthz, imu.duration_s),
                              step_sigma(input_.imu_noise.accelerometer_bias_mps3_sqrthz, imu.duration_s)};
@@ -96,16 +112,27 @@ void BatchProblem::add_inertial() {
   }
 }
 
-void BatchProblem::add_visual(double scale, double outlier_sigmas) {
+void BatchProblem::add_visual(const Weighting& weighting) {
   BatchUnknowns& x = unknowns_;
   for (const RelativeCameraMotion& motion : input_.visual) {
-    auto* residual = new VisualResidual{motion.T_reference_camera, whitening(motion) / std::sqrt(scale)};
+    auto* residual = new VisualResidual{motion, whitening(motion) / std::sqrt(weighting.scale)};
     visual_.push_back(problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<VisualResidual, 6, 4, 3, 4, 3, 4, 3>(residual),
-        new ceres::HuberLoss(outlier_sigmas), x.rotation_world_imu[motion.reference].coeffs().data(),
-        x.position_world_m[motion.reference].data(), x.rotation_world_imu[motion.frame].coeffs().data(),
-        x.position_world_m[motion.frame].data(), x.T_imu_camera.rotation.coeffs().data(),
-        x.T_imu_camera.translation.data()));
+        new ceres::AutoDiffCostFunction<VisualResidual, 6, 4, 3, 4, 3, 4, 3, 1, 1, 1>(residual),
+        new ceres::HuberLoss(weighting.outlier_sigmas),
+        x.rotation_world_imu[motion.reference].coeffs().data(), x.position_world_m[motion.reference].data(),
+        x.rotation_world_imu[motion.frame].coeffs().data(), x.position_world_m[motion.frame].data(),
+        x.T_imu_camera.rotation.coeffs().data(), x.T_imu_camera.translation.data(), &x.timing_s[0],
+        &x.timing_s[1], &x.timing_s[2]));
+  }
+}
+
+void BatchProblem::add_timing(const Weighting& weighting) {
+  BatchUnknowns& x = unknowns_;
+  for (const VisualTiming& timing : input_.timing) {
+    timing_.push_back(problem_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<TimingResidual, 3, 1, 1, 1>(
+            new TimingResidual{timing, 1 / std::sqrt(weighting.scale)}),
+        new ceres::HuberLoss(weighting.outlier_sigmas), &x.timing_s[0], &x.timing_s[1], &x.timing_s[2]));
   }
 }
 
@@ -136,6 +163,25 @@ void BatchProblem::add_priors() {
     rest_.push_back(problem_.AddResidualBlock(
         vector_prior<1>(Scalar(offset_expected_s), Scalar(options_.time_offset_prior_s)), nullptr,
         &x.time_offset_s));
+  }
+  add_sensor_priors();
+}
+
+void BatchProblem::add_sensor_priors() {
+  BatchUnknowns& x = unknowns_;
+  const auto add_scale = [&](Vector3d& scale, double sigma) {
+    if (!(sigma > 0)) return;
+    rest_.push_back(problem_.AddResidualBlock(vector_prior<3>(Vector3d::Zero(), Vector3d::Constant(sigma)),
+                                              nullptr, scale.data()));
+  };
+  add_scale(x.scales.gyroscope, options_.gyroscope_scale_prior);
+  add_scale(x.scales.accelerometer, options_.accelerometer_scale_prior);
+  using Scalar = Eigen::Matrix<double, 1, 1>;
+  for (int i = 0; i < 3; ++i) {
+    if (!(options_.timing_prior_s[i] > 0)) continue;
+    rest_.push_back(problem_.AddResidualBlock(
+        vector_prior<1>(Scalar(options_.timing_expected_s[i]), Scalar(options_.timing_prior_s[i])), nullptr,
+        &x.timing_s[i]));
   }
 }
 
@@ -176,8 +222,12 @@ BatchLinearisation BatchProblem::linearise() {
   columns.imu_camera_rotation = add(x.T_imu_camera.rotation.coeffs().data());
   columns.imu_camera_translation = add(x.T_imu_camera.translation.data());
   columns.time_offset = add(&x.time_offset_s);
+  columns.gyroscope_scale = add(x.scales.gyroscope.data());
+  columns.accelerometer_scale = add(x.scales.accelerometer.data());
+  for (std::size_t i = 0; i < columns.timing.size(); ++i)
+    columns.timing[i] = add(&x.timing_s[static_cast<Eigen::Index>(i)]);
 
-  for (const auto* group : {&visual_, &inertial_, &rest_})
+  for (const auto* group : {&visual_, &inertial_, &timing_, &rest_})
     options.residual_blocks.insert(options.residual_blocks.end(), group->begin(), group->end());
   ceres::CRSMatrix jacobian;
   problem_.Evaluate(options, nullptr, &result.residuals, nullptr, &jacobian);

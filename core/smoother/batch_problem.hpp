@@ -3,6 +3,7 @@
 
 #include <ceres/problem.h>
 
+#include <array>
 #include <vector>
 
 #include "core/prediction/imu_preintegration.hpp"
@@ -19,6 +20,8 @@ struct BatchUnknowns {
   Vector3d gravity_direction_world = Vector3d::UnitY();
   SE3 T_imu_camera;
   double time_offset_s = 0;
+  SensorScales scales;
+  Vector3d timing_s = Vector3d::Zero();
 };
 
 /// Where the parts of an unknown begin among the columns of the Jacobian; -1 for what is held fixed.
@@ -31,24 +34,34 @@ struct BatchColumns {
   int imu_camera_rotation = -1;
   int imu_camera_translation = -1;
   int time_offset = -1;
+  int gyroscope_scale = -1;
+  int accelerometer_scale = -1;
+  std::array<int, 3> timing = {-1, -1, -1};
   int count = 0;
 };
 
 /// Residuals and Jacobian where the search ended, robust weights applied. Rows: six for each visual motion in
-/// the order of the input, nine for each interval of the IMU, then the rest.
+/// the order of the input, nine for each interval of the IMU, three for each timing of the input, then the
+/// rest.
 struct BatchLinearisation {
   std::vector<double> residuals;
   SparseRowsd jacobian;
   BatchColumns columns;
 };
 
+/// Of measurements by the images: what their information is divided by, and the scale of Huber's loss in
+/// these units.
+struct Weighting {
+  double scale = 1;
+  double outlier_sigmas = 5;
+};
+
 class BatchProblem {
  public:
   /// All arguments must outlive the problem, which moves the unknowns. increments: one an interval.
-  /// visual_scale: what the visual information is divided by; outlier_sigmas: in these units.
   BatchProblem(const BatchInput& input, const BatchOptions& options,
-               const std::vector<prediction::PreintegratedImu>& increments, double visual_scale,
-               double outlier_sigmas, BatchUnknowns& unknowns);
+               const std::vector<prediction::PreintegratedImu>& increments, const Weighting& visual,
+               const Weighting& timing, BatchUnknowns& unknowns);
 
   /// False if Ceres gave up.
   [[nodiscard]] bool solve();
@@ -56,11 +69,16 @@ class BatchProblem {
   /// The residuals of a visual motion without robust weights.
   [[nodiscard]] Vector6d visual_residual(std::size_t motion) const;
 
+  /// What a search changes, and where the increments are integrated.
+  [[nodiscard]] static prediction::InertialErrors errors_at(const BatchUnknowns& unknowns, std::size_t frame);
+
  private:
   void add_unknowns();
   void add_inertial();
-  void add_visual(double scale, double outlier_sigmas);
+  void add_visual(const Weighting& weighting);
+  void add_timing(const Weighting& weighting);
   void add_priors();
+  void add_sensor_priors();
 
   const BatchInput& input_;
   const BatchOptions& options_;
@@ -69,6 +87,7 @@ class BatchProblem {
   ceres::Problem problem_;
   std::vector<ceres::ResidualBlockId> visual_;
   std::vector<ceres::ResidualBlockId> inertial_;
+  std::vector<ceres::ResidualBlockId> timing_;
   std::vector<ceres::ResidualBlockId> rest_;
 };
 

@@ -16,11 +16,17 @@
 
 namespace fusebench::smoother {
 
+/// Derivative of a pose or motion by errors of the timing (read-out of colour, read-out of depth, delay of
+/// depth; s).
+using ByTiming = Eigen::Matrix<double, 6, filter::kTimingSize>;
+
 /// Camera pose as measured by the images, without the prior. Covariance of (rotation: right, rad; position:
 /// world, m).
 struct VisualPose {
   SE3 T_world_camera;
   Matrix6d covariance = Matrix6d::Zero();
+  Vector3d timing_s = Vector3d::Zero();   ///< that the images are read with here
+  ByTiming by_timing = ByTiming::Zero();  ///< of the pose, in its tangent as above
 };
 
 /// The optimum of the evidence, which is of the IMU's pose, as a pose of the camera. T_imu_camera: the
@@ -36,9 +42,25 @@ struct RelativeCameraMotion {
   std::size_t frame = 0;      ///< index of the later frame
   SE3 T_reference_camera;
   Matrix6d covariance = Matrix6d::Identity();
+  Vector3d timing_s = Vector3d::Zero();   ///< that it was measured with
+  ByTiming by_timing = ByTiming::Zero();  ///< how it changes with it, in the tangent above
 };
 
+/// What the images of a frame say of the timing with the best pose for each: the residual root * (timing -
+/// timing_s) + residual has unit covariance, as far as the filter knows.
+struct VisualTiming {
+  std::size_t frame = 0;
+  Vector3d timing_s = Vector3d::Zero();
+  Matrix3d root = Matrix3d::Zero();      ///< symmetric root of the information
+  Vector3d residual = Vector3d::Zero();  ///< zero along what the frame says nothing of
+  int rank = 0;                          ///< of the information
+};
+
+/// Frames without motion or without an angular acceleration tell little or nothing.
+[[nodiscard]] VisualTiming visual_timing(const health::PoseEvidence& evidence);
+
 /// The motion between two such poses, whose errors are taken as independent (their scale is estimated later).
+/// Its timing is that of the later one.
 [[nodiscard]] RelativeCameraMotion motion_between(const VisualPose& reference, const VisualPose& camera);
 
 /// The symmetric root of the information, so that residuals of neighbouring frames have the same axes.

@@ -1,6 +1,7 @@
 // The residuals of the batch estimator, for Ceres' automatic derivatives. Parameter blocks: rotations as
 // quaternions x, y, z, w; positions, velocities (world); biases as gyroscope, then accelerometer; the
-// direction of gravity; the extrinsic of the camera; the offset of the IMU's clock.
+// direction of gravity; the extrinsic of the camera; the offset of the IMU's clock; scale errors of gyroscope
+// and accelerometer; errors of the image sensors' timing, one block each.
 #pragma once
 
 #include <ceres/rotation.h>
@@ -39,31 +40,35 @@ Eigen::Map<const Vector3<T>> as_vector(const T* x) {
   return Eigen::Map<const Vector3<T>>(x);
 }
 
-/// Increments that were integrated with some biases and some offset of the clock, and their first order
-/// dependence on both.
+/// Increments that were integrated with some biases, scales and some offset of the clock, and their first
+/// order dependence on all of these.
 struct InertialResidual {
   prediction::PreintegratedImu imu;
-  Vector3d gyroscope_bias;         ///< that it was integrated with
-  Vector3d accelerometer_bias;     ///< the same
-  double time_offset_s;            ///< the same
-  prediction::Matrix9d whitening;  ///< of (rotation, velocity, position)
+  prediction::InertialErrors errors;  ///< that it was integrated with
+  double time_offset_s;               ///< the same
+  prediction::Matrix9d whitening;     ///< of (rotation, velocity, position)
 
   template <class T>
   bool operator()(const T* rotation_i, const T* position_i, const T* velocity_i, const T* bias_i,
                   const T* rotation_j, const T* position_j, const T* velocity_j, const T* gravity_direction,
-                  const T* time_offset, T* residual) const {
+                  const T* time_offset, const T* gyroscope_scale, const T* accelerometer_scale,
+                  T* residual) const {
     const T shift = time_offset[0] - time_offset_s;
-    const Vector3<T> by_gyroscope = as_vector(bias_i) - gyroscope_bias;
-    const Vector3<T> by_accelerometer = as_vector(bias_i + 3) - accelerometer_bias;
-    const Vector3<T> turn =
-        imu.rotation_by_errors.leftCols<3>() * by_gyroscope + imu.rotation_by_time_offset * shift;
+    Eigen::Matrix<T, 12, 1> change;
+    change << as_vector(bias_i) - errors.gyroscope_bias_radps,
+        as_vector(bias_i + 3) - errors.accelerometer_bias_mps2,
+        as_vector(gyroscope_scale) - errors.gyroscope_scale,
+        as_vector(accelerometer_scale) - errors.accelerometer_scale;
+    const auto by_change = [&](const prediction::ByInertialErrors& by_errors) -> Vector3<T> {
+      return by_errors.leftCols<6>() * change.template head<6>() +
+             by_errors.rightCols<6>() * change.template tail<6>();
+    };
+    const Vector3<T> turn = by_change(imu.rotation_by_errors) + imu.rotation_by_time_offset * shift;
     const Eigen::Quaternion<T> R_measured = imu.delta_rotation.cast<T>() * rotation_by<T>(turn);
     const Vector3<T> velocity_change =
-        imu.delta_velocity_mps + imu.velocity_by_errors.leftCols<3>() * by_gyroscope +
-        imu.velocity_by_errors.middleCols<3>(3) * by_accelerometer + imu.velocity_by_time_offset * shift;
+        imu.delta_velocity_mps + by_change(imu.velocity_by_errors) + imu.velocity_by_time_offset * shift;
     const Vector3<T> position_change =
-        imu.delta_position_m + imu.position_by_errors.leftCols<3>() * by_gyroscope +
-        imu.position_by_errors.middleCols<3>(3) * by_accelerometer + imu.position_by_time_offset * shift;
+        imu.delta_position_m + by_change(imu.position_by_errors) + imu.position_by_time_offset * shift;
 
     const double dt = imu.duration_s;
     const Eigen::Quaternion<T> R_imu_world = as_rotation(rotation_i).conjugate();
@@ -98,28 +103,45 @@ struct BiasWalkResidual {
   }
 };
 
-/// Relative camera motion measured by the images.
+/// Relative camera motion measured by the images, which depends on the timing that they were read with.
 struct VisualResidual {
-  SE3 T_reference_camera;  ///< as measured
+  RelativeCameraMotion motion;
   Matrix6d whitening;
 
   template <class T>
   bool operator()(const T* rotation_reference, const T* position_reference, const T* rotation,
                   const T* position, const T* rotation_imu_camera, const T* position_imu_camera,
-                  T* residual) const {
+                  const T* color_readout, const T* depth_readout, const T* depth_delay, T* residual) const {
     const Eigen::Quaternion<T> R_imu_camera = as_rotation(rotation_imu_camera);
     const Eigen::Quaternion<T> R_world_reference = as_rotation(rotation_reference) * R_imu_camera;
     const Vector3<T> lever = as_vector(position_imu_camera);
     const Vector3<T> camera = as_rotation(rotation) * lever + as_vector(position);
     const Vector3<T> reference = as_rotation(rotation_reference) * lever + as_vector(position_reference);
+    const SE3& measured = motion.T_reference_camera;
     Eigen::Matrix<T, 6, 1> error;
     error.template head<3>() =
-        rotation_vector<T>(T_reference_camera.rotation.conjugate().cast<T>() *
+        rotation_vector<T>(measured.rotation.conjugate().cast<T>() *
                            (R_world_reference.conjugate() * (as_rotation(rotation) * R_imu_camera)));
     error.template tail<3>() =
-        R_world_reference.conjugate() * Vector3<T>(camera - reference) - T_reference_camera.translation;
+        R_world_reference.conjugate() * Vector3<T>(camera - reference) - measured.translation;
+    const Vector3<T> timing(color_readout[0], depth_readout[0], depth_delay[0]);
+    error -= motion.by_timing * Vector3<T>(timing - motion.timing_s);
     Eigen::Map<Eigen::Matrix<T, 6, 1>> result(residual);
     result = whitening * error;
+    return true;
+  }
+};
+
+/// What the images of a frame say of the timing among themselves.
+struct TimingResidual {
+  VisualTiming measured;
+  double per_sigma;  ///< factor on the residual
+
+  template <class T>
+  bool operator()(const T* color_readout, const T* depth_readout, const T* depth_delay, T* residual) const {
+    const Vector3<T> timing(color_readout[0], depth_readout[0], depth_delay[0]);
+    Eigen::Map<Vector3<T>> result(residual);
+    result = (measured.root * Vector3<T>(timing - measured.timing_s) + measured.residual) * T(per_sigma);
     return true;
   }
 };

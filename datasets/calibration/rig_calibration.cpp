@@ -26,13 +26,15 @@ constexpr std::array<std::string_view, 12> kDepthKeys = {
     "cy_px",           "T_color_depth", "readout_s", "readout_sigma_s", "delay_s", "delay_sigma_s"};
 constexpr std::array<std::string_view, 7> kDepthCameraKeys = {
     "width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px", "T_color_depth"};
-constexpr std::array<std::string_view, 7> kImuKeys = {"T_imu_color",
+constexpr std::array<std::string_view, 9> kImuKeys = {"T_imu_color",
                                                       "T_imu_depth",
                                                       "gyroscope_noise_radps_sqrthz",
                                                       "accelerometer_noise_mps2_sqrthz",
                                                       "gyroscope_bias_walk_radps2_sqrthz",
                                                       "accelerometer_bias_walk_mps3_sqrthz",
-                                                      "time_offset_s"};
+                                                      "time_offset_s",
+                                                      "gyroscope_scale",
+                                                      "accelerometer_scale"};
 
 struct Range {
   double least;
@@ -45,6 +47,7 @@ constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would overrid
 constexpr Range kWalk{0, 100};
 constexpr Range kReadout{0, 1};
 constexpr Range kOffset{-10, 10};
+constexpr Range kScale{0.5, 2};
 constexpr double kMaxTranslation_m = 1000;  // between sensors of one rig
 
 /// One of the three tables: its entries by key, and the first error.
@@ -127,6 +130,20 @@ class Section {
              "offsets are in metres");
     }
     return offset_m;
+  }
+
+  /// Ones if the key is not there.
+  [[nodiscard]] Vector3d scale(const std::string& key) {
+    const std::vector<double> xyz = numbers(key, 3);
+    if (xyz.empty()) return Vector3d::Ones();
+    const Vector3d scale(xyz[0], xyz[1], xyz[2]);
+    if (scale.minCoeff() < kScale.least || scale.maxCoeff() > kScale.most) {
+      report(fmt::format("{}: the numbers of {} must be from {} to {}", entries_.at(key)->place,
+                         entries_.at(key)->key, kScale.least, kScale.most),
+             "a scale of 1 leaves an axis as it is");
+      return Vector3d::Ones();
+    }
+    return scale;
   }
 
   [[nodiscard]] SE3 transform(const std::string& key) {
@@ -236,27 +253,9 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
   imu.noise.gyroscope_bias_radps2_sqrthz = section.number("gyroscope_bias_walk_radps2_sqrthz", kWalk);
   imu.noise.accelerometer_bias_mps3_sqrthz = section.number("accelerometer_bias_walk_mps3_sqrthz", kWalk);
   imu.time_offset_s = section.number("time_offset_s", kOffset, 0.0);
+  imu.gyroscope_scale = section.scale("gyroscope_scale");
+  imu.accelerometer_scale = section.scale("accelerometer_scale");
   return imu;
-}
-
-std::string matrix_text(const SE3& T) {
-  const Matrix3d R = T.rotation_matrix();
-  std::vector<double> m;
-  for (int row = 0; row < 3; ++row) m.insert(m.end(), {R(row, 0), R(row, 1), R(row, 2), T.translation[row]});
-  return fmt::format("[{}]", fmt::join(m, ", "));
-}
-
-std::string pinhole_text(const PinholeCamera& p) {
-  std::string text;
-  if (p.width_px > 0) text += fmt::format("width_px = {}\nheight_px = {}\n", p.width_px, p.height_px);
-  return text +
-         fmt::format("fx_px = {}\nfy_px = {}\ncx_px = {}\ncy_px = {}\n", p.fx_px, p.fy_px, p.cx_px, p.cy_px);
-}
-
-/// What is said without an uncertainty is exact.
-std::string timing_text(std::string_view name, double value_s, double sigma_s) {
-  const std::string text = fmt::format("{}_s = {}\n", name, value_s);
-  return sigma_s > 0 ? text + fmt::format("{}_sigma_s = {}\n", name, sigma_s) : text;
 }
 
 }  // namespace
@@ -316,36 +315,6 @@ Result<std::optional<RigCalibration>> read_calibration_beside(const std::filesys
   // The file is part of the recording, not of the command line.
   calibration.error().code = ErrorCode::data_corrupt;
   return tl::unexpected(calibration.error());
-}
-
-std::string to_toml(const RigCalibration& calibration) {
-  const BrownConrady& d = calibration.color.distortion;
-  const SensorTiming& timing = calibration.color.timing;
-  std::string text = fmt::format("calibration_source = {}\n\n[color]\n{}",
-                                 config::to_toml(config::OptionValue(calibration.source)),
-                                 pinhole_text(calibration.color.pinhole));
-  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\n{}", d.k1, d.k2, d.p1, d.p2, d.k3,
-                      timing_text("readout", timing.color_readout_s, timing.color_readout_sigma_s));
-  if (const Vector3d& offset_m = calibration.color.ground_truth_offset_m; !offset_m.isZero(0))
-    text += fmt::format("ground_truth_offset_m = [{}, {}, {}]\n", offset_m.x(), offset_m.y(), offset_m.z());
-  text += "\n[depth]\n";
-  if (calibration.depth_units_per_metre)
-    text += fmt::format("units_per_metre = {}\n", *calibration.depth_units_per_metre);
-  if (calibration.depth) {
-    text += pinhole_text(calibration.depth->pinhole) +
-            fmt::format("T_color_depth = {}\n", matrix_text(calibration.depth->T_color_depth));
-  }
-  text += timing_text("readout", timing.depth_readout_s, timing.depth_readout_sigma_s) +
-          timing_text("delay", timing.depth_delay_s, timing.depth_delay_sigma_s);
-  if (!calibration.imu) return text;
-  const ImuNoise& noise = calibration.imu->noise;
-  return text + fmt::format(
-                    "\n[imu]\nT_imu_color = {}\ngyroscope_noise_radps_sqrthz = {}\n"
-                    "accelerometer_noise_mps2_sqrthz = {}\ngyroscope_bias_walk_radps2_sqrthz = {}\n"
-                    "accelerometer_bias_walk_mps3_sqrthz = {}\ntime_offset_s = {}\n",
-                    matrix_text(calibration.imu->T_imu_camera), noise.gyroscope_radps_sqrthz,
-                    noise.accelerometer_mps2_sqrthz, noise.gyroscope_bias_radps2_sqrthz,
-                    noise.accelerometer_bias_mps3_sqrthz, calibration.imu->time_offset_s);
 }
 
 }  // namespace fusebench::calibration

@@ -196,7 +196,11 @@ Result<void> calibrate_imu(recording::Recording& recording,
   recording.rig.T_imu_camera = imu->T_imu_camera;
   recording.rig.imu_noise = imu->noise;
   const std::int64_t offset_ns = std::llround(1e9 * imu->time_offset_s);
-  for (ImuSample& sample : recording.imu) sample.timestamp_ns -= offset_ns;
+  for (ImuSample& sample : recording.imu) {
+    sample.timestamp_ns -= offset_ns;
+    sample.angular_velocity_radps.array() /= imu->gyroscope_scale.array();
+    sample.specific_force_mps2.array() /= imu->accelerometer_scale.array();
+  }
   return recording.imu.empty() ? Result<void>{} : check_imu_overlap(recording);
 }
 

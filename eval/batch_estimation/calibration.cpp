@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/prediction/imu_preintegration.hpp"
 #include "eval/batch_estimation/measured_motion.hpp"
 
 namespace fusebench::batch_estimation {
@@ -25,16 +26,125 @@ double offset_variance(const smoother::BatchEstimate& estimate) {
   return estimate.common_covariance(smoother::kCommonTimeOffset, smoother::kCommonTimeOffset);
 }
 
-bool moved_little(const smoother::BatchEstimate& estimate, const SE3& T_imu_camera, double time_offset_s) {
+/// What one round starts from and the next one improves.
+struct Guess {
+  SE3 T_imu_camera;
+  double time_offset_s = 0;  ///< on top of the recording's, which the reader has taken out
+  smoother::SensorScales scales;
+  Vector3d timing_s = Vector3d::Zero();  ///< read-out of colour, of depth, delay of depth
+};
+
+Vector3d values_of(const SensorTiming& timing) {
+  return {timing.color_readout_s, timing.depth_readout_s, timing.depth_delay_s};
+}
+
+Vector3d sigmas_of(const SensorTiming& timing) {
+  return {timing.color_readout_sigma_s, timing.depth_readout_sigma_s, timing.depth_delay_sigma_s};
+}
+
+Vector3d timing_sigma_s(const smoother::BatchEstimate& estimate) {
+  return estimate.common_covariance.diagonal().segment<3>(smoother::kCommonTiming).cwiseSqrt();
+}
+
+/// How much of a change of the timing a round finds. The model and the patches are made of images of the same
+/// timing and take a part of its error with them, so that a round finds less than is missing: of the read-out
+/// of colour about a half. Known from the steps of rounds that held different timings.
+class Response {
+ public:
+  /// A round that held timing_s found that it must change by a step.
+  void take(const Vector3d& timing_s, const Vector3d& step_s, const Vector3d& sigma_s) {
+    constexpr double kLeast = 0.4;
+    if (known_) {
+      for (int i = 0; i < 3; ++i) {
+        const double change_s = timing_s[i] - timing_s_[i];
+        if (std::abs(change_s) > sigma_s[i])
+          share_[i] = std::clamp((step_s_[i] - step_s[i]) / change_s, kLeast, 1.0);
+      }
+    }
+    known_ = true;
+    timing_s_ = timing_s;
+    step_s_ = step_s;
+  }
+  [[nodiscard]] const Vector3d& share() const { return share_; }
+
+ private:
+  bool known_ = false;
+  Vector3d timing_s_ = Vector3d::Zero();
+  Vector3d step_s_ = Vector3d::Zero();
+  Vector3d share_ = Vector3d::Ones();
+};
+
+/// As if the round had found all that is missing.
+void complete_timing(const Vector3d& share, smoother::BatchEstimate& estimate) {
+  for (int i = 0; i < 3; ++i) {
+    estimate.timing_s[i] /= share[i];
+    estimate.common_covariance.row(smoother::kCommonTiming + i) /= share[i];
+    estimate.common_covariance.col(smoother::kCommonTiming + i) /= share[i];
+  }
+}
+
+/// Adds what is the same in all frames and therefore shows nowhere: patches, depth and model lie together to
+/// a quarter of a pixel only. Seen as an error of the delay, that is the angle over the rate of turning;
+/// read-outs show as differences between rows, which are within sqrt(1/12) of an image from its middle (root
+/// mean square).
+void add_misalignment(const PinholeCamera& camera, const Vector3d& prior_s,
+                      smoother::BatchEstimate& estimate) {
+  constexpr double kMisalignment_px = 0.25;
+  constexpr double kLeastRate_radps = 1e-3;
+  double squared_rate = 0;
+  for (const smoother::BatchFrame& frame : estimate.frames)
+    squared_rate += frame.state.angular_velocity_imu_radps.squaredNorm();
+  const double rate_radps =
+      std::max(kLeastRate_radps, std::sqrt(squared_rate / static_cast<double>(estimate.frames.size())));
+  const double delay_s = kMisalignment_px / camera.fx_px / rate_radps;
+  const double readout_s = std::sqrt(12.0) * delay_s;
+  const Vector3d common_s(readout_s, readout_s, delay_s);
+  for (int i = 0; i < 3; ++i) {
+    if (!(prior_s[i] > 0)) continue;
+    double& variance = estimate.common_covariance(smoother::kCommonTiming + i, smoother::kCommonTiming + i);
+    variance = std::max(variance, std::min(prior_s[i] * prior_s[i], variance + common_s[i] * common_s[i]));
+  }
+}
+
+bool moved_little(const smoother::BatchEstimate& estimate, const Guess& guess) {
   constexpr double kShare = 0.5;  // of the standard deviation
-  const Vector6d change = pose_minus(estimate.T_imu_camera, T_imu_camera);
-  const Vector6d sigma = extrinsic_covariance(estimate).diagonal().cwiseSqrt();
-  return (change.cwiseAbs().array() <= kShare * sigma.array()).all() &&
-         std::abs(estimate.time_offset_s - time_offset_s) <= kShare * std::sqrt(offset_variance(estimate));
+  Eigen::Matrix<double, smoother::kBatchCommonSize - smoother::kCommonRotation, 1> change;
+  change << pose_minus(estimate.T_imu_camera, guess.T_imu_camera),
+      estimate.time_offset_s - guess.time_offset_s, estimate.scales.gyroscope - guess.scales.gyroscope,
+      estimate.scales.accelerometer - guess.scales.accelerometer, estimate.timing_s;
+  const auto sigma = estimate.common_covariance.diagonal().tail(change.size()).cwiseSqrt();
+  return (change.cwiseAbs().array() <= kShare * sigma.array()).all();
+}
+
+/// The recording as it is if this guess is right.
+recording::Recording with_guess(const recording::Recording& original, const Guess& guess, bool hold_timing) {
+  recording::Recording recording = original;
+  recording.rig.T_imu_camera = guess.T_imu_camera;
+  const auto shift_ns = static_cast<std::int64_t>(std::llround(1e9 * guess.time_offset_s));
+  for (ImuSample& sample : recording.imu) {
+    sample = prediction::corrected(sample, {.gyroscope_scale = guess.scales.gyroscope,
+                                            .accelerometer_scale = guess.scales.accelerometer});
+    sample.timestamp_ns -= shift_ns;
+  }
+  SensorTiming& timing = recording.rig.timing;
+  const double depth_delay_before_s = timing.depth_delay_s;
+  timing.color_readout_s = guess.timing_s[0];
+  timing.depth_readout_s = guess.timing_s[1];
+  timing.depth_delay_s = guess.timing_s[2];
+  if (hold_timing)
+    timing.color_readout_sigma_s = timing.depth_readout_sigma_s = timing.depth_delay_sigma_s = 0;
+  const auto later_ns =
+      static_cast<std::int64_t>(std::llround(1e9 * (timing.depth_delay_s - depth_delay_before_s)));
+  recording.load_frame = [load = original.load_frame, later_ns](std::size_t k) {
+    auto frame = load(k);
+    if (frame) frame->depth_offset_ns += later_ns;
+    return frame;
+  };
+  return recording;
 }
 
 /// Directions in which the posterior is at least half as wide as the prior.
-void find_undetermined(const smoother::BatchEstimate& estimate, const CalibrationOptions& options,
+void find_undetermined(const smoother::BatchEstimate& estimate, const smoother::BatchOptions& options,
                        std::vector<Undetermined>& found) {
   constexpr double kShare = 0.5;
   struct Part {
@@ -42,8 +152,13 @@ void find_undetermined(const smoother::BatchEstimate& estimate, const Calibratio
     int place;
     double prior;
   };
-  for (const Part& part : {Part{"rotation", smoother::kCommonRotation, options.rotation_prior_rad},
-                           Part{"translation", smoother::kCommonTranslation, options.translation_prior_m}}) {
+  for (const Part& part :
+       {Part{"rotation", smoother::kCommonRotation, options.rotation_prior_rad},
+        Part{"translation", smoother::kCommonTranslation, options.translation_prior_m},
+        Part{"gyroscope_scale", smoother::kCommonGyroscopeScale, options.gyroscope_scale_prior},
+        Part{"accelerometer_scale", smoother::kCommonAccelerometerScale,
+             options.accelerometer_scale_prior}}) {
+    if (!(part.prior > 0)) continue;
     const Matrix3d covariance = estimate.common_covariance.block<3, 3>(part.place, part.place);
     const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(covariance);
     for (int i = 2; i >= 0; --i) {
@@ -56,12 +171,37 @@ void find_undetermined(const smoother::BatchEstimate& estimate, const Calibratio
       found.push_back({part.name, direction, sigma});
     }
   }
-  const double sigma_s = std::sqrt(offset_variance(estimate));
-  if (sigma_s >= kShare * options.time_offset_prior_s)
-    found.push_back({"time_offset", Vector3d::Zero(), sigma_s});
+  for (const Part& part : {Part{"time_offset", smoother::kCommonTimeOffset, options.time_offset_prior_s},
+                           Part{"color_readout", smoother::kCommonTiming, options.timing_prior_s[0]},
+                           Part{"depth_readout", smoother::kCommonTiming + 1, options.timing_prior_s[1]},
+                           Part{"depth_delay", smoother::kCommonTiming + 2, options.timing_prior_s[2]}}) {
+    const double sigma_s = std::sqrt(estimate.common_covariance(part.place, part.place));
+    if (part.prior > 0 && sigma_s >= kShare * part.prior)
+      found.push_back({part.name, Vector3d::Zero(), sigma_s});
+  }
 }
 
-void describe(const smoother::BatchEstimate& estimate, const CalibrationOptions& options,
+/// The scales around those that the reader has taken out.
+Known<Vector3d> scale_of(const Vector3d& read_with, const Vector3d& error,
+                         const smoother::BatchCommonMatrix& covariance, int place) {
+  return {read_with.cwiseProduct(Vector3d::Ones() + error),
+          read_with.cwiseProduct(covariance.diagonal().segment<3>(place).cwiseSqrt())};
+}
+
+void describe_sensors(const smoother::BatchEstimate& estimate, const Guess& guess,
+                      const calibration::ImuCalibration& told, CameraImuCalibration& result) {
+  result.gyroscope_scale = scale_of(told.gyroscope_scale, estimate.scales.gyroscope,
+                                    estimate.common_covariance, smoother::kCommonGyroscopeScale);
+  result.accelerometer_scale = scale_of(told.accelerometer_scale, estimate.scales.accelerometer,
+                                        estimate.common_covariance, smoother::kCommonAccelerometerScale);
+  const Vector3d timing_s = guess.timing_s + estimate.timing_s;
+  const Vector3d sigma_s = timing_sigma_s(estimate);
+  result.timing = {timing_s[0], timing_s[1], timing_s[2], sigma_s[0], sigma_s[1], sigma_s[2]};
+  result.timing_variance_factor = estimate.timing_variance_factor;
+  result.timing_correlation_factor = estimate.timing_correlation_factor;
+}
+
+void describe(const smoother::BatchEstimate& estimate, const smoother::BatchOptions& options,
               CameraImuCalibration& result) {
   result.T_imu_camera = estimate.T_imu_camera;
   result.time_offset_s = result.time_offset_before_s + estimate.time_offset_s;
@@ -88,46 +228,64 @@ void describe(const smoother::BatchEstimate& estimate, const CalibrationOptions&
   find_undetermined(estimate, options, result.undetermined);
 }
 
+/// The priors are around what the recording says, and the unknowns around the guess.
+smoother::BatchOptions batch_options(const recording::Recording& recording, const CalibrationOptions& options,
+                                     const Guess& guess) {
+  smoother::BatchOptions batch;
+  batch.rotation_prior_rad = options.rotation_prior_rad;
+  batch.translation_prior_m = options.translation_prior_m;
+  batch.time_offset_prior_s = options.time_offset_prior_s;
+  batch.T_imu_camera_expected = recording.rig.T_imu_camera;
+  batch.time_offset_expected_s = 0;
+  const double scale_prior = recording.rig.imu_axes_are_exact ? 0.0 : options.scale_prior;
+  batch.gyroscope_scale_prior = scale_prior;
+  batch.accelerometer_scale_prior = scale_prior;
+  batch.timing_prior_s = sigmas_of(recording.rig.timing);
+  batch.timing_expected_s = values_of(recording.rig.timing) - guess.timing_s;
+  return batch;
+}
+
 }  // namespace
 
-Result<CameraImuCalibration> calibrate(recording::Recording recording, const config::Config& config,
+Result<CameraImuCalibration> calibrate(const recording::Recording& recording, const config::Config& config,
                                        const CalibrationOptions& options, const Workers& workers,
                                        const run::RunControl& control) {
   check(options.max_rounds >= 2, "the first round is no result");
   CameraImuCalibration result;
-  result.T_imu_camera_before = recording.rig.T_imu_camera;
+  calibration::ImuCalibration told;
   if (recording.imu_source == recording::ImuSource::recorded && recording.calibration &&
       recording.calibration->imu)
-    result.time_offset_before_s = recording.calibration->imu->time_offset_s;
-  const std::vector<ImuSample> samples = recording.imu;
-  double time_offset_s = 0;  // on top of the recording's, which the reader has taken out
+    told = *recording.calibration->imu;
+  result.T_imu_camera_before = recording.rig.T_imu_camera;
+  result.time_offset_before_s = told.time_offset_s;
+  result.timing_before = recording.rig.timing;
+  Guess guess{recording.rig.T_imu_camera, 0, {}, values_of(recording.rig.timing)};
+  Response response;
   for (int round = 0; round < options.max_rounds && !result.converged; ++round) {
-    const auto shift_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      recording.imu[i].timestamp_ns = samples[i].timestamp_ns - shift_ns;
+    const recording::Recording guessed = with_guess(recording, guess, round > 0);
     config::Config exaggerated = config;
     exaggerated.motion.imu_noise_factor *= exaggeration(round);
-    auto measured = measure_motion(recording, exaggerated, workers, control);
+    auto measured = measure_motion(guessed, exaggerated, workers, control);
     if (!measured) return tl::unexpected(measured.error());
     smoother::BatchInput& input = measured->input;
-    input.imu = samples;
-    input.time_offset_s = time_offset_s;
-    const SE3 T_imu_camera = recording.rig.T_imu_camera;
-    const smoother::BatchOptions batch{.rotation_prior_rad = options.rotation_prior_rad,
-                                       .translation_prior_m = options.translation_prior_m,
-                                       .time_offset_prior_s = options.time_offset_prior_s,
-                                       .T_imu_camera_expected = result.T_imu_camera_before,
-                                       .time_offset_expected_s = 0};
-    const auto estimate = smoother::estimate_batch(input, batch);
+    input.imu = recording.imu;
+    input.time_offset_s = guess.time_offset_s;
+    input.scales = guess.scales;
+    const smoother::BatchOptions batch = batch_options(recording, options, guess);
+    auto estimate = smoother::estimate_batch(input, batch);
     if (!estimate) return tl::unexpected(estimate.error());
+    if (round > 0) response.take(guess.timing_s, estimate->timing_s, timing_sigma_s(*estimate));
+    complete_timing(response.share(), *estimate);
+    add_misalignment(recording.rig.camera, batch.timing_prior_s, *estimate);
     // A first round that found nothing to change has been measured loosely; the second one is the result.
-    result.converged = round > 0 && moved_little(*estimate, T_imu_camera, time_offset_s);
+    result.converged = round > 0 && moved_little(*estimate, guess);
     result.frames = measured->stamps_ns.size();
     result.tracked = measured->tracked;
-    describe(*estimate, options, result);
-    result.rounds.push_back({exaggeration(round), result.T_imu_camera, result.time_offset_s});
-    recording.rig.T_imu_camera = estimate->T_imu_camera;
-    time_offset_s = estimate->time_offset_s;
+    describe(*estimate, batch, result);
+    describe_sensors(*estimate, guess, told, result);
+    guess = {estimate->T_imu_camera, estimate->time_offset_s, estimate->scales,
+             guess.timing_s + estimate->timing_s};
+    result.rounds.push_back({exaggeration(round), result.T_imu_camera, result.time_offset_s, guess.timing_s});
   }
   return result;
 }
@@ -138,7 +296,9 @@ calibration::RigCalibration calibrated_rig(const recording::Recording& recording
   calibration::RigCalibration rig = *recording.calibration;
   const Vector6d sigma = calibration.extrinsic_covariance.diagonal().cwiseSqrt();
   rig.imu = calibration::ImuCalibration{calibration.T_imu_camera, recording.rig.imu_noise,
-                                        calibration.time_offset_s};
+                                        calibration.time_offset_s, calibration.gyroscope_scale.value,
+                                        calibration.accelerometer_scale.value};
+  rig.color.timing = calibration.timing;
   rig.source = fmt::format(
       "T_imu_color and time_offset_s by fusebench calibrate on {} frames of {} (standard deviations {:.3f} "
       "deg, {:.1f} mm, {:.2f} ms); the rest: {}",

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "eval/batch_estimation/calibration.hpp"
@@ -48,17 +49,71 @@ std::string known_line(std::string_view name, const Known<Vector3d>& known, doub
 }
 
 std::string undetermined_line(const Undetermined& u) {
-  const double unit = u.parameter == "rotation" ? kDegree : 1e-3;
-  const std::string_view unit_name = u.parameter == "rotation"      ? "deg"
-                                     : u.parameter == "translation" ? "mm"
-                                                                    : "ms";
+  double unit = 1e-3;
+  std::string_view unit_name = u.parameter == "translation" ? "mm" : "ms";
+  if (u.parameter == "rotation") {
+    unit = kDegree;
+    unit_name = "deg";
+  } else if (u.parameter.ends_with("_scale")) {
+    unit = 0.01;
+    unit_name = "%";
+  }
   const std::string along =
-      u.parameter == "time_offset"
+      u.direction.isZero()
           ? std::string()
           : fmt::format(" {} ({:.2f}, {:.2f}, {:.2f})", u.parameter == "rotation" ? "about" : "along",
                         u.direction.x(), u.direction.y(), u.direction.z());
   return fmt::format("not determined by this motion: {}{} (sigma {:.3g} {})\n", u.parameter, along,
                      u.sigma / unit, unit_name);
+}
+
+/// A constant of the image sensors, before and after.
+struct TimingRow {
+  std::string_view key;
+  std::string_view name;
+  double value_s = 0;
+  double sigma_s = 0;
+  double before_s = 0;
+  double before_sigma_s = 0;
+};
+
+std::array<TimingRow, 3> timing_rows(const CameraImuCalibration& c) {
+  const SensorTiming& now = c.timing;
+  const SensorTiming& before = c.timing_before;
+  return {TimingRow{"color_readout", "read-out of colour", now.color_readout_s, now.color_readout_sigma_s,
+                    before.color_readout_s, before.color_readout_sigma_s},
+          TimingRow{"depth_readout", "read-out of depth", now.depth_readout_s, now.depth_readout_sigma_s,
+                    before.depth_readout_s, before.depth_readout_sigma_s},
+          TimingRow{"depth_delay", "depth after colour", now.depth_delay_s, now.depth_delay_sigma_s,
+                    before.depth_delay_s, before.depth_delay_sigma_s}};
+}
+
+std::string sensor_lines(const CameraImuCalibration& c) {
+  std::string text;
+  for (const TimingRow& row : timing_rows(c)) {
+    text += fmt::format("{:<28}{:>10.3f} ms   ", row.name, 1e3 * row.value_s);
+    text += row.before_sigma_s > 0
+                ? fmt::format("sigma {:.3f}, was {:.3f} with sigma {:.3f}\n", 1e3 * row.sigma_s,
+                              1e3 * row.before_s, 1e3 * row.before_sigma_s)
+                : std::string("held: exact by the calibration\n");
+  }
+  const auto scale = [&](std::string_view name, const Known<Vector3d>& known) {
+    text += known.sigma.isZero() ? fmt::format("{:<28}held\n", name) : known_line(name, known, 1.0, "");
+  };
+  scale("gyroscope scale", c.gyroscope_scale);
+  scale("accelerometer scale", c.accelerometer_scale);
+  return text;
+}
+
+Json json_of_timing(const CameraImuCalibration& c) {
+  Json timing = Json::object();
+  for (const TimingRow& row : timing_rows(c)) {
+    timing[std::string(row.key)] = {{"value_s", row.value_s},
+                                    {"sigma_s", row.sigma_s},
+                                    {"before_s", row.before_s},
+                                    {"before_sigma_s", row.before_sigma_s}};
+  }
+  return timing;
 }
 
 }  // namespace
@@ -78,6 +133,7 @@ std::string to_text(const CameraImuCalibration& c, const recording::Recording& r
   text += fmt::format("{:<28}{:>10.3f} ms   sigma {:.3f}, changed by {:+.3f} ({:+.1f} sigmas)\n",
                       "imu clock minus images'", 1e3 * c.time_offset_s, 1e3 * c.time_offset_sigma_s,
                       1e3 * change_s, change_s / c.time_offset_sigma_s);
+  text += sensor_lines(c);
   text += known_line("gyroscope bias", c.gyroscope_bias_radps, 1e-3, "mrad/s");
   text += known_line("accelerometer bias", c.accelerometer_bias_mps2, 1e-3, "mm/s2");
   text += fmt::format("{:<28}{:>10.4f} {:>10.4f} {:>10.4f}      sigma {:.3f} deg\n",
@@ -89,6 +145,8 @@ std::string to_text(const CameraImuCalibration& c, const recording::Recording& r
       "correlation over frames (both are in the sigmas above); inertial residuals {:.2f} times the noise of "
       "the\ncalibration; {} outliers\n",
       c.variance_factor, c.correlation_factor, c.inertial_variance_factor, c.outliers);
+  text += fmt::format("timing within frames: {:.4f} times the claimed variance, times {:.2f}\n",
+                      c.timing_variance_factor, c.timing_correlation_factor);
   for (const Undetermined& u : c.undetermined) text += undetermined_line(u);
   return text;
 }
@@ -101,7 +159,8 @@ std::string to_json(const CameraImuCalibration& c, const recording::Recording& r
   for (const CalibrationRound& round : c.rounds) {
     rounds.push_back({{"imu_noise_factor", round.imu_noise_factor},
                       {"T_imu_color", json_of(round.T_imu_camera)},
-                      {"time_offset_s", round.time_offset_s}});
+                      {"time_offset_s", round.time_offset_s},
+                      {"timing_s", json_of(round.timing_s)}});
   }
   Json undetermined = Json::array();
   for (const Undetermined& u : c.undetermined)
@@ -131,12 +190,17 @@ std::string to_json(const CameraImuCalibration& c, const recording::Recording& r
         {"sigma_s", c.time_offset_sigma_s},
         {"before_s", c.time_offset_before_s},
         {"change_sigmas", change_s / c.time_offset_sigma_s}}},
+      {"timing", json_of_timing(c)},
+      {"gyroscope_scale", json_of(c.gyroscope_scale)},
+      {"accelerometer_scale", json_of(c.accelerometer_scale)},
       {"gyroscope_bias_radps", json_of(c.gyroscope_bias_radps)},
       {"accelerometer_bias_mps2", json_of(c.accelerometer_bias_mps2)},
       {"gravity",
        {{"direction_camera", json_of(c.gravity_direction_camera)}, {"sigma_rad", c.gravity_sigma_rad}}},
       {"variance_factor", c.variance_factor},
       {"correlation_factor", c.correlation_factor},
+      {"timing_variance_factor", c.timing_variance_factor},
+      {"timing_correlation_factor", c.timing_correlation_factor},
       {"inertial_variance_factor", c.inertial_variance_factor},
       {"outliers", c.outliers},
       {"rounds", rounds},

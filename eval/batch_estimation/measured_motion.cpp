@@ -37,6 +37,8 @@ class MotionCollector {
         motion.frame = frame;
         measured_.input.visual.push_back(motion);
       }
+      measured_.input.timing.push_back(smoother::visual_timing(*report.evidence));
+      measured_.input.timing.back().frame = frame;
     }
     if (report.status != health::FrameStatus::lost) seen_[report.capture_ns] = seen;
   }

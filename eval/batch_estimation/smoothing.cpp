@@ -22,6 +22,9 @@ Result<SmoothedRecording> smooth(const recording::Recording& recording, const co
   if (!measured) return tl::unexpected(measured.error());
   smoother::BatchOptions options;
   options.time_offset_prior_s = config.initialisation.imu_time_offset_sigma_s;
+  const SensorTiming& timing = recording.rig.timing;
+  options.timing_prior_s = {timing.color_readout_sigma_s, timing.depth_readout_sigma_s,
+                            timing.depth_delay_sigma_s};
   auto estimate = smoother::estimate_batch(measured->input, options);
   if (!estimate) return tl::unexpected(estimate.error());
   SmoothedRecording smoothed;

@@ -23,7 +23,8 @@ struct CalibrateVerbOptions {
   double rotation_prior_deg = 10;
   double translation_prior_cm = 10;
   double offset_prior_ms = 50;
-  int rounds = 3;
+  double scale_prior_percent = 3;
+  int rounds = 4;
   bool json = false;
 };
 
@@ -58,6 +59,7 @@ Result<int> run(const CalibrateVerbOptions& options) {
   const batch_estimation::CalibrationOptions how{.rotation_prior_rad = radians(options.rotation_prior_deg),
                                                  .translation_prior_m = 0.01 * options.translation_prior_cm,
                                                  .time_offset_prior_s = 1e-3 * options.offset_prior_ms,
+                                                 .scale_prior = 0.01 * options.scale_prior_percent,
                                                  .max_rounds = options.rounds};
   const Workers workers(options.request.threads);
   const auto calibration =
@@ -78,8 +80,10 @@ Result<int> run(const CalibrateVerbOptions& options) {
 
 console::Verb add_calibrate_verb(CLI::App& app) {
   auto options = std::make_shared<CalibrateVerbOptions>();
-  CLI::App* verb =
-      app.add_subcommand("calibrate", "Estimates the camera-IMU extrinsics and time offset from a recording");
+  CLI::App* verb = app.add_subcommand(
+      "calibrate",
+      "Estimates from a recording the camera-IMU extrinsics, the offset of their clocks, the "
+      "scales of the IMU's axes, and read-outs and delay of the images");
   console::add_run_request(*verb, options->request);
   verb->add_option("--out", options->out,
                    "Writes the calibration of all sensors, for --calibration of other verbs or as the "
@@ -99,13 +103,21 @@ console::Verb add_calibrate_verb(CLI::App& app) {
       ->check(CLI::Range(0.01, 1000.0))
       ->type_name("MS")
       ->capture_default_str();
+  verb->add_option("--scale-prior", options->scale_prior_percent,
+                   "The same of the scales of gyroscope and accelerometer, by axis, percent; 0 holds them")
+      ->check(CLI::Range(0.0, 20.0))
+      ->type_name("PERCENT")
+      ->capture_default_str();
   verb->add_option("--rounds", options->rounds,
                    "At most so many runs, each from the last one's calibration; the first is a first guess")
       ->check(CLI::Range(2, 20))
       ->type_name("N")
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
-  verb->footer("How to move, what the numbers mean and what they do not: docs/calibration.md.");
+  verb->footer(
+      "Read-outs and delay are estimated where calibration.toml does not say them, or says them with an\n"
+      "uncertainty (readout_sigma_s, delay_sigma_s); what it says without one is held. How to move, what the "
+      "numbers mean and what they do not: docs/calibration.md.");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -109,7 +109,7 @@ CommonError calibration_error(const BatchEstimate& estimate, const MadeUp& truth
   CommonError error;
   error.value << pose_minus(estimate.T_imu_camera, truth.T_imu_camera),
       estimate.time_offset_s - truth.time_offset_s;
-  error.covariance = estimate.common_covariance.bottomRightCorner<7, 7>();
+  error.covariance = estimate.common_covariance.block<7, 7>(kCommonRotation, kCommonRotation);
   return error;
 }
 
@@ -125,7 +125,7 @@ TEST(InertialResidual, VanishesOnTheHelixAndFollowsBiasAndOffset) {
   // Integrated with neither the biases nor the offset: the first order has to bring them in.
   const auto imu = preintegrate(samples, begin_ns, end_ns, {}, kNoise);
   ASSERT_TRUE(imu.has_value());
-  const InertialResidual residual{*imu, Vector3d::Zero(), Vector3d::Zero(), 0, Matrix9d::Identity()};
+  const InertialResidual residual{*imu, {}, 0, Matrix9d::Identity()};
   const double begin_s = 1e-9 * begin_ns;
   const double end_s = 1e-9 * end_ns;
   const SE3 begin = helix.T_world_imu(begin_s);
@@ -135,11 +135,12 @@ TEST(InertialResidual, VanishesOnTheHelixAndFollowsBiasAndOffset) {
   const Vector3d down = helix.gravity_world_mps2.normalized();
   Vector6d bias;
   bias << gyroscope_bias, accelerometer_bias;
+  const Vector3d none = Vector3d::Zero();
   const auto evaluate = [&](const Vector6d& at_bias, double at_offset_s) {
     Eigen::Matrix<double, 9, 1> r;
     residual(begin.rotation.coeffs().data(), begin.translation.data(), velocity_begin.data(), at_bias.data(),
              end.rotation.coeffs().data(), end.translation.data(), velocity_end.data(), down.data(),
-             &at_offset_s, r.data());
+             &at_offset_s, none.data(), none.data(), r.data());
     return r;
   };
   const auto r = evaluate(bias, offset_s);
@@ -157,13 +158,23 @@ TEST(VisualResidual, IsTheWhitenedErrorOfTheCameraWhereverTheImuIs) {
   const SE3 T = (a * T_imu_camera).inverse() * (b * T_imu_camera);
   const Vector3d turn(0.01, -0.02, 0.03);
   const Vector3d shift(0.1, 0.2, -0.1);
-  const VisualResidual residual{{T.rotation * so3_exp(-turn), T.translation - shift},
-                                2 * Matrix6d::Identity()};
-  Vector6d r;
-  residual(a.rotation.coeffs().data(), a.translation.data(), b.rotation.coeffs().data(), b.translation.data(),
-           T_imu_camera.rotation.coeffs().data(), T_imu_camera.translation.data(), r.data());
+  RelativeCameraMotion motion;
+  motion.T_reference_camera = {T.rotation * so3_exp(-turn), T.translation - shift};
+  motion.timing_s = {0.01, 0.02, 0.03};
+  motion.by_timing.setRandom();
+  const VisualResidual residual{motion, 2 * Matrix6d::Identity()};
+  const auto evaluate = [&](const Vector3d& timing_s) {
+    Vector6d r;
+    residual(a.rotation.coeffs().data(), a.translation.data(), b.rotation.coeffs().data(),
+             b.translation.data(), T_imu_camera.rotation.coeffs().data(), T_imu_camera.translation.data(),
+             &timing_s[0], &timing_s[1], &timing_s[2], r.data());
+    return r;
+  };
+  const Vector6d r = evaluate(motion.timing_s);
   EXPECT_LT((r.head<3>() - 2 * turn).norm(), 1e-12);
   EXPECT_LT((r.tail<3>() - 2 * shift).norm(), 1e-12);
+  const Vector3d later_s(0.001, -0.002, 0.003);
+  EXPECT_LT((evaluate(motion.timing_s + later_s) - r + 2 * motion.by_timing * later_s).norm(), 1e-12);
 }
 
 TEST(BatchEstimate, FindsTheCalibrationThatExactDataWereMadeWith) {
@@ -183,6 +194,78 @@ TEST(BatchEstimate, FindsTheCalibrationThatExactDataWereMadeWith) {
   const FilterState& last = estimate->frames.back().state;
   EXPECT_LT((last.gyroscope_bias_radps - data.gyroscope_bias).norm(), 1e-4);
   EXPECT_LT((last.accelerometer_bias_mps2 - data.accelerometer_bias).norm(), 1e-2);
+}
+
+TEST(BatchEstimate, FindsTheScalesOfTheImu) {
+  std::mt19937 random(4);
+  MadeUp data = made_up(random, ImuNoise{}, 90);
+  const Vector3d gyroscope_scale(0.02, -0.015, 0.01);
+  const Vector3d accelerometer_scale(-0.01, 0.015, 0.02);
+  for (ImuSample& sample : data.imu) {
+    sample.angular_velocity_radps.array() *= 1 + gyroscope_scale.array();
+    sample.specific_force_mps2.array() *= 1 + accelerometer_scale.array();
+  }
+  const BatchInput input = input_of(data, 90, random, 0.0);
+  BatchOptions options = calibrating();
+  options.gyroscope_scale_prior = 0.03;
+  options.accelerometer_scale_prior = 0.03;
+  const auto estimate = estimate_batch(input, options);
+  ASSERT_TRUE(estimate.has_value());
+  EXPECT_LT((estimate->scales.gyroscope - gyroscope_scale).norm(), 2e-4);
+  EXPECT_LT((estimate->scales.accelerometer - accelerometer_scale).norm(), 2e-3);
+  const auto held = estimate_batch(input, calibrating());
+  ASSERT_TRUE(held.has_value());
+  EXPECT_EQ(held->scales.gyroscope, Vector3d::Zero());
+  EXPECT_EQ(held->common_covariance(kCommonGyroscopeScale, kCommonGyroscopeScale), 0.0);
+}
+
+/// Frames that each tell the timing, with errors that are the same for most of a second: as white noise they
+/// would seem to tell it three times as well.
+TEST(BatchEstimate, ATimingIsAsUncertainAsItScattersOverSeconds) {
+  constexpr int kFrames = 240;
+  constexpr int kRecordings = 10;
+  const Vector3d truth_s(0.033, 0.002, -0.004);
+  const double sigma_s = 0.001;
+  double normalised = 0;
+  for (unsigned seed = 1; seed <= kRecordings; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const MadeUp data = made_up(random, kNoise, kFrames);
+    BatchInput input = input_of(data, kFrames, random, 1.0);
+    Vector3d error = Vector3d::Zero();
+    for (std::size_t k = 1; k < kFrames; ++k) {
+      if (k % 20 == 1) error = sigma_s * Vector3d(normal(random), normal(random), normal(random));
+      VisualTiming timing;
+      timing.frame = k;
+      timing.root = Matrix3d::Identity() / sigma_s;
+      timing.residual = timing.root * (error - truth_s);
+      timing.rank = 3;
+      input.timing.push_back(timing);
+    }
+    BatchOptions options = calibrating();
+    options.timing_prior_s = Vector3d::Constant(0.015);
+    const auto estimate = estimate_batch(input, options);
+    ASSERT_TRUE(estimate.has_value());
+    const Vector3d variance = estimate->common_covariance.diagonal().segment<3>(kCommonTiming);
+    normalised += (estimate->timing_s - truth_s).cwiseAbs2().cwiseQuotient(variance).sum() / kRecordings;
+  }
+  EXPECT_LT(normalised, 3 + 4 * std::sqrt(2 * 3.0 / kRecordings));
+  EXPECT_GT(normalised, 0.5);
+}
+
+TEST(BatchEstimate, ATimingThatNothingTellsKeepsItsPrior) {
+  std::mt19937 random(6);
+  const MadeUp data = made_up(random, kNoise, 60);
+  const BatchInput input = input_of(data, 60, random, 1.0);
+  BatchOptions options = calibrating();
+  options.timing_prior_s = {0.015, 0, 0.01};
+  options.timing_expected_s = {0.004, 0, 0};
+  const auto estimate = estimate_batch(input, options);
+  ASSERT_TRUE(estimate.has_value());
+  EXPECT_NEAR(estimate->timing_s[0], 0.004, 1e-9);
+  EXPECT_EQ(estimate->timing_s[1], 0.0);
+  EXPECT_NEAR(std::sqrt(estimate->common_covariance(kCommonTiming, kCommonTiming)), 0.015, 1e-9);
+  EXPECT_EQ(estimate->common_covariance(kCommonTiming + 1, kCommonTiming + 1), 0.0);
 }
 
 TEST(BatchEstimate, TheSameInputGivesTheSameBits) {

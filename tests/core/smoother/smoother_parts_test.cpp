@@ -188,5 +188,55 @@ TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
   EXPECT_LT((root * motion.covariance * root - Matrix6d::Identity()).norm(), 1e-6);
 }
 
+/// A cost of pose and timing together: the best pose for each timing moves as by_timing says, and what is
+/// left is the cost of the timing.
+TEST(VisualTiming, IsWhatTheBestPoseLeavesOfTheCost) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  Eigen::Matrix<double, 9, 12> root;
+  for (double& value : root.reshaped()) value = 100 * normal(random);
+  const Eigen::Matrix<double, 9, 9> information = root * root.transpose();
+  Eigen::Matrix<double, 9, 1> gradient;
+  for (double& value : gradient) value = normal(random);
+  PoseEvidence evidence;
+  evidence.T_world_imu = {so3_exp({0.1, -0.2, 0.3}), {1, 2, 3}};
+  evidence.quadratic.information = information.topLeftCorner<6, 6>();
+  evidence.quadratic.gradient = gradient.head<6>();
+  evidence.timing.timing_s = {0.01, -0.02, 0.03};
+  evidence.timing.with_pose = information.topRightCorner<6, 3>();
+  evidence.timing.information = information.bottomRightCorner<3, 3>();
+  evidence.timing.gradient = gradient.tail<3>();
+
+  const auto best_step = [&](const Vector3d& change_s) -> Vector6d {
+    return -information.topLeftCorner<6, 6>().ldlt().solve(gradient.head<6>() +
+                                                           information.topRightCorner<6, 3>() * change_s);
+  };
+  const auto cost = [&](const Vector3d& change_s) {
+    Eigen::Matrix<double, 9, 1> x;
+    x << best_step(change_s), change_s;
+    return gradient.dot(x) + 0.5 * x.dot(information * x);
+  };
+  const VisualTiming timing = visual_timing(evidence);
+  EXPECT_EQ(timing.rank, 3);
+  EXPECT_EQ(timing.timing_s, evidence.timing.timing_s);
+  const Vector3d change_s(0.002, -0.001, 0.003);
+  const double left = 0.5 * (timing.root * change_s + timing.residual).squaredNorm();
+  EXPECT_NEAR(left - 0.5 * timing.residual.squaredNorm(), cost(change_s) - cost(Vector3d::Zero()), 1e-9);
+
+  const VisualPose pose = visual_pose(evidence, SE3{});
+  const Vector6d moved = pose.by_timing * change_s;
+  EXPECT_LT((moved - (best_step(change_s) - best_step(Vector3d::Zero()))).norm(), 1e-6 * moved.norm());
+  const VisualPose told = visual_pose(evidence, SE3{so3_exp({0, 0.1, 0}), {0.1, 0, 0}});
+  EXPECT_NE(told.by_timing, pose.by_timing);
+}
+
+TEST(VisualTiming, SaysNothingWithoutMotion) {
+  PoseEvidence evidence;
+  evidence.quadratic.information = 1e6 * Matrix6d::Identity();
+  const VisualTiming timing = visual_timing(evidence);
+  EXPECT_EQ(timing.rank, 0);
+  EXPECT_EQ(timing.root, Matrix3d::Zero());
+}
+
 }  // namespace
 }  // namespace fusebench

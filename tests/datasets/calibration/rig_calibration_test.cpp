@@ -24,8 +24,11 @@ RigCalibration whole_calibration() {
   c.depth_units_per_metre = 1000.5;
   c.depth = DepthCamera{{628, 468, 583.98, 583.98, 325.103, 240.718},
                         {so3_exp({0.01, -0.2, 0.3}), {-0.057460, -0.001073, -0.002205}}};
-  c.imu =
-      ImuCalibration{{so3_exp({2.0, -1.0, 0.5}), {0.1, 0.2, 1.0 / 7.0}}, {1e-3, 2e-2, 5e-5, 6e-4}, -0.0125};
+  c.imu = ImuCalibration{{so3_exp({2.0, -1.0, 0.5}), {0.1, 0.2, 1.0 / 7.0}},
+                         {1e-3, 2e-2, 5e-5, 6e-4},
+                         -0.0125,
+                         {1.02, 0.985, 1.0},
+                         {1.0, 1.0 / 1.01, 0.99}};
   return c;
 }
 
@@ -94,6 +97,20 @@ TEST(RigCalibration, ReadsBackWhatItWrites) {
   EXPECT_EQ(after->imu->noise.gyroscope_bias_radps2_sqrthz, 5e-5);
   EXPECT_EQ(after->imu->noise.accelerometer_bias_mps3_sqrthz, 6e-4);
   EXPECT_EQ(after->imu->time_offset_s, -0.0125);
+  EXPECT_EQ(after->imu->gyroscope_scale, before.imu->gyroscope_scale);
+  EXPECT_EQ(after->imu->accelerometer_scale, before.imu->accelerometer_scale);
+}
+
+TEST(RigCalibration, ScalesOfTheImuAreNearOneAndOtherwiseOne) {
+  const std::string imu = "T_imu_color = " + std::string(kIdentity);
+  const auto without = read(with_imu(imu));
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_EQ(without->imu->gyroscope_scale, Vector3d::Ones());
+  EXPECT_EQ(to_toml(*without).find("_scale"), std::string::npos);
+  EXPECT_NE(refusal(with_imu(imu + "gyroscope_scale = [1, 1, 2.5]\n")).find("from 0.5 to 2"),
+            std::string::npos);
+  EXPECT_NE(refusal(with_imu(imu + "accelerometer_scale = [1, 1]\n")).find("3 finite numbers"),
+            std::string::npos);
 }
 
 TEST(RigCalibration, ColourAloneIsEnough) {

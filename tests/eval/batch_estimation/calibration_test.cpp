@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "eval/batch_estimation/smoothing.hpp"
 #include "tests/support/simulated_run.hpp"
+#include "tests/support/swinging_motion.hpp"
 
 namespace fusebench {
 
@@ -68,6 +71,91 @@ TEST(Calibration, RecoversWhatWasDisturbed) {
   EXPECT_GT(along, 0.9);
 }
 
+/// Swings to and fro, so that every constant of the sensors shows: one that only goes on in one direction
+/// takes the model along.
+testing::SimulatedRun swinging(int count, const SensorTiming& timing) {
+  testing::SimulatedRun run;
+  run.rig.camera = testing::small_camera();
+  run.rig.T_imu_camera = {so3_exp({0.01, -0.02, 0.015}), {0.09, 0.003, 0.002}};
+  run.rig.imu_noise = {1e-3, 2e-2, 5e-5, 6e-4};
+  const testing::SwingingMotion motion{.swing_rad = 0.4, .sway_m = 0.1};
+  const testing::TexturedRoom room;
+  const SE3 begin = motion.T_world_imu(0);
+  const auto T_room_camera = [&](double t) {
+    return SE3{Quaterniond::Identity(), begin.translation} * begin.inverse() * motion.T_world_imu(t) *
+           run.rig.T_imu_camera;
+  };
+  for (int k = 0; k < count; ++k) {
+    const double t = k / 30.0;
+    run.frames.push_back(testing::render_rolling(room, run.rig.camera, timing,
+                                                 [&](double after_s) { return T_room_camera(t + after_s); }));
+    run.frames.back().timestamp_ns = 1'000'000'000 + std::llround(1e9 * t);
+    run.T_first_camera.push_back(T_room_camera(0).inverse() * T_room_camera(t));
+  }
+  std::mt19937 random(1);
+  run.imu = motion.samples(-0.5, count / 30.0 + 0.5, 200, 1.0, Vector3d::Zero(), Vector3d::Zero(),
+                           run.rig.imu_noise, random);
+  return run;
+}
+
+/// Read-out of colour and delay of depth are not told, and the scales of the IMU are off. That of depth is
+/// told: in images of 320 pixels and 60 frames too little of it shows.
+TEST(Calibration, FindsTheTimingOfTheImagesAndTheScalesOfTheImu) {
+  const SensorTiming truth{.color_readout_s = 0.02, .depth_readout_s = 0.015, .depth_delay_s = 0.006};
+  const testing::SimulatedRun run = swinging(60, truth);
+  Recording recording = recording_of(run);
+  recording.load_frame = [load = recording.load_frame](std::size_t k) {
+    auto frame = load(k);
+    if (frame) frame->depth_offset_ns = 0;
+    return frame;
+  };
+  recording.rig.timing.color_readout_sigma_s = kUnknownReadoutSigma_s;
+  recording.rig.timing.depth_readout_s = truth.depth_readout_s;
+  recording.rig.timing.depth_delay_sigma_s = kUnknownDelaySigma_s;
+  for (ImuSample& sample : recording.imu) sample.angular_velocity_radps *= 1.02;
+  const Workers workers(1);
+  Config config;
+  config.photometric.noise_grey = 4;
+  const auto found = calibrate(recording, config, {}, workers, {});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  const SensorTiming& timing = found->timing;
+  EXPECT_LT(timing.color_readout_sigma_s, 0.5 * kUnknownReadoutSigma_s);
+  EXPECT_EQ(timing.depth_readout_s, truth.depth_readout_s);
+  EXPECT_EQ(timing.depth_readout_sigma_s, 0.0);
+  EXPECT_LT(timing.depth_delay_sigma_s, 0.25 * kUnknownDelaySigma_s);
+  EXPECT_NEAR(timing.color_readout_s, truth.color_readout_s, 3 * timing.color_readout_sigma_s);
+  EXPECT_NEAR(timing.depth_delay_s, truth.depth_delay_s, 3 * timing.depth_delay_sigma_s);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(found->gyroscope_scale.value[i], 1.02, 4 * found->gyroscope_scale.sigma[i]) << "axis " << i;
+  const auto document = nlohmann::json::parse(to_json(*found, recording));
+  EXPECT_EQ(document["timing"]["depth_delay"]["value_s"], timing.depth_delay_s);
+  EXPECT_EQ(document["gyroscope_scale"]["value"][0], found->gyroscope_scale.value[0]);
+}
+
+TEST(Calibration, HoldsATimingThatIsToldAsExact) {
+  const SensorTiming truth{.color_readout_s = 0.01};
+  Recording recording = recording_of(swinging(20, truth));
+  recording.rig.timing.color_readout_s = 0.01;
+  const auto found = calibrate(recording, Config{}, {.max_rounds = 2}, Workers(1), {});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  EXPECT_EQ(found->timing.color_readout_s, 0.01);
+  EXPECT_EQ(found->timing.color_readout_sigma_s, 0.0);
+  EXPECT_NE(to_text(*found, recording).find("held: exact by the calibration"), std::string::npos);
+}
+
+/// Frames of one angular rate are distorted alike: the read-out of colour does not show.
+TEST(Calibration, SaysWhatSteadyMotionDoesNotTell) {
+  const testing::SimulatedRun run = testing::simulate(20);
+  Recording recording = recording_of(run);
+  recording.rig.timing.color_readout_sigma_s = kUnknownReadoutSigma_s;
+  const Workers workers(1);
+  const auto found = calibrate(recording, Config{}, {.max_rounds = 2}, workers, {});
+  ASSERT_TRUE(found.has_value()) << found.error().message;
+  EXPECT_GT(found->timing.color_readout_sigma_s, 0.5 * kUnknownReadoutSigma_s);
+  EXPECT_NE(to_text(*found, recording).find("not determined by this motion: color_readout"),
+            std::string::npos);
+}
+
 TEST(Calibration, SaysThatAnImuIsMadeOfTheTruth) {
   Recording recording;
   EXPECT_EQ(to_text(CameraImuCalibration{}, recording).find("synthetic IMU"), std::string::npos);
@@ -82,11 +170,17 @@ TEST(Calibration, WritesAFileThatReadsBack) {
   found.frames = 100;
   found.T_imu_camera = {so3_exp({0.1, -0.2, 0.3}), {0.01, 0.02, 0.03}};
   found.time_offset_s = 0.0075;
+  found.timing = {0.0331, 0.0302, -0.018, 0.0002, 0.0003, 0.0004};
+  found.gyroscope_scale.value = {1.01, 0.99, 1.02};
+  found.accelerometer_scale.value = {1, 1, 1};
   const RigCalibration rig = calibrated_rig(recording, found);
   ASSERT_TRUE(rig.imu.has_value());
   EXPECT_EQ(rig.imu->T_imu_camera.translation, found.T_imu_camera.translation);
   EXPECT_EQ(rig.imu->time_offset_s, 0.0075);
   EXPECT_EQ(rig.imu->noise.gyroscope_radps_sqrthz, run.rig.imu_noise.gyroscope_radps_sqrthz);
+  EXPECT_EQ(rig.color.timing.depth_delay_s, -0.018);
+  EXPECT_EQ(rig.color.timing.depth_delay_sigma_s, 0.0004);
+  EXPECT_EQ(rig.imu->gyroscope_scale, Vector3d(1.01, 0.99, 1.02));
   EXPECT_NE(rig.source.find("100 frames of textured room"), std::string::npos);
 }
 

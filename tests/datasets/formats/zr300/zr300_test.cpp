@@ -199,6 +199,21 @@ TEST(Zr300, RefusesBadLists) {
                   "which is 0.5 to 50 ms in none");
 }
 
+TEST(Zr300, ScalesOfTheImuAreTakenOutAndPartOfTheFingerprint) {
+  const Zr300Folder folder;
+  const auto raw = open_zr300(folder.path(), {});
+  calibration::RigCalibration calibration = Zr300Folder::calibration();
+  calibration.imu->gyroscope_scale = {1.5, 0.5, 1};
+  calibration.imu->accelerometer_scale = {1, 0.75, 2};
+  folder.write("calibration.toml", calibration::to_toml(calibration));
+  const auto scaled = open_zr300(folder.path(), {});
+  ASSERT_TRUE(raw && scaled);
+  EXPECT_EQ(scaled->imu[3].angular_velocity_radps, Vector3d(2, 0.5, -0.5));
+  EXPECT_EQ(scaled->imu[3].specific_force_mps2, Vector3d(0.265, 13, 0));
+  EXPECT_EQ(scaled->imu[3].timestamp_ns, raw->imu[3].timestamp_ns);
+  EXPECT_NE(scaled->fingerprint, raw->fingerprint);
+}
+
 TEST(Zr300, RefusesAnImuOfAnotherTime) {
   const Zr300Folder folder;
   folder.write("IMU.txt", Zr300Folder::imu_rows(1, 5'000'000, 20));

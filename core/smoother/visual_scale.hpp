@@ -1,0 +1,28 @@
+// What the information of images is divided by, see batch_estimate.hpp.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/base/geometry.hpp"
+#include "core/smoother/batch_problem.hpp"
+
+namespace fusebench::smoother {
+
+/// The two factors that information of images is divided by.
+struct VisualScale {
+  double variance = 1;
+  double correlation = 1;
+  [[nodiscard]] double product() const { return variance * correlation; }
+  /// The threshold on residuals is one on those that are not correlated.
+  [[nodiscard]] Weighting weighting(double outlier_sigmas) const {
+    return {product(), outlier_sigmas / std::sqrt(correlation)};
+  }
+};
+
+/// 1 + 2 sum of the autocorrelation of residuals over frames, to the first lag below 0.05 (initial positive
+/// sequence, Geyer 1992).
+[[nodiscard]] double correlation_factor(const std::vector<std::optional<Vector6d>>& residual_of_frame);
+
+}  // namespace fusebench::smoother
