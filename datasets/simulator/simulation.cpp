@@ -57,6 +57,8 @@ Result<void> check_options(const SimulationOptions& o) {
         std::tuple{"depth readout_s", o.rig.color.timing.depth_readout_s, 0.0, 0.1},
         std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kMaxDelay_s, kMaxDelay_s},
         std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0},
+        std::tuple{"stamps.jitter_s", o.stamps.jitter_s, 0.0, 0.1 / o.rate_hz},
+        std::tuple{"stamps.dropped_share", o.stamps.dropped_share, 0.0, 0.5},
         std::tuple{"untold_time_offset_s", o.untold_time_offset_s, -kMaxUntold_s, kMaxUntold_s}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
@@ -118,6 +120,22 @@ Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
   return frame_ns;
 }
 
+/// Stamps and gaps of the images: those of the sensors, and the faults'.
+void stamp_images(const SimulationOptions& options, CaptureSetup& setup) {
+  const layouts::LayoutDescription& layout = layouts::describe(options.layout);
+  sensors::StampErrors errors = options.stamps;
+  if (!layout.has_stamps) errors.jitter_s = 0;
+  const auto images_of = [&](sensors::ImageStream stream) {
+    sensors::ImageStamps images =
+        sensors::stamped(setup.frame_ns, errors, layout.tick_ns, options.seed, stream);
+    const std::vector<bool> faulty = faults::dropped_frames(options.faults, setup.frame_ns);
+    for (std::size_t k = 0; k < faulty.size(); ++k) images.dropped[k] = images.dropped[k] || faulty[k];
+    return images;
+  };
+  setup.color = images_of(sensors::ImageStream::color);
+  setup.depth = layout.separate_lists ? images_of(sensors::ImageStream::depth) : setup.color;
+}
+
 Result<Drive> choose_motion(const SimulationOptions& options, const std::optional<motion::FilePath>& path,
                             const motion::MotionSpan& span, const Eigen::AlignedBox3d& box,
                             const motion::HeadingTexture& texture) {
@@ -158,8 +176,16 @@ Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& se
   data.rig.imu->time_offset_s = options.imu.time_offset_s;
   data.rig.imu->T_imu_camera =
       faults::miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
+  if (options.untold_shutters) {
+    data.rig.color.timing = {};
+    data.rig.color.timing.color_readout_sigma_s = calibration::kUnknownReadoutSigma_s;
+    data.rig.color.timing.depth_readout_sigma_s = calibration::kUnknownReadoutSigma_s;
+    data.rig.color.timing.depth_delay_sigma_s = calibration::kUnknownDelaySigma_s;
+  }
   data.frame_ns = setup.frame_ns;
-  data.dropped = faults::dropped_frames(options.faults, setup.frame_ns);
+  data.color = setup.color;
+  data.depth = setup.depth;
+  data.paired = !options.stamps.any();
   data.truth = true_poses(setup);
   sensors::ImuErrors errors = options.imu;
   errors.time_offset_s += options.untold_time_offset_s;
@@ -228,6 +254,8 @@ void remove_noise(SimulationOptions& options) {
   options.shot_noise = 0;
   options.depth_noise = sensors::DepthNoise::none;
   options.imu.sensor = synthetic_imu::ImuSensor{"ideal", {}, 0, 0};
+  options.color_processing = {};
+  options.depth_errors = {};
 }
 
 Result<SimulationReport> simulate(const SimulationOptions& options, const fs::path& out,
@@ -259,10 +287,9 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   const auto drive = choose_motion(options, *path, span, scene->free_space, texture);
   if (!drive) return tl::unexpected(drive.error());
   const SE3& T_body_color = options.rig.imu->T_imu_camera;
-  const CaptureSetup setup{motion::body_motion(drive->camera, T_body_color), T_body_color,
-                           std::move(*frame_ns)};
-  report.frames = static_cast<std::size_t>(
-      std::ranges::count(faults::dropped_frames(options.faults, setup.frame_ns), false));
+  CaptureSetup setup{motion::body_motion(drive->camera, T_body_color), T_body_color, std::move(*frame_ns)};
+  stamp_images(options, setup);
+  report.frames = static_cast<std::size_t>(std::ranges::count(setup.color.dropped, false));
   report.trajectory_shrunk = drive->shrunk;
   report.trajectory_turned_rad = drive->turned_rad;
   if (*path) report.warnings = (*path)->warnings;

@@ -97,8 +97,10 @@ struct Renderer::State {
   std::vector<TriangleShading> shading;
   std::vector<std::array<Eigen::Vector3f, 3>> colors;  // by triangle, linear; empty if all have textures
   std::vector<texture::Texture> textures;
+  std::vector<float> gloss;  // by texture; empty: all matt
 
-  explicit State(const scene::SimulatedScene& scene) : caster(scene.mesh), textures(scene.textures) {
+  explicit State(const scene::SimulatedScene& scene)
+      : caster(scene.mesh), textures(scene.textures), gloss(scene.gloss) {
     shading.reserve(scene.mesh.triangles.size());
     bool plain = false;
     for (std::size_t i = 0; i < scene.mesh.triangles.size(); ++i) {
@@ -111,6 +113,19 @@ struct Renderer::State {
   /// Radiance of a hit; footprint_m: side of the square at the hit, across the ray, that is averaged.
   [[nodiscard]] Eigen::Vector3f light_of(const rays::RayHit& hit, float footprint_m) const {
     const TriangleShading& at = shading[hit.triangle];
+    const Eigen::Vector3f reflectance = reflectance_of(hit, footprint_m);
+    return at.texture == scene::SimulatedScene::kNoTexture ? reflectance : at.light.at(hit) * reflectance;
+  }
+
+  [[nodiscard]] float gloss_of(const rays::RayHit& hit) const {
+    const std::int32_t texture = shading[hit.triangle].texture;
+    const bool known = texture >= 0 && static_cast<std::size_t>(texture) < gloss.size();
+    return known ? gloss[static_cast<std::size_t>(texture)] : 0.0F;
+  }
+
+  /// Of the texture; the colour itself where there is none.
+  [[nodiscard]] Eigen::Vector3f reflectance_of(const rays::RayHit& hit, float footprint_m) const {
+    const TriangleShading& at = shading[hit.triangle];
     if (at.texture == scene::SimulatedScene::kNoTexture) {
       const std::array<Eigen::Vector3f, 3>& c = colors[hit.triangle];
       return c[0] + hit.u * (c[1] - c[0]) + hit.v * (c[2] - c[0]);
@@ -122,7 +137,7 @@ struct Renderer::State {
         footprint_m * at.texels_per_metre / std::sqrt(std::max(kMinCosine, hit.cos_incidence));
     const Eigen::Array4f reflectance =
         textures[static_cast<std::size_t>(at.texture)].sample(at.u.at(hit), at.v.at(hit), texels);
-    return at.light.at(hit) * reflectance.head<3>().matrix();
+    return reflectance.head<3>().matrix();
   }
 
  private:
@@ -192,7 +207,7 @@ void Renderer::render_light(const PinholeCamera& camera, const RowPoses& poses, 
 }
 
 void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& poses, const Workers& workers,
-                               Image<Surface>& surfaces) const {
+                               Image<Surface>& surfaces, bool material) const {
   check_arguments(camera, poses);
   const rays::RayField rays(camera);
   surfaces = Image<Surface>(camera.width_px, camera.height_px);
@@ -201,8 +216,12 @@ void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& pose
     line.cast(state_->caster, rays, row, poses.of_row(row), Vector2d::Zero());
     for (int u = 0; u < camera.width_px; ++u) {
       const rays::RayHit& hit = line.hits[static_cast<std::size_t>(u)];
-      if (hit.triangle != rays::RayHit::kNothing)
-        surfaces(u, row) = {hit.distance, hit.cos_incidence, hit.triangle};
+      if (hit.triangle == rays::RayHit::kNothing) continue;
+      surfaces(u, row) = {hit.distance, hit.cos_incidence, hit.triangle};
+      if (!material) continue;
+      const float footprint_m = hit.distance / static_cast<float>(camera.fx_px);
+      surfaces(u, row).reflectance = state_->reflectance_of(hit, footprint_m).sum() / 3;
+      surfaces(u, row).gloss = state_->gloss_of(hit);
     }
   });
 }

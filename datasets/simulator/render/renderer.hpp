@@ -59,9 +59,11 @@ class Renderer {
     float depth_m = 0;           ///< z-depth, 0: nothing
     float cos_incidence = 0;     ///< of the angle between the ray and the surface's normal, 0 to 1
     std::uint32_t triangle = 0;  ///< index in the scene
+    float reflectance = 1;       ///< these two only with material: mean over the colours, 0 to 1
+    float gloss = 0;             ///< 0 matt to 1 polished
   };
   void render_surfaces(const PinholeCamera& camera, const RowPoses& poses, const Workers& workers,
-                       Image<Surface>& surfaces) const;
+                       Image<Surface>& surfaces, bool material = false) const;
 
  private:
   struct State;

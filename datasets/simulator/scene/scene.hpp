@@ -27,6 +27,7 @@ struct SimulatedScene {
   std::vector<float>
       light;  ///< by vertex: a texture's reflectance times this is what the surface sends; empty: 1
   std::vector<texture::Texture> textures;
+  std::vector<float> gloss;  ///< by texture: 0 matt to 1 polished; empty: all matt
 
   /// Where a camera may be: nothing of the scene is inside. For scenes read from files this is an estimate
   /// (read_scene()).
