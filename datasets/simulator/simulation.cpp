@@ -14,6 +14,7 @@
 #include "core/io/staged_folder.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
+#include "datasets/simulator/scene/office.hpp"
 #include "datasets/simulator/scene/room.hpp"
 #include "datasets/simulator/scene/storage_room.hpp"
 #include "datasets/simulator/write_images.hpp"
@@ -81,8 +82,9 @@ struct Drive {
 
 Result<scene::SimulatedScene> make_scene(const SimulationOptions& options) {
   if (!options.scene_file.empty()) return scene::read_scene(options.scene_file, options.scene);
-  return options.room == RoomKind::storage ? scene::make_storage_room(options.seed)
-                                           : scene::make_room(options.seed);
+  if (options.room == RoomKind::storage) return scene::make_storage_room(options.seed);
+  if (options.room == RoomKind::office) return scene::make_office(options.seed);
+  return scene::make_room(options.seed);
 }
 
 Result<std::optional<motion::FilePath>> read_path(const SimulationOptions& options) {

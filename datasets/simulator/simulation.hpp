@@ -27,6 +27,7 @@ namespace fusebench::simulator {
 enum class RoomKind {
   furnished,  ///< room.hpp
   storage,    ///< storage_room.hpp
+  office,     ///< office.hpp
 };
 
 /// All options that a recording depends on; simulation_defaults() fills it in.

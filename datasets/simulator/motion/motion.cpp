@@ -33,13 +33,16 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
         std::tuple{"motion.pan_share", options.pan_share, 0.0, 1.0},
         std::tuple{"motion.shake_share", options.shake_share, 0.0, 1.0},
         std::tuple{"motion.tremor_m", options.tremor_m, 0.0, 0.01},
+        std::tuple{"motion.tremor_rad", options.tremor_rad, 0.0, 0.1},
+        std::tuple{"motion.revisit_s", options.revisit_s, 0.0, 600.0},
         std::tuple{"motion.rest_s", options.rest_s, 0.0, 60.0},
         std::tuple{"motion.start_s", options.start_s, 0.1, 10.0}}) {
     if (const auto valid = check_range(name, value, low, high); !valid) return valid;
   }
   for (const auto& [name, band] : {std::pair{"motion.position_hz", options.position_hz},
                                    std::pair{"motion.rotation_hz", options.rotation_hz},
-                                   std::pair{"motion.shake_hz", options.shake_hz}}) {
+                                   std::pair{"motion.shake_hz", options.shake_hz},
+                                   std::pair{"motion.tremor_hz", options.tremor_hz}}) {
     if (!(band.low_hz >= 0.01 && band.low_hz < band.high_hz && band.high_hz <= 10)) {
       return fail(ErrorCode::configuration, fmt::format("{} = {} .. {} (allowed: rising, within 0.01 .. 10)",
                                                         name, band.low_hz, band.high_hz));
@@ -63,8 +66,10 @@ struct Scale {
 };
 
 SE3 pose_on(const HandPath& path, const MotionOptions& options, const Scale& scale, double path_s) {
-  const Vector3d angle = scale.angle_rad * path.angles(path_s);
-  return {looking(scale.heading_rad + angle[0], kMeanPitch_rad + angle[1], angle[2]),
+  const Vector3d angle =
+      scale.angle_rad * path.angles(path_s) + options.tremor_rad * path.angle_tremor(path_s);
+  const double round_rad = options.revisit_s > 0 ? 2 * std::numbers::pi * path_s / options.revisit_s : 0;
+  return {looking(scale.heading_rad + round_rad + angle[0], kMeanPitch_rad + angle[1], angle[2]),
           scale.position_m * path.position(path_s) + options.tremor_m * path.tremor(path_s)};
 }
 
@@ -197,9 +202,15 @@ std::string_view to_string(MotionPreset preset) {
     case MotionPreset::shake:
       return "shake";
     case MotionPreset::sweep:
+      return "sweep";
+    case MotionPreset::realistic_scan:
+      return "realistic_scan";
+    case MotionPreset::realistic_turns:
+      return "realistic_turns";
+    case MotionPreset::realistic_revisit:
       break;
   }
-  return "sweep";
+  return "realistic_revisit";
 }
 
 MotionOptions motion_preset(MotionPreset preset) {
@@ -220,6 +231,21 @@ MotionOptions motion_preset(MotionPreset preset) {
     options.position_hz = {0.25, 0.6};
     options.rotation_hz = {0.3, 0.8};
     options.sideways = true;
+  } else if (preset != MotionPreset::slow) {
+    // Tremor of a hand that holds something: 5 to 10 Hz, some tenths of a millimetre and of a degree.
+    options.peak_speed_mps = preset == MotionPreset::realistic_scan ? 0.5 : 0.8;
+    options.peak_rate_radps = 0.8;
+    options.tremor_m = 3e-4;
+    options.tremor_rad = 1.2e-3;
+    options.tremor_hz = {5, 10};
+    if (preset == MotionPreset::realistic_turns) {
+      options.peak_rate_radps = 7;
+      options.pan_share = 0.92;
+      options.pans = {{2.0, 5.0}, {0.3, 0.55}, {1.0, 2.0}};
+    } else if (preset == MotionPreset::realistic_revisit) {
+      options.peak_rate_radps = 1.2;
+      options.revisit_s = 20;
+    }
   }
   return options;
 }

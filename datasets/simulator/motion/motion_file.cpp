@@ -86,6 +86,7 @@ void take_indices_as_frames(Trajectory& poses) {
 PathClock clock_for(const FileMotionOptions& options, double lead_s) {
   PathClock clock;
   clock.rate = options.speed;
+  clock.offset_s = options.skip_s;
   if (options.from_rest) {
     clock.still_until_s = lead_s + options.rest_s;
     clock.start_s = options.start_s;
@@ -167,7 +168,7 @@ Result<FilePath> read_file_path(const std::filesystem::path& file) {
 
 Result<void> check_file_motion(const FileMotionOptions& options) {
   for (const auto& [name, value, low, high] :
-       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"rest_s", options.rest_s, 0.0, 60.0},
+       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"skip_s", options.skip_s, 0.0, 1e5}, std::tuple{"rest_s", options.rest_s, 0.0, 60.0},
         std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
@@ -178,7 +179,7 @@ Result<void> check_file_motion(const FileMotionOptions& options) {
 }
 
 double longest_duration_s(const FilePath& path, const FileMotionOptions& options, double lead_s) {
-  const double moving_s = path.length_s() / options.speed;
+  const double moving_s = (path.length_s() - options.skip_s) / options.speed;
   // A start covers half of the path that its time would.
   const double before_s = options.from_rest ? -options.rest_s - 0.5 * options.start_s : lead_s;
   return moving_s - before_s - seconds_between(0, MotionSpan::kTail_ns);

@@ -78,7 +78,7 @@ struct Exposure {
       if (before != nullptr)
         thing.emplace(render::Foreground{before->surface, before->T_object_camera(instant_ns(row, s))});
       renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count, light,
-                                thing ? &*thing : nullptr);
+                                thing ? &*thing : nullptr, seconds_between(0, instant_ns(row, s)));
     }
   }
 
