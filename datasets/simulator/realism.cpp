@@ -50,10 +50,10 @@ Matrix3d gain_of(random::RandomSequence& random) {
 sensors::ColorProcessing kinect_color() {
   sensors::ColorProcessing color;
   color.mosaic = true;
-  color.shot_noise = {0.022, 0.0155, 0.044};
+  color.shot_noise = {0.018, 0.012, 0.038};
   color.read_noise = 0.0012;
   color.smoothing = 0.15;
-  color.contrast = 0.6;
+  color.contrast = 1.0;
   return color;
 }
 
@@ -65,7 +65,7 @@ sensors::DepthErrors kinect_depth() {
   sensors::DepthErrors depth;
   depth.scale = 0.01;
   depth.smooth_px = 0.1;
-  depth.pattern_px = 0.03;
+  depth.pattern_px = 0.01;
   depth.lost_light = true;
   return depth;
 }
@@ -82,13 +82,16 @@ void make_realistic(SimulationOptions& options) {
   timing.color_readout_s = kColorReadout_s;
   timing.depth_readout_s = kDepthReadout_s;
   const bool kinect = options.layout == layouts::RecordingLayout::tum;
+  options.rig.color.ground_truth_offset_m = Vector3d::Zero();  // the truth is the camera's
   timing.depth_delay_s = kinect ? kKinectDepthDelay_s : kOtherDepthDelay_s;
   options.untold_shutters = true;
   options.stamps = {kJitter_s, kDroppedShare};
   options.auto_exposure.on = true;
   options.gain_drift = 0;  // the controller's, instead
   options.color_processing = kinect_color();
+  if (options.depth_noise == sensors::DepthNoise::handa) options.depth_noise = sensors::DepthNoise::kinect;
   options.depth_errors = kinect_depth();
+  options.depth_errors.border = !options.rig.depth;
   random::RandomSequence device(random::mix_key(options.seed, kDevice));
   options.imu.gyroscope_gain = gain_of(device);
   options.imu.accelerometer_gain = gain_of(device);
@@ -124,8 +127,9 @@ std::string realism_text(const SimulationOptions& o) {
         c.shot_noise[0], c.shot_noise[1], c.shot_noise[2], c.read_noise, c.smoothing, c.contrast);
   }
   if (const sensors::DepthErrors& d = o.depth_errors; d.any()) {
-    text += fmt::format("\n[depth_errors]\nscale = {}\nsmooth_px = {}\npattern_px = {}\nlost_light = {}\n",
-                        d.scale, d.smooth_px, d.pattern_px, d.lost_light);
+    text += fmt::format(
+        "\n[depth_errors]\nscale = {}\nsmooth_px = {}\npattern_px = {}\nborder = {}\nlost_light = {}\n",
+        d.scale, d.smooth_px, d.pattern_px, d.border, d.lost_light);
   }
   return text;
 }

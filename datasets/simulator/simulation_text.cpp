@@ -19,6 +19,8 @@ std::string_view name_of(sensors::DepthNoise noise) {
       return "none";
     case sensors::DepthNoise::handa:
       return "handa";
+    case sensors::DepthNoise::kinect:
+      return "kinect";
     case sensors::DepthNoise::zr300:
       break;
   }

@@ -127,6 +127,12 @@ double fit_of(const synthetic_imu::PoseSpline& camera, const Eigen::AlignedBox3d
 void place_in_box(const Eigen::AlignedBox3d& box, const HeadingTexture& texture, FileMotion& motion) {
   constexpr int kHeadings = 36;
   motion.heading_rad = texture.best_turn_rad(motion.camera);
+  if (texture.file_rad) {
+    Vector3d forward = Vector3d::Zero();
+    for (const Quaterniond& rotation : motion.camera.rotation_world_body)
+      forward += rotation * Vector3d::UnitZ();
+    motion.heading_rad = *texture.file_rad - std::atan2(forward.y(), forward.x());
+  }
   motion.shrunk = fit_of(motion.camera, box, motion.heading_rad);
   for (int i = 0; i < kHeadings; ++i) {
     const double heading_rad = radians(i * 360.0 / kHeadings);
@@ -168,8 +174,8 @@ Result<FilePath> read_file_path(const std::filesystem::path& file) {
 
 Result<void> check_file_motion(const FileMotionOptions& options) {
   for (const auto& [name, value, low, high] :
-       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"skip_s", options.skip_s, 0.0, 1e5}, std::tuple{"rest_s", options.rest_s, 0.0, 60.0},
-        std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
+       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"skip_s", options.skip_s, 0.0, 1e5},
+        std::tuple{"rest_s", options.rest_s, 0.0, 60.0}, std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
                   fmt::format("trajectory.{} = {} (allowed {} .. {})", name, value, low, high));

@@ -75,7 +75,8 @@ class OfficePlan {
     scene.screens = {screen_, kScreenPages};
     color_vertices(scene);
     const double edge_m = kHalfX_m - kDeskDepth_m;
-    scene.free_space = {Vector3d(edge_m - 1.3, -1.3, 1.1), Vector3d(edge_m + 0.15, 1.3, 1.65)};
+    scene.free_space = {Vector3d(edge_m - 0.75, -1.2, 1.1), Vector3d(edge_m + 0.45, 1.2, 1.65)};
+    scene.file_heading_rad = 0;
     scene.look_at = {Vector3d(edge_m, -0.5 * kDeskWidth_m, kTop_m),
                      Vector3d(kHalfX_m, 0.5 * kDeskWidth_m, 1.6)};
     return std::move(scene);
@@ -120,21 +121,25 @@ class OfficePlan {
       furnisher_.picture(placed(T, {-1.4 + 0.7 * i + any(-0.1, 0.1), -0.5 * kDeskDepth_m, any(0.75, 1.0)}),
                          any(0.3, 0.5), any(0.25, 0.45));
     }
+    // A dark screen of cloth along the back.
+    builder_.add_box(placed(T, {0, -0.5 * kDeskDepth_m + 0.01, 0}), {kDeskWidth_m, 0.03, 0.62},
+                     {.texture = textures_.fabrics[1], .repeat_m = 0.3, .brightness = 0.2F});
     for (const double x : {-1.1, 0.0, 1.1}) place_of_work(placed(T, {x, 0, 0}));
   }
 
   void place_of_work(const SE3& T) {
-    screen(placed(T, {any(-0.02, 0.18), any(-0.28, -0.2), 0}, any(-0.3, 0.3)), random_.below(3) == 0);
+    screen(placed(T, {any(-0.25, -0.15), any(-0.25, -0.18), 0}, any(-0.3, 0.0)), random_.below(4) == 0);
+    screen(placed(T, {any(0.3, 0.36), any(-0.22, -0.12), 0}, any(0.1, 0.4)), random_.below(4) == 0);
     keyboard(placed(T, {any(-0.02, 0.08), any(0.1, 0.2), 0}, any(-0.35, 0.35)));
     mouse(placed(T, {any(0.33, 0.38), any(0.08, 0.2), 0}, any(-0.4, 0.4)));
     furnisher_.papers(placed(T, {any(-0.4, -0.3), any(0.2, 0.26), 0}), 0.13, 4);
     furnisher_.papers(placed(T, {0.45, any(0.28, 0.33), 0}), 0.1, 3);
-    clutter_.pencils(placed(T, {-0.3, any(-0.1, 0.0), 0}), 0.2);
-    builder_.add_cylinder(placed(T, {-0.2, any(0.0, 0.06), 0}), 0.042, 0.1,
+    clutter_.pencils(placed(T, {-0.2, any(-0.1, -0.05), 0}), 0.2);
+    builder_.add_cylinder(placed(T, {-0.16, any(0.0, 0.06), 0}), 0.042, 0.1,
                           {.texture = random_.below(2) == 0 ? white_ : red_});
-    furnisher_.carton(placed(T, {-0.4, any(-0.02, 0.04), 0}, any(-0.8, 0.8)), {0.09, 0.07, any(0.12, 0.2)});
-    furnisher_.stack_of_books(placed(T, {-0.45, any(-0.3, -0.25), 0}, any(-0.6, 0.6)), 1 + random_.below(4));
-    telephone(placed(T, {-0.25, any(-0.32, -0.22), 0}, any(-0.4, 0.4)));
+    furnisher_.carton(placed(T, {-0.28, any(0.0, 0.06), 0}, any(-0.8, 0.8)), {0.09, 0.07, any(0.12, 0.2)});
+    furnisher_.stack_of_books(placed(T, {-0.45, any(-0.36, -0.33), 0}, any(-0.6, 0.6)), 1 + random_.below(4));
+    telephone(placed(T, {-0.42, any(-0.12, -0.06), 0}, any(-0.4, 0.4)));
     for (int i = 0; i < 3; ++i) small_thing(placed(T, {any(-0.3, 0.5), any(0.0, 0.42), 0}, any(-1.5, 1.5)));
     for (int i = 0; i < 4; ++i) {
       const double x = any(-0.5, 0.3);
@@ -147,10 +152,10 @@ class OfficePlan {
     builder_.add_cylinder(T, any(0.09, 0.13), 0.012, {.texture = black_});
     builder_.add_box(placed(T, {0, -0.02, 0.01}), {0.05, 0.04, 0.12}, {.texture = black_});
     const double width = any(0.46, 0.54);
-    builder_.add_box(placed(T, {0, 0, 0.09}), {width, 0.05, 0.35}, {.texture = black_});
+    builder_.add_box(placed(T, {0, 0, 0.08}), {width, 0.05, 0.35}, {.texture = black_});
     if (!lit) return;
     const double inner = width - 0.04;
-    builder_.add_rectangle(T * Vector3d(0.5 * inner, 0.027, 0.11), T.rotation * Vector3d(-inner, 0, 0),
+    builder_.add_rectangle(T * Vector3d(0.5 * inner, 0.027, 0.1), T.rotation * Vector3d(-inner, 0, 0),
                            T.rotation * Vector3d(0, 0, 0.31),
                            {.texture = screen_, .repeat_m = 0, .brightness = 1.3F});
   }
@@ -179,8 +184,8 @@ class OfficePlan {
     builder_.add_box(T, {0.19, 0.22, 0.04}, body);
     builder_.add_box(placed(T, {-0.065, 0, 0.041}), {0.045, 0.21, 0.03}, body);
     for (int i = 0; i < 12; ++i) {
-      builder_.add_box(placed(T, {0.0 + 0.028 * (i % 3), -0.05 + 0.03 * (i / 3), 0.041}), {0.018, 0.016, 0.006},
-                       {.texture = i % 2 == 0 ? white_ : black_});
+      builder_.add_box(placed(T, {0.0 + 0.028 * (i % 3), -0.05 + 0.03 * (i / 3), 0.041}),
+                       {0.018, 0.016, 0.006}, {.texture = i % 2 == 0 ? white_ : black_});
     }
     builder_.add_rectangle(T * Vector3d(0.09, -0.07, 0.041), T.rotation * Vector3d(-0.11, 0, 0),
                            T.rotation * Vector3d(0, -0.03, 0),

@@ -51,6 +51,8 @@ struct SimulatedScene {
   /// Level direction from the free space to what the scene is about (about z, 0 looks along x); empty: all
   /// around.
   std::optional<double> heading_rad;
+  /// The same for paths from files, which look where they look.
+  std::optional<double> file_heading_rad;
 };
 
 /// Gives the vertices of textured triangles the colour that they show (mesh.colors), for viewers of the mesh

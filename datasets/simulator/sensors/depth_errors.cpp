@@ -17,13 +17,20 @@ using Surface = render::Renderer::Surface;
 
 constexpr double kBaseline_m = 0.075;  // a Kinect's
 constexpr int kSmoothSpacing_px = 80;
-constexpr int kPatchSpacing_px = 6;  // holes are patches rather than single pixels
+constexpr int kPatchSpacing_px = 14;  // holes are patches rather than single pixels
 constexpr std::size_t kRowsPerChunk = 16;
 
+// Of the width and the height: the margins without depth in freiburg1, 10, 44, 37 and 3 of 640 x 480 px,
+// where the infrared camera does not see what the colour camera sees.
+constexpr double kLeft = 10 / 640.0;
+constexpr double kRight = 44 / 640.0;
+constexpr double kAbove = 37 / 480.0;
+constexpr double kBelow = 3 / 480.0;
+
 constexpr float kGrazingCosine = 0.26F;  // 75 degrees
-constexpr float kGrazingSoft = 0.05F;
+constexpr float kGrazingSoft = 0.03F;
 constexpr float kLeastSignal = 0.012F;   // reflectance * cosine / z^2 [1/m^2]
-constexpr float kSignalSoft = 0.35F;     // relative
+constexpr float kSignalSoft = 0.25F;     // relative
 constexpr float kGlossLost = 0.5F;       // of the light that a fully glossy surface sends elsewhere
 constexpr float kMirrorCosine = 0.992F;  // a glossy surface blinds the sensor where it mirrors the projector
 
@@ -45,12 +52,19 @@ float smooth_noise(std::uint64_t key, int spacing_px, int u, int v) {
   return ((1 - fy) * top + fy * bottom) / std::sqrt(squares);
 }
 
+bool is_in_border(const Image<Surface>& surfaces, int u, int v) {
+  const int width = surfaces.width;
+  const int height = surfaces.height;
+  return u < kLeft * width || u >= width - kRight * width || v < kAbove * height ||
+         v >= height - kBelow * height;
+}
+
 /// Whether the projector's light does not come back. noise: standard normal, shared by a small patch.
 bool is_lost(const Surface& surface, float noise) {
   if (surface.cos_incidence < kGrazingCosine + kGrazingSoft * noise) return true;
   const float spread = 1 - kGlossLost * surface.gloss * (1 - surface.cos_incidence);
-  const float signal =
-      surface.reflectance * spread * surface.cos_incidence / (surface.depth_m * surface.depth_m);
+  const float reflectance = kInfrared + (1 - kInfrared) * surface.reflectance;
+  const float signal = reflectance * spread * surface.cos_incidence / (surface.depth_m * surface.depth_m);
   if (signal < kLeastSignal * (1 + kSignalSoft * noise)) return true;
   return surface.gloss > 0.6F && surface.cos_incidence > kMirrorCosine + 0.003F * noise;
 }
@@ -69,7 +83,9 @@ void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, 
       for (int u = 0; u < surfaces.width; ++u) {
         Surface& surface = surfaces(u, v);
         if (surface.depth_m <= 0) continue;
-        if (errors.lost_light && is_lost(surface, smooth_noise(frame_key, kPatchSpacing_px, u, v))) {
+        const bool lost =
+            errors.lost_light && is_lost(surface, smooth_noise(frame_key, kPatchSpacing_px, u, v));
+        if (lost || (errors.border && is_in_border(surfaces, u, v))) {
           surface.depth_m = 0;
           continue;
         }

@@ -16,10 +16,13 @@ struct DepthErrors {
   double scale = 0;         ///< measured depth over true depth, minus 1
   double smooth_px = 0;     ///< standard deviation of an error of disparity that varies over the image
   double pattern_px = 0;    ///< the same, of each pixel on its own
+  bool border = false;      ///< no depth at the borders, as of depth that is registered to colour
   bool lost_light = false;  ///< no depth where the projector's light does not come back: at grazing angles,
                             ///< on dark surfaces, on glossy ones
 
-  [[nodiscard]] bool any() const { return scale != 0 || smooth_px > 0 || pattern_px > 0 || lost_light; }
+  [[nodiscard]] bool any() const {
+    return scale != 0 || smooth_px > 0 || pattern_px > 0 || border || lost_light;
+  }
 };
 
 /// What the sensor sees instead of the surfaces: depth with the fixed errors, 0 where light is lost.

@@ -28,6 +28,8 @@ DepthImage measured_depth(const Image<render::Renderer::Surface>& surfaces, cons
       return structured_light_depth(surfaces, sensor.camera, key, workers);
     case DepthNoise::zr300:
       return active_stereo_depth(surfaces, sensor.camera, key, workers);
+    case DepthNoise::kinect:
+      return kinect_depth(surfaces, sensor.camera, key, workers);
     case DepthNoise::none:
       break;
   }

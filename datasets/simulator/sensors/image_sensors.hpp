@@ -41,10 +41,11 @@ struct MovingObject {
 };
 
 enum class DepthNoise {
-  none,   ///< exact to the quantum
-  handa,  ///< structured light as in ICL-NUIM: disparity quantisation, lateral jitter, holes; see
-          ///< depth_noise_handa.cpp
-  zr300,  ///< active stereo of the ZR300; see depth_noise_zr300.cpp
+  none,    ///< exact to the quantum
+  handa,   ///< structured light as in ICL-NUIM: disparity quantisation, lateral jitter, holes; see
+           ///< depth_noise_handa.cpp
+  zr300,   ///< active stereo of the ZR300; see depth_noise_zr300.cpp
+  kinect,  ///< a Kinect as in TUM freiburg1; also there
 };
 
 /// A depth camera. Row r is taken at capture + (r / (height - 1) - 1/2) * readout_s.

@@ -54,7 +54,7 @@ TEST_F(SuiteSimulationsTest, ListsAreMultipliedOutInTheOrderOfTheFile) {
   EXPECT_EQ(last.request.layout, RecordingLayout::zr300);
   EXPECT_EQ(last.request.preset, MotionPreset::shake);
   EXPECT_EQ(last.request.seed, 2U);
-  EXPECT_DOUBLE_EQ(last.request.duration_s, 5);
+  EXPECT_DOUBLE_EQ(last.request.duration_s.value_or(0), 5);
   EXPECT_EQ(last.request.from_rest, false);
 }
 
