@@ -29,7 +29,8 @@ constexpr double kBelow = 3 / 480.0;
 
 constexpr float kGrazingCosine = 0.26F;  // 75 degrees
 constexpr float kGrazingSoft = 0.03F;
-constexpr float kLeastSignal = 0.012F;   // reflectance * cosine / z^2 [1/m^2]
+constexpr float kLeastSignal = 0.011F;   // infrared reflectance * cosine / z^2 [1/m^2]
+constexpr float kInfrared = 0.011F;      // reflectance of what is black to the eye
 constexpr float kSignalSoft = 0.25F;     // relative
 constexpr float kGlossLost = 0.5F;       // of the light that a fully glossy surface sends elsewhere
 constexpr float kMirrorCosine = 0.992F;  // a glossy surface blinds the sensor where it mirrors the projector
