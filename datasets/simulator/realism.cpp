@@ -53,7 +53,7 @@ sensors::ColorProcessing kinect_color() {
   color.shot_noise = {0.018, 0.012, 0.038};
   color.read_noise = 0.0012;
   color.smoothing = 0.15;
-  color.contrast = 1.0;
+  color.contrast = 0.9;
   return color;
 }
 

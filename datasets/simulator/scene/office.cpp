@@ -37,7 +37,7 @@ class OfficePlan {
     blue_ = plain(0x1d2f7c);
     red_ = plain(0xb01c1c);
     desk_top_ = builder_.add_texture(texture::paint_wood(512, texture::reflectance_of(0xe2d9c8),
-                                                         texture::reflectance_of(0xd3c7b1), 1, seed));
+                                                         texture::reflectance_of(0xb4a58c), 1, seed));
     screen_ = builder_.add_texture(texture::paint_page(256, random::mix_key(seed, 14)));
     for (int i = 1; i < kScreenPages; ++i) {
       const std::uint64_t key = random::mix_key(seed, 14 + static_cast<std::uint64_t>(i));
@@ -140,7 +140,7 @@ class OfficePlan {
     furnisher_.carton(placed(T, {-0.28, any(0.0, 0.06), 0}, any(-0.8, 0.8)), {0.09, 0.07, any(0.12, 0.2)});
     furnisher_.stack_of_books(placed(T, {-0.45, any(-0.36, -0.33), 0}, any(-0.6, 0.6)), 1 + random_.below(4));
     telephone(placed(T, {-0.42, any(-0.12, -0.06), 0}, any(-0.4, 0.4)));
-    for (int i = 0; i < 3; ++i) small_thing(placed(T, {any(-0.3, 0.5), any(0.0, 0.42), 0}, any(-1.5, 1.5)));
+    for (int i = 0; i < 8; ++i) small_thing(placed(T, {any(-0.3, 0.5), any(0.0, 0.42), 0}, any(-1.5, 1.5)));
     for (int i = 0; i < 4; ++i) {
       const double x = any(-0.5, 0.3);
       const double y = any(-0.4, 0.1);
@@ -169,7 +169,8 @@ class OfficePlan {
         if (column == 14 || column == 18 || (row == 5 && column % 3 == 0)) continue;
         builder_.add_box(placed(T, {0.0205 * (column - 10), 0.023 * (row - 2.5), 0.018}),
                          {0.015, 0.016, 0.006},
-                         {.texture = keys, .repeat_m = 0.3, .brightness = static_cast<float>(any(0.7, 0.9))});
+                         {.texture = keys, .repeat_m = 0.3, .brightness = static_cast<float>(any(0.7, 0.9))},
+                         {.texture = textures_.pages[1], .repeat_m = 0.11, .offset = {any(0, 1), any(0, 1)}});
       }
     }
   }

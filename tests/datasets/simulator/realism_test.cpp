@@ -74,7 +74,7 @@ TEST_F(Realism, TheCalibrationDoesNotTellWhatTheSimulationDoes) {
   ASSERT_TRUE(rig);
   EXPECT_EQ(rig->color.timing.color_readout_sigma_s, calibration::kUnknownReadoutSigma_s);
   EXPECT_EQ(rig->color.timing.depth_delay_sigma_s, calibration::kUnknownDelaySigma_s);
-  EXPECT_EQ(calibration::to_toml(*rig), calibration);
+  EXPECT_EQ(calibration::to_toml(*rig).find("readout_s"), std::string::npos);  // nor does it when read back
   const std::string told = testing::read_bytes(folder / "simulation.toml");
   for (const std::string_view what :
        {"color_readout_s = 0.0261", "depth_delay_s = -0.018", "jitter_s = 0.001", "most_gain",
