@@ -286,7 +286,7 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   const faults::Scenery scenery(*scene, options.rig.color.pinhole, options.faults, options.seed);
   motion::HeadingTexture texture = motion::look_around(scenery.scene, scene->free_space, workers);
   texture.only_rad = scene->heading_rad;
-  texture.file_rad = scene->file_heading_rad;
+  texture.face_rad = scene->face_rad;
   const auto drive = choose_motion(options, *path, span, scene->free_space, texture);
   if (!drive) return tl::unexpected(drive.error());
   const SE3& T_body_color = options.rig.imu->T_imu_camera;

@@ -41,9 +41,9 @@ std::string hand_text(const motion::MotionOptions& m) {
   const motion::Pans& p = m.pans;
   return fmt::format(
       "tremor_rad = {}\ntremor_hz = [{}, {}]\npan_pause_s = [{}, {}]\npan_duration_s = [{}, {}]\n"
-      "pan_rate = [{}, {}]\nrevisit_s = {}\n",
+      "pan_rate = [{}, {}]\nmean_pitch_rad = {}\nrevisit_s = {}\n",
       m.tremor_rad, m.tremor_hz.low_hz, m.tremor_hz.high_hz, p.pause_s[0], p.pause_s[1], p.duration_s[0],
-      p.duration_s[1], p.rate[0], p.rate[1], m.revisit_s);
+      p.duration_s[1], p.rate[0], p.rate[1], m.mean_pitch_rad, m.revisit_s);
 }
 
 std::string motion_text(const SimulationOptions& o) {

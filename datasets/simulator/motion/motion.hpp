@@ -16,10 +16,10 @@
 namespace fusebench::simulator::motion {
 
 enum class MotionPreset {
-  slow,   ///< careful scanning: up to 0.4 m/s and 0.6 rad/s
-  fast,   ///< quick pans, back and forth: up to 2 m/s and 3 rad/s
-  shake,  ///< shaking at 2 to 4 Hz on a slow path: up to 1.2 m/s and 2.5 rad/s
-  sweep,  ///< quick sideways scanning of something near: up to 2 m/s and 1 rad/s
+  slow,               ///< careful scanning: up to 0.4 m/s and 0.6 rad/s
+  fast,               ///< quick pans, back and forth: up to 2 m/s and 3 rad/s
+  shake,              ///< shaking at 2 to 4 Hz on a slow path: up to 1.2 m/s and 2.5 rad/s
+  sweep,              ///< quick sideways scanning of something near: up to 2 m/s and 1 rad/s
   realistic_scan,     ///< a hand that scans, with its tremor: up to 0.5 m/s and 0.8 rad/s
   realistic_turns,    ///< the same, with quick turns between: up to 0.8 m/s and 7 rad/s (400 deg/s)
   realistic_revisit,  ///< goes round and comes back to where it began every 20 s: up to 0.8 m/s, 1.2 rad/s
@@ -52,10 +52,11 @@ struct MotionOptions {
   double tremor_rad = 0;     ///< the same of its turning
   FrequencyBand tremor_hz{6, 10};
   Pans pans;
-  double revisit_s = 0;  ///< the camera is where it was after this time, once round; 0: it is not
-  bool from_rest = true;     ///< still before it moves; otherwise in full motion from the beginning
-  double rest_s = 1.0;       ///< stillness from the first frame on
-  double start_s = 1.0;      ///< from stillness to full motion
+  double mean_pitch_rad = radians(-8.0);  ///< things stand on floors and tables
+  double revisit_s = 0;   ///< the camera is where it was after this time, once round; 0: it is not
+  bool from_rest = true;  ///< still before it moves; otherwise in full motion from the beginning
+  double rest_s = 1.0;    ///< stillness from the first frame on
+  double start_s = 1.0;   ///< from stillness to full motion
 };
 [[nodiscard]] MotionOptions motion_preset(MotionPreset preset);
 

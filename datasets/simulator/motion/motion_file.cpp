@@ -127,11 +127,11 @@ double fit_of(const synthetic_imu::PoseSpline& camera, const Eigen::AlignedBox3d
 void place_in_box(const Eigen::AlignedBox3d& box, const HeadingTexture& texture, FileMotion& motion) {
   constexpr int kHeadings = 36;
   motion.heading_rad = texture.best_turn_rad(motion.camera);
-  if (texture.file_rad) {
+  if (texture.face_rad) {
     Vector3d forward = Vector3d::Zero();
     for (const Quaterniond& rotation : motion.camera.rotation_world_body)
       forward += rotation * Vector3d::UnitZ();
-    motion.heading_rad = *texture.file_rad - std::atan2(forward.y(), forward.x());
+    motion.heading_rad = *texture.face_rad - std::atan2(forward.y(), forward.x());
   }
   motion.shrunk = fit_of(motion.camera, box, motion.heading_rad);
   for (int i = 0; i < kHeadings; ++i) {

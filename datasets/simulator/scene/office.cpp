@@ -76,7 +76,7 @@ class OfficePlan {
     color_vertices(scene);
     const double edge_m = kHalfX_m - kDeskDepth_m;
     scene.free_space = {Vector3d(edge_m - 0.75, -1.2, 1.1), Vector3d(edge_m + 0.45, 1.2, 1.65)};
-    scene.file_heading_rad = 0;
+    scene.face_rad = 0;
     scene.look_at = {Vector3d(edge_m, -0.5 * kDeskWidth_m, kTop_m),
                      Vector3d(kHalfX_m, 0.5 * kDeskWidth_m, 1.6)};
     return std::move(scene);

@@ -51,8 +51,8 @@ struct SimulatedScene {
   /// Level direction from the free space to what the scene is about (about z, 0 looks along x); empty: all
   /// around.
   std::optional<double> heading_rad;
-  /// The same for paths from files, which look where they look.
-  std::optional<double> file_heading_rad;
+  /// The mean direction to look in where it is not the only one; empty: by the texture.
+  std::optional<double> face_rad;
 };
 
 /// Gives the vertices of textured triangles the colour that they show (mesh.colors), for viewers of the mesh
