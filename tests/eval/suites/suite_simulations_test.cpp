@@ -69,6 +69,27 @@ TEST_F(SuiteSimulationsTest, ASecondDeclarationAddsVariants) {
   EXPECT_EQ(suite->simulations[3].variants, (std::vector<std::string>{"full", "dm"}));
 }
 
+TEST_F(SuiteSimulationsTest, RealisticSensorsForPresetsAndTrajectories) {
+  const auto suite = read(
+      "[[simulations]]\nname = \"{preset}\"\npreset = [\"realistic_turns\", \"slow\"]\n"
+      "[[simulations]]\nname = \"twin\"\ngroup = \"twins\"\ntrajectory = \"a.txt\"\nskip_s = 0.5\n"
+      "realistic = true\nexposure_s = 0.01\n");
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  const auto turns = simulation_options(suite->simulations[0].request);
+  const auto slow = simulation_options(suite->simulations[1].request);
+  const auto twin = simulation_options(suite->simulations[2].request);
+  ASSERT_TRUE(turns && slow && twin);
+  EXPECT_EQ(turns->duration_s, 60);
+  EXPECT_TRUE(turns->auto_exposure.on && turns->untold_shutters);
+  EXPECT_EQ(slow->duration_s, 10);
+  EXPECT_FALSE(slow->auto_exposure.on || slow->untold_shutters || slow->stamps.any());
+  EXPECT_EQ(twin->duration_s, 10);
+  EXPECT_EQ(twin->file_motion.skip_s, 0.5);
+  EXPECT_TRUE(twin->untold_shutters && twin->depth_errors.any());
+  EXPECT_FALSE(twin->auto_exposure.on);  // what is asked for counts
+  EXPECT_EQ(twin->exposure_s, 0.01);
+}
+
 TEST_F(SuiteSimulationsTest, WhatMakesNoSenseIsRefusedWithItsLine) {
   const std::string head = "[[simulations]]\nname = \"a_{seed}\"\n";
   expect_refused(head + "preset = \"quick\"\nseed = 1\n", ":6", "slow | fast | shake");
