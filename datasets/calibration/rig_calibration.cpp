@@ -253,9 +253,9 @@ std::string pinhole_text(const PinholeCamera& p) {
          fmt::format("fx_px = {}\nfy_px = {}\ncx_px = {}\ncy_px = {}\n", p.fx_px, p.fy_px, p.cx_px, p.cy_px);
 }
 
-/// What is said without an uncertainty is exact; what is not known is not said (unknown_s: its uncertainty).
-std::string timing_text(std::string_view name, double value_s, double sigma_s, double unknown_s) {
-  if (value_s == 0 && sigma_s == unknown_s) return "";
+/// What is said without an uncertainty is exact; what is not known is not said.
+std::string timing_text(std::string_view name, double value_s, double sigma_s) {
+  if (value_s == 0 && sigma_s == (name == "delay" ? kUnknownDelaySigma_s : kUnknownReadoutSigma_s)) return "";
   const std::string text = fmt::format("{}_s = {}\n", name, value_s);
   return sigma_s > 0 ? text + fmt::format("{}_sigma_s = {}\n", name, sigma_s) : text;
 }
@@ -325,9 +325,8 @@ std::string to_toml(const RigCalibration& calibration) {
   std::string text = fmt::format("calibration_source = {}\n\n[color]\n{}",
                                  config::to_toml(config::OptionValue(calibration.source)),
                                  pinhole_text(calibration.color.pinhole));
-  text += fmt::format(
-      "distortion = [{}, {}, {}, {}, {}]\n{}", d.k1, d.k2, d.p1, d.p2, d.k3,
-      timing_text("readout", timing.color_readout_s, timing.color_readout_sigma_s, kUnknownReadoutSigma_s));
+  text += fmt::format("distortion = [{}, {}, {}, {}, {}]\n{}", d.k1, d.k2, d.p1, d.p2, d.k3,
+                      timing_text("readout", timing.color_readout_s, timing.color_readout_sigma_s));
   if (const Vector3d& offset_m = calibration.color.ground_truth_offset_m; !offset_m.isZero(0))
     text += fmt::format("ground_truth_offset_m = [{}, {}, {}]\n", offset_m.x(), offset_m.y(), offset_m.z());
   text += "\n[depth]\n";
@@ -337,9 +336,8 @@ std::string to_toml(const RigCalibration& calibration) {
     text += pinhole_text(calibration.depth->pinhole) +
             fmt::format("T_color_depth = {}\n", matrix_text(calibration.depth->T_color_depth));
   }
-  text +=
-      timing_text("readout", timing.depth_readout_s, timing.depth_readout_sigma_s, kUnknownReadoutSigma_s) +
-      timing_text("delay", timing.depth_delay_s, timing.depth_delay_sigma_s, kUnknownDelaySigma_s);
+  text += timing_text("readout", timing.depth_readout_s, timing.depth_readout_sigma_s) +
+          timing_text("delay", timing.depth_delay_s, timing.depth_delay_sigma_s);
   if (!calibration.imu) return text;
   const ImuNoise& noise = calibration.imu->noise;
   return text + fmt::format(

@@ -42,7 +42,8 @@ struct SimulationRequest {
 /// simulate().
 [[nodiscard]] Result<simulator::SimulationOptions> simulation_options(const SimulationRequest& request);
 
-/// "slow", "fast", "shake", "sweep", "realistic_scan", "realistic_turns", "realistic_revisit". Error configuration.
+/// "slow", "fast", "shake", "sweep", "realistic_scan", "realistic_turns", "realistic_revisit". Error
+/// configuration.
 [[nodiscard]] Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text);
 /// "zr300", "tum", "icl". Error configuration.
 [[nodiscard]] Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text);

@@ -25,7 +25,14 @@ constexpr std::uint64_t kPurpose =
     0x6D6F74696F6EULL;  // key of a random stream independent of those of rooms and images
 
 // Names of the streams of random numbers: three axes each, three values a sine.
-enum Stream : std::uint64_t { position = 0, angle = 10, shake_position = 20, shake_angle = 30, tremor = 40, angle_tremor = 45 };
+enum Stream : std::uint64_t {
+  position = 0,
+  angle = 10,
+  shake_position = 20,
+  shake_angle = 30,
+  tremor = 40,
+  angle_tremor = 45
+};
 enum SingleStream : std::uint64_t { pan_pause = 50, pan_duration, pan_angle, shake_phase, mean_yaw };
 
 }  // namespace
@@ -75,7 +82,8 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
     next.begin_s = time_s + random(SingleStream::pan_pause, i, pans.pause_s[0], pans.pause_s[1]);
     next.duration_s = random(SingleStream::pan_duration, i, pans.duration_s[0], pans.duration_s[1]);
     // The peak of the angular velocity is 15/8 of the mean one.
-    const double size = random(SingleStream::pan_angle, i, pans.rate[0], pans.rate[1]) * next.duration_s * 8 / 15;
+    const double size =
+        random(SingleStream::pan_angle, i, pans.rate[0], pans.rate[1]) * next.duration_s * 8 / 15;
     // Back towards the middle, so that pans swing instead of adding up.
     next.angle = yaw > 0 ? -size : size;
     yaw += next.angle;

@@ -98,13 +98,17 @@ struct Renderer::State {
   std::vector<TriangleShading> shading;
   std::vector<std::array<Eigen::Vector3f, 3>> colors;  // by triangle, linear; empty if all have textures
   std::vector<texture::Texture> textures;
-  std::vector<float> gloss;  // by texture; empty: all matt
+  std::vector<float> gloss;              // by texture; empty: all matt
   std::vector<Eigen::Vector3f> normals;  // by triangle; empty if all is matt
   std::vector<scene::Highlight> highlights;
   scene::Screens screens;
 
   explicit State(const scene::SimulatedScene& scene)
-      : caster(scene.mesh), textures(scene.textures), gloss(scene.gloss), highlights(scene.highlights), screens(scene.screens) {
+      : caster(scene.mesh),
+        textures(scene.textures),
+        gloss(scene.gloss),
+        highlights(scene.highlights),
+        screens(scene.screens) {
     if (!gloss.empty()) find_normals(scene.mesh);
     shading.reserve(scene.mesh.triangles.size());
     bool plain = false;
