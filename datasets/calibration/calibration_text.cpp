@@ -23,8 +23,9 @@ std::string pinhole_text(const PinholeCamera& p) {
          fmt::format("fx_px = {}\nfy_px = {}\ncx_px = {}\ncy_px = {}\n", p.fx_px, p.fy_px, p.cx_px, p.cy_px);
 }
 
-/// What is said without an uncertainty is exact.
+/// What is said without an uncertainty is exact; what is not known is not said.
 std::string timing_text(std::string_view name, double value_s, double sigma_s) {
+  if (value_s == 0 && sigma_s == (name == "delay" ? kUnknownDelaySigma_s : kUnknownReadoutSigma_s)) return "";
   const std::string text = fmt::format("{}_s = {}\n", name, value_s);
   return sigma_s > 0 ? text + fmt::format("{}_sigma_s = {}\n", name, sigma_s) : text;
 }

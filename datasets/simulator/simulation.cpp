@@ -14,6 +14,7 @@
 #include "core/io/staged_folder.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
+#include "datasets/simulator/scene/office.hpp"
 #include "datasets/simulator/scene/room.hpp"
 #include "datasets/simulator/scene/storage_room.hpp"
 #include "datasets/simulator/write_images.hpp"
@@ -57,6 +58,8 @@ Result<void> check_options(const SimulationOptions& o) {
         std::tuple{"depth readout_s", o.rig.color.timing.depth_readout_s, 0.0, 0.1},
         std::tuple{"depth delay_s", o.rig.color.timing.depth_delay_s, -kMaxDelay_s, kMaxDelay_s},
         std::tuple{"imu time_offset_s", o.imu.time_offset_s, -1.0, 1.0},
+        std::tuple{"stamps.jitter_s", o.stamps.jitter_s, 0.0, 0.1 / o.rate_hz},
+        std::tuple{"stamps.dropped_share", o.stamps.dropped_share, 0.0, 0.5},
         std::tuple{"untold_time_offset_s", o.untold_time_offset_s, -kMaxUntold_s, kMaxUntold_s}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
@@ -79,8 +82,9 @@ struct Drive {
 
 Result<scene::SimulatedScene> make_scene(const SimulationOptions& options) {
   if (!options.scene_file.empty()) return scene::read_scene(options.scene_file, options.scene);
-  return options.room == RoomKind::storage ? scene::make_storage_room(options.seed)
-                                           : scene::make_room(options.seed);
+  if (options.room == RoomKind::storage) return scene::make_storage_room(options.seed);
+  if (options.room == RoomKind::office) return scene::make_office(options.seed);
+  return scene::make_room(options.seed);
 }
 
 Result<std::optional<motion::FilePath>> read_path(const SimulationOptions& options) {
@@ -116,6 +120,22 @@ Result<std::vector<std::int64_t>> choose_times(const SimulationOptions& options,
   std::vector<std::int64_t> frame_ns;
   for (std::size_t k = 0; k < count; ++k) frame_ns.push_back(layout.frame_ns(k, options.rate_hz));
   return frame_ns;
+}
+
+/// Stamps and gaps of the images: those of the sensors, and the faults'.
+void stamp_images(const SimulationOptions& options, CaptureSetup& setup) {
+  const layouts::LayoutDescription& layout = layouts::describe(options.layout);
+  sensors::StampErrors errors = options.stamps;
+  if (!layout.has_stamps) errors.jitter_s = 0;
+  const auto images_of = [&](sensors::ImageStream stream) {
+    sensors::ImageStamps images =
+        sensors::stamped(setup.frame_ns, errors, layout.tick_ns, options.seed, stream);
+    const std::vector<bool> faulty = faults::dropped_frames(options.faults, setup.frame_ns);
+    for (std::size_t k = 0; k < faulty.size(); ++k) images.dropped[k] = images.dropped[k] || faulty[k];
+    return images;
+  };
+  setup.color = images_of(sensors::ImageStream::color);
+  setup.depth = layout.separate_lists ? images_of(sensors::ImageStream::depth) : setup.color;
 }
 
 Result<Drive> choose_motion(const SimulationOptions& options, const std::optional<motion::FilePath>& path,
@@ -158,8 +178,16 @@ Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& se
   data.rig.imu->time_offset_s = options.imu.time_offset_s;
   data.rig.imu->T_imu_camera =
       faults::miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
+  if (options.untold_shutters) {
+    data.rig.color.timing = {};
+    data.rig.color.timing.color_readout_sigma_s = calibration::kUnknownReadoutSigma_s;
+    data.rig.color.timing.depth_readout_sigma_s = calibration::kUnknownReadoutSigma_s;
+    data.rig.color.timing.depth_delay_sigma_s = calibration::kUnknownDelaySigma_s;
+  }
   data.frame_ns = setup.frame_ns;
-  data.dropped = faults::dropped_frames(options.faults, setup.frame_ns);
+  data.color = setup.color;
+  data.depth = setup.depth;
+  data.paired = !options.stamps.any();
   data.truth = true_poses(setup);
   sensors::ImuErrors errors = options.imu;
   errors.time_offset_s += options.untold_time_offset_s;
@@ -228,6 +256,8 @@ void remove_noise(SimulationOptions& options) {
   options.shot_noise = 0;
   options.depth_noise = sensors::DepthNoise::none;
   options.imu.sensor = synthetic_imu::ImuSensor{"ideal", {}, 0, 0};
+  options.color_processing = {};
+  options.depth_errors = {};
 }
 
 Result<SimulationReport> simulate(const SimulationOptions& options, const fs::path& out,
@@ -256,13 +286,13 @@ Result<SimulationReport> simulate(const SimulationOptions& options, const fs::pa
   const faults::Scenery scenery(*scene, options.rig.color.pinhole, options.faults, options.seed);
   motion::HeadingTexture texture = motion::look_around(scenery.scene, scene->free_space, workers);
   texture.only_rad = scene->heading_rad;
+  texture.face_rad = scene->face_rad;
   const auto drive = choose_motion(options, *path, span, scene->free_space, texture);
   if (!drive) return tl::unexpected(drive.error());
   const SE3& T_body_color = options.rig.imu->T_imu_camera;
-  const CaptureSetup setup{motion::body_motion(drive->camera, T_body_color), T_body_color,
-                           std::move(*frame_ns)};
-  report.frames = static_cast<std::size_t>(
-      std::ranges::count(faults::dropped_frames(options.faults, setup.frame_ns), false));
+  CaptureSetup setup{motion::body_motion(drive->camera, T_body_color), T_body_color, std::move(*frame_ns)};
+  stamp_images(options, setup);
+  report.frames = static_cast<std::size_t>(std::ranges::count(setup.color.dropped, false));
   report.trajectory_shrunk = drive->shrunk;
   report.trajectory_turned_rad = drive->turned_rad;
   if (*path) report.warnings = (*path)->warnings;

@@ -17,6 +17,8 @@
 #include "datasets/simulator/motion/motion.hpp"
 #include "datasets/simulator/motion/motion_file.hpp"
 #include "datasets/simulator/scene/scene_file.hpp"
+#include "datasets/simulator/sensors/auto_exposure.hpp"
+#include "datasets/simulator/sensors/frame_timing.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 #include "datasets/simulator/sensors/imu_sensor.hpp"
 
@@ -25,6 +27,7 @@ namespace fusebench::simulator {
 enum class RoomKind {
   furnished,  ///< room.hpp
   storage,    ///< storage_room.hpp
+  office,     ///< office.hpp
 };
 
 /// All options that a recording depends on; simulation_defaults() fills it in.
@@ -58,6 +61,13 @@ struct SimulationOptions {
   std::vector<faults::SimulatedFault> faults;  ///< of the images
   faults::CalibrationError calibration_error;  ///< error of calibration.toml
   double untold_time_offset_s = 0;  ///< added to imu.time_offset_s, but not written to calibration.toml
+
+  // What realistic sensors have besides (realism.hpp); all off by default.
+  bool untold_shutters = false;  ///< calibration.toml says nothing of read-outs and of the delay of depth
+  sensors::StampErrors stamps;
+  sensors::ExposureControl auto_exposure;  ///< instead of exposure_s, blur_samples and gain_drift
+  sensors::ColorProcessing color_processing;
+  sensors::DepthErrors depth_errors;
 };
 
 /// The sensors and effects of a layout with the motion of a preset: motion blur, image noise, the depth noise

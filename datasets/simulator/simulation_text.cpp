@@ -3,6 +3,7 @@
 
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
+#include "datasets/simulator/realism.hpp"
 #include "datasets/simulator/simulation.hpp"
 
 namespace fusebench::simulator {
@@ -18,6 +19,8 @@ std::string_view name_of(sensors::DepthNoise noise) {
       return "none";
     case sensors::DepthNoise::handa:
       return "handa";
+    case sensors::DepthNoise::kinect:
+      return "kinect";
     case sensors::DepthNoise::zr300:
       break;
   }
@@ -33,23 +36,34 @@ std::string matrix_text(const Matrix3d& m) {
                      m(1, 2), m(2, 0), m(2, 1), m(2, 2));
 }
 
+std::string hand_text(const motion::MotionOptions& m) {
+  if (m.tremor_rad == 0 && m.revisit_s == 0) return "";
+  const motion::Pans& p = m.pans;
+  return fmt::format(
+      "tremor_rad = {}\ntremor_hz = [{}, {}]\npan_pause_s = [{}, {}]\npan_duration_s = [{}, {}]\n"
+      "pan_rate = [{}, {}]\nmean_pitch_rad = {}\nrevisit_s = {}\n",
+      m.tremor_rad, m.tremor_hz.low_hz, m.tremor_hz.high_hz, p.pause_s[0], p.pause_s[1], p.duration_s[0],
+      p.duration_s[1], p.rate[0], p.rate[1], m.mean_pitch_rad, m.revisit_s);
+}
+
 std::string motion_text(const SimulationOptions& o) {
   if (!o.trajectory_file.empty()) {
     const motion::FileMotionOptions& f = o.file_motion;
     return fmt::format(
-        "[trajectory]\nfile = {}\nspeed = {}\nfrom_rest = {}\nrest_s = {}\nstart_s = {}\nin_place = {}\n",
+        "[trajectory]\nfile = {}\nspeed = {}\nfrom_rest = {}\nrest_s = {}\nstart_s = {}\nin_place = {}\n{}",
         toml_text(o.trajectory_file.filename().string()), f.speed, f.from_rest, f.rest_s, f.start_s,
-        f.in_place);
+        f.in_place, f.skip_s > 0 ? fmt::format("skip_s = {}\n", f.skip_s) : "");
   }
   const motion::MotionOptions& m = o.motion;
   return fmt::format(
       "[motion]\npreset = {}\npeak_speed_mps = {}\npeak_rate_radps = {}\nposition_hz = [{}, {}]\n"
       "rotation_hz = [{}, {}]\npan_share = {}\nshake_share = {}\nshake_hz = [{}, {}]\ntremor_m = {}\n"
-      "from_rest = {}\nrest_s = {}\nstart_s = {}\n{}",
+      "from_rest = {}\nrest_s = {}\nstart_s = {}\n{}{}",
       toml_text(motion::to_string(o.preset)), m.peak_speed_mps, m.peak_rate_radps, m.position_hz.low_hz,
       m.position_hz.high_hz, m.rotation_hz.low_hz, m.rotation_hz.high_hz, m.pan_share, m.shake_share,
       m.shake_hz.low_hz, m.shake_hz.high_hz, m.tremor_m, m.from_rest, m.rest_s, m.start_s,
-      m.sideways ? "sideways = true\n" : "");  // only then, so that other recordings keep their identity
+      // Only then, so that other recordings keep their identity.
+      m.sideways ? "sideways = true\n" : "", hand_text(m));
 }
 
 std::string sensors_text(const SimulationOptions& o) {
@@ -74,8 +88,10 @@ std::string sensors_text(const SimulationOptions& o) {
 
 std::string scene_text(const SimulationOptions& o) {
   if (o.scene_file.empty()) {
-    return fmt::format("[scene]\nkind = \"{} room of the seed\"\n",
-                       o.room == RoomKind::storage ? "storage" : "furnished");
+    const std::string_view kind = o.room == RoomKind::storage  ? "storage room"
+                                  : o.room == RoomKind::office ? "office"
+                                                               : "furnished room";
+    return fmt::format("[scene]\nkind = \"{} of the seed\"\n", kind);
   }
   return fmt::format("[scene]\nkind = \"file\"\nfile = {}\ny_up = {}\nmetres_per_unit = {}\n",
                      toml_text(o.scene_file.filename().string()), o.scene.y_up, o.scene.metres_per_unit);
@@ -100,9 +116,9 @@ std::string faults_text(const SimulationOptions& o) {
 
 /// All options but the calibration, which has a file of its own.
 std::string options_text(const SimulationOptions& o) {
-  return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}{}",
+  return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}{}{}",
                      kSimulatorVersion, toml_text(layouts::to_string(o.layout)), o.seed, o.duration_s,
-                     scene_text(o), motion_text(o), sensors_text(o), faults_text(o));
+                     scene_text(o), motion_text(o), sensors_text(o), faults_text(o), realism_text(o));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "datasets/images/image_files.hpp"
 #include "datasets/simulator/sensors/depth_distortion.hpp"
@@ -26,16 +27,35 @@ int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
   return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMaxFaultSamples})));
 }
 
-sensors::ColorSensor color_sensor(const SimulationOptions& options, const faults::FrameFaults& faults) {
+/// Steps of about two pixels by the camera's turning, within limits.
+int samples_of_motion(const SimulationOptions& options, const CaptureSetup& setup, std::int64_t capture_ns,
+                      double exposure_s) {
+  constexpr double kStep_px = 2;
+  constexpr double kFewest = 4;
+  constexpr double kMost = 32;
+  const double rate_radps = setup.body.evaluate(capture_ns).angular_velocity_body_radps.norm();
+  const double blur_px = rate_radps * exposure_s * options.rig.color.pinhole.fx_px;
+  return static_cast<int>(std::clamp(std::ceil(blur_px / kStep_px), kFewest, kMost));
+}
+
+/// exposure: that of the controller, if there is one.
+sensors::ColorSensor color_sensor(const SimulationOptions& options, const faults::FrameFaults& faults,
+                                  const sensors::FrameExposure* exposure) {
   sensors::ColorSensor sensor;
   sensor.camera = options.rig.color;
-  sensor.exposure_s = faults.exposure_s.value_or(options.exposure_s);
+  const double usual_s = exposure != nullptr ? exposure->exposure_s : options.exposure_s;
+  sensor.exposure_s = faults.exposure_s.value_or(usual_s);
+  sensor.processing = options.color_processing;
   sensor.gain_drift = options.gain_drift;
   sensor.vignetting = options.vignetting;
   sensor.read_noise_grey = options.read_noise_grey;
   sensor.shot_noise = options.shot_noise;
   sensor.blur_samples = samples_of_exposure(options, sensor.exposure_s);
   sensor.gain = faults.brightness;
+  if (exposure != nullptr) {
+    sensor.gain *= exposure->gain * usual_s / options.auto_exposure.unit_exposure_s;
+    sensor.amplifier_gain = exposure->gain;
+  }
   sensor.covered = faults.black;
   return sensor;
 }
@@ -47,6 +67,7 @@ sensors::DepthSensor depth_sensor(const SimulationOptions& options) {
   sensor.readout_s = rig.color.timing.depth_readout_s;
   sensor.units_per_metre = rig.depth_units_per_metre.value_or(1000);
   sensor.noise = options.depth_noise;
+  sensor.errors = options.depth_errors;
   return sensor;
 }
 
@@ -67,7 +88,8 @@ struct ImageContext {
   const SimulationOptions& options;
   const CaptureSetup& setup;
   const faults::Scenery& scenery;
-  Workers alone{1};  // frames are what runs in parallel
+  std::vector<sensors::FrameExposure> exposures;  // by frame; empty without a controller
+  Workers alone{1};                               // frames are what runs in parallel
 
   [[nodiscard]] const render::Renderer& scene(const faults::FrameFaults& faults) const {
     return faults.no_texture ? *scenery.matt : scenery.scene;
@@ -75,8 +97,11 @@ struct ImageContext {
 
   [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
     const auto hand = hand_before(scenery, setup, faults, SE3{});
-    return sensors::expose_color(scene(faults), color_sensor(options, faults), setup.body, setup.T_body_color,
-                                 setup.frame_ns[k], options.seed, k, alone, hand ? &*hand : nullptr);
+    sensors::ColorSensor sensor = color_sensor(options, faults, exposures.empty() ? nullptr : &exposures[k]);
+    if (!exposures.empty())
+      sensor.blur_samples = samples_of_motion(options, setup, setup.frame_ns[k], sensor.exposure_s);
+    return sensors::expose_color(scene(faults), sensor, setup.body, setup.T_body_color, setup.frame_ns[k],
+                                 options.seed, k, alone, hand ? &*hand : nullptr);
   }
 
   [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const faults::FrameFaults& faults) const {
@@ -100,10 +125,42 @@ Result<void> write_frame(const ImageContext& context, std::size_t k, const std::
   const std::vector<std::int64_t>& frame_ns = context.setup.frame_ns;
   const faults::FrameFaults faults =
       faults::faults_at(context.options.faults, frame_ns[k] - frame_ns.front());
-  if (faults.dropped) return {};
-  const auto color = images::write_png(folder / layout.color_name(k, frame_ns[k]), context.color(k, faults));
-  if (!color) return color;
-  return images::write_png(folder / layout.depth_name(k, frame_ns[k]), context.depth(k, faults));
+  const CaptureSetup& setup = context.setup;
+  if (!setup.color.dropped[k]) {
+    const auto color =
+        images::write_png(folder / layout.color_name(k, setup.color.stamp_ns[k]), context.color(k, faults));
+    if (!color) return color;
+  }
+  if (setup.depth.dropped[k]) return {};
+  return images::write_png(folder / layout.depth_name(k, setup.depth.stamp_ns[k]), context.depth(k, faults));
+}
+
+/// What the exposure controller meters: the light of a coarse image of each frame, without blur.
+std::vector<std::vector<float>> metered_light(const SimulationOptions& options, const CaptureSetup& setup,
+                                              const faults::Scenery& scenery, const Workers& workers) {
+  constexpr int kWidth_px = 40;
+  constexpr int kHeight_px = 30;
+  const PinholeCamera& camera = options.rig.color.pinhole;
+  const double scale_x = static_cast<double>(kWidth_px) / camera.width_px;
+  const double scale_y = static_cast<double>(kHeight_px) / camera.height_px;
+  const PinholeCamera meter{kWidth_px,
+                            kHeight_px,
+                            camera.fx_px * scale_x,
+                            camera.fy_px * scale_y,
+                            (camera.cx_px + 0.5) * scale_x - 0.5,
+                            (camera.cy_px + 0.5) * scale_y - 0.5};
+  std::vector<std::vector<float>> light_of_frame(setup.frame_ns.size());
+  workers.for_chunks(setup.frame_ns.size(), 1, [&](std::size_t k, std::size_t) {
+    const std::int64_t t_ns = setup.frame_ns[k];
+    const SE3 T_world_camera = setup.body.evaluate(t_ns).T_world_body * setup.T_body_color;
+    const faults::FrameFaults faults = faults::faults_at(options.faults, t_ns - setup.frame_ns.front());
+    const render::Renderer& scene = faults.no_texture ? *scenery.matt : scenery.scene;
+    Image<Eigen::Vector3f> light;
+    scene.render_light(meter, {{T_world_camera}}, Vector2d::Zero(), Workers(1), light);
+    for (const Eigen::Vector3f& pixel : light.data)
+      light_of_frame[k].push_back(faults.black ? 0.0F : pixel.mean());
+  });
+  return light_of_frame;
 }
 
 Result<void> create_folders(const layouts::LayoutDescription& layout, const std::filesystem::path& folder) {
@@ -124,7 +181,12 @@ Result<void> write_images(const SimulationOptions& options, const CaptureSetup& 
                           const faults::Scenery& scenery, const std::filesystem::path& folder,
                           const Workers& workers, const SimulationControl& control) {
   if (auto created = create_folders(layouts::describe(options.layout), folder); !created) return created;
-  const ImageContext context{options, setup, scenery};
+  std::vector<sensors::FrameExposure> exposures;
+  if (options.auto_exposure.on) {
+    exposures =
+        sensors::controlled_exposures(options.auto_exposure, metered_light(options, setup, scenery, workers));
+  }
+  const ImageContext context{options, setup, scenery, std::move(exposures)};
   const std::size_t count = setup.frame_ns.size();
   std::vector<std::optional<Error>> errors(count);
   std::atomic<bool> failed = false;

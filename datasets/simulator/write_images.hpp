@@ -18,7 +18,9 @@ namespace fusebench::simulator {
 struct CaptureSetup {
   synthetic_imu::PoseSpline body;  ///< the IMU body in the scene's world
   SE3 T_body_color;
-  std::vector<std::int64_t> frame_ns;  ///< stamps, and middles of the exposures (depth: its delay later)
+  std::vector<std::int64_t> frame_ns;  ///< middles of the exposures (depth: its delay later)
+  sensors::ImageStamps color{};        ///< how the images are named, and which are missing
+  sensors::ImageStamps depth{};
 };
 
 /// Renders and writes all colour and depth images below the folder, frames in parallel, with the faults of

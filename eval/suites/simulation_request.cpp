@@ -4,25 +4,34 @@
 
 #include <charconv>
 
+#include "datasets/simulator/realism.hpp"
+
 namespace fusebench::suites {
 
 Result<simulator::SimulationOptions> simulation_options(const SimulationRequest& request) {
   auto options = simulator::simulation_defaults(request.layout, request.preset, request.size);
   if (!options) return options;
   options->seed = request.seed;
-  options->duration_s = request.duration_s;
+  const bool realistic_motion = request.trajectory.empty() && simulator::is_realistic(request.preset);
+  options->duration_s = request.duration_s.value_or(realistic_motion ? 60 : 10);
   options->rate_hz = request.rate_hz;
   options->scene_file = request.scene;
   options->scene = request.scene_options;
   options->motion.from_rest = request.from_rest.value_or(true);
   options->trajectory_file = request.trajectory;
   options->file_motion.speed = request.speed;
+  options->file_motion.skip_s = request.skip_s;
   options->file_motion.from_rest = request.from_rest.value_or(false);
   // In a scene of the user's own, the poses say where the camera is; in the furnished room they cannot.
   options->file_motion.in_place = !request.scene.empty();
   options->exposure_s = request.exposure_s;
   options->blur_samples = request.blur_samples;
-  options->rig.color.timing.color_readout_s = request.rolling_shutter_s;
+  if (request.realistic || realistic_motion) simulator::make_realistic(*options);
+  // What is asked for goes before what is realistic.
+  const SimulationRequest usual;
+  if (request.exposure_s != usual.exposure_s || request.blur_samples != usual.blur_samples)
+    options->auto_exposure.on = false;
+  if (request.rolling_shutter_s > 0) options->rig.color.timing.color_readout_s = request.rolling_shutter_s;
   options->imu.time_offset_s = request.time_offset_s;
   if (request.no_noise) simulator::remove_noise(*options);
   for (const std::string& text : request.faults) {
@@ -35,18 +44,21 @@ Result<simulator::SimulationOptions> simulation_options(const SimulationRequest&
     if (!error) return tl::unexpected(error.error());
     options->calibration_error = *error;
   }
-  options->untold_time_offset_s = request.untold_time_offset_s;
+  if (request.untold_time_offset_s != 0) options->untold_time_offset_s = request.untold_time_offset_s;
   return options;
 }
 
 Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text) {
-  for (const simulator::motion::MotionPreset preset :
-       {simulator::motion::MotionPreset::slow, simulator::motion::MotionPreset::fast,
-        simulator::motion::MotionPreset::shake, simulator::motion::MotionPreset::sweep}) {
+  using simulator::motion::MotionPreset;
+  for (const MotionPreset preset :
+       {MotionPreset::slow, MotionPreset::fast, MotionPreset::shake, MotionPreset::sweep,
+        MotionPreset::realistic_scan, MotionPreset::realistic_turns, MotionPreset::realistic_revisit}) {
     if (text == simulator::motion::to_string(preset)) return preset;
   }
   return fail(ErrorCode::configuration,
-              fmt::format("preset = {} (allowed: slow | fast | shake | sweep)", text));
+              fmt::format("preset = {} (allowed: slow | fast | shake | sweep | realistic_scan | "
+                          "realistic_turns | realistic_revisit)",
+                          text));
 }
 
 Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text) {

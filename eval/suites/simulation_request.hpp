@@ -18,12 +18,14 @@ struct SimulationRequest {
   simulator::layouts::RecordingLayout layout = simulator::layouts::RecordingLayout::zr300;
   simulator::motion::MotionPreset preset = simulator::motion::MotionPreset::slow;
   std::uint64_t seed = 1;
-  double duration_s = 10;
+  std::optional<double> duration_s;  ///< default: 60 of a realistic preset, 10 otherwise
   double rate_hz = 30;
   images::ImageSize size{640, 480};
   std::optional<bool> from_rest;     ///< default: a preset starts from rest, a trajectory as it begins
   std::filesystem::path trajectory;  ///< instead of the preset; empty: none
   double speed = 1;                  ///< of the trajectory
+  double skip_s = 0;                 ///< of the trajectory, at its beginning
+  bool realistic = false;            ///< realistic sensors, whatever the motion
   std::filesystem::path scene;       ///< instead of the furnished room; empty: none
   simulator::scene::SceneFileOptions scene_options;
   double exposure_s = 0.008;
@@ -40,7 +42,8 @@ struct SimulationRequest {
 /// simulate().
 [[nodiscard]] Result<simulator::SimulationOptions> simulation_options(const SimulationRequest& request);
 
-/// "slow", "fast", "shake", "sweep". Error configuration.
+/// "slow", "fast", "shake", "sweep", "realistic_scan", "realistic_turns", "realistic_revisit". Error
+/// configuration.
 [[nodiscard]] Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text);
 /// "zr300", "tum", "icl". Error configuration.
 [[nodiscard]] Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text);

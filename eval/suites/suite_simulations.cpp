@@ -10,11 +10,13 @@ namespace fusebench::suites {
 
 namespace {
 
-constexpr std::array<std::string_view, 21> kKeys = {"name",
+constexpr std::array<std::string_view, 23> kKeys = {"name",
                                                     "format",
                                                     "preset",
                                                     "trajectory",
                                                     "speed",
+                                                    "skip_s",
+                                                    "realistic",
                                                     "start",
                                                     "seed",
                                                     "duration_s",
@@ -121,7 +123,7 @@ Result<void> refused(const config::TomlEntry& entry, const Error& error) {
 template <class T, class Target>
 Result<void> store(const Result<T>& value, Target& target) {
   if (!value) return tl::unexpected(value.error());
-  target = static_cast<Target>(*value);
+  target = Target(*value);
   return {};
 }
 
@@ -172,6 +174,8 @@ Result<void> read_value(const config::TomlEntry& entry, SimulationRequest& reque
   if (key == "calibration_error") return store_calibration_error(entry, request);
   if (key == "trajectory") return store(text_entry(entry), request.trajectory);
   if (key == "seed") return store(count_entry(entry), request.seed);
+  if (key == "duration_s") return store(number_entry(entry), request.duration_s);
+  if (key == "realistic") return store(flag_entry(entry), request.realistic);
   if (key == "no_noise") return store(flag_entry(entry), request.no_noise);
   if (key == "blur_samples") {
     const auto count = count_entry(entry);
@@ -180,7 +184,7 @@ Result<void> read_value(const config::TomlEntry& entry, SimulationRequest& reque
   }
   const std::array<std::pair<std::string_view, double*>, 7> numbers = {
       {{"speed", &request.speed},
-       {"duration_s", &request.duration_s},
+       {"skip_s", &request.skip_s},
        {"rate_hz", &request.rate_hz},
        {"exposure_s", &request.exposure_s},
        {"time_offset_s", &request.time_offset_s},
@@ -219,7 +223,9 @@ Result<void> check_table(const EntryTable& table) {
   if (preset == trajectory) return lacks("either 'preset' or 'trajectory' is needed");
   if (trajectory && table.find("group") == nullptr)
     return lacks("with 'trajectory' the key 'group' is needed");
-  if (!trajectory && table.find("speed") != nullptr) return lacks("'speed' needs 'trajectory'");
+  for (const std::string_view key : {"speed", "skip_s"}) {
+    if (!trajectory && table.find(key) != nullptr) return lacks(fmt::format("'{}' needs 'trajectory'", key));
+  }
   return {};
 }
 

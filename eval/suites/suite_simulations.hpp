@@ -28,7 +28,8 @@ inline constexpr std::string_view kHeldOutSplit = "held-out";
 ///     group = "{preset}"                      # default: the preset; required with a trajectory
 ///     variants = ["full"]                     # default: those of the suite
 ///     trajectory = "path.txt"                 # instead of a preset; relative to --data
-///     speed = 4                               # of the trajectory
+///     speed = 4                               # of the trajectory; skip_s: of its beginning
+///     realistic = true                        # realistic sensors (always with presets realistic_*)
 ///     size = "640x480"; rate_hz, exposure_s, blur_samples, rolling_shutter_s, time_offset_s, no_noise
 ///     faults = ["hand=1:2:0.4"]               # all of each recording, as `simulate --fault` takes them
 ///     calibration_error = "1:1"; untold_time_offset_s  # as on the command line

@@ -17,11 +17,11 @@ SE3 same_world(const SimulatedData&) { return {}; }
 // ZR300 counts microseconds since its start, and its images begin 0.75 s after its IMU. Readers of the ZR300
 // tell the unit of its stamps by their spacing, so images have to lie within kImageSpacing (time_unit.hpp).
 constexpr std::array<LayoutDescription, 3> kLayouts = {{
-    {"tum", 1'600'000'000'000'000'000, 250'000'000, 1000, 1, 240, sensors::DepthNoise::handa, tum_color_name,
-     tum_depth_name, write_tum_lists, same_world},
-    {"icl", 0, 250'000'000, 1, 30, 30, sensors::DepthNoise::handa, icl_color_name, icl_depth_name,
-     write_icl_lists, icl_T_file_scene},
-    {"zr300", 755'000'000, 750'000'000, 1000, 1 / reading::kImageSpacing.most_s,
+    {"tum", 1'600'000'000'000'000'000, 250'000'000, 1000, true, true, 1, 240, sensors::DepthNoise::handa,
+     tum_color_name, tum_depth_name, write_tum_lists, same_world},
+    {"icl", 0, 250'000'000, 1, false, false, 30, 30, sensors::DepthNoise::handa, icl_color_name,
+     icl_depth_name, write_icl_lists, icl_T_file_scene},
+    {"zr300", 755'000'000, 750'000'000, 1000, true, false, 1 / reading::kImageSpacing.most_s,
      1 / reading::kImageSpacing.least_s, sensors::DepthNoise::zr300, zr300_color_name, zr300_depth_name,
      write_zr300_lists, same_world},
 }};

@@ -22,6 +22,7 @@
 #include "core/base/types.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/images/image_files.hpp"
+#include "datasets/simulator/sensors/frame_timing.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 #include "datasets/simulator/sensors/imu_sensor.hpp"
 
@@ -33,13 +34,17 @@ enum class RecordingLayout { tum, icl, zr300 };
 /// Everything of a simulated recording but its images.
 struct SimulatedData {
   calibration::RigCalibration rig;
-  std::vector<std::int64_t> frame_ns;  ///< stamps of the images, which are taken at these instants
-  std::vector<bool> dropped{};         ///< by frame: the lists leave it out; empty: none
+  std::vector<std::int64_t> frame_ns;  ///< the instants at which the images are taken
+  sensors::ImageStamps color;          ///< what the lists say of them; those that are dropped are left out
+  sensors::ImageStamps depth;          ///< the same of depth; equal to color where a format pairs them
+  bool paired = true;                  ///< the TUM layout lists the pairs as well
   Trajectory truth;  ///< colour camera in the scene's world: all frames, and poses between them
   sensors::SimulatedImu imu;
   Mesh scene;
 
-  [[nodiscard]] bool has_frame(std::size_t frame) const { return dropped.empty() || !dropped[frame]; }
+  [[nodiscard]] bool has_frame(std::size_t frame) const {
+    return !color.dropped[frame] && !depth.dropped[frame];
+  }
 };
 
 /// One layout: its clock, its names and its lists.
@@ -48,6 +53,8 @@ struct LayoutDescription {
   std::int64_t first_frame_ns;  ///< stamp of frame 0
   std::int64_t imu_lead_ns;     ///< how long before it the IMU begins
   std::int64_t tick_ns;         ///< stamps are multiples of it
+  bool has_stamps;              ///< or frames are counted
+  bool separate_lists;          ///< colour and depth have stamps of their own
   double lowest_rate_hz;        ///< of the images; what readers of the format take
   double highest_rate_hz;
   sensors::DepthNoise depth_noise;  ///< of the sensor that the layout is known for

@@ -26,7 +26,9 @@ void scale_camera(PinholeCamera& camera, const images::ImageSize& size) {
 Result<calibration::CalibratedCamera> registered_camera(RecordingLayout layout) {
   if (layout == RecordingLayout::icl) return formats::icl::icl_calibration().color;
   auto camera = calibration::parse_camera("freiburg1");
-  if (camera) camera->timing = {};
+  if (!camera) return camera;
+  camera->timing = {};
+  camera->ground_truth_offset_m.setZero();  // the truth of simulations is the camera's
   return camera;
 }
 

@@ -31,17 +31,19 @@ Result<void> write_tum_lists(const std::filesystem::path& folder, const Simulate
   std::string depth = "# depth maps\n# simulated\n# timestamp filename\n";
   std::string both;
   for (std::size_t k = 0; k < data.frame_ns.size(); ++k) {
-    if (!data.has_frame(k)) continue;
-    const std::int64_t time_ns = data.frame_ns[k];
-    const std::string color_row = fmt::format("{} {}", stamp(time_ns), tum_color_name(k, time_ns));
-    const std::string depth_row = fmt::format("{} {}", stamp(time_ns), tum_depth_name(k, time_ns));
-    color += color_row + "\n";
-    depth += depth_row + "\n";
-    both += color_row + " " + depth_row + "\n";
+    const std::int64_t color_ns = data.color.stamp_ns[k];
+    const std::int64_t depth_ns = data.depth.stamp_ns[k];
+    const std::string color_row = fmt::format("{} {}", stamp(color_ns), tum_color_name(k, color_ns));
+    const std::string depth_row = fmt::format("{} {}", stamp(depth_ns), tum_depth_name(k, depth_ns));
+    if (!data.color.dropped[k]) color += color_row + "\n";
+    if (!data.depth.dropped[k]) depth += depth_row + "\n";
+    if (data.has_frame(k)) both += color_row + " " + depth_row + "\n";
   }
   if (auto written = write_text(folder / "rgb.txt", color); !written) return written;
   if (auto written = write_text(folder / "depth.txt", depth); !written) return written;
-  if (auto written = write_text(folder / "associations.txt", both); !written) return written;
+  if (data.paired) {
+    if (auto written = write_text(folder / "associations.txt", both); !written) return written;
+  }
   if (auto written = write_text(folder / "groundtruth.txt", trajectory::tum_text(data.truth)); !written)
     return written;
   return write_imu_csv(folder / "imu.csv", data.imu.samples);

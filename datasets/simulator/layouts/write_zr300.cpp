@@ -28,7 +28,7 @@ Result<void> write_zr300_lists(const std::filesystem::path& folder, const Simula
   std::string images = "#timestamp(us) colorname depthname\n";
   for (std::size_t k = 0; k < data.frame_ns.size(); ++k) {
     if (!data.has_frame(k)) continue;
-    const std::int64_t time_us = microseconds(data.frame_ns[k]);
+    const std::int64_t time_us = microseconds(data.color.stamp_ns[k]);
     fmt::format_to(std::back_inserter(images), "{},{}.png,{}.png\n", time_us, time_us, time_us);
   }
   std::string imu = "#timestamp(us) gx gy gz ax ay az\n";

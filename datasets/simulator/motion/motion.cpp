@@ -17,8 +17,7 @@ namespace {
 
 constexpr std::int64_t kKnotSpacing_ns = 20'000'000;  // carries the 10 Hz of a tremor
 constexpr std::int64_t kSpeedStep_ns = 5'000'000;
-constexpr double kMeanPitch_rad = radians(-8.0);  // things stand on floors and tables
-constexpr double kMaxStartOffset_s = 8;           // search interval for a start in full motion
+constexpr double kMaxStartOffset_s = 8;  // search interval for a start in full motion
 
 Result<void> check_range(std::string_view name, double value, double low, double high) {
   if (value >= low && value <= high) return {};
@@ -33,13 +32,17 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
         std::tuple{"motion.pan_share", options.pan_share, 0.0, 1.0},
         std::tuple{"motion.shake_share", options.shake_share, 0.0, 1.0},
         std::tuple{"motion.tremor_m", options.tremor_m, 0.0, 0.01},
+        std::tuple{"motion.tremor_rad", options.tremor_rad, 0.0, 0.1},
+        std::tuple{"motion.mean_pitch_rad", options.mean_pitch_rad, -1.2, 1.2},
+        std::tuple{"motion.revisit_s", options.revisit_s, 0.0, 600.0},
         std::tuple{"motion.rest_s", options.rest_s, 0.0, 60.0},
         std::tuple{"motion.start_s", options.start_s, 0.1, 10.0}}) {
     if (const auto valid = check_range(name, value, low, high); !valid) return valid;
   }
-  for (const auto& [name, band] : {std::pair{"motion.position_hz", options.position_hz},
-                                   std::pair{"motion.rotation_hz", options.rotation_hz},
-                                   std::pair{"motion.shake_hz", options.shake_hz}}) {
+  for (const auto& [name, band] :
+       {std::pair{"motion.position_hz", options.position_hz},
+        std::pair{"motion.rotation_hz", options.rotation_hz}, std::pair{"motion.shake_hz", options.shake_hz},
+        std::pair{"motion.tremor_hz", options.tremor_hz}}) {
     if (!(band.low_hz >= 0.01 && band.low_hz < band.high_hz && band.high_hz <= 10)) {
       return fail(ErrorCode::configuration, fmt::format("{} = {} .. {} (allowed: rising, within 0.01 .. 10)",
                                                         name, band.low_hz, band.high_hz));
@@ -63,8 +66,10 @@ struct Scale {
 };
 
 SE3 pose_on(const HandPath& path, const MotionOptions& options, const Scale& scale, double path_s) {
-  const Vector3d angle = scale.angle_rad * path.angles(path_s);
-  return {looking(scale.heading_rad + angle[0], kMeanPitch_rad + angle[1], angle[2]),
+  const Vector3d angle =
+      scale.angle_rad * path.angles(path_s) + options.tremor_rad * path.angle_tremor(path_s);
+  const double round_rad = options.revisit_s > 0 ? 2 * std::numbers::pi * path_s / options.revisit_s : 0;
+  return {looking(scale.heading_rad + round_rad + angle[0], options.mean_pitch_rad + angle[1], angle[2]),
           scale.position_m * path.position(path_s) + options.tremor_m * path.tremor(path_s)};
 }
 
@@ -154,11 +159,14 @@ struct View {
 View choose_view(const HandPath& path, const MotionOptions& options,
                  const synthetic_imu::PoseSpline& unturned, const HeadingTexture& texture) {
   const double best_rad = path.mean_yaw_rad() + texture.best_turn_rad(unturned);
-  if (!options.sideways) return {best_rad};
-  constexpr double kForward = 0.15;
-  constexpr double kUp = 0.45;
   // Angles are sums of sines, whose mean over a short recording is not zero.
   const double lean_rad = heading_of(mean_forward(unturned)) - path.mean_yaw_rad();
+  if (!options.sideways) {
+    if (!texture.face_rad) return {best_rad};
+    return {options.revisit_s > 0 ? *texture.face_rad : *texture.face_rad - lean_rad};
+  }
+  constexpr double kForward = 0.15;
+  constexpr double kUp = 0.45;
   const double wanted_rad = texture.only_rad.value_or(best_rad + lean_rad);
   constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
   const double quarters = std::round(wanted_rad / kQuarter_rad);
@@ -197,9 +205,15 @@ std::string_view to_string(MotionPreset preset) {
     case MotionPreset::shake:
       return "shake";
     case MotionPreset::sweep:
+      return "sweep";
+    case MotionPreset::realistic_scan:
+      return "realistic_scan";
+    case MotionPreset::realistic_turns:
+      return "realistic_turns";
+    case MotionPreset::realistic_revisit:
       break;
   }
-  return "sweep";
+  return "realistic_revisit";
 }
 
 MotionOptions motion_preset(MotionPreset preset) {
@@ -220,6 +234,22 @@ MotionOptions motion_preset(MotionPreset preset) {
     options.position_hz = {0.25, 0.6};
     options.rotation_hz = {0.3, 0.8};
     options.sideways = true;
+  } else if (preset != MotionPreset::slow) {
+    // Tremor of a hand that holds something: 5 to 10 Hz, some tenths of a millimetre and of a degree.
+    options.peak_speed_mps = preset == MotionPreset::realistic_scan ? 0.5 : 0.8;
+    options.peak_rate_radps = 0.8;
+    options.mean_pitch_rad = radians(preset == MotionPreset::realistic_revisit ? -15.0 : -28.0);
+    options.tremor_m = 3e-4;
+    options.tremor_rad = 1.2e-3;
+    options.tremor_hz = {5, 10};
+    if (preset == MotionPreset::realistic_turns) {
+      options.peak_rate_radps = 7;
+      options.pan_share = 0.92;
+      options.pans = {{2.0, 5.0}, {0.3, 0.55}, {1.0, 2.0}};
+    } else if (preset == MotionPreset::realistic_revisit) {
+      options.peak_rate_radps = 1.2;
+      options.revisit_s = 20;
+    }
   }
   return options;
 }

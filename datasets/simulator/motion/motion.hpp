@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -15,16 +16,26 @@
 namespace fusebench::simulator::motion {
 
 enum class MotionPreset {
-  slow,   ///< careful scanning: up to 0.4 m/s and 0.6 rad/s
-  fast,   ///< quick pans, back and forth: up to 2 m/s and 3 rad/s
-  shake,  ///< shaking at 2 to 4 Hz on a slow path: up to 1.2 m/s and 2.5 rad/s
-  sweep,  ///< quick sideways scanning of something near: up to 2 m/s and 1 rad/s
+  slow,               ///< careful scanning: up to 0.4 m/s and 0.6 rad/s
+  fast,               ///< quick pans, back and forth: up to 2 m/s and 3 rad/s
+  shake,              ///< shaking at 2 to 4 Hz on a slow path: up to 1.2 m/s and 2.5 rad/s
+  sweep,              ///< quick sideways scanning of something near: up to 2 m/s and 1 rad/s
+  realistic_scan,     ///< a hand that scans, with its tremor: up to 0.5 m/s and 0.8 rad/s
+  realistic_turns,    ///< the same, with quick turns between: up to 0.8 m/s and 7 rad/s (400 deg/s)
+  realistic_revisit,  ///< goes round and comes back to where it began every 20 s: up to 0.8 m/s, 1.2 rad/s
 };
 [[nodiscard]] std::string_view to_string(MotionPreset preset);
 
 struct FrequencyBand {
   double low_hz = 0;
   double high_hz = 0;
+};
+
+/// Quick turns, each drawn uniformly between the two values.
+struct Pans {
+  std::array<double, 2> pause_s{0.2, 0.7};
+  std::array<double, 2> duration_s{0.45, 0.8};
+  std::array<double, 2> rate{1.4, 2.0};  ///< their peak, relative to each other
 };
 
 /// Parameters of a hand-held motion. Speeds are those of the colour camera.
@@ -37,10 +48,15 @@ struct MotionOptions {
   double shake_share = 0;  ///< share of both speeds that shaking has, 0 to 1
   FrequencyBand shake_hz{2, 4};
   bool sideways = false;     ///< across the direction of view, which is that of an axis of the world
-  double tremor_m = 1.5e-4;  ///< amplitude of the hand's tremor (6 to 10 Hz), once it moves
-  bool from_rest = true;     ///< still before it moves; otherwise in full motion from the beginning
-  double rest_s = 1.0;       ///< stillness from the first frame on
-  double start_s = 1.0;      ///< from stillness to full motion
+  double tremor_m = 1.5e-4;  ///< amplitude of the hand's tremor, once it moves
+  double tremor_rad = 0;     ///< the same of its turning
+  FrequencyBand tremor_hz{6, 10};
+  Pans pans;
+  double mean_pitch_rad = radians(-8.0);  ///< things stand on floors and tables
+  double revisit_s = 0;   ///< the camera is where it was after this time, once round; 0: it is not
+  bool from_rest = true;  ///< still before it moves; otherwise in full motion from the beginning
+  double rest_s = 1.0;    ///< stillness from the first frame on
+  double start_s = 1.0;   ///< from stillness to full motion
 };
 [[nodiscard]] MotionOptions motion_preset(MotionPreset preset);
 

@@ -86,6 +86,7 @@ void take_indices_as_frames(Trajectory& poses) {
 PathClock clock_for(const FileMotionOptions& options, double lead_s) {
   PathClock clock;
   clock.rate = options.speed;
+  clock.offset_s = options.skip_s;
   if (options.from_rest) {
     clock.still_until_s = lead_s + options.rest_s;
     clock.start_s = options.start_s;
@@ -126,6 +127,12 @@ double fit_of(const synthetic_imu::PoseSpline& camera, const Eigen::AlignedBox3d
 void place_in_box(const Eigen::AlignedBox3d& box, const HeadingTexture& texture, FileMotion& motion) {
   constexpr int kHeadings = 36;
   motion.heading_rad = texture.best_turn_rad(motion.camera);
+  if (texture.face_rad) {
+    Vector3d forward = Vector3d::Zero();
+    for (const Quaterniond& rotation : motion.camera.rotation_world_body)
+      forward += rotation * Vector3d::UnitZ();
+    motion.heading_rad = *texture.face_rad - std::atan2(forward.y(), forward.x());
+  }
   motion.shrunk = fit_of(motion.camera, box, motion.heading_rad);
   for (int i = 0; i < kHeadings; ++i) {
     const double heading_rad = radians(i * 360.0 / kHeadings);
@@ -167,8 +174,8 @@ Result<FilePath> read_file_path(const std::filesystem::path& file) {
 
 Result<void> check_file_motion(const FileMotionOptions& options) {
   for (const auto& [name, value, low, high] :
-       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"rest_s", options.rest_s, 0.0, 60.0},
-        std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
+       {std::tuple{"speed", options.speed, 0.05, 20.0}, std::tuple{"skip_s", options.skip_s, 0.0, 1e5},
+        std::tuple{"rest_s", options.rest_s, 0.0, 60.0}, std::tuple{"start_s", options.start_s, 0.0, 10.0}}) {
     if (!(value >= low && value <= high)) {
       return fail(ErrorCode::configuration,
                   fmt::format("trajectory.{} = {} (allowed {} .. {})", name, value, low, high));
@@ -178,7 +185,7 @@ Result<void> check_file_motion(const FileMotionOptions& options) {
 }
 
 double longest_duration_s(const FilePath& path, const FileMotionOptions& options, double lead_s) {
-  const double moving_s = path.length_s() / options.speed;
+  const double moving_s = (path.length_s() - options.skip_s) / options.speed;
   // A start covers half of the path that its time would.
   const double before_s = options.from_rest ? -options.rest_s - 0.5 * options.start_s : lead_s;
   return moving_s - before_s - seconds_between(0, MotionSpan::kTail_ns);

@@ -38,6 +38,7 @@ struct FilePath {
 
 struct FileMotionOptions {
   double speed = 1;        ///< path seconds a second: 2 drives it twice as fast
+  double skip_s = 0;       ///< of the path, left out at its beginning
   bool from_rest = false;  ///< hold the first pose, then start smoothly; otherwise as the path begins
   double rest_s = 1.0;     ///< as in MotionOptions
   double start_s = 1.0;

@@ -20,6 +20,8 @@ struct HeadingTexture {
   std::array<double, kHeadings>
       share{};                     ///< of the image's cells that hold an edge, 0 to 1, every 15 degrees
   std::optional<double> only_rad;  ///< the one heading that is worth looking at; empty: by the texture
+  std::optional<double>
+      face_rad;  ///< the mean heading, where a scene has a side to face; empty: by the texture
 
   [[nodiscard]] double at(double heading_rad) const;  ///< interpolated, periodic
 

@@ -20,13 +20,19 @@ constexpr std::array<double, 3> kAngleWeight = {1.0, 0.35, 0.2};
 constexpr std::array<double, 3> kShakePositionWeight = {0.8, 0.8, 1.0};
 constexpr std::array<double, 3> kShakeAngleWeight = {1.0, 1.0, 0.6};
 
-constexpr FrequencyBand kTremor_hz = {6, 10};  // physiological tremor of a hand that holds something
 constexpr double kShakeBursts_hz = 0.35;
 constexpr std::uint64_t kPurpose =
     0x6D6F74696F6EULL;  // key of a random stream independent of those of rooms and images
 
 // Names of the streams of random numbers: three axes each, three values a sine.
-enum Stream : std::uint64_t { position = 0, angle = 10, shake_position = 20, shake_angle = 30, tremor = 40 };
+enum Stream : std::uint64_t {
+  position = 0,
+  angle = 10,
+  shake_position = 20,
+  shake_angle = 30,
+  tremor = 40,
+  angle_tremor = 45
+};
 enum SingleStream : std::uint64_t { pan_pause = 50, pan_duration, pan_angle, shake_phase, mean_yaw };
 
 }  // namespace
@@ -39,13 +45,15 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
                                     random::mix_key(random::mix_key(seed, kPurpose), stream), index));
   };
   // Every sine has the same share of the velocity, so that no frequency of the band dominates it.
-  const auto sines = [&](std::uint64_t stream, const FrequencyBand& band, double weight) {
+  const auto sines = [&](std::uint64_t stream, const FrequencyBand& band, double weight, double period_s) {
     Sines result;
     const double ratio = band.high_hz / band.low_hz;
     for (std::size_t i = 0; i < kSines; ++i) {
       // One frequency in each quarter of the band, on a logarithmic scale.
       const double within = (static_cast<double>(i) + random(stream, 2 * i, 0, 1)) / kSines;
-      const double rate_radps = kTurn * band.low_hz * std::pow(ratio, within);
+      double rate_radps = kTurn * band.low_hz * std::pow(ratio, within);
+      if (period_s > 0)
+        rate_radps = kTurn / period_s * std::max(1.0, std::round(rate_radps * period_s / kTurn));
       result.push_back({weight / (std::sqrt(static_cast<double>(kSines)) * rate_radps), rate_radps,
                         random(stream, 2 * i + 1, 0, kTurn)});
     }
@@ -54,24 +62,28 @@ HandPath::HandPath(const MotionOptions& options, std::uint64_t seed, const Vecto
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double factor = stretch[static_cast<Eigen::Index>(axis)];
     const FrequencyBand stretched{factor * options.position_hz.low_hz, factor * options.position_hz.high_hz};
-    position_[axis] = sines(Stream::position + axis, stretched, position_weight[axis]);
-    angles_[axis] = sines(Stream::angle + axis, options.rotation_hz, kAngleWeight[axis]);
+    position_[axis] = sines(Stream::position + axis, stretched, position_weight[axis], options.revisit_s);
+    angles_[axis] = sines(Stream::angle + axis, options.rotation_hz, kAngleWeight[axis], options.revisit_s);
     shake_position_[axis] =
-        sines(Stream::shake_position + axis, options.shake_hz, kShakePositionWeight[axis]);
-    shake_angles_[axis] = sines(Stream::shake_angle + axis, options.shake_hz, kShakeAngleWeight[axis]);
-    tremor_[axis] = sines(Stream::tremor + axis, kTremor_hz, kTurn * kTremor_hz.low_hz);
+        sines(Stream::shake_position + axis, options.shake_hz, kShakePositionWeight[axis], 0);
+    shake_angles_[axis] = sines(Stream::shake_angle + axis, options.shake_hz, kShakeAngleWeight[axis], 0);
+    const double tremor_weight = kTurn * options.tremor_hz.low_hz;
+    tremor_[axis] = sines(Stream::tremor + axis, options.tremor_hz, tremor_weight, 0);
+    angle_tremor_[axis] = sines(Stream::angle_tremor + axis, options.tremor_hz, tremor_weight, 0);
   }
   shake_phase_rad_ = random(SingleStream::shake_phase, 0, 0, kTurn);
   mean_yaw_rad_ = random(SingleStream::mean_yaw, 0, 0, kTurn);
 
+  const Pans& pans = options.pans;
   double time_s = 0;
   double yaw = 0;
   for (std::uint64_t i = 0; time_s < length_s && options.pan_share > 0; ++i) {
     Pan next;
-    next.begin_s = time_s + random(SingleStream::pan_pause, i, 0.2, 0.7);
-    next.duration_s = random(SingleStream::pan_duration, i, 0.45, 0.8);
-    // The peak of the angular velocity is 15/8 of the mean one; here 1.4 to 2 units.
-    const double size = random(SingleStream::pan_angle, i, 1.4, 2.0) * next.duration_s * 8 / 15;
+    next.begin_s = time_s + random(SingleStream::pan_pause, i, pans.pause_s[0], pans.pause_s[1]);
+    next.duration_s = random(SingleStream::pan_duration, i, pans.duration_s[0], pans.duration_s[1]);
+    // The peak of the angular velocity is 15/8 of the mean one.
+    const double size =
+        random(SingleStream::pan_angle, i, pans.rate[0], pans.rate[1]) * next.duration_s * 8 / 15;
     // Back towards the middle, so that pans swing instead of adding up.
     next.angle = yaw > 0 ? -size : size;
     yaw += next.angle;
@@ -118,6 +130,10 @@ Vector3d HandPath::angles(double path_s) const {
   }
   value[0] += (1 - options_.shake_share) * options_.pan_share * pan(path_s);
   return value;
+}
+
+Vector3d HandPath::angle_tremor(double path_s) const {
+  return {sum(angle_tremor_[0], path_s), sum(angle_tremor_[1], path_s), sum(angle_tremor_[2], path_s)};
 }
 
 Vector3d HandPath::tremor(double path_s) const {

@@ -24,6 +24,7 @@ class HandPath {
   [[nodiscard]] Vector3d position(double path_s) const;
   [[nodiscard]] Vector3d angles(double path_s) const;  ///< yaw, pitch, roll about their means
   [[nodiscard]] Vector3d tremor(double path_s) const;  ///< amplitude of the order of one
+  [[nodiscard]] Vector3d angle_tremor(double path_s) const;
   [[nodiscard]] double mean_yaw_rad() const { return mean_yaw_rad_; }
 
  private:
@@ -50,6 +51,7 @@ class HandPath {
   std::array<Sines, 3> shake_position_;
   std::array<Sines, 3> shake_angles_;
   std::array<Sines, 3> tremor_;
+  std::array<Sines, 3> angle_tremor_;
   std::vector<Pan> pans_;
   double shake_phase_rad_ = 0;
   double mean_yaw_rad_ = 0;

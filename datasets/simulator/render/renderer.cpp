@@ -1,5 +1,6 @@
 #include "datasets/simulator/render/renderer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -97,8 +98,18 @@ struct Renderer::State {
   std::vector<TriangleShading> shading;
   std::vector<std::array<Eigen::Vector3f, 3>> colors;  // by triangle, linear; empty if all have textures
   std::vector<texture::Texture> textures;
+  std::vector<float> gloss;              // by texture; empty: all matt
+  std::vector<Eigen::Vector3f> normals;  // by triangle; empty if all is matt
+  std::vector<scene::Highlight> highlights;
+  scene::Screens screens;
 
-  explicit State(const scene::SimulatedScene& scene) : caster(scene.mesh), textures(scene.textures) {
+  explicit State(const scene::SimulatedScene& scene)
+      : caster(scene.mesh),
+        textures(scene.textures),
+        gloss(scene.gloss),
+        highlights(scene.highlights),
+        screens(scene.screens) {
+    if (!gloss.empty()) find_normals(scene.mesh);
     shading.reserve(scene.mesh.triangles.size());
     bool plain = false;
     for (std::size_t i = 0; i < scene.mesh.triangles.size(); ++i) {
@@ -109,7 +120,49 @@ struct Renderer::State {
   }
 
   /// Radiance of a hit; footprint_m: side of the square at the hit, across the ray, that is averaged.
-  [[nodiscard]] Eigen::Vector3f light_of(const rays::RayHit& hit, float footprint_m) const {
+  /// page: what screens show.
+  [[nodiscard]] Eigen::Vector3f light_of(const rays::RayHit& hit, float footprint_m,
+                                         std::int32_t page) const {
+    const TriangleShading& at = shading[hit.triangle];
+    const Eigen::Vector3f reflectance = reflectance_of(hit, footprint_m, page);
+    return at.texture == scene::SimulatedScene::kNoTexture ? reflectance : at.light.at(hit) * reflectance;
+  }
+
+  [[nodiscard]] std::int32_t page_at(double time_s) const {
+    if (screens.pages <= 1) return 0;
+    const auto period = static_cast<std::uint64_t>(time_s / kPage_s);
+    return static_cast<std::int32_t>(period % static_cast<std::uint64_t>(screens.pages));
+  }
+
+  /// What a glossy surface adds to its own light: the lamps' images, 10 degrees wide, and a faint room that
+  /// is brighter above. Not shadowed. ray: from the origin, z-depth as length.
+  [[nodiscard]] float mirrored_light(const rays::RayHit& hit, const Eigen::Vector3f& origin,
+                                     const Eigen::Vector3f& ray) const {
+    constexpr float kRoom = 0.03F;
+    const float shine = gloss_of(hit);
+    if (shine <= 0) return 0;
+    const Eigen::Vector3f& normal = normals[hit.triangle];
+    const Eigen::Vector3f direction = ray.normalized();
+    const Eigen::Vector3f mirrored = direction - 2 * direction.dot(normal) * normal;
+    const Eigen::Vector3f point = origin + hit.distance * ray;
+    float light = kRoom * (0.5F + 0.5F * mirrored.z());
+    for (const scene::Highlight& lamp : highlights) {
+      float lobe = std::max(0.0F, mirrored.dot((lamp.position - point).normalized()));
+      for (int i = 0; i < 6; ++i) lobe *= lobe;  // to the power of 64
+      light += lamp.strength * lobe;
+    }
+    return shine * light;
+  }
+
+  [[nodiscard]] float gloss_of(const rays::RayHit& hit) const {
+    const std::int32_t texture = shading[hit.triangle].texture;
+    const bool known = texture >= 0 && static_cast<std::size_t>(texture) < gloss.size();
+    return known ? gloss[static_cast<std::size_t>(texture)] : 0.0F;
+  }
+
+  /// Of the texture; the colour itself where there is none.
+  [[nodiscard]] Eigen::Vector3f reflectance_of(const rays::RayHit& hit, float footprint_m,
+                                               std::int32_t page = 0) const {
     const TriangleShading& at = shading[hit.triangle];
     if (at.texture == scene::SimulatedScene::kNoTexture) {
       const std::array<Eigen::Vector3f, 3>& c = colors[hit.triangle];
@@ -121,11 +174,21 @@ struct Renderer::State {
     const float texels =
         footprint_m * at.texels_per_metre / std::sqrt(std::max(kMinCosine, hit.cos_incidence));
     const Eigen::Array4f reflectance =
-        textures[static_cast<std::size_t>(at.texture)].sample(at.u.at(hit), at.v.at(hit), texels);
-    return at.light.at(hit) * reflectance.head<3>().matrix();
+        textures[static_cast<std::size_t>(at.texture + (at.texture == screens.first_texture ? page : 0))]
+            .sample(at.u.at(hit), at.v.at(hit), texels);
+    return reflectance.head<3>().matrix();
   }
 
  private:
+  void find_normals(const Mesh& mesh) {
+    for (const auto& t : mesh.triangles) {
+      const Eigen::Vector3f a = mesh.vertices[t[0]];
+      const Eigen::Vector3f normal = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+      const float length = normal.norm();
+      normals.push_back(length > 0 ? Eigen::Vector3f(normal / length) : Eigen::Vector3f::UnitZ());
+    }
+  }
+
   static TriangleShading shading_of(const scene::SimulatedScene& scene, std::size_t i) {
     TriangleShading result;
     if (scene.triangle_textures.empty() || scene.triangle_textures[i] == scene::SimulatedScene::kNoTexture)
@@ -164,19 +227,26 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::add_light_of_row(const rays::RayField& rays, int row, const SE3& T_world_camera,
                                 const Vector2d& offset_px, float footprint_px, float weight,
-                                std::span<Eigen::Vector3f> light, const Foreground* foreground) const {
+                                std::span<Eigen::Vector3f> light, const Foreground* foreground,
+                                double time_s) const {
   RowOfRays line(rays.camera().width_px);
   line.cast(state_->caster, rays, row, T_world_camera, offset_px);
   RowOfRays before(foreground != nullptr ? rays.camera().width_px : 0);
   if (foreground != nullptr)
     before.cast(foreground->thing.state_->caster, rays, row, foreground->T_object_camera, offset_px);
   const float footprint = footprint_px / static_cast<float>(rays.camera().fx_px);
+  const std::int32_t shown = state_->page_at(time_s);
+  const Eigen::Vector3f origin = T_world_camera.translation.cast<float>();
   for (std::size_t i = 0; i < light.size(); ++i) {
     const bool hidden = foreground != nullptr && is_nearer(before.hits[i], line.hits[i]);
     const rays::RayHit& hit = hidden ? before.hits[i] : line.hits[i];
     const State& seen = hidden ? *foreground->thing.state_ : *state_;
-    if (hit.triangle != rays::RayHit::kNothing)
-      light[i] += weight * seen.light_of(hit, footprint * hit.distance);
+    if (hit.triangle == rays::RayHit::kNothing) continue;
+    const std::int32_t page = hidden ? 0 : shown;
+    light[i] += weight * seen.light_of(hit, footprint * hit.distance, page);
+    if (hidden || state_->normals.empty()) continue;
+    const Eigen::Vector3f ray(line.x[i], line.y[i], line.z[i]);
+    light[i].array() += weight * state_->mirrored_light(hit, origin, ray);
   }
 }
 
@@ -192,7 +262,7 @@ void Renderer::render_light(const PinholeCamera& camera, const RowPoses& poses, 
 }
 
 void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& poses, const Workers& workers,
-                               Image<Surface>& surfaces) const {
+                               Image<Surface>& surfaces, bool material) const {
   check_arguments(camera, poses);
   const rays::RayField rays(camera);
   surfaces = Image<Surface>(camera.width_px, camera.height_px);
@@ -201,8 +271,12 @@ void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& pose
     line.cast(state_->caster, rays, row, poses.of_row(row), Vector2d::Zero());
     for (int u = 0; u < camera.width_px; ++u) {
       const rays::RayHit& hit = line.hits[static_cast<std::size_t>(u)];
-      if (hit.triangle != rays::RayHit::kNothing)
-        surfaces(u, row) = {hit.distance, hit.cos_incidence, hit.triangle};
+      if (hit.triangle == rays::RayHit::kNothing) continue;
+      surfaces(u, row) = {hit.distance, hit.cos_incidence, hit.triangle};
+      if (!material) continue;
+      const float footprint_m = hit.distance / static_cast<float>(camera.fx_px);
+      surfaces(u, row).reflectance = state_->reflectance_of(hit, footprint_m).sum() / 3;
+      surfaces(u, row).gloss = state_->gloss_of(hit);
     }
   });
 }

@@ -34,6 +34,9 @@ struct Foreground {
   SE3 T_object_camera;
 };
 
+/// How long a screen shows a page.
+inline constexpr double kPage_s = 0.8;
+
 /// A ray caster over a scene. Rays are independent, so results do not depend on the number of threads.
 class Renderer {
  public:
@@ -49,19 +52,22 @@ class Renderer {
 
   /// Adds the light of one row (as above, times weight) to `light`, which has the camera's width.
   /// footprint_px: the side of the square that the sample stands for; less than 1 where samples of a pixel
-  /// are averaged. A foreground hides what is behind it.
+  /// are averaged. A foreground hides what is behind it. time_s: of screens that change what they show.
   void add_light_of_row(const rays::RayField& rays, int row, const SE3& T_world_camera,
                         const Vector2d& offset_px, float footprint_px, float weight,
-                        std::span<Eigen::Vector3f> light, const Foreground* foreground = nullptr) const;
+                        std::span<Eigen::Vector3f> light, const Foreground* foreground = nullptr,
+                        double time_s = 0) const;
 
   /// What a ray meets, for depth sensors.
   struct Surface {
     float depth_m = 0;           ///< z-depth, 0: nothing
     float cos_incidence = 0;     ///< of the angle between the ray and the surface's normal, 0 to 1
     std::uint32_t triangle = 0;  ///< index in the scene
+    float reflectance = 1;       ///< these two only with material: mean over the colours, 0 to 1
+    float gloss = 0;             ///< 0 matt to 1 polished
   };
   void render_surfaces(const PinholeCamera& camera, const RowPoses& poses, const Workers& workers,
-                       Image<Surface>& surfaces) const;
+                       Image<Surface>& surfaces, bool material = false) const;
 
  private:
   struct State;

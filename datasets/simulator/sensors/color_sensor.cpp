@@ -7,6 +7,7 @@
 
 #include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
+#include "datasets/simulator/sensors/srgb_encoder.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -17,30 +18,6 @@ constexpr std::size_t kRowsPerChunk = 8;
 // Keys of independent random streams of one seed.
 constexpr std::uint64_t kPixelNoise = 0xC0;
 constexpr std::uint64_t kGainPhase = 0xC1;
-
-/// Grey levels (0 to 255, not rounded) of linear light by table; the error is below 0.01 grey levels.
-class SrgbEncoder {
- public:
-  SrgbEncoder() {
-    for (std::size_t i = 0; i < grey_.size(); ++i) {
-      grey_[i] = static_cast<float>(255.0 * texture::srgb_from_linear(static_cast<double>(i) / kCells));
-    }
-  }
-  struct Encoded {
-    float grey = 0;
-    float slope = 0;  ///< grey levels per unit of light
-  };
-  [[nodiscard]] Encoded operator()(float light) const {
-    const float at = std::clamp(light, 0.0F, 1.0F) * kCells;
-    const std::size_t cell = std::min(static_cast<std::size_t>(at), grey_.size() - 2);
-    const float step = grey_[cell + 1] - grey_[cell];
-    return {grey_[cell] + (at - static_cast<float>(cell)) * step, step * kCells};
-  }
-
- private:
-  static constexpr int kCells = 4096;
-  std::array<float, kCells + 1> grey_{};
-};
 
 /// Places within the pixel for the samples of an exposure: a low-discrepancy sequence (Roberts' R2), from
 /// which mean and trend over time are taken out, since they would shift the image and change the length of
@@ -101,27 +78,33 @@ struct Exposure {
       if (before != nullptr)
         thing.emplace(render::Foreground{before->surface, before->T_object_camera(instant_ns(row, s))});
       renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count, light,
-                                thing ? &*thing : nullptr);
+                                thing ? &*thing : nullptr, seconds_between(0, instant_ns(row, s)));
     }
   }
 
-  /// Vignetting, gain, noise and encoding of one row.
-  void develop(int row, std::span<const Eigen::Vector3f> light, ColorImage& image) const {
+  /// Vignetting and gain of one row.
+  void transmit(int row, const ColorImage& image, std::span<Eigen::Vector3f> light) const {
     const double centre_x = 0.5 * (image.width - 1);
     const double centre_y = 0.5 * (image.height - 1);
     const double corner2 = centre_x * centre_x + centre_y * centre_y;
     const double y2 = (row - centre_y) * (row - centre_y);
+    for (int u = 0; u < image.width; ++u) {
+      const double r2 = ((u - centre_x) * (u - centre_x) + y2) / corner2;
+      light[static_cast<std::size_t>(u)] *= gain * static_cast<float>(1.0 - sensor.vignetting * r2);
+    }
+  }
+
+  /// Noise and encoding of one row.
+  void develop(int row, std::span<const Eigen::Vector3f> light, ColorImage& image) const {
     const bool noisy = sensor.read_noise_grey > 0 || sensor.shot_noise > 0;
     const auto read2 = static_cast<float>(sensor.read_noise_grey * sensor.read_noise_grey);
     const auto shot2 = static_cast<float>(sensor.shot_noise * sensor.shot_noise);
     const random::NormalTable& normal = random::NormalTable::instance();
     for (int u = 0; u < image.width; ++u) {
-      const double r2 = ((u - centre_x) * (u - centre_x) + y2) / corner2;
-      const float factor = gain * static_cast<float>(1.0 - sensor.vignetting * r2);
       std::array<float, 3> draws{};
       if (noisy) draws = normal.triple(random::mix_key(noise_key, image.index(u, row)));
       for (std::size_t c = 0; c < 3; ++c) {
-        const float value = factor * light[static_cast<std::size_t>(u)][static_cast<Eigen::Index>(c)];
+        const float value = light[static_cast<std::size_t>(u)][static_cast<Eigen::Index>(c)];
         const SrgbEncoder::Encoded at = encoder(value);
         // Shot noise is that of the light; its slope carries it to grey levels, where one draw serves both.
         const float variance = read2 + shot2 * std::clamp(value, 0.0F, 1.0F) * at.slope * at.slope;
@@ -175,6 +158,8 @@ ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sen
   ColorImage image(camera.width_px, camera.height_px);
   const auto rows = static_cast<std::size_t>(camera.height_px);
   const bool rolling = sensor.camera.timing.color_readout_s != 0;
+  const bool mosaic = sensor.processing.mosaic;  // neighbours are needed: the whole image, then its colours
+  Image<Eigen::Vector3f> whole(mosaic ? camera.width_px : 0, mosaic ? camera.height_px : 0);
   workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
     std::vector<SE3> poses(exposure.offsets.size());
     std::vector<Eigen::Vector3f> light(static_cast<std::size_t>(camera.width_px));
@@ -184,9 +169,16 @@ ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sen
       }
       std::ranges::fill(light, Eigen::Vector3f::Zero());
       if (!sensor.covered) exposure.integrate(row, poses, light);
-      exposure.develop(row, light, image);
+      exposure.transmit(row, image, light);
+      if (mosaic) {
+        std::ranges::copy(light, &whole(0, row));
+      } else {
+        exposure.develop(row, light, image);
+      }
     }
   });
+  if (mosaic)
+    return processed_color(whole, sensor.processing, sensor.amplifier_gain, exposure.noise_key, workers);
   return image;
 }
 

@@ -21,4 +21,9 @@ namespace fusebench::simulator::sensors {
                                              const PinholeCamera& camera, std::uint64_t key,
                                              const Workers& workers);
 
+/// A Kinect as it is rather than as in ICL-NUIM's noisy sequences, whose steps of a centimetre are too coarse
+/// near by; see noise_zr300.cpp, which has the same model.
+[[nodiscard]] DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces,
+                                      const PinholeCamera& camera, std::uint64_t key, const Workers& workers);
+
 }  // namespace fusebench::simulator::sensors

@@ -24,13 +24,20 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-constexpr double kBaseline_m = 0.07;
-constexpr float kMaxDisparity_px = 63;
-constexpr float kDisparityNoise_px = 0.09F;
+struct StereoSensor {
+  double baseline_m;
+  float max_disparity_px;
+  float noise_px;
+  float steps_per_pixel;
+  float fade_begin_m;
+  float fade_end_m;
+};
+constexpr StereoSensor kZr300{0.07, 63, 0.09F, 32, 4, 6};
+// Nothing nearer than 0.45 m; steps of 1/8 px (Khoshelham & Elberink, Sensors 2012). The noise is what
+// freiburg1_rpy and freiburg1_xyz show: planes of 9 x 9 pixels leave 0.055 px between 0.4 and 1.6 m and 0.047
+// px beyond, of which the steps make 0.036 px.
+constexpr StereoSensor kKinect{0.075, 87, 0.045F, 8, 5, 8};
 constexpr int kNoiseSpacing_px = 4;
-constexpr float kStepsPerPixel = 32;
-constexpr float kFadeBegin_m = 4;
-constexpr float kFadeEnd_m = 6;
 constexpr int kHalfWindow = 2;  // the outer ring of the 7 x 7 window has little weight
 constexpr float kJump_px = 1.5F;
 constexpr float kOcclusion_px = 1;
@@ -102,15 +109,13 @@ bool behind_jump(const DepthImage& disparity_px, int u, int v) {
 }
 
 /// 0 up to where the dots begin to fade, 1 where they are gone.
-float faded(float depth_m) {
-  return std::clamp((depth_m - kFadeBegin_m) / (kFadeEnd_m - kFadeBegin_m), 0.0F, 1.0F);
+float faded(const StereoSensor& sensor, float depth_m) {
+  return std::clamp((depth_m - sensor.fade_begin_m) / (sensor.fade_end_m - sensor.fade_begin_m), 0.0F, 1.0F);
 }
 
-}  // namespace
-
-DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
-                               std::uint64_t key, const Workers& workers) {
-  const auto focal_baseline = static_cast<float>(camera.fx_px * kBaseline_m);
+DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer::Surface>& surfaces,
+                        const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
+  const auto focal_baseline = static_cast<float>(camera.fx_px * sensor.baseline_m);
   DepthImage disparity_px(surfaces.width, surfaces.height);
   std::ranges::transform(surfaces.data, disparity_px.data.begin(),
                          [&](const render::Renderer::Surface& surface) {
@@ -129,17 +134,30 @@ DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
                 surface.cos_incidence < kMinCosine || behind_jump(disparity_px, u, v)) {
               continue;
             }
-            const float fade = faded(surface.depth_m);
+            const float fade = faded(sensor, surface.depth_m);
             if (random::unit_interval(random::mix_key(fade_key, surfaces.index(u, v))) <
                 static_cast<double>(fade))
               continue;
-            const float exact = disparity_px(u, v) + kDisparityNoise_px * (1 + fade) * noise.at(u, v);
-            const float measured = std::round(kStepsPerPixel * exact) / kStepsPerPixel;
-            if (measured > 0 && measured <= kMaxDisparity_px) depth_m(u, v) = focal_baseline / measured;
+            const float exact = disparity_px(u, v) + sensor.noise_px * (1 + fade) * noise.at(u, v);
+            const float measured = std::round(sensor.steps_per_pixel * exact) / sensor.steps_per_pixel;
+            if (measured > 0 && measured <= sensor.max_disparity_px)
+              depth_m(u, v) = focal_baseline / measured;
           }
         }
       });
   return depth_m;
+}
+
+}  // namespace
+
+DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
+                               std::uint64_t key, const Workers& workers) {
+  return stereo_depth(kZr300, surfaces, camera, key, workers);
+}
+
+DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
+                        std::uint64_t key, const Workers& workers) {
+  return stereo_depth(kKinect, surfaces, camera, key, workers);
 }
 
 }  // namespace fusebench::simulator::sensors

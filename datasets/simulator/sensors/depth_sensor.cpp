@@ -11,7 +11,9 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-constexpr std::uint64_t kDepthNoise = 0xD0;  // key of an independent random stream
+// Keys of independent random streams of one seed.
+constexpr std::uint64_t kDepthNoise = 0xD0;
+constexpr std::uint64_t kDepthErrors = 0xD1;
 
 std::uint16_t raw_value(float depth_m, double units_per_metre) {
   const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
@@ -26,6 +28,8 @@ DepthImage measured_depth(const Image<render::Renderer::Surface>& surfaces, cons
       return structured_light_depth(surfaces, sensor.camera, key, workers);
     case DepthNoise::zr300:
       return active_stereo_depth(surfaces, sensor.camera, key, workers);
+    case DepthNoise::kinect:
+      return kinect_depth(surfaces, sensor.camera, key, workers);
     case DepthNoise::none:
       break;
   }
@@ -46,7 +50,7 @@ Image<render::Renderer::Surface> seen_by(const render::Renderer& surface, const 
         T_surface_camera(row_time_ns(capture_ns, sensor.readout_s, row, sensor.camera.height_px)));
   }
   Image<render::Renderer::Surface> surfaces;
-  surface.render_surfaces(sensor.camera, poses, workers, surfaces);
+  surface.render_surfaces(sensor.camera, poses, workers, surfaces, sensor.errors.lost_light);
   return surfaces;
 }
 
@@ -70,6 +74,10 @@ Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSe
       [&](std::int64_t t_ns) { return motion.evaluate(t_ns).T_world_body * T_body_camera; }, workers);
   if (before != nullptr)
     put_before(seen_by(before->surface, sensor, capture_ns, before->T_object_camera, workers), surfaces);
+  if (sensor.errors.any()) {
+    const std::uint64_t key = random::mix_key(seed, kDepthErrors);
+    apply_depth_errors(sensor.errors, sensor.camera, key, random::mix_key(key, frame + 1), workers, surfaces);
+  }
   const DepthImage depth_m =
       measured_depth(surfaces, sensor, random::mix_key(random::mix_key(seed, kDepthNoise), frame), workers);
   Image<std::uint16_t> raw(depth_m.width, depth_m.height);

@@ -9,6 +9,8 @@
 #include "core/base/types.hpp"
 #include "datasets/calibration/camera_model.hpp"
 #include "datasets/simulator/render/renderer.hpp"
+#include "datasets/simulator/sensors/color_processing.hpp"
+#include "datasets/simulator/sensors/depth_errors.hpp"
 #include "datasets/synthetic_imu/pose_spline.hpp"
 
 namespace fusebench::simulator::sensors {
@@ -26,7 +28,9 @@ struct ColorSensor {
       0;  ///< standard deviation of full-scale linear light 1; at light L it is this times sqrt(L)
   int blur_samples = 8;  ///< instants of the exposure, each at another place within the pixel; at least 1
   double gain = 1;       ///< factor on all light, on top of the drift
-  bool covered = false;  ///< no light comes in; the noise stays
+  double amplifier_gain = 1;   ///< the part of it that amplifies noise as well (only with a mosaic)
+  bool covered = false;        ///< no light comes in; the noise stays
+  ColorProcessing processing;  ///< with a mosaic it brings noise of its own, instead of the two above
 };
 
 /// An object that moves before the camera while an image is taken.
@@ -37,10 +41,11 @@ struct MovingObject {
 };
 
 enum class DepthNoise {
-  none,   ///< exact to the quantum
-  handa,  ///< structured light as in ICL-NUIM: disparity quantisation, lateral jitter, holes; see
-          ///< depth_noise_handa.cpp
-  zr300,  ///< active stereo of the ZR300; see depth_noise_zr300.cpp
+  none,    ///< exact to the quantum
+  handa,   ///< structured light as in ICL-NUIM: disparity quantisation, lateral jitter, holes; see
+           ///< depth_noise_handa.cpp
+  zr300,   ///< active stereo of the ZR300; see depth_noise_zr300.cpp
+  kinect,  ///< a Kinect as in TUM freiburg1; also there
 };
 
 /// A depth camera. Row r is taken at capture + (r / (height - 1) - 1/2) * readout_s.
@@ -49,6 +54,7 @@ struct DepthSensor {
   double readout_s = 0;
   double units_per_metre = 1000;
   DepthNoise noise = DepthNoise::none;
+  DepthErrors errors;  ///< come before the noise
 };
 
 /// The image that the sensor takes around capture_ns (middle of the exposure of its middle row).

@@ -101,10 +101,14 @@ Result<int> simulate_recording(const SimulateOptions& chosen) {
 }
 
 void add_motion_options(CLI::App& verb, SimulateOptions& options) {
-  verb.add_option("--preset", options.preset,
-                  "Hand-held motion: slow (up to 0.4 m/s, 0.6 rad/s), fast (2 m/s, 3 rad/s), shake (1.2 m/s, "
-                  "2.5 rad/s, at 2 to 4 Hz), sweep (sideways before a cluttered shelf: 2 m/s, 1 rad/s)")
-      ->check(CLI::IsMember({"slow", "fast", "shake", "sweep"}))
+  verb.add_option(
+          "--preset", options.preset,
+          "Hand-held motion: slow (up to 0.4 m/s, 0.6 rad/s), fast (2 m/s, 3 rad/s), shake (1.2 m/s, "
+          "2.5 rad/s, at 2 to 4 Hz), sweep (sideways before a cluttered shelf: 2 m/s, 1 rad/s); with "
+          "--realistic and 60 s: realistic_scan (0.5 m/s, 0.8 rad/s), realistic_turns (0.8 m/s, quick "
+          "turns of up to 7 rad/s), realistic_revisit (0.8 m/s, 1.2 rad/s, back every 20 s)")
+      ->check(CLI::IsMember(
+          {"slow", "fast", "shake", "sweep", "realistic_scan", "realistic_turns", "realistic_revisit"}))
       ->capture_default_str();
   auto* in_motion = verb.add_flag("--in-motion", options.in_motion,
                                   "The first frame is in full motion; default for --trajectory");
@@ -118,12 +122,20 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
       ->type_name("X")
       ->needs(trajectory)
       ->capture_default_str();
-  verb.add_option("--duration", options.request.duration_s, "Length; 0: all of --trajectory")
+  verb.add_option("--skip", options.request.skip_s, "Leaves out this much of --trajectory at its beginning")
       ->type_name("S")
+      ->needs(trajectory)
       ->capture_default_str();
+  verb.add_option("--duration", options.request.duration_s,
+                  "Length; 0: all of --trajectory; default 10, of realistic presets 60")
+      ->type_name("S");
 }
 
 void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
+  verb.add_flag(
+      "--realistic", options.request.realistic,
+      "Sensors as they are: untold rolling shutters and delay of depth, stamps that jitter, dropped "
+      "frames, automatic exposure, a mosaic of filters, errors of depth and IMU; in an office");
   verb.add_option("--rate", options.request.rate_hz, "Images a second (icl: 30, zr300: 4 to 200)")
       ->type_name("HZ")
       ->capture_default_str();

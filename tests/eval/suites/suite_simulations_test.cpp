@@ -54,7 +54,7 @@ TEST_F(SuiteSimulationsTest, ListsAreMultipliedOutInTheOrderOfTheFile) {
   EXPECT_EQ(last.request.layout, RecordingLayout::zr300);
   EXPECT_EQ(last.request.preset, MotionPreset::shake);
   EXPECT_EQ(last.request.seed, 2U);
-  EXPECT_DOUBLE_EQ(last.request.duration_s, 5);
+  EXPECT_DOUBLE_EQ(last.request.duration_s.value_or(0), 5);
   EXPECT_EQ(last.request.from_rest, false);
 }
 
@@ -67,6 +67,27 @@ TEST_F(SuiteSimulationsTest, ASecondDeclarationAddsVariants) {
   ASSERT_EQ(suite->simulations.size(), 8U);
   EXPECT_EQ(suite->simulations[2].variants, (std::vector<std::string>{"full", "dm", "planar"}));
   EXPECT_EQ(suite->simulations[3].variants, (std::vector<std::string>{"full", "dm"}));
+}
+
+TEST_F(SuiteSimulationsTest, RealisticSensorsForPresetsAndTrajectories) {
+  const auto suite = read(
+      "[[simulations]]\nname = \"{preset}\"\npreset = [\"realistic_turns\", \"slow\"]\n"
+      "[[simulations]]\nname = \"twin\"\ngroup = \"twins\"\ntrajectory = \"a.txt\"\nskip_s = 0.5\n"
+      "realistic = true\nexposure_s = 0.01\n");
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  const auto turns = simulation_options(suite->simulations[0].request);
+  const auto slow = simulation_options(suite->simulations[1].request);
+  const auto twin = simulation_options(suite->simulations[2].request);
+  ASSERT_TRUE(turns && slow && twin);
+  EXPECT_EQ(turns->duration_s, 60);
+  EXPECT_TRUE(turns->auto_exposure.on && turns->untold_shutters);
+  EXPECT_EQ(slow->duration_s, 10);
+  EXPECT_FALSE(slow->auto_exposure.on || slow->untold_shutters || slow->stamps.any());
+  EXPECT_EQ(twin->duration_s, 10);
+  EXPECT_EQ(twin->file_motion.skip_s, 0.5);
+  EXPECT_TRUE(twin->untold_shutters && twin->depth_errors.any());
+  EXPECT_FALSE(twin->auto_exposure.on);  // what is asked for counts
+  EXPECT_EQ(twin->exposure_s, 0.01);
 }
 
 TEST_F(SuiteSimulationsTest, WhatMakesNoSenseIsRefusedWithItsLine) {

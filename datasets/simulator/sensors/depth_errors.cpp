@@ -1,0 +1,107 @@
+// The sizes of the fixed errors are the caller's. What is lost, and the numbers, are assumptions of ours from
+// the look of depth images of a Kinect (TUM freiburg1): black monitors and chair legs have none beyond about
+// a metre, glossy tables only where they are seen from above, and surfaces fade out between 70 and 80
+// degrees.
+#include "datasets/simulator/sensors/depth_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/simulator/random/random_numbers.hpp"
+
+namespace fusebench::simulator::sensors {
+
+namespace {
+
+using Surface = render::Renderer::Surface;
+
+constexpr double kBaseline_m = 0.075;  // a Kinect's
+constexpr int kSmoothSpacing_px = 80;
+constexpr int kPatchSpacing_px = 14;  // holes are patches rather than single pixels
+constexpr std::size_t kRowsPerChunk = 16;
+
+// Of the width and the height: the margins without depth in freiburg1, 10, 44, 37 and 3 of 640 x 480 px,
+// where the infrared camera does not see what the colour camera sees.
+constexpr double kLeft = 10 / 640.0;
+constexpr double kRight = 44 / 640.0;
+constexpr double kAbove = 37 / 480.0;
+constexpr double kBelow = 3 / 480.0;
+
+constexpr float kGrazingCosine = 0.26F;  // 75 degrees
+constexpr float kGrazingSoft = 0.03F;
+constexpr float kLeastSignal = 0.011F;   // infrared reflectance * cosine / z^2 [1/m^2]
+constexpr float kInfrared = 0.011F;      // reflectance of what is black to the eye
+constexpr float kSignalSoft = 0.25F;     // relative
+constexpr float kGlossLost = 0.5F;       // of the light that a fully glossy surface sends elsewhere
+constexpr float kMirrorCosine = 0.992F;  // a glossy surface blinds the sensor where it mirrors the projector
+
+/// Smooth numbers of zero mean and about unit deviation: bilinear between independent values, scaled by the
+/// root of the sum of the squared weights.
+float smooth_noise(std::uint64_t key, int spacing_px, int u, int v) {
+  const int column = u / spacing_px;
+  const int row = v / spacing_px;
+  const auto spacing = static_cast<float>(spacing_px);
+  const float fx = static_cast<float>(u % spacing_px) / spacing;
+  const float fy = static_cast<float>(v % spacing_px) / spacing;
+  const auto knot = [&](int x, int y) {
+    const auto counter = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
+    return random::NormalTable::instance()(random::mix_key(key, counter));
+  };
+  const float top = (1 - fx) * knot(column, row) + fx * knot(column + 1, row);
+  const float bottom = (1 - fx) * knot(column, row + 1) + fx * knot(column + 1, row + 1);
+  const float squares = ((1 - fx) * (1 - fx) + fx * fx) * ((1 - fy) * (1 - fy) + fy * fy);
+  return ((1 - fy) * top + fy * bottom) / std::sqrt(squares);
+}
+
+bool is_in_border(const Image<Surface>& surfaces, int u, int v) {
+  const int width = surfaces.width;
+  const int height = surfaces.height;
+  return u < kLeft * width || u >= width - kRight * width || v < kAbove * height ||
+         v >= height - kBelow * height;
+}
+
+/// Whether the projector's light does not come back. noise: standard normal, shared by a small patch.
+bool is_lost(const Surface& surface, float noise) {
+  if (surface.cos_incidence < kGrazingCosine + kGrazingSoft * noise) return true;
+  const float spread = 1 - kGlossLost * surface.gloss * (1 - surface.cos_incidence);
+  const float reflectance = kInfrared + (1 - kInfrared) * surface.reflectance;
+  const float signal = reflectance * spread * surface.cos_incidence / (surface.depth_m * surface.depth_m);
+  if (signal < kLeastSignal * (1 + kSignalSoft * noise)) return true;
+  return surface.gloss > 0.6F && surface.cos_incidence > kMirrorCosine + 0.003F * noise;
+}
+
+}  // namespace
+
+void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, std::uint64_t sensor_key,
+                        std::uint64_t frame_key, const Workers& workers, Image<Surface>& surfaces) {
+  const auto focal_baseline = static_cast<float>(camera.fx_px * kBaseline_m);
+  const std::uint64_t smooth_key = random::mix_key(sensor_key, 1);
+  const std::uint64_t pattern_key = random::mix_key(sensor_key, 2);
+  const random::NormalTable& normal = random::NormalTable::instance();
+  const auto rows = static_cast<std::size_t>(surfaces.height);
+  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      for (int u = 0; u < surfaces.width; ++u) {
+        Surface& surface = surfaces(u, v);
+        if (surface.depth_m <= 0) continue;
+        const bool lost =
+            errors.lost_light && is_lost(surface, smooth_noise(frame_key, kPatchSpacing_px, u, v));
+        if (lost || (errors.border && is_in_border(surfaces, u, v))) {
+          surface.depth_m = 0;
+          continue;
+        }
+        float disparity_px = focal_baseline / surface.depth_m;
+        if (errors.smooth_px > 0)
+          disparity_px +=
+              static_cast<float>(errors.smooth_px) * smooth_noise(smooth_key, kSmoothSpacing_px, u, v);
+        if (errors.pattern_px > 0)
+          disparity_px += static_cast<float>(errors.pattern_px) *
+                          normal(random::mix_key(pattern_key, surfaces.index(u, v)));
+        surface.depth_m =
+            disparity_px > 0 ? focal_baseline / disparity_px * static_cast<float>(1 + errors.scale) : 0.0F;
+      }
+    }
+  });
+}
+
+}  // namespace fusebench::simulator::sensors
