@@ -360,5 +360,14 @@ INSTANTIATE_TEST_SUITE_P(All, Layouts,
                                            RecordingLayout::zr300),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
+// The preset of freiburg1, whose cameras the TUM layout has, says where its motion capture is.
+TEST(LayoutRig, TheTruthOfAllIsTheCameras) {
+  for (const RecordingLayout layout : {RecordingLayout::zr300, RecordingLayout::tum, RecordingLayout::icl}) {
+    const auto rig = layout_rig(layout, {640, 480});
+    ASSERT_TRUE(rig);
+    EXPECT_EQ(rig->color.ground_truth_offset_m, Vector3d::Zero());
+  }
+}
+
 }  // namespace
 }  // namespace fusebench
