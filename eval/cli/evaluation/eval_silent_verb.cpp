@@ -31,7 +31,7 @@ struct SilentOptions {
 
 std::string to_text(const trajectory_error::SilentFailures& found) {
   std::string text = fmt::format(
-      "silent failures: {} of {} poses, whose motion over {} s is off by more than {} m or {} deg\n",
+      "silent failures: {} of {} poses, whose motion over {:g} s is off by more than {:g} m or {:g} deg\n",
       found.silent, found.judged, found.limits.interval_s, found.limits.max_translation_m,
       degrees(found.limits.max_rotation_rad));
   if (found.first_ns)
