@@ -8,17 +8,14 @@
 
 namespace fusebench::core {
 
-bool FramePreparation::is_outdated(const filter::FilterState& predicted,
-                                   const filter::FilterState& estimated) const {
-  return compensated_ && preprocessing::velocity_changed_much(predicted, estimated, config_.compensation);
-}
-
 void FramePreparation::prepare(const RgbdFrame& frame, const filter::FilterState& motion,
                                health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::preprocess);
+  source_ = &frame;
   timing_ = preprocessing::estimated_timing(frame, rig_.timing, motion.sensors);
   compensated_ = config_.terms.motion_compensation && !timing_.is_one_instant();
   if (compensated_) {
+    motion_ = motion;
     velocity_ = preprocessing::camera_velocity(motion, rig_.T_imu_camera);
     preprocessing::compensate_motion(frame, rig_.camera, timing_, velocity_, workers_, frame_);
   } else {
@@ -29,10 +26,18 @@ void FramePreparation::prepare(const RgbdFrame& frame, const filter::FilterState
   std::swap(frame_.depth_m, ungated_depth_m_);
 }
 
-void FramePreparation::prepare_color(const RgbdFrame& frame, health::StageTimes& stages) {
+bool FramePreparation::prepare_again(const filter::FilterState& motion,
+                                     const preprocessing::VelocityTolerance& tolerance,
+                                     health::StageTimes& stages) {
+  if (!compensated_ || !preprocessing::velocity_changed_much(motion_, motion, tolerance)) return false;
+  prepare(*source_, motion, stages);
+  return true;
+}
+
+void FramePreparation::prepare_color(health::StageTimes& stages) {
   if (!compensated_) return;
   const health::StageClock clock(stages, health::Stage::preprocess);
-  preprocessing::compensate_color(frame, rig_.camera, timing_, velocity_, ungated_depth_m_, workers_,
+  preprocessing::compensate_color(*source_, rig_.camera, timing_, velocity_, ungated_depth_m_, workers_,
                                   frame_.color);
 }
 

@@ -21,18 +21,23 @@ class FramePreparation {
   FramePreparation(const config::Config& config, const SensorRig& rig, const Workers& workers)
       : config_(config), rig_(rig), workers_(workers) {}
 
-  /// True if the frame that was prepared for the predicted motion has to be prepared again for the estimated
-  /// one before it is fused.
-  [[nodiscard]] bool is_outdated(const filter::FilterState& predicted,
-                                 const filter::FilterState& estimated) const;
-
   /// Grey and depth, compensated for the motion (if rows or depth are of other instants than the frame, as
   /// far as the state knows, and the variant undoes that) and gated. Colour has to wait for prepare_color().
+  /// The frame must outlive what is prepared from it.
   void prepare(const RgbdFrame& frame, const filter::FilterState& motion, health::StageTimes& stages);
+
+  /// The same frame for another motion, if that differs from the one that it was prepared for by more than
+  /// the tolerance. True if it was prepared again.
+  bool prepare_again(const filter::FilterState& motion, const preprocessing::VelocityTolerance& tolerance,
+                     health::StageTimes& stages);
 
   /// Colour of the frame that was prepared last, if it was compensated. Apart, since only frames that are
   /// fused need it.
-  void prepare_color(const RgbdFrame& frame, health::StageTimes& stages);
+  void prepare_color(health::StageTimes& stages);
+
+  /// The motion that the read-out was undone for; nothing if none was.
+  [[nodiscard]] const filter::FilterState* undone_motion() const { return compensated_ ? &motion_ : nullptr; }
+  [[nodiscard]] const preprocessing::FrameTiming& timing() const { return timing_; }
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
   /// The levels that patches have.
@@ -52,8 +57,10 @@ class FramePreparation {
   std::vector<GreyImage> pyramid_;
   RgbdFrame frame_;             ///< compensated ones have the colour of an earlier one until prepare_color()
   DepthImage ungated_depth_m_;  ///< before the gates
+  const RgbdFrame* source_ = nullptr;  ///< as it was read
   bool compensated_ = false;
-  preprocessing::FrameTiming timing_;  ///< these two: that it was compensated for, if at all
+  preprocessing::FrameTiming timing_;  ///< these three: that it was compensated for, if at all
+  filter::FilterState motion_;
   preprocessing::CameraVelocity velocity_;
 };
 

@@ -20,9 +20,19 @@ double agreement(std::span<const measurement::PatchOutcome> outcomes) {
   return count > 0 ? sum / count : 0.0;
 }
 
-measurement::ReadoutMotion readout_motion(const filter::FilterState& prior) {
+measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, const FramePreparation& frame) {
   measurement::ReadoutMotion motion;
-  motion.rate = filter::pose_rate(prior);
+  const filter::FilterState& undone = frame.undone_motion() ? *frame.undone_motion() : prior;
+  if (frame.undone_motion()) {
+    motion.depth_readout_s = frame.timing().depth_readout_s;
+    motion.depth_delay_s = frame.timing().depth_delay_s;
+    const filter::SensorErrors& sensors = undone.sensors;
+    motion.from_prior << sensors.color_readout_s - prior.sensors.color_readout_s,
+        sensors.depth_readout_s - prior.sensors.depth_readout_s,
+        sensors.depth_delay_s - prior.sensors.depth_delay_s,
+        filter::pose_rate(undone) - filter::pose_rate(prior);
+  }
+  motion.rate = filter::pose_rate(undone);
   motion.reference_rate =
       filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference) * prior.reference_rate;
   // That of the IMU has its noise twice; its bias drops out.
@@ -32,27 +42,35 @@ measurement::ReadoutMotion readout_motion(const filter::FilterState& prior) {
   return motion;
 }
 
+filter::IekfResult FrameUpdate::run_from(const filter::MeasuredVector& start,
+                                         const filter::GaussianState& prior, const Tracking& last,
+                                         const FramePreparation& frame, const Novelty& novelty) {
+  measurement::ObservedFrame observed = frame.observed(novelty);
+  if (config_.terms.motion_compensation) observed.motion = readout_motion(prior.mean, frame);
+  // Without an IMU the motion during a read-out is known from the images alone, which the read-out distorts.
+  const bool constants_can_be_told = config_.terms.prior == config::Prior::imu &&
+                                     last.turned_rad >= config_.self_calibration.turn_before_rad;
+  const auto constants =
+      constants_can_be_told ? filter::SensorConstants::estimated : filter::SensorConstants::considered;
+  measurement_.observe(observed, last.reference.patches, last.residual_scale);  // Eqs. 1-5, in each iterate
+  return filter::iekf_update(prior, measurement_, config_.iekf, start, constants);  // Eqs. 15-23
+}
+
 filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior, const Tracking& last,
                                     const FramePreparation& frame, const Novelty& novelty, bool thorough) {
-  const alignment::TrackingReference& reference = last.reference;
-  measurement::ObservedFrame observed = frame.observed(novelty);
-  if (config_.terms.motion_compensation) observed.motion = readout_motion(prior.mean);
-  const auto constants = last.turned_rad < config_.self_calibration.turn_before_rad
-                             ? filter::SensorConstants::considered
-                             : filter::SensorConstants::estimated;
+  const alignment::ReferencePoints& points = last.reference.points;
   const auto update_from = [&](const filter::MeasuredVector& start) {
-    measurement_.observe(observed, reference.patches, last.residual_scale);  // Eqs. 1-5, in each iterate
-    return filter::iekf_update(prior, measurement_, config_.iekf, start, constants);  // Eqs. 15-23
+    return run_from(start, prior, last, frame, novelty);
   };
   if (!novelty.color || config_.terms.photometric_weight <= 0)
     return update_from(filter::MeasuredVector::Zero());
-  const alignment::FoundStart found = search_.find(prior, reference.points, frame.whole_pyramid(), thorough);
+  const alignment::FoundStart found = search_.find(prior, points, frame.whole_pyramid(), thorough);
   filter::IekfResult first = update_from(found.start);
   // With a prediction that is near enough there is no other basin.
   const double first_agreement = agreement(measurement_.outcomes());
   if (thorough || found.coarsest_level < 0 || first_agreement >= config_.health.sure_correlation)
     return first;
-  const alignment::FoundStart other = search_.find(prior, reference.points, frame.whole_pyramid(), true);
+  const alignment::FoundStart other = search_.find(prior, points, frame.whole_pyramid(), true);
   filter::IekfResult second = update_from(other.start);
   if (agreement(measurement_.outcomes()) > first_agreement) return second;
   return update_from(first.solution);

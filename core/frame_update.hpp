@@ -25,7 +25,12 @@ class FrameUpdate {
   [[nodiscard]] filter::IekfResult run(const filter::GaussianState& prior, const Tracking& last,
                                        const FramePreparation& frame, const Novelty& novelty, bool thorough);
 
-  /// Of the update that run() returned.
+  /// From where another update of the same frame ended, which was prepared anew for the motion that it found.
+  [[nodiscard]] filter::IekfResult run_from(const filter::MeasuredVector& start,
+                                            const filter::GaussianState& prior, const Tracking& last,
+                                            const FramePreparation& frame, const Novelty& novelty);
+
+  /// Of the update that run() or run_from() returned last.
   [[nodiscard]] const measurement::PatchMeasurement& measurement() const { return measurement_; }
 
  private:
@@ -34,8 +39,9 @@ class FrameUpdate {
   measurement::PatchMeasurement measurement_;
 };
 
-/// The motion during the frame's read-out and that of the reference, as the prior knows it.
-[[nodiscard]] measurement::ReadoutMotion readout_motion(const filter::FilterState& prior);
+/// What the frame was prepared for, and the motion of the reference, around the prior.
+[[nodiscard]] measurement::ReadoutMotion readout_motion(const filter::FilterState& prior,
+                                                        const FramePreparation& frame);
 
 /// How well the patches in view are recognised after an update: their mean correlation with the reference, of
 /// which one that is not tracked counts as zero. Zero without any.

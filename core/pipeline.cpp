@@ -20,6 +20,17 @@
 
 namespace fusebench::core {
 
+namespace {
+
+preprocessing::VelocityTolerance velocity_tolerance_to_update(const config::CompensationConfig& config) {
+  return {config.update_again_angular_velocity_radps, config.update_again_velocity_mps};
+}
+preprocessing::VelocityTolerance velocity_tolerance_to_fuse(const config::CompensationConfig& config) {
+  return {config.redo_angular_velocity_radps, config.redo_velocity_mps};
+}
+
+}  // namespace
+
 struct Pipeline::State final : RestartableEstimator {
   State(const config::Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
         const Workers& workers_in)
@@ -41,10 +52,11 @@ struct Pipeline::State final : RestartableEstimator {
   Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
   health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
   bool track(const filter::GaussianState& prior, bool after_gap, bool thorough, health::FrameReport& report);
+  filter::IekfResult update(const filter::GaussianState& prior, bool thorough, health::StageTimes& stages);
   bool track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
                    health::FrameReport& report);
   bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
-  Result<void> fuse(const RgbdFrame& frame, health::StageTimes& stages);
+  Result<void> fuse(health::StageTimes& stages);
   void refresh(health::StageTimes& stages);
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
@@ -95,8 +107,8 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
   // Colour and depth of different instants belong neither into the model nor together into a patch.
   if (now.occlusion_gate.admits(report, config.health) && novelty.complete()) {
     const filter::FilterState& state = now.estimate->mean;
-    if (preparation.is_outdated(predicted->mean, state)) preparation.prepare(frame, state, report.stages);
-    const Result<void> fused = fuse(frame, report.stages);  // Sec. 2.3: M_k(X)
+    preparation.prepare_again(state, velocity_tolerance_to_fuse(config.compensation), report.stages);
+    const Result<void> fused = fuse(report.stages);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(report.stages);  // Sec. 2.3: patch update
   }
@@ -133,13 +145,33 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
 
 /// Secs. 2.1 and 2.2.2: the patches are deformed into the frame (Eqs. 1-2, shrink and extend effects) by each
 /// iterate of the update (Eq. 18), which minimises what is left between them and the images (Eqs. 3-5), in
-/// PatchMeasurement::linearise(). False if the result is not to be believed.
+/// PatchMeasurement::linearise(). The images are those of the frame's instant by the motion that the update
+/// finds.
+filter::IekfResult Pipeline::State::update(const filter::GaussianState& prior, bool thorough,
+                                           health::StageTimes& stages) {
+  const auto timed = [&](const auto& run) {
+    const health::StageClock clock(stages, health::Stage::update);
+    return run();
+  };
+  const preprocessing::VelocityTolerance tolerance = velocity_tolerance_to_update(config.compensation);
+  preparation.prepare_again(prior.mean, tolerance, stages);
+  filter::IekfResult result =
+      timed([&] { return deformed_update.run(prior, *tracking, preparation, novelty, thorough); });
+  for (int again = 0; again < config.compensation.max_updates_again && filter::is_valid(result.posterior);
+       ++again) {
+    if (!preparation.prepare_again(result.posterior.mean, tolerance, stages)) break;
+    result = timed(
+        [&] { return deformed_update.run_from(result.solution, prior, *tracking, preparation, novelty); });
+  }
+  return result;
+}
+
+/// False if the result of the update is not to be believed.
 bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, bool thorough,
                             health::FrameReport& report) {
-  const health::StageClock clock(report.stages, health::Stage::update);
   Tracking& now = *tracking;
-  // Eqs. 1-5, 15-23
-  const filter::IekfResult update = deformed_update.run(prior, now, preparation, novelty, thorough);
+  const filter::IekfResult update = this->update(prior, thorough, report.stages);  // Eqs. 1-5, 15-23
+  const health::StageClock clock(report.stages, health::Stage::update);
   report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
   if (!filter::is_valid(update.posterior)) {
     report.health = health::FrameHealth::diverged;
@@ -147,7 +179,7 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
     return false;
   }
   const std::span<const measurement::PatchOutcome> outcomes = deformed_update.measurement().outcomes();
-  health::describe_update(deformed_update.measurement(), update, now.reference.patches, report);
+  health::describe_update(deformed_update.measurement(), update, now.reference.patches, config, report);
   report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config);
   report.reason = health::rejection_reason(report, after_gap, config);
   if (!report.reason.empty()) {
@@ -206,8 +238,8 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
 }
 
 /// Sec. 2.3: the depth image goes into the model at the updated pose.
-Result<void> Pipeline::State::fuse(const RgbdFrame& frame, health::StageTimes& stages) {
-  preparation.prepare_color(frame, stages);
+Result<void> Pipeline::State::fuse(health::StageTimes& stages) {
+  preparation.prepare_color(stages);
   const health::StageClock clock(stages, health::Stage::fuse);
   return tracking->model.integrate(preparation.frame(), rig.camera, T_world_camera(), config.depth, workers);
 }

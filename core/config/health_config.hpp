@@ -14,6 +14,9 @@ struct HealthConfig {
   double min_texture_share = 0.01;
   double sure_correlation = 0.7;
   double min_correlation = 0.3;
+  double min_contrast_grey = 8.0;
+  double max_rotation_sigma_deg = 1.0;
+  double max_position_sigma_m = 0.02;
   double max_chi2_after_gap = 2.5;
   int max_occluded_frames = 30;
 
@@ -44,6 +47,18 @@ struct HealthConfig {
         "min_correlation", self.min_correlation, -1.0, 1.0,
         "an update is not believed if the median correlation of the tracked patches is below this: 0 to 0.25 "
         "on wrong places, at least 0.34 under the worst blur of simulated motion at 10 rad/s");
+    v.number(
+        "min_contrast_grey", self.min_contrast_grey, 0.0, 255.0,
+        "patches with a smaller standard deviation of their intensities do not count in that median (grey "
+        "levels): the noise of cameras, 1 to 4, takes up to a fifth of the correlation of a patch with 8, "
+        "and all that of a bare wall");
+    v.number("max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 180.0,
+             "an update is not believed if the orientation against the model is less certain along some axis "
+             "(degrees, one sigma): what follows would be fused apart from what is there; three sigmas are a "
+             "silent failure (evaluation.silent_rotation_deg)");
+    v.number("max_position_sigma_m", self.max_position_sigma_m, 1e-4, 100.0,
+             "the same for the position (metres); 2.5 sigmas are a silent failure "
+             "(evaluation.silent_translation_m)");
     v.number(
         "max_chi2_after_gap", self.max_chi2_after_gap, 0.1, 1e6,
         "after a gap an update with a larger mean squared whitened photometric residual is not believed: of "

@@ -33,6 +33,9 @@ enum StateOffset : int {
 };
 inline constexpr int kPoseSize = 6;    ///< rotation and position lead the error state
 inline constexpr int kTimingSize = 3;  ///< from kColorReadout on
+/// What decides where a row that was read apart from the frame's instant is seen from: the timing, then the
+/// rate of the pose (as pose_rate()).
+inline constexpr int kReadoutSize = kTimingSize + kPoseSize;
 /// The constants of the sensors: from kImuTimeOffset on.
 inline constexpr int kSensorSize = kReferencePose - kImuTimeOffset;
 
@@ -74,6 +77,10 @@ struct GaussianState {
   FilterState mean;
   StateMatrix covariance = StateMatrix::Zero();
 };
+
+/// Standard deviation along the axis that three components of the error state are least certain of: of an
+/// ellipsoid, the longest axis.
+[[nodiscard]] double largest_sigma(const GaussianState& state, StateOffset offset);
 
 /// x (+) d.
 [[nodiscard]] FilterState plus(const FilterState& state, const StateVector& delta);

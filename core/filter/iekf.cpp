@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace fusebench::filter {
 
@@ -17,8 +19,8 @@ struct Iterate {
   FilterState state;
   PoseHypothesis poses;
 
-  /// Since the images were prepared by the prior's.
-  [[nodiscard]] Vector3d timing_s() const { return measured.tail<kTimingSize>(); }
+  /// Errors of the read-out, counted from the prior.
+  [[nodiscard]] ReadoutVector readout() const { return measured.tail<kReadoutSize>(); }
 };
 
 /// Tangents of the two poses at the prior: the reference pose was corrected by an earlier update of the same
@@ -55,11 +57,11 @@ class Update {
       if (budget <= 0) continue;
       iterate_stage(stage, budget, last, now, quadratic, result);
     }
-    result.map_cost_posterior = map_cost(now, quadratic.cost(now.timing_s()));
+    result.map_cost_posterior = map_cost(now, quadratic.cost(now.readout()));
     result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
     result.correction_by_model = correction_by_model(now, quadratic);
-    result.timing = timing_at_posterior(now, quadratic.timing);
+    result.timing = timing_at_posterior(now, quadratic);
     result.solution = now.y;
     return result;
   }
@@ -82,42 +84,60 @@ class Update {
     return prior_cost + measurement_cost;
   }
 
-  /// Derivative of the poses' tangents (and of the timing) at the iterate by the chart coordinates at the
-  /// prior.
-  static MeasuredMatrix chart_jacobian(const Iterate& iterate) {
-    MeasuredMatrix jacobian = MeasuredMatrix::Identity();
-    jacobian.topLeftCorner<3, 3>() = so3_right_jacobian(iterate.tangents.head<3>());
-    jacobian.block<3, 3>(kPoseSize, kPoseSize) = so3_right_jacobian(iterate.tangents.segment<3>(kPoseSize));
-    return jacobian;
-  }
+  /// Derivatives of the tangents of both poses at the iterate by the chart coordinates at the prior: of their
+  /// rotations. All else is its own coordinate.
+  struct ChartJacobian {
+    explicit ChartJacobian(const Iterate& iterate)
+        : rotations{{{0, so3_right_jacobian(iterate.tangents.head<3>())},
+                     {kPoseSize, so3_right_jacobian(iterate.tangents.segment<3>(kPoseSize))}}} {}
+
+    [[nodiscard]] MeasuredVector times(MeasuredVector vector) const {
+      for (const auto& [row, jacobian] : rotations)
+        vector.segment<3>(row) = (jacobian * vector.segment<3>(row)).eval();
+      return vector;
+    }
+
+    std::array<std::pair<int, Matrix3d>, 2> rotations;  ///< each with its first row
+  };
 
   /// Information and gradient of the measurement in the chart at the prior.
   struct ChartQuadratic {
     MeasuredMatrix information = MeasuredMatrix::Zero();
-    MeasuredVector gradient;
+    MeasuredVector gradient = MeasuredVector::Zero();
+
+    void add(const PoseQuadratic& pose, const ReadoutQuadratic& readout, int row) {
+      constexpr int kReadout = 2 * kPoseSize;
+      information.block<kPoseSize, kPoseSize>(row, row) += pose.information;
+      information.block<kPoseSize, kReadoutSize>(row, kReadout) += readout.with_pose;
+      information.block<kReadoutSize, kPoseSize>(kReadout, row) += readout.with_pose.transpose();
+      information.block<kReadoutSize, kReadoutSize>(kReadout, kReadout) += readout.information;
+      gradient.segment<kPoseSize>(row) += pose.gradient;
+      gradient.tail<kReadoutSize>() += readout.gradient;
+    }
+
+    void carry(const ChartJacobian& chart) {
+      for (const auto& [row, jacobian] : chart.rotations) {
+        information.middleRows<3>(row) = (jacobian.transpose() * information.middleRows<3>(row)).eval();
+        information.middleCols<3>(row) = (information.middleCols<3>(row) * jacobian).eval();
+        gradient.segment<3>(row) = (jacobian.transpose() * gradient.segment<3>(row)).eval();
+      }
+    }
   };
-  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const Iterate& now) {
-    const MeasuredMatrix chart = chart_jacobian(now);
-    const TimingQuadratic& timing = quadratic.timing;
-    constexpr int kPoses = 2 * kPoseSize;
+  enum class Parts { all, by_reference };
+  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const Iterate& now,
+                                 Parts parts = Parts::all) {
     ChartQuadratic result;
-    MeasuredMatrix& information = result.information;
-    information.topLeftCorner<kPoseSize, kPoseSize>() = quadratic.by_reference.information;
-    information.block<kPoseSize, kPoseSize>(kPoseSize, kPoseSize) = quadratic.by_model.information;
-    information.topRightCorner<kPoses, kTimingSize>() = timing.with_poses;
-    information.bottomLeftCorner<kTimingSize, kPoses>() = timing.with_poses.transpose();
-    information.bottomRightCorner<kTimingSize, kTimingSize>() = timing.information;
-    result.gradient << quadratic.by_reference.gradient, quadratic.by_model.gradient, timing.gradient;
-    result.gradient += information.rightCols<kTimingSize>() * now.timing_s();
-    information = chart.transpose() * information * chart;
-    result.gradient = chart.transpose() * result.gradient;
+    result.add(quadratic.by_reference, quadratic.readout_by_reference, 0);
+    if (parts == Parts::all) result.add(quadratic.by_model, quadratic.readout_by_model, kPoseSize);
+    result.gradient += result.information.rightCols<kReadoutSize>() * (now.readout() - quadratic.undone);
+    result.carry(ChartJacobian(now));
     return result;
   }
 
   void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,
                      IekfResult& result) {
     quadratic = measurement_.linearise(now.poses, stage, false);
-    if (last) result.map_cost_prior = map_cost(now, quadratic.cost(now.timing_s()));
+    if (last) result.map_cost_prior = map_cost(now, quadratic.cost(now.readout()));
     result.converged = false;
     bool gated = false;
     for (int iteration = 0; iteration < budget && !result.converged; ++iteration) {
@@ -144,10 +164,11 @@ class Update {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     PoseQuadratic sum = quadratic.by_model;
     sum.add(quadratic.by_reference, 1.0);
-    const TangentVector by_timing = quadratic.timing.with_poses * now.timing_s();
-    sum.gradient += by_timing.head<kPoseSize>() + by_timing.tail<kPoseSize>();
-    sum.cost +=
-        step.dot(by_timing.head<kPoseSize>()) + quadratic.timing.cost(now.timing_s(), TangentVector::Zero());
+    const ReadoutVector left = now.readout() - quadratic.undone;
+    TangentVector steps = TangentVector::Zero();
+    steps.head<kPoseSize>() = step;
+    sum.gradient += (quadratic.readout_by_reference.with_pose + quadratic.readout_by_model.with_pose) * left;
+    sum.cost += quadratic.readout_cost(now.readout(), steps);
     const Vector6d change = quadratic.by_reference.information * step;
     sum.cost += step.dot(quadratic.by_reference.gradient) + 0.5 * step.dot(change);
     sum.gradient += change;
@@ -156,26 +177,28 @@ class Update {
 
   /// The difference to the optimum of the same cost without its part by model.
   Vector6d correction_by_model(const Iterate& now, const MeasurementQuadratic& quadratic) const {
-    ChartQuadratic others = in_chart(quadratic, now);
-    others.information.middleRows<kPoseSize>(kPoseSize).setZero();
-    others.information.middleCols<kPoseSize>(kPoseSize).setZero();
-    others.gradient.segment<kPoseSize>(kPoseSize).setZero();
+    const ChartQuadratic others = in_chart(quadratic, now, Parts::by_reference);
     const MeasuredMatrix system = MeasuredMatrix::Identity() + others.information * measured_covariance_;
     const MeasuredVector without =
         system.partialPivLu().solve(others.information * now.measured - others.gradient);
     return (now.measured - measured_covariance_ * without).segment<kPoseSize>(kPoseSize);
   }
 
-  PoseTimingQuadratic timing_at_posterior(const Iterate& now, const TimingQuadratic& timing) const {
+  PoseTimingQuadratic timing_at_posterior(const Iterate& now, const MeasurementQuadratic& quadratic) const {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     const SensorErrors& prior = prior_.mean.sensors;
+    const ReadoutQuadratic& by_reference = quadratic.readout_by_reference;
+    const ReadoutQuadratic& by_model = quadratic.readout_by_model;
+    const ReadoutVector gradient =
+        by_reference.gradient + by_model.gradient + by_reference.with_pose.transpose() * step +
+        (by_reference.information + by_model.information) * (now.readout() - quadratic.undone);
     PoseTimingQuadratic result;
-    result.timing_s =
-        Vector3d(prior.color_readout_s, prior.depth_readout_s, prior.depth_delay_s) + now.timing_s();
-    const auto by_reference = timing.with_poses.topRows<kPoseSize>();
-    result.with_pose = by_reference + timing.with_poses.bottomRows<kPoseSize>();
-    result.information = timing.information;
-    result.gradient = timing.gradient + by_reference.transpose() * step + timing.information * now.timing_s();
+    result.timing_s = Vector3d(prior.color_readout_s, prior.depth_readout_s, prior.depth_delay_s) +
+                      now.readout().head<kTimingSize>();
+    result.with_pose = (by_reference.with_pose + by_model.with_pose).leftCols<kTimingSize>();
+    result.information =
+        (by_reference.information + by_model.information).topLeftCorner<kTimingSize, kTimingSize>();
+    result.gradient = gradient.head<kTimingSize>();
     return result;
   }
 
@@ -192,13 +215,13 @@ class Update {
       full = -system.partialPivLu().solve(local.gradient);
     }
     const TangentVector tangent_step =
-        (chart_jacobian(now) * (measured_covariance_ * full)).head<2 * kPoseSize>();
-    const double cost_now = map_cost(now, quadratic.cost(now.timing_s()));
+        ChartJacobian(now).times(measured_covariance_ * full).head<2 * kPoseSize>();
+    const double cost_now = map_cost(now, quadratic.cost(now.readout()));
     for (double fraction = 1.0; fraction > 0.05; fraction *= 0.5) {
       const Iterate trial = at(now.y + fraction * full);
       const double cost =
           map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction) +
-                              quadratic.timing.cost(trial.timing_s(), fraction * tangent_step));
+                              quadratic.readout_cost(trial.readout(), fraction * tangent_step));
       if (cost <= cost_now) {
         measurement_.accept();
         now = trial;

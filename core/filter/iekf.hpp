@@ -4,7 +4,7 @@
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
 // every one (iekf.prior_in_every_iteration). A measurement depends on few linear combinations B d of the
-// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^15: the update
+// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^21: the update
 // iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity along by
 // their correlations.
 #pragma once
@@ -39,29 +39,43 @@ struct PoseHypothesis {
 /// Tangents of the two poses of a hypothesis: by reference, then by model.
 using TangentVector = Eigen::Matrix<double, 2 * kPoseSize, 1>;
 
-/// How the cost of a measurement depends on errors of the timing (read-out of colour, read-out of depth,
-/// delay of depth; s), around none.
-struct TimingQuadratic {
-  Eigen::Matrix<double, 2 * kPoseSize, kTimingSize> with_poses =
-      Eigen::Matrix<double, 2 * kPoseSize, kTimingSize>::Zero();  ///< information shared with the tangents
-  Matrix3d information = Matrix3d::Zero();
-  Vector3d gradient = Vector3d::Zero();
+/// Errors of the timing (read-out of colour, read-out of depth, delay of depth; s) and of the pose's rate (as
+/// pose_rate()).
+using ReadoutVector = Eigen::Matrix<double, kReadoutSize, 1>;
 
-  /// What a timing error adds to the cost if the poses have moved on by a step.
-  [[nodiscard]] double cost(const Vector3d& timing_s, const TangentVector& step) const {
-    return timing_s.dot(gradient + with_poses.transpose() * step + 0.5 * information * timing_s);
+/// How the cost of a measurement depends on these, around none: by the information that it shares with the
+/// pose, and by its own.
+struct ReadoutQuadratic {
+  Eigen::Matrix<double, kPoseSize, kReadoutSize> with_pose =
+      Eigen::Matrix<double, kPoseSize, kReadoutSize>::Zero();
+  Eigen::Matrix<double, kReadoutSize, kReadoutSize> information =
+      Eigen::Matrix<double, kReadoutSize, kReadoutSize>::Zero();
+  ReadoutVector gradient = ReadoutVector::Zero();
+
+  /// What the errors add to the cost if the pose has moved on by a step.
+  [[nodiscard]] double cost(const ReadoutVector& errors, const Vector6d& step) const {
+    return errors.dot(gradient + with_pose.transpose() * step + 0.5 * information * errors);
   }
 };
 
-/// The cost of a measurement, in the tangents of the two poses of a hypothesis and in the timing. The poses'
-/// parts are those without a timing error.
+/// The cost of a measurement, in the tangents of the two poses of a hypothesis and in errors of the read-out.
+/// The poses' parts are those without such errors.
 struct MeasurementQuadratic {
   PoseQuadratic by_reference;
   PoseQuadratic by_model;
-  TimingQuadratic timing = {};
+  ReadoutQuadratic readout_by_reference = {};
+  ReadoutQuadratic readout_by_model = {};
+  /// What the images were prepared for already, counted from the prior.
+  ReadoutVector undone = ReadoutVector::Zero();
 
-  [[nodiscard]] double cost(const Vector3d& timing_s = Vector3d::Zero()) const {
-    return by_reference.cost + by_model.cost + timing.cost(timing_s, TangentVector::Zero());
+  /// errors: counted from the prior. steps: that the poses have moved on by since the linearisation.
+  [[nodiscard]] double readout_cost(const ReadoutVector& errors, const TangentVector& steps) const {
+    const ReadoutVector left = errors - undone;
+    return readout_by_reference.cost(left, steps.head<kPoseSize>()) +
+           readout_by_model.cost(left, steps.tail<kPoseSize>());
+  }
+  [[nodiscard]] double cost(const ReadoutVector& errors = ReadoutVector::Zero()) const {
+    return by_reference.cost + by_model.cost + readout_cost(errors, TangentVector::Zero());
   }
 };
 

@@ -40,6 +40,9 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
       -pose_transport(state.T_world_imu, state.T_world_imu_reference);
   rows.block<kPoseSize, kPoseSize>(kPoseSize, 0).setIdentity();
   rows.block<kTimingSize, kTimingSize>(2 * kPoseSize, kColorReadout).setIdentity();
+  constexpr int kRate = 2 * kPoseSize + kTimingSize;
+  rows.block<3, 3>(kRate, kAngularVelocity).setIdentity();
+  rows.block<3, 3>(kRate + 3, kVelocity).setIdentity();
   return rows;
 }
 

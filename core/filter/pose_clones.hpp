@@ -17,12 +17,12 @@ namespace fusebench::filter {
 /// (right rotation in rad, world position in m).
 [[nodiscard]] Matrix6d pose_transport(const SE3& to, const SE3& from);
 
-/// Two poses and the timing of the sensors.
-inline constexpr int kMeasuredSize = 2 * kPoseSize + kTimingSize;
+/// Two poses, the timing of the sensors, and the motion during the read-out.
+inline constexpr int kMeasuredSize = 2 * kPoseSize + kReadoutSize;
 
 /// What images measure, as linear combinations of the error state: the pose against the reference frame (rows
-/// 0-5) and against the model (rows 6-11), both in the tangent of the pose, and the timing of the sensors
-/// (rows 12-14: read-out of colour, read-out of depth, delay of depth).
+/// 0-5) and against the model (rows 6-11), both in the tangent of the pose, the timing of the sensors (rows
+/// 12-14: read-out of colour, read-out of depth, delay of depth), and the rate of the pose (rows 15-20).
 [[nodiscard]] Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(
     const FilterState& state);
 

@@ -47,7 +47,8 @@ void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_came
 }
 
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
-                     std::span<const patches::Patch> patches, FrameReport& report) {
+                     std::span<const patches::Patch> patches, const config::Config& config,
+                     FrameReport& report) {
   double chi2_photometric = 0;
   double chi2_geometric = 0;
   std::vector<double> motion_px, correlations;
@@ -59,7 +60,8 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
     report.patches_contradicting += outcome.contradicts_color ? 1 : 0;
     report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
     report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
-    if (outcome.tracked) correlations.push_back(outcome.correlation);
+    if (outcome.tracked && outcome.contrast_grey >= config.health.min_contrast_grey)
+      correlations.push_back(outcome.correlation);
     if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());
     if (!outcome.accepted) continue;
     ++report.patches_accepted;
@@ -71,9 +73,12 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
   if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
   if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
   report.patch_motion_px = median(motion_px);
-  if (measurement.color_is_new()) report.correlation = median(correlations);
+  if (measurement.color_is_new() && correlations.size() >= static_cast<std::size_t>(config.iekf.min_patches))
+    report.correlation = median(correlations);
   report.variance_photometric = measurement.photometric_variance();
   report.variance_geometric = measurement.geometric_variance();
+  report.model_rotation_sigma_rad = filter::largest_sigma(result.posterior, filter::kRotation);
+  report.model_position_sigma_m = filter::largest_sigma(result.posterior, filter::kPosition);
   report.iterations = result.iterations;
   report.converged = result.converged;
   report.pixels = measurement.tracked_pixels();

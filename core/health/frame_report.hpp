@@ -63,9 +63,13 @@ struct FrameReport {
   double chi2_geometric = 0;
   double variance_photometric = 1;  ///< factor on the claimed variance (patch_scatter.hpp)
   double variance_geometric = 1;
+  /// Of the pose against the model, along the axis that it is least certain of.
+  double model_rotation_sigma_rad = 0;
+  double model_position_sigma_m = 0;
   std::size_t model_blocks = 0;
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
-  /// Median ZNCC of the tracked patches with their reference; nothing where the colour is a repeated one.
+  /// Median ZNCC of the tracked patches with their reference, of those with contrast; nothing if there are
+  /// too few of these, or the colour is a repeated one.
   std::optional<double> correlation;
   double blur_px = 0;    ///< predicted length of motion blur at the image centre
   TrackedPixels pixels;  ///< of all tracked patches, by patch, then pixel
@@ -80,6 +84,7 @@ void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_came
 
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
-                     std::span<const patches::Patch> patches, FrameReport& report);
+                     std::span<const patches::Patch> patches, const config::Config& config,
+                     FrameReport& report);
 
 }  // namespace fusebench::health

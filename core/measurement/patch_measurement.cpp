@@ -103,19 +103,37 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   photometric_variance_ = measured_variance(&PatchState::photometric);
   geometric_variance_ = measured_variance(&PatchState::geometric);
   filter::MeasurementQuadratic sum;
+  sum.undone = frame_->motion.from_prior;
   const patches::PosedCamera camera(rig_.camera, poses.T_world_imu_by_reference, rig_.T_imu_camera);
   for (std::size_t p = 0; p < states_.size(); ++p) {
     sum.by_reference.add(states_[p].photometric, 1.0 / photometric_variance_);
     sum.by_model.add(states_[p].geometric, 1.0 / geometric_variance_);
-    add_timing(p, camera, sum.timing);
+    add_readout(p, camera, sum);
   }
   return sum;
 }
 
+namespace {
+
+using PoseByReadout = Eigen::Matrix<double, filter::kPoseSize, filter::kReadoutSize>;
+
+void add_displaced(const filter::PoseQuadratic& pose, double variance, const PoseByReadout& displacement,
+                   filter::ReadoutQuadratic& sum) {
+  const PoseByReadout with_pose = pose.information * displacement / variance;
+  sum.with_pose += with_pose;
+  sum.information += displacement.transpose() * with_pose;
+  sum.gradient += displacement.transpose() * pose.gradient / variance;
+}
+
+}  // namespace
+
 /// A row that was read later than supposed shows the scene from where the camera was then: for a patch, a
-/// timing error of t displaces the pose by the motion during t. The reference was displaced likewise.
-void PatchMeasurement::add_timing(std::size_t patch, const patches::PosedCamera& camera,
-                                  filter::TimingQuadratic& sum) const {
+/// timing error of t displaces the pose by the motion during t. The reference was displaced likewise. An
+/// error of the motion displaces it by what adds up between the frame's instant and the row's. Colour says
+/// nothing of that error here: its reference is sheared by one of its own, which no state holds, and what the
+/// two have in common would be carried on from frame to frame.
+void PatchMeasurement::add_readout(std::size_t patch, const patches::PosedCamera& camera,
+                                   filter::MeasurementQuadratic& sum) const {
   const auto& pixels = patches_[patch].levels.front().pixels;
   if (!states_[patch].counts || pixels.empty()) return;
   const Vector3d centre = camera.to_camera(pixels[pixels.size() / 2].point_world);
@@ -127,22 +145,15 @@ void PatchMeasurement::add_timing(std::size_t patch, const patches::PosedCamera&
   const ReadoutMotion& motion = frame_->motion;
   constexpr int kPose = filter::kPoseSize;
 
-  if (motion.tells_color_readout) {
-    const filter::PoseQuadratic& color = states_[patch].photometric;
-    const Vector6d by_color = now * motion.rate - before * motion.reference_rate;
-    const Vector6d color_information = color.information * by_color / photometric_variance_;
-    sum.with_poses.col(0).head<kPose>() += color_information;
-    sum.information(0, 0) += by_color.dot(color_information);
-    sum.gradient[0] += by_color.dot(color.gradient) / photometric_variance_;
-  }
-  const filter::PoseQuadratic& depth = states_[patch].geometric;
-  const Eigen::RowVector2d by_readout_and_delay(now, 1.0);
-  const Vector6d depth_information = depth.information * motion.rate / geometric_variance_;
-  sum.with_poses.bottomRightCorner<kPose, 2>() += depth_information * by_readout_and_delay;
-  sum.information.bottomRightCorner<2, 2>() +=
-      motion.rate.dot(depth_information) * by_readout_and_delay.transpose() * by_readout_and_delay;
-  sum.gradient.tail<2>() +=
-      motion.rate.dot(depth.gradient) / geometric_variance_ * by_readout_and_delay.transpose();
+  PoseByReadout by_color = PoseByReadout::Zero();
+  if (motion.tells_color_readout) by_color.col(0) = now * motion.rate - before * motion.reference_rate;
+  add_displaced(states_[patch].photometric, photometric_variance_, by_color, sum.readout_by_reference);
+
+  PoseByReadout by_depth = PoseByReadout::Zero();
+  by_depth.col(1) = now * motion.rate;
+  by_depth.col(2) = motion.rate;
+  by_depth.rightCols<kPose>().diagonal().setConstant(now * motion.depth_readout_s + motion.depth_delay_s);
+  add_displaced(states_[patch].geometric, geometric_variance_, by_depth, sum.readout_by_model);
 }
 
 double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*kind) const {

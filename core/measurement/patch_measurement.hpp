@@ -23,11 +23,16 @@
 
 namespace fusebench::measurement {
 
-/// How the camera moved while the images were read, as the tangent of its pose by time (filter::pose_rate()),
-/// both around the prior's pose. Zero where the read-out is not undone: then nothing is learnt of it.
+/// What the images were prepared for: when their rows were read, and how the camera moved meanwhile, as the
+/// tangent of its pose by time (filter::pose_rate()), around the prior's pose. Zero where the read-out is not
+/// undone: then nothing is learnt of it.
 struct ReadoutMotion {
+  double depth_readout_s = 0;
+  double depth_delay_s = 0;
   Vector6d rate = Vector6d::Zero();            ///< in the frame
   Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
+  /// By how much timing and rate differ from the prior's.
+  filter::ReadoutVector from_prior = filter::ReadoutVector::Zero();
   /// The rates differ by more than their noise. Two frames are distorted alike unless they do.
   bool tells_color_readout = false;
 };
@@ -95,7 +100,8 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   };
 
   void warp_all(const PosedLevels& posed);
-  void add_timing(std::size_t patch, const patches::PosedCamera& camera, filter::TimingQuadratic& sum) const;
+  void add_readout(std::size_t patch, const patches::PosedCamera& camera,
+                   filter::MeasurementQuadratic& sum) const;
   void judge(std::size_t patch, bool gate);
   void associate_planes(std::size_t patch, const PosedLevels& posed);
   void sum_photometric(std::size_t patch, const PosedLevels& posed);

@@ -22,13 +22,15 @@ struct Correlation {
     sum_bb += b * b;
     sum_ab += a * b;
   }
-  [[nodiscard]] double value(int count) const {
+  void describe(PatchOutcome& outcome) const {
+    const int count = outcome.usable_pixels;
     const double a = simd::sum_of_lanes(sum_a) / count;
     const double b = simd::sum_of_lanes(sum_b) / count;
     const double aa = simd::sum_of_lanes(sum_aa) / count - a * a;
     const double bb = simd::sum_of_lanes(sum_bb) / count - b * b;
-    if (aa < 1e-3 || bb < 1e-3) return 0;  // of one grey
-    return (simd::sum_of_lanes(sum_ab) / count - a * b) / std::sqrt(aa * bb);
+    outcome.contrast_grey = std::sqrt(std::max({aa, bb, 0.0}));
+    if (aa < 1e-3 || bb < 1e-3) return;  // of one grey
+    outcome.correlation = (simd::sum_of_lanes(sum_ab) / count - a * b) / std::sqrt(aa * bb);
   }
   simd::Float8 sum_a{}, sum_b{}, sum_aa{}, sum_bb{}, sum_ab{};
 };
@@ -70,7 +72,7 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
     // An even square [c - s/2, c + s/2) has the mean of its pixel centres half a pixel before c.
     outcome.centre_px =
         outcome.centre_px / outcome.usable_pixels + Vector2d::Constant(config.size_px % 2 == 0 ? 0.5 : 0.0);
-    outcome.correlation = correlation.value(outcome.usable_pixels);
+    correlation.describe(outcome);
     outcome.mean_error_grey = simd::sum_of_lanes(difference) / outcome.usable_pixels;
   }
 }

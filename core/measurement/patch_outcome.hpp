@@ -30,6 +30,9 @@ struct PatchOutcome {
   /// Correlation of intensities with those of the reference at level 0 (ZNCC, -1 to 1): unlike the
   /// chi-squares it depends neither on the noise that is assumed or learnt nor on brightness.
   double correlation = 0;
+  /// Standard deviation of the intensities there, of the frame's or the reference's, whichever is larger: the
+  /// correlation of patches of little more contrast than noise says nothing.
+  double contrast_grey = 0;
   double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
   Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
 };

@@ -132,9 +132,8 @@ Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples, 
       inertial ? initialise_with_imu(samples, first_frame_ns, rig, config.initialisation)
                : initialise_without_imu(config.initialisation);
   if (!initial) return initial;
-  // Without an IMU the motion during a read-out is known from the images alone, which the read-out distorts.
+  set_timing_priors(*initial, rig.timing, config);
   if (inertial) {
-    set_timing_priors(*initial, rig.timing, config);
     if (!rig.imu_axes_are_exact) set_imu_priors(*initial, config.self_calibration);
   }
   if (motion) {

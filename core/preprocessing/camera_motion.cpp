@@ -25,10 +25,10 @@ double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
 }
 
 bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now,
-                           const config::CompensationConfig& config) {
+                           const VelocityTolerance& tolerance) {
   const double turn_radps = (now.angular_velocity_imu_radps - before.angular_velocity_imu_radps).norm();
   const double move_mps = (now.velocity_world_mps - before.velocity_world_mps).norm();
-  return turn_radps > config.redo_angular_velocity_radps || move_mps > config.redo_velocity_mps;
+  return turn_radps > tolerance.angular_radps || move_mps > tolerance.linear_mps;
 }
 
 }  // namespace fusebench::preprocessing

@@ -19,8 +19,14 @@ namespace fusebench::preprocessing {
 [[nodiscard]] double predicted_blur_px(const filter::FilterState& state, const SensorRig& rig,
                                        double exposure_s);
 
+/// By how much a motion may differ from the one that a frame was compensated for.
+struct VelocityTolerance {
+  double angular_radps = 0;
+  double linear_mps = 0;
+};
+
 /// True if a frame that was compensated for the motion before is off by too much for that of now.
 [[nodiscard]] bool velocity_changed_much(const filter::FilterState& before, const filter::FilterState& now,
-                                         const config::CompensationConfig& config);
+                                         const VelocityTolerance& tolerance);
 
 }  // namespace fusebench::preprocessing

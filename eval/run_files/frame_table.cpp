@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,7 +34,8 @@ std::string frame_table_header() {
       "extended,"
       "pixels_photometric,pixels_geometric,aie_grey,aie_pixels,iterations,converged,chi2_photometric,chi2_"
       "geometric,variance_photometric,variance_geometric,"
-      "speed_mps,angular_speed_radps,blur_px,patch_motion_px,position_sigma_m,rotation_sigma_rad,"
+      "speed_mps,angular_speed_radps,blur_px,patch_motion_px,position_sigma_m,rotation_sigma_rad,model_"
+      "position_sigma_m,model_rotation_sigma_rad,"
       "imu_time_offset_s,correlation,model_blocks,decode_ms";
   for (const std::string_view stage : health::kStageNames) header += fmt::format(",{}_ms", stage);
   return header + "\n";
@@ -43,14 +43,9 @@ std::string frame_table_header() {
 
 std::string frame_table_row(std::size_t frame, const health::FrameReport& report, double decode_ms) {
   const double angular_speed = report.angular_velocity_radps.norm();
-  // Of the longest axis: what a reader wants to know of an ellipsoid.
-  const auto sigma = [&](int offset) {
-    const Matrix3d block = report.estimate.covariance.block<3, 3>(offset, offset);
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(block).eigenvalues().maxCoeff());
-  };
   std::string row = fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}", frame,
-      trajectory::stamp_text(report.timestamp_ns), health::to_string(report.status),
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}",
+      frame, trajectory::stamp_text(report.timestamp_ns), health::to_string(report.status),
       health::to_string(report.health), text_cell(report.reason), report.patches, report.patches_tracked,
       report.patches_accepted, report.patches_shrunk, report.patches_extended, report.pixels_photometric,
       report.pixels_geometric, number_cell(metrics::frame_intensity_error(report.pixels.intensity)),
@@ -58,8 +53,11 @@ std::string frame_table_row(std::size_t frame, const health::FrameReport& report
       number_cell(report.chi2_photometric), number_cell(report.chi2_geometric),
       number_cell(report.variance_photometric), number_cell(report.variance_geometric),
       number_cell(report.velocity_world_mps.norm()), number_cell(angular_speed), number_cell(report.blur_px),
-      number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)),
-      number_cell(sigma(filter::kRotation)), number_cell(report.estimate.mean.imu_time_offset_s),
+      number_cell(report.patch_motion_px),
+      number_cell(filter::largest_sigma(report.estimate, filter::kPosition)),
+      number_cell(filter::largest_sigma(report.estimate, filter::kRotation)),
+      number_cell(report.model_position_sigma_m), number_cell(report.model_rotation_sigma_rad),
+      number_cell(report.estimate.mean.imu_time_offset_s),
       report.correlation ? number_cell(*report.correlation) : "", report.model_blocks, decode_ms);
   for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
   return row + "\n";

@@ -127,7 +127,8 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
   const StateMatrix expected = transport * in_chart * transport.transpose();
 
   MeasuredVector far_start;
-  far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300, 200, -100, 400;
+  far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300, 200, -100, 400, 100, -300, 600,
+      -700, 200, 500;
   for (const MeasuredVector& start : {MeasuredVector(MeasuredVector::Zero()), far_start}) {
     PositionMeasurement measurement(z, sigma);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
@@ -137,20 +138,27 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
   }
 }
 
-/// A linear measurement of the pose by the model, to which errors of the timing add.
-class TimedMeasurement final : public PoseMeasurement {
+/// A linear measurement of the pose by the model, to which errors of the read-out add.
+using ByReadout = Eigen::Matrix<double, 3, kReadoutSize>;
+class ReadOutMeasurement final : public PoseMeasurement {
  public:
-  TimedMeasurement(Vector3d z, double sigma, const Matrix3d& by_timing)
-      : z_(std::move(z)), information_(1.0 / (sigma * sigma)), by_timing_(by_timing) {}
+  /// undone: errors that the images are free of already.
+  ReadOutMeasurement(Vector3d z, double sigma, const ByReadout& by_readout,
+                     const ReadoutVector& undone = ReadoutVector::Zero())
+      : z_(z - by_readout * undone),
+        information_(1.0 / (sigma * sigma)),
+        by_readout_(by_readout),
+        undone_(undone) {}
   MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
     const Vector3d error = poses.T_world_imu_by_model.translation - z_;
     MeasurementQuadratic q;
     q.by_model.information.bottomRightCorner<3, 3>().diagonal().setConstant(information_);
     q.by_model.gradient.tail<3>() = information_ * error;
     q.by_model.cost = 0.5 * information_ * error.squaredNorm();
-    q.timing.with_poses.bottomRows<3>() = information_ * by_timing_;
-    q.timing.information = information_ * by_timing_.transpose() * by_timing_;
-    q.timing.gradient = information_ * by_timing_.transpose() * error;
+    q.readout_by_model.with_pose.bottomRows<3>() = information_ * by_readout_;
+    q.readout_by_model.information = information_ * by_readout_.transpose() * by_readout_;
+    q.readout_by_model.gradient = information_ * by_readout_.transpose() * error;
+    q.undone = undone_;
     return q;
   }
   double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
@@ -161,48 +169,58 @@ class TimedMeasurement final : public PoseMeasurement {
  private:
   Vector3d z_;
   double information_;
-  Matrix3d by_timing_;
+  ByReadout by_readout_;
+  ReadoutVector undone_;
 };
 
-/// z = p + by_timing * t + noise, by the textbook.
-struct TimedUpdate {
+/// z = p + by_readout * errors + noise, by the textbook.
+struct ReadOutUpdate {
   Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
   Eigen::Matrix<double, kStateSize, 3> K;
   StateVector delta;
 
-  TimedUpdate(const GaussianState& prior, const Vector3d& z, double sigma, const Matrix3d& by_timing) {
+  ReadOutUpdate(const GaussianState& prior, const Vector3d& z, double sigma, const ByReadout& by_readout) {
     H.block<3, 3>(0, kPosition).setIdentity();
-    H.block<3, 3>(0, kColorReadout) = by_timing;
+    H.block<3, 3>(0, kColorReadout) = by_readout.leftCols<3>();
+    H.block<3, 3>(0, kAngularVelocity) = by_readout.middleCols<3>(3);
+    H.block<3, 3>(0, kVelocity) = by_readout.rightCols<3>();
     const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
     K = prior.covariance * H.transpose() * S.inverse();
     delta = K * (z - prior.mean.T_world_imu.translation);
   }
 };
 
-const Matrix3d kByTiming = (Matrix3d() << 0.8, -0.3, 0.1, 0.2, 0.5, -0.4, -0.1, 0.6, 0.9).finished();
+const ByReadout kByReadout = (ByReadout() << 0.8, -0.3, 0.1, 0.02, -0.01, 0.03, 0.01, 0, 0,  //
+                              0.2, 0.5, -0.4, -0.03, 0.01, 0.02, 0, 0.01, 0,                 //
+                              -0.1, 0.6, 0.9, 0.01, 0.02, -0.02, 0, 0, 0.01)
+                                 .finished();
 
-TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndTiming) {
+TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
-  const TimedUpdate expected(prior, z, 0.02, kByTiming);
-  TimedMeasurement measurement(z, 0.02, kByTiming);
-  const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
-  EXPECT_TRUE(result.converged);
-  EXPECT_LT((minus(result.posterior.mean, prior.mean) - expected.delta).norm(), 1e-9);
+  const ReadOutUpdate expected(prior, z, 0.02, kByReadout);
   const StateMatrix transport = chart_transport(prior.mean, expected.delta);
   const StateMatrix covariance = transport * (StateMatrix::Identity() - expected.K * expected.H) *
                                  prior.covariance * transport.transpose();
-  EXPECT_LT((result.posterior.covariance - covariance).norm() / covariance.norm(), 1e-9);
+  ReadoutVector undone;
+  undone << 0.01, -0.02, 0.015, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
+  for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), undone}) {
+    ReadOutMeasurement measurement(z, 0.02, kByReadout, prepared_for);
+    const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT((minus(result.posterior.mean, prior.mean) - expected.delta).norm(), 1e-9);
+    EXPECT_LT((result.posterior.covariance - covariance).norm() / covariance.norm(), 1e-9);
+  }
 }
 
 TEST(Iekf, ConsideredConstantsStayAndAreNotForgotten) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
-  TimedUpdate schmidt(prior, z, 0.02, kByTiming);
+  ReadOutUpdate schmidt(prior, z, 0.02, kByReadout);
   // Schmidt's filter: their rows of the gain are zero, and the covariance is Joseph's for that gain.
   schmidt.K.middleRows<kSensorSize>(kImuTimeOffset).setZero();
   schmidt.delta.segment<kSensorSize>(kImuTimeOffset).setZero();
-  TimedMeasurement measurement(z, 0.02, kByTiming);
+  ReadOutMeasurement measurement(z, 0.02, kByReadout);
   const IekfResult result =
       iekf_update(prior, measurement, IekfConfig{}, MeasuredVector::Zero(), SensorConstants::considered);
   EXPECT_LT((minus(result.posterior.mean, prior.mean) - schmidt.delta).norm(), 1e-9);
