@@ -22,14 +22,10 @@ std::string rejection_reason(const FrameReport& report, bool after_gap, const co
         degrees(report.model_rotation_sigma_rad), 100 * report.model_position_sigma_m,
         config.health.max_rotation_sigma_deg, config.health.max_position_sigma_m);
   }
-  // Whatever the frame suffers from: a pose that most of the patches contradict is none.
+  // Whatever the frame suffers from: a pose that most of the intensities contradict is none.
   if (config.terms.relocalisation && 2 * report.patches_contradicting > report.patches_tracked) {
     return fmt::format("inconsistent: the intensities of {} of {} tracked patches do not fit the pose",
                        report.patches_contradicting, report.patches_tracked);
-  }
-  if (config.terms.relocalisation && 2 * report.patches_accepted < report.patches_tracked) {
-    return fmt::format("inconsistent: {} of {} tracked patches fit the pose", report.patches_accepted,
-                       report.patches_tracked);
   }
   if (config.terms.relocalisation && config.terms.photometric_weight > 0 && report.correlation &&
       *report.correlation < config.health.min_correlation) {

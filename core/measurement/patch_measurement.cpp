@@ -113,20 +113,6 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   return sum;
 }
 
-namespace {
-
-using PoseByReadout = Eigen::Matrix<double, filter::kPoseSize, filter::kReadoutSize>;
-
-void add_displaced(const filter::PoseQuadratic& pose, double variance, const PoseByReadout& displacement,
-                   filter::ReadoutQuadratic& sum) {
-  const PoseByReadout with_pose = pose.information * displacement / variance;
-  sum.with_pose += with_pose;
-  sum.information += displacement.transpose() * with_pose;
-  sum.gradient += displacement.transpose() * pose.gradient / variance;
-}
-
-}  // namespace
-
 /// A row that was read later than supposed shows the scene from where the camera was then: for a patch, a
 /// timing error of t displaces the pose by the motion during t. The reference was displaced likewise. An
 /// error of the motion displaces it by what adds up between the frame's instant and the row's. Colour says
@@ -145,15 +131,33 @@ void PatchMeasurement::add_readout(std::size_t patch, const patches::PosedCamera
   const ReadoutMotion& motion = frame_->motion;
   constexpr int kPose = filter::kPoseSize;
 
-  PoseByReadout by_color = PoseByReadout::Zero();
-  if (motion.tells_color_readout) by_color.col(0) = now * motion.rate - before * motion.reference_rate;
-  add_displaced(states_[patch].photometric, photometric_variance_, by_color, sum.readout_by_reference);
-
-  PoseByReadout by_depth = PoseByReadout::Zero();
-  by_depth.col(1) = now * motion.rate;
-  by_depth.col(2) = motion.rate;
-  by_depth.rightCols<kPose>().diagonal().setConstant(now * motion.depth_readout_s + motion.depth_delay_s);
-  add_displaced(states_[patch].geometric, geometric_variance_, by_depth, sum.readout_by_model);
+  if (motion.tells_color_readout) {
+    filter::ReadoutQuadratic& color = sum.readout_by_reference;
+    const filter::PoseQuadratic& pose = states_[patch].photometric;
+    const Vector6d displacement = now * motion.rate - before * motion.reference_rate;
+    const Vector6d with_pose = pose.information * displacement / photometric_variance_;
+    color.with_pose.col(0) += with_pose;
+    color.information(0, 0) += displacement.dot(with_pose);
+    color.gradient[0] += displacement.dot(pose.gradient) / photometric_variance_;
+  }
+  // Displaced by rate * (now * d read-out + d delay) + later_s * d rate.
+  filter::ReadoutQuadratic& depth = sum.readout_by_model;
+  const filter::PoseQuadratic& pose = states_[patch].geometric;
+  const Vector2d by_readout_and_delay(now, 1.0);
+  const double later_s = now * motion.depth_readout_s + motion.depth_delay_s;
+  const Vector6d with_rate = pose.information * motion.rate / geometric_variance_;
+  depth.with_pose.middleCols<2>(1) += with_rate * by_readout_and_delay.transpose();
+  depth.with_pose.rightCols<kPose>() += later_s / geometric_variance_ * pose.information;
+  depth.information.block<2, 2>(1, 1) +=
+      motion.rate.dot(with_rate) * by_readout_and_delay * by_readout_and_delay.transpose();
+  depth.information.block<kPose, 2>(filter::kTimingSize, 1) +=
+      later_s * with_rate * by_readout_and_delay.transpose();
+  depth.information.block<2, kPose>(1, filter::kTimingSize) +=
+      later_s * by_readout_and_delay * with_rate.transpose();
+  depth.information.bottomRightCorner<kPose, kPose>() +=
+      later_s * later_s / geometric_variance_ * pose.information;
+  depth.gradient.segment<2>(1) += motion.rate.dot(pose.gradient) / geometric_variance_ * by_readout_and_delay;
+  depth.gradient.tail<kPose>() += later_s / geometric_variance_ * pose.gradient;
 }
 
 double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*kind) const {
