@@ -3,7 +3,8 @@
 // Columns: frame, timestamp, status, health and reason, patches (projected, tracked, accepted, shrunk,
 // extended), pixels (photometric, geometric), aie_grey and aie_pixels of the frame, iterations, converged,
 // chi2 (photometric, geometric), speed_mps, angular_speed_radps, blur_px (predicted), patch_motion_px (median
-// since the last frame), position_sigma_m and rotation_sigma_rad (the filter's, longest axis),
+// since the last frame), position_sigma_m and rotation_sigma_rad (the filter's, longest axis; with model_ in
+// front: against the model, by which a pose is believed or not),
 // imu_time_offset_s, model_blocks; then milliseconds per stage. All but the milliseconds are the same when
 // the run is repeated.
 #pragma once
