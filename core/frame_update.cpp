@@ -26,10 +26,7 @@ measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, cons
   if (frame.undone_motion()) {
     motion.depth_readout_s = frame.timing().depth_readout_s;
     motion.depth_delay_s = frame.timing().depth_delay_s;
-    const filter::SensorErrors& sensors = undone.sensors;
-    motion.from_prior << sensors.color_readout_s - prior.sensors.color_readout_s,
-        sensors.depth_readout_s - prior.sensors.depth_readout_s,
-        sensors.depth_delay_s - prior.sensors.depth_delay_s,
+    motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(),
         filter::pose_rate(undone) - filter::pose_rate(prior);
   }
   motion.rate = filter::pose_rate(undone);

@@ -1,5 +1,6 @@
 #include "core/base/geometry.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -40,6 +41,10 @@ Matrix3d so3_right_jacobian(const Vector3d& phi_rad) {
   const double a2 = angle * angle;
   return Matrix3d::Identity() - (1.0 - std::cos(angle)) / a2 * k +
          (angle - std::sin(angle)) / (a2 * angle) * k * k;
+}
+
+double largest_sigma(const Matrix3d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(covariance).eigenvalues().maxCoeff());
 }
 
 double rotation_angle_rad(const Quaterniond& a, const Quaterniond& b) {

@@ -55,6 +55,9 @@ struct SE3 {
 /// Shortest rotation angle between two orientations, radians in [0, pi].
 [[nodiscard]] double rotation_angle_rad(const Quaterniond& a, const Quaterniond& b);
 
+/// Standard deviation along the least certain axis: of the ellipsoid of a covariance, the longest one.
+[[nodiscard]] double largest_sigma(const Matrix3d& covariance);
+
 /// A pose moved along its tangent (right rotation in rad, then position of its origin in m).
 [[nodiscard]] SE3 pose_plus(const SE3& pose, const Vector6d& tangent);
 

@@ -53,7 +53,7 @@ struct CompensationConfig {
         "update_again_angular_velocity_radps", self.update_again_angular_velocity_radps, 0.0, 100.0,
         "a frame is compensated and the update made once more if the update changed the angular velocity "
         "by more (rad/s): the update undoes small changes by itself; over half a read-out of 13 ms at a "
-        "focal length of 520 px this moves a pixel by one.");
+        "focal length of 520 px this moves a pixel by one");
     v.number("update_again_velocity_mps", self.update_again_velocity_mps, 0.0, 100.0,
              "the same for the velocity (m/s), which images alone tell no better from frame to frame");
     v.number("max_updates_again", self.max_updates_again, 0, 10, "at most so many more updates of a frame");

@@ -1,14 +1,6 @@
 #include "core/filter/filter_state.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <cmath>
-
 namespace fusebench::filter {
-
-double largest_sigma(const GaussianState& state, StateOffset offset) {
-  const Matrix3d block = state.covariance.block<3, 3>(offset, offset);
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(block).eigenvalues().maxCoeff());
-}
 
 FilterState plus(const FilterState& state, const StateVector& delta) {
   FilterState result = state;

@@ -52,6 +52,9 @@ struct SensorErrors {
   double color_readout_s = 0;
   double depth_readout_s = 0;
   double depth_delay_s = 0;
+
+  /// These three, in the order of the error state.
+  [[nodiscard]] Vector3d timing_s() const { return {color_readout_s, depth_readout_s, depth_delay_s}; }
 };
 
 struct FilterState {
@@ -77,10 +80,6 @@ struct GaussianState {
   FilterState mean;
   StateMatrix covariance = StateMatrix::Zero();
 };
-
-/// Standard deviation along the axis that three components of the error state are least certain of: of an
-/// ellipsoid, the longest axis.
-[[nodiscard]] double largest_sigma(const GaussianState& state, StateOffset offset);
 
 /// x (+) d.
 [[nodiscard]] FilterState plus(const FilterState& state, const StateVector& delta);

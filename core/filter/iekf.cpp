@@ -186,15 +186,13 @@ class Update {
 
   PoseTimingQuadratic timing_at_posterior(const Iterate& now, const MeasurementQuadratic& quadratic) const {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
-    const SensorErrors& prior = prior_.mean.sensors;
     const ReadoutQuadratic& by_reference = quadratic.readout_by_reference;
     const ReadoutQuadratic& by_model = quadratic.readout_by_model;
     const ReadoutVector gradient =
         by_reference.gradient + by_model.gradient + by_reference.with_pose.transpose() * step +
         (by_reference.information + by_model.information) * (now.readout() - quadratic.undone);
     PoseTimingQuadratic result;
-    result.timing_s = Vector3d(prior.color_readout_s, prior.depth_readout_s, prior.depth_delay_s) +
-                      now.readout().head<kTimingSize>();
+    result.timing_s = prior_.mean.sensors.timing_s() + now.readout().head<kTimingSize>();
     result.with_pose = (by_reference.with_pose + by_model.with_pose).leftCols<kTimingSize>();
     result.information =
         (by_reference.information + by_model.information).topLeftCorner<kTimingSize, kTimingSize>();

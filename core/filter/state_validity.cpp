@@ -10,9 +10,8 @@ namespace {
 bool within(const auto& values, double largest) { return (values.array().abs() <= largest).all(); }
 
 bool is_valid(const SensorErrors& errors) {
-  const Vector3d timing(errors.color_readout_s, errors.depth_readout_s, errors.depth_delay_s);
   return within(errors.imu_rotation_rad, kMaxMean) && within(errors.gyroscope_scale, kMaxScale) &&
-         within(errors.accelerometer_scale, kMaxScale) && within(timing, kMaxTiming_s);
+         within(errors.accelerometer_scale, kMaxScale) && within(errors.timing_s(), kMaxTiming_s);
 }
 
 }  // namespace

@@ -77,8 +77,10 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
     report.correlation = median(correlations);
   report.variance_photometric = measurement.photometric_variance();
   report.variance_geometric = measurement.geometric_variance();
-  report.model_rotation_sigma_rad = filter::largest_sigma(result.posterior, filter::kRotation);
-  report.model_position_sigma_m = filter::largest_sigma(result.posterior, filter::kPosition);
+  report.model_rotation_sigma_rad =
+      largest_sigma(result.posterior.covariance.block<3, 3>(filter::kRotation, filter::kRotation));
+  report.model_position_sigma_m =
+      largest_sigma(result.posterior.covariance.block<3, 3>(filter::kPosition, filter::kPosition));
   report.iterations = result.iterations;
   report.converged = result.converged;
   report.pixels = measurement.tracked_pixels();

@@ -103,7 +103,7 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   photometric_variance_ = measured_variance(&PatchState::photometric);
   geometric_variance_ = measured_variance(&PatchState::geometric);
   filter::MeasurementQuadratic sum;
-  sum.undone = frame_->motion.from_prior;
+  sum.undone = frame_->motion.undone;
   const patches::PosedCamera camera(rig_.camera, poses.T_world_imu_by_reference, rig_.T_imu_camera);
   for (std::size_t p = 0; p < states_.size(); ++p) {
     sum.by_reference.add(states_[p].photometric, 1.0 / photometric_variance_);

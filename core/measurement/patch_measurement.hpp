@@ -31,8 +31,8 @@ struct ReadoutMotion {
   double depth_delay_s = 0;
   Vector6d rate = Vector6d::Zero();            ///< in the frame
   Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
-  /// By how much timing and rate differ from the prior's.
-  filter::ReadoutVector from_prior = filter::ReadoutVector::Zero();
+  /// By how much timing and rate differ from the prior's (filter::MeasurementQuadratic::undone).
+  filter::ReadoutVector undone = filter::ReadoutVector::Zero();
   /// The rates differ by more than their noise. Two frames are distorted alike unless they do.
   bool tells_color_readout = false;
 };

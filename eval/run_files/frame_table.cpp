@@ -43,6 +43,9 @@ std::string frame_table_header() {
 
 std::string frame_table_row(std::size_t frame, const health::FrameReport& report, double decode_ms) {
   const double angular_speed = report.angular_velocity_radps.norm();
+  const auto sigma = [&](int offset) {
+    return largest_sigma(report.estimate.covariance.block<3, 3>(offset, offset));
+  };
   std::string row = fmt::format(
       "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}",
       frame, trajectory::stamp_text(report.timestamp_ns), health::to_string(report.status),
@@ -53,11 +56,9 @@ std::string frame_table_row(std::size_t frame, const health::FrameReport& report
       number_cell(report.chi2_photometric), number_cell(report.chi2_geometric),
       number_cell(report.variance_photometric), number_cell(report.variance_geometric),
       number_cell(report.velocity_world_mps.norm()), number_cell(angular_speed), number_cell(report.blur_px),
-      number_cell(report.patch_motion_px),
-      number_cell(filter::largest_sigma(report.estimate, filter::kPosition)),
-      number_cell(filter::largest_sigma(report.estimate, filter::kRotation)),
-      number_cell(report.model_position_sigma_m), number_cell(report.model_rotation_sigma_rad),
-      number_cell(report.estimate.mean.imu_time_offset_s),
+      number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)),
+      number_cell(sigma(filter::kRotation)), number_cell(report.model_position_sigma_m),
+      number_cell(report.model_rotation_sigma_rad), number_cell(report.estimate.mean.imu_time_offset_s),
       report.correlation ? number_cell(*report.correlation) : "", report.model_blocks, decode_ms);
   for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
   return row + "\n";

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -97,8 +96,7 @@ Result<FittedOffset> fitted_offset(const trajectory_files::TrajectoryPair& pair)
   const double duration_s =
       seconds_between(pair.estimate.front().timestamp_ns, pair.estimate.back().timestamp_ns);
   FittedOffset fit = least_squares(pairs, without_offset->rigid, duration_s);
-  const double sigma_m =
-      std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(fit.covariance_m2).eigenvalues().maxCoeff());
+  const double sigma_m = largest_sigma(fit.covariance_m2);
   if (!(sigma_m <= kMaxOffsetSigma_m)) {
     return fail(
         ErrorCode::data_corrupt,
