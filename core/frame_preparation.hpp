@@ -37,6 +37,11 @@ class FramePreparation {
 
   /// The motion that the read-out was undone for; nothing if none was.
   [[nodiscard]] const filter::FilterState* undone_motion() const { return compensated_ ? &motion_ : nullptr; }
+  /// How far a rate (filter::pose_rate()) is from the one that was undone; zero if none was.
+  [[nodiscard]] Vector6d rate_left(const filter::FilterState& motion) const {
+    if (!compensated_) return Vector6d::Zero();
+    return filter::pose_rate(motion) - filter::pose_rate(motion_);
+  }
   [[nodiscard]] const preprocessing::FrameTiming& timing() const { return timing_; }
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }

@@ -24,10 +24,11 @@ measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, cons
   measurement::ReadoutMotion motion;
   const filter::FilterState& undone = frame.undone_motion() ? *frame.undone_motion() : prior;
   if (frame.undone_motion()) {
+    motion.color_readout_s = frame.timing().color_readout_s;
     motion.depth_readout_s = frame.timing().depth_readout_s;
     motion.depth_delay_s = frame.timing().depth_delay_s;
-    motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(),
-        filter::pose_rate(undone) - filter::pose_rate(prior);
+    const Vector6d rate_change = filter::pose_rate(undone) - filter::pose_rate(prior);
+    motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(), rate_change, rate_change;
   }
   motion.rate = filter::pose_rate(undone);
   motion.reference_rate =

@@ -20,6 +20,8 @@ FilterState plus(const FilterState& state, const StateVector& delta) {
   sensors.depth_delay_s += delta[kDepthDelay];
   result.reference_offset += delta.segment<kPoseSize>(kReferencePose);
   result.model_offset += delta.segment<kPoseSize>(kModelPose);
+  result.reference_rate_offset += delta.segment<kPoseSize>(kReferenceRate);
+  result.model_rate_offset += delta.segment<kPoseSize>(kModelRate);
   return result;
 }
 
@@ -42,6 +44,8 @@ StateVector minus(const FilterState& to, const FilterState& from) {
   delta[kDepthDelay] = b.depth_delay_s - a.depth_delay_s;
   delta.segment<kPoseSize>(kReferencePose) = to.reference_offset - from.reference_offset;
   delta.segment<kPoseSize>(kModelPose) = to.model_offset - from.model_offset;
+  delta.segment<kPoseSize>(kReferenceRate) = to.reference_rate_offset - from.reference_rate_offset;
+  delta.segment<kPoseSize>(kModelRate) = to.model_rate_offset - from.model_rate_offset;
   return delta;
 }
 

@@ -1,10 +1,10 @@
-// The state of the filter and its 45-dimensional error state.
+// The state of the filter and its 57-dimensional error state.
 //
 // x (+) d: rotation and gravity move on their manifolds (R Exp(d), S2), everything else adds. The order of
 // the error state is the order of StateOffset. World is the first camera frame, so gravity's direction is a
 // state. Image measurements are relative to the frame that the patches were cut from, and to the model; the
-// errors of these two are part of the state (stochastic cloning, Roumeliotis & Burdick 2002), see
-// pose_clones.hpp.
+// errors of these two, of pose and of motion during their read-out, are part of the state (stochastic
+// cloning, Roumeliotis & Burdick 2002), see pose_clones.hpp.
 #pragma once
 
 #include "core/base/geometry.hpp"
@@ -29,13 +29,15 @@ enum StateOffset : int {
   kDepthDelay = 32,     ///< s
   kReferencePose = 33,  ///< rad and m as the pose: error of the pose that the patches were cut at
   kModelPose = 39,      ///< the same: error of the model's pose in the world, at that pose
-  kStateSize = 45,
+  kReferenceRate = 45,  ///< rad/s and m/s as pose_rate(), at that pose: error of the motion undone there
+  kModelRate = 51,      ///< the same, of what was fused into the model
+  kStateSize = 57,
 };
 inline constexpr int kPoseSize = 6;    ///< rotation and position lead the error state
 inline constexpr int kTimingSize = 3;  ///< from kColorReadout on
 /// What decides where a row that was read apart from the frame's instant is seen from: the timing, then the
-/// rate of the pose (as pose_rate()).
-inline constexpr int kReadoutSize = kTimingSize + kPoseSize;
+/// rate of the pose (as pose_rate()) against that of the reference, and against that of the model.
+inline constexpr int kReadoutSize = kTimingSize + 2 * kPoseSize;
 /// The constants of the sensors: from kImuTimeOffset on.
 inline constexpr int kSensorSize = kReferencePose - kImuTimeOffset;
 
@@ -73,6 +75,9 @@ struct FilterState {
   Vector6d reference_rate = Vector6d::Zero();    ///< motion there, see pose_rate()
   Vector6d reference_offset = Vector6d::Zero();  ///< correction of that pose since, in its tangent
   Vector6d model_offset = Vector6d::Zero();  ///< pose offset of the model in the world, in the same tangent
+  Vector6d reference_rate_offset = Vector6d::Zero();  ///< correction of reference_rate since
+  /// By how much the motion differs from what was undone in the frames that are in the model.
+  Vector6d model_rate_offset = Vector6d::Zero();
 };
 
 /// Mean and covariance (in the tangent space at the mean).

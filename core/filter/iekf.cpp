@@ -19,16 +19,17 @@ struct Iterate {
   FilterState state;
   PoseHypothesis poses;
 
-  /// Errors of the read-out, counted from the prior.
-  [[nodiscard]] ReadoutVector readout() const { return measured.tail<kReadoutSize>(); }
+  ReadoutVector readout = ReadoutVector::Zero();  ///< errors of it, counted from the prior
 };
 
-/// Tangents of the two poses at the prior: the reference pose was corrected by an earlier update of the same
-/// patches.
-TangentVector known_tangents(const FilterState& prior) {
-  TangentVector known = TangentVector::Zero();
-  known.head<kPoseSize>() =
-      -pose_transport(prior.T_world_imu, prior.T_world_imu_reference) * prior.reference_offset;
+/// What is measured at the prior: the reference was corrected by an earlier update of the same patches, and
+/// the model keeps what is wrong with it.
+MeasuredVector known_at(const FilterState& prior) {
+  const Matrix6d carried = pose_transport(prior.T_world_imu, prior.T_world_imu_reference);
+  MeasuredVector known = MeasuredVector::Zero();
+  known.head<kPoseSize>() = -carried * prior.reference_offset;
+  known.segment<kPoseSize>(kMeasuredSize - 2 * kPoseSize) = -carried * prior.reference_rate_offset;
+  known.tail<kPoseSize>() = -carried * prior.model_rate_offset;
   return known;
 }
 
@@ -57,7 +58,7 @@ class Update {
       if (budget <= 0) continue;
       iterate_stage(stage, budget, last, now, quadratic, result);
     }
-    result.map_cost_posterior = map_cost(now, quadratic.cost(now.readout()));
+    result.map_cost_posterior = map_cost(now, quadratic.cost(now.readout));
     result.posterior = posterior(now, quadratic, constants);
     result.measurement = at_posterior(now, quadratic);
     result.correction_by_model = correction_by_model(now, quadratic);
@@ -73,7 +74,8 @@ class Update {
     iterate.delta = gain_columns_ * y;
     iterate.measured = measured_covariance_ * y;
     iterate.state = plus(prior_.mean, iterate.delta);
-    iterate.tangents = iterate.measured.head<2 * kPoseSize>() + known_;
+    iterate.tangents = iterate.measured.head<2 * kPoseSize>() + known_.head<2 * kPoseSize>();
+    iterate.readout = iterate.measured.tail<kReadoutSize>() + known_.tail<kReadoutSize>();
     iterate.poses = {pose_plus(prior_.mean.T_world_imu, iterate.tangents.head<kPoseSize>()),
                      pose_plus(prior_.mean.T_world_imu, iterate.tangents.tail<kPoseSize>())};
     return iterate;
@@ -129,7 +131,7 @@ class Update {
     ChartQuadratic result;
     result.add(quadratic.by_reference, quadratic.readout_by_reference, 0);
     if (parts == Parts::all) result.add(quadratic.by_model, quadratic.readout_by_model, kPoseSize);
-    result.gradient += result.information.rightCols<kReadoutSize>() * (now.readout() - quadratic.undone);
+    result.gradient += result.information.rightCols<kReadoutSize>() * (now.readout - quadratic.undone);
     result.carry(ChartJacobian(now));
     return result;
   }
@@ -137,7 +139,7 @@ class Update {
   void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,
                      IekfResult& result) {
     quadratic = measurement_.linearise(now.poses, stage, false);
-    if (last) result.map_cost_prior = map_cost(now, quadratic.cost(now.readout()));
+    if (last) result.map_cost_prior = map_cost(now, quadratic.cost(now.readout));
     result.converged = false;
     bool gated = false;
     for (int iteration = 0; iteration < budget && !result.converged; ++iteration) {
@@ -164,11 +166,11 @@ class Update {
     const Vector6d step = pose_minus(now.state.T_world_imu, now.poses.T_world_imu_by_reference);
     PoseQuadratic sum = quadratic.by_model;
     sum.add(quadratic.by_reference, 1.0);
-    const ReadoutVector left = now.readout() - quadratic.undone;
+    const ReadoutVector left = now.readout - quadratic.undone;
     TangentVector steps = TangentVector::Zero();
     steps.head<kPoseSize>() = step;
     sum.gradient += (quadratic.readout_by_reference.with_pose + quadratic.readout_by_model.with_pose) * left;
-    sum.cost += quadratic.readout_cost(now.readout(), steps);
+    sum.cost += quadratic.readout_cost(now.readout, steps);
     const Vector6d change = quadratic.by_reference.information * step;
     sum.cost += step.dot(quadratic.by_reference.gradient) + 0.5 * step.dot(change);
     sum.gradient += change;
@@ -190,9 +192,9 @@ class Update {
     const ReadoutQuadratic& by_model = quadratic.readout_by_model;
     const ReadoutVector gradient =
         by_reference.gradient + by_model.gradient + by_reference.with_pose.transpose() * step +
-        (by_reference.information + by_model.information) * (now.readout() - quadratic.undone);
+        (by_reference.information + by_model.information) * (now.readout - quadratic.undone);
     PoseTimingQuadratic result;
-    result.timing_s = prior_.mean.sensors.timing_s() + now.readout().head<kTimingSize>();
+    result.timing_s = prior_.mean.sensors.timing_s() + now.readout.head<kTimingSize>();
     result.with_pose = (by_reference.with_pose + by_model.with_pose).leftCols<kTimingSize>();
     result.information =
         (by_reference.information + by_model.information).topLeftCorner<kTimingSize, kTimingSize>();
@@ -214,12 +216,11 @@ class Update {
     }
     const TangentVector tangent_step =
         ChartJacobian(now).times(measured_covariance_ * full).head<2 * kPoseSize>();
-    const double cost_now = map_cost(now, quadratic.cost(now.readout()));
+    const double cost_now = map_cost(now, quadratic.cost(now.readout));
     for (double fraction = 1.0; fraction > 0.05; fraction *= 0.5) {
       const Iterate trial = at(now.y + fraction * full);
-      const double cost =
-          map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction) +
-                              quadratic.readout_cost(trial.readout(), fraction * tangent_step));
+      const double cost = map_cost(trial, measurement_.trial_cost(trial.poses, tangent_step, fraction) +
+                                              quadratic.readout_cost(trial.readout, fraction * tangent_step));
       if (cost <= cost_now) {
         measurement_.accept();
         now = trial;
@@ -251,7 +252,7 @@ class Update {
   const config::IekfConfig& config_;
   const Eigen::Matrix<double, kMeasuredSize, kStateSize> combinations_;  ///< B
   const Eigen::Matrix<double, kStateSize, kMeasuredSize> gain_columns_;  ///< P B^T
-  const TangentVector known_ = known_tangents(prior_.mean);
+  const MeasuredVector known_ = known_at(prior_.mean);
   const MeasuredMatrix measured_covariance_;  ///< S = B P B^T
 };
 
@@ -270,7 +271,7 @@ MeasuredVector start_at(const GaussianState& prior, const SE3& T_world_imu) {
   const MeasuredMatrix covariance = combinations * prior.covariance * combinations.transpose();
   const Vector6d tangent = pose_minus(T_world_imu, prior.mean.T_world_imu);
   MeasuredVector wanted = MeasuredVector::Zero();
-  wanted.head<2 * kPoseSize>() -= known_tangents(prior.mean);
+  wanted.head<2 * kPoseSize>() -= known_at(prior.mean).head<2 * kPoseSize>();
   wanted.head<kPoseSize>() += tangent;
   wanted.segment<kPoseSize>(kPoseSize) += tangent;
   const MeasuredMatrix system = covariance + kTolerance * MeasuredMatrix::Identity();

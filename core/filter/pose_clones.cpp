@@ -1,6 +1,7 @@
 #include "core/filter/pose_clones.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace fusebench::filter {
 
@@ -35,29 +36,38 @@ Matrix6d pose_transport(const SE3& to, const SE3& from) {
 Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const FilterState& state) {
   Eigen::Matrix<double, kMeasuredSize, kStateSize> rows =
       Eigen::Matrix<double, kMeasuredSize, kStateSize>::Zero();
+  const Matrix6d carried = pose_transport(state.T_world_imu, state.T_world_imu_reference);
   rows.topLeftCorner<kPoseSize, kPoseSize>().setIdentity();
-  rows.block<kPoseSize, kPoseSize>(0, kReferencePose) =
-      -pose_transport(state.T_world_imu, state.T_world_imu_reference);
+  rows.block<kPoseSize, kPoseSize>(0, kReferencePose) = -carried;
   rows.block<kPoseSize, kPoseSize>(kPoseSize, 0).setIdentity();
   rows.block<kTimingSize, kTimingSize>(2 * kPoseSize, kColorReadout).setIdentity();
-  constexpr int kRate = 2 * kPoseSize + kTimingSize;
-  rows.block<3, 3>(kRate, kAngularVelocity).setIdentity();
-  rows.block<3, 3>(kRate + 3, kVelocity).setIdentity();
+  constexpr int kRates = 2 * kPoseSize + kTimingSize;
+  for (const auto& [row, clone] : {std::pair{kRates, kReferenceRate}, {kRates + kPoseSize, kModelRate}}) {
+    rows.block<3, 3>(row, kAngularVelocity).setIdentity();
+    rows.block<3, 3>(row + 3, kVelocity).setIdentity();
+    rows.block<kPoseSize, kPoseSize>(row, clone) = -carried;
+  }
   return rows;
 }
 
 GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
-                                  const ReferenceNoise& noise) {
+                                  const ReferenceNoise& noise, const Vector6d& rate_left) {
   StateMatrix to_model = StateMatrix::Identity();
   to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
   to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * Matrix6d::Identity();
-  to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) =
-      pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
-  to_model.middleRows<kPoseSize>(kReferencePose).setZero();
+  const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
+  to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
+  to_model.middleRows<kPoseSize>(kModelRate).setZero();
+  to_model.block<3, 3>(kModelRate, kAngularVelocity).diagonal().setConstant(drift.share);
+  to_model.block<3, 3>(kModelRate + 3, kVelocity).diagonal().setConstant(drift.share);
+  to_model.block<kPoseSize, kPoseSize>(kModelRate, kModelRate) = (1 - drift.share) * carried;
 
   StateMatrix clone = StateMatrix::Identity();
   clone.middleRows<kPoseSize>(kReferencePose).setZero();
   clone.block<kPoseSize, kPoseSize>(kReferencePose, 0).setIdentity();
+  clone.middleRows<kPoseSize>(kReferenceRate).setZero();
+  clone.block<3, 3>(kReferenceRate, kAngularVelocity).setIdentity();
+  clone.block<3, 3>(kReferenceRate + 3, kVelocity).setIdentity();
 
   GaussianState result = transformed(state, clone * to_model);
   // The drift of the model beyond that of independent errors is no error of this pose.
@@ -67,11 +77,13 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   result.covariance.diagonal().segment<3>(kReferencePose).array() += noise.rotation_rad * noise.rotation_rad;
   result.covariance.diagonal().segment<3>(kReferencePose + 3).array() +=
       noise.translation_m * noise.translation_m;
-  result.mean.model_offset =
-      to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) * state.mean.model_offset;
+  result.mean.model_offset = carried * state.mean.model_offset;
+  result.mean.model_rate_offset =
+      (1 - drift.share) * carried * state.mean.model_rate_offset + drift.share * rate_left;
   result.mean.T_world_imu_reference = state.mean.T_world_imu;
   result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();
+  result.mean.reference_rate_offset = rate_left;
   return result;
 }
 

@@ -6,6 +6,10 @@
 // Between fusions the pose, velocity and gravity of the filter are relative to the model. When a frame is
 // fused, the model takes over a share of its pose error: this share is from then on an error of the model
 // relative to the first camera (kModelPose).
+//
+// An image of which the rows are read one after the other is compensated by the motion that is known, and
+// keeps a distortion by the error of it. Both what the patches were cut from and the model have such errors
+// (kReferenceRate, kModelRate): images that are distorted alike say nothing of the motion.
 #pragma once
 
 #include "core/filter/color_drift.hpp"
@@ -17,12 +21,13 @@ namespace fusebench::filter {
 /// (right rotation in rad, world position in m).
 [[nodiscard]] Matrix6d pose_transport(const SE3& to, const SE3& from);
 
-/// Two poses, the timing of the sensors, and the motion during the read-out.
+/// Two poses, the timing of the sensors, and the motion during the read-out, against that of either.
 inline constexpr int kMeasuredSize = 2 * kPoseSize + kReadoutSize;
 
 /// What images measure, as linear combinations of the error state: the pose against the reference frame (rows
 /// 0-5) and against the model (rows 6-11), both in the tangent of the pose, the timing of the sensors (rows
-/// 12-14: read-out of colour, read-out of depth, delay of depth), and the rate of the pose (rows 15-20).
+/// 12-14: read-out of colour, read-out of depth, delay of depth), and the rate of the pose against the error
+/// of that in the reference (rows 15-20) and in the model (rows 21-26).
 [[nodiscard]] Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(
     const FilterState& state);
 
@@ -33,9 +38,11 @@ struct ModelDrift {
 };
 
 /// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its
-/// pose, which colour knows with an error of its own.
+/// pose, which colour knows with an error of its own. rate_left: of its rate, what was not undone in its
+/// images.
 [[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
-                                                const ReferenceNoise& noise = {});
+                                                const ReferenceNoise& noise = {},
+                                                const Vector6d& rate_left = Vector6d::Zero());
 
 /// The estimate in the world of the first camera: the uncertainty of the model's pose is added to that of the
 /// pose, the velocity and the direction of gravity.

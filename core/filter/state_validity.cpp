@@ -27,6 +27,7 @@ bool is_valid(const GaussianState& state) {
          std::abs(x.imu_time_offset_s) <= kMaxMean && is_valid(x.sensors) &&
          is_valid_pose(x.T_world_imu_reference) && within(x.reference_rate, kMaxMean) &&
          within(x.reference_offset, kMaxMean) && within(x.model_offset, kMaxMean) &&
+         within(x.reference_rate_offset, kMaxMean) && within(x.model_rate_offset, kMaxMean) &&
          within(state.covariance, kMaxVariance);
 }
 

@@ -105,59 +105,31 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   filter::MeasurementQuadratic sum;
   sum.undone = frame_->motion.undone;
   const patches::PosedCamera camera(rig_.camera, poses.T_world_imu_by_reference, rig_.T_imu_camera);
+  DisplacedPatches color;
+  DisplacedPatches depth;
   for (std::size_t p = 0; p < states_.size(); ++p) {
     sum.by_reference.add(states_[p].photometric, 1.0 / photometric_variance_);
     sum.by_model.add(states_[p].geometric, 1.0 / geometric_variance_);
-    add_readout(p, camera, sum);
+    const std::optional<PatchRows> rows = rows_of(p, camera);
+    if (!rows) continue;
+    color.add(states_[p].photometric, rows->color_weights());
+    depth.add(states_[p].geometric, rows->depth_weights());
   }
+  sum.readout_by_reference = color.by_readout(color_displacement(frame_->motion), photometric_variance_);
+  sum.readout_by_model = depth.by_readout(depth_displacement(frame_->motion), geometric_variance_);
   return sum;
 }
 
-/// A row that was read later than supposed shows the scene from where the camera was then: for a patch, a
-/// timing error of t displaces the pose by the motion during t. The reference was displaced likewise. An
-/// error of the motion displaces it by what adds up between the frame's instant and the row's. Colour says
-/// nothing of that error here: its reference is sheared by one of its own, which no state holds, and what the
-/// two have in common would be carried on from frame to frame.
-void PatchMeasurement::add_readout(std::size_t patch, const patches::PosedCamera& camera,
-                                   filter::MeasurementQuadratic& sum) const {
+/// None if the patch measures nothing.
+std::optional<PatchRows> PatchMeasurement::rows_of(std::size_t patch,
+                                                   const patches::PosedCamera& camera) const {
   const auto& pixels = patches_[patch].levels.front().pixels;
-  if (!states_[patch].counts || pixels.empty()) return;
+  if (!states_[patch].counts || pixels.empty()) return std::nullopt;
   const Vector3d centre = camera.to_camera(pixels[pixels.size() / 2].point_world);
-  if (centre.z() <= 0) return;
+  if (centre.z() <= 0) return std::nullopt;
   const double last_row = rig_.camera.height_px - 1;
   const auto share = [&](double row) { return std::clamp(row / last_row, 0.0, 1.0) - 0.5; };
-  const double now = share(rig_.camera.project(centre).y());
-  const double before = share(patches_[patch].centre_px.y());
-  const ReadoutMotion& motion = frame_->motion;
-  constexpr int kPose = filter::kPoseSize;
-
-  if (motion.tells_color_readout) {
-    filter::ReadoutQuadratic& color = sum.readout_by_reference;
-    const filter::PoseQuadratic& pose = states_[patch].photometric;
-    const Vector6d displacement = now * motion.rate - before * motion.reference_rate;
-    const Vector6d with_pose = pose.information * displacement / photometric_variance_;
-    color.with_pose.col(0) += with_pose;
-    color.information(0, 0) += displacement.dot(with_pose);
-    color.gradient[0] += displacement.dot(pose.gradient) / photometric_variance_;
-  }
-  // Displaced by rate * (now * d read-out + d delay) + later_s * d rate.
-  filter::ReadoutQuadratic& depth = sum.readout_by_model;
-  const filter::PoseQuadratic& pose = states_[patch].geometric;
-  const Vector2d by_readout_and_delay(now, 1.0);
-  const double later_s = now * motion.depth_readout_s + motion.depth_delay_s;
-  const Vector6d with_rate = pose.information * motion.rate / geometric_variance_;
-  depth.with_pose.middleCols<2>(1) += with_rate * by_readout_and_delay.transpose();
-  depth.with_pose.rightCols<kPose>() += later_s / geometric_variance_ * pose.information;
-  depth.information.block<2, 2>(1, 1) +=
-      motion.rate.dot(with_rate) * by_readout_and_delay * by_readout_and_delay.transpose();
-  depth.information.block<kPose, 2>(filter::kTimingSize, 1) +=
-      later_s * with_rate * by_readout_and_delay.transpose();
-  depth.information.block<2, kPose>(1, filter::kTimingSize) +=
-      later_s * by_readout_and_delay * with_rate.transpose();
-  depth.information.bottomRightCorner<kPose, kPose>() +=
-      later_s * later_s / geometric_variance_ * pose.information;
-  depth.gradient.segment<2>(1) += motion.rate.dot(pose.gradient) / geometric_variance_ * by_readout_and_delay;
-  depth.gradient.tail<kPose>() += later_s / geometric_variance_ * pose.gradient;
+  return PatchRows{share(rig_.camera.project(centre).y()), share(patches_[patch].centre_px.y())};
 }
 
 double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*kind) const {

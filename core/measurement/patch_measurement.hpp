@@ -15,6 +15,7 @@
 #include "core/filter/iekf.hpp"
 #include "core/measurement/patch_brightness.hpp"
 #include "core/measurement/patch_outcome.hpp"
+#include "core/measurement/patch_readout.hpp"
 #include "core/measurement/patch_sums.hpp"
 #include "core/measurement/residual_scale.hpp"
 #include "core/patches/patch_deformation.hpp"
@@ -22,20 +23,6 @@
 #include "core/patches/posed_camera.hpp"
 
 namespace fusebench::measurement {
-
-/// What the images were prepared for: when their rows were read, and how the camera moved meanwhile, as the
-/// tangent of its pose by time (filter::pose_rate()), around the prior's pose. Zero where the read-out is not
-/// undone: then nothing is learnt of it.
-struct ReadoutMotion {
-  double depth_readout_s = 0;
-  double depth_delay_s = 0;
-  Vector6d rate = Vector6d::Zero();            ///< in the frame
-  Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
-  /// By how much timing and rate differ from the prior's (filter::MeasurementQuadratic::undone).
-  filter::ReadoutVector undone = filter::ReadoutVector::Zero();
-  /// The rates differ by more than their noise. Two frames are distorted alike unless they do.
-  bool tells_color_readout = false;
-};
 
 /// The current frame: input of the measurement.
 struct ObservedFrame {
@@ -100,8 +87,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   };
 
   void warp_all(const PosedLevels& posed);
-  void add_readout(std::size_t patch, const patches::PosedCamera& camera,
-                   filter::MeasurementQuadratic& sum) const;
+  [[nodiscard]] std::optional<PatchRows> rows_of(std::size_t patch, const patches::PosedCamera& camera) const;
   void judge(std::size_t patch, bool gate);
   void associate_planes(std::size_t patch, const PosedLevels& posed);
   void sum_photometric(std::size_t patch, const PosedLevels& posed);

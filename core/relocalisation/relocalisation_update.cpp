@@ -49,13 +49,17 @@ filter::GaussianState with_reference_pose(const filter::GaussianState& state, co
       filter::pose_transport(place.T_world_imu_reference, state.mean.T_world_imu_reference);
   filter::StateMatrix refer = filter::StateMatrix::Identity();
   refer.middleRows<filter::kPoseSize>(filter::kReferencePose).setZero();
+  refer.middleRows<filter::kPoseSize>(filter::kReferenceRate).setZero();
   refer.block<filter::kPoseSize, filter::kPoseSize>(filter::kModelPose, filter::kModelPose) = carried;
+  refer.block<filter::kPoseSize, filter::kPoseSize>(filter::kModelRate, filter::kModelRate) = carried;
   filter::GaussianState result{state.mean, filter::symmetrised(refer * state.covariance * refer.transpose())};
   result.covariance.block<filter::kPoseSize, filter::kPoseSize>(
       filter::kReferencePose, filter::kReferencePose) = place.reference_covariance;
   result.mean.model_offset = carried * state.mean.model_offset;
+  result.mean.model_rate_offset = carried * state.mean.model_rate_offset;
   result.mean.T_world_imu_reference = place.T_world_imu_reference;
   result.mean.reference_offset.setZero();
+  result.mean.reference_rate_offset.setZero();
   return result;
 }
 

@@ -128,7 +128,7 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
 
   MeasuredVector far_start;
   far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300, 200, -100, 400, 100, -300, 600,
-      -700, 200, 500;
+      -700, 200, 500, 300, -400, 200, -600, 100, 700;
   for (const MeasuredVector& start : {MeasuredVector(MeasuredVector::Zero()), far_start}) {
     PositionMeasurement measurement(z, sigma);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
@@ -173,7 +173,8 @@ class ReadOutMeasurement final : public PoseMeasurement {
   ReadoutVector undone_;
 };
 
-/// z = p + by_readout * errors + noise, by the textbook.
+/// z = p + by_readout * errors + noise, by the textbook. The errors of the rate are those against what is
+/// wrong with reference and model.
 struct ReadOutUpdate {
   Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
   Eigen::Matrix<double, kStateSize, 3> K;
@@ -182,28 +183,50 @@ struct ReadOutUpdate {
   ReadOutUpdate(const GaussianState& prior, const Vector3d& z, double sigma, const ByReadout& by_readout) {
     H.block<3, 3>(0, kPosition).setIdentity();
     H.block<3, 3>(0, kColorReadout) = by_readout.leftCols<3>();
-    H.block<3, 3>(0, kAngularVelocity) = by_readout.middleCols<3>(3);
-    H.block<3, 3>(0, kVelocity) = by_readout.rightCols<3>();
+    const Matrix6d carried = pose_transport(prior.mean.T_world_imu, prior.mean.T_world_imu_reference);
+    Vector3d expected = prior.mean.T_world_imu.translation;
+    const auto add_rate = [&](int column, StateOffset clone, const Vector6d& offset) {
+      const Eigen::Matrix<double, 3, kPoseSize> by_rate = by_readout.middleCols<kPoseSize>(column);
+      H.block<3, 3>(0, kAngularVelocity) += by_rate.leftCols<3>();
+      H.block<3, 3>(0, kVelocity) += by_rate.rightCols<3>();
+      H.block<3, kPoseSize>(0, clone) = -by_rate * carried;
+      expected -= by_rate * carried * offset;
+    };
+    add_rate(kTimingSize, kReferenceRate, prior.mean.reference_rate_offset);
+    add_rate(kTimingSize + kPoseSize, kModelRate, prior.mean.model_rate_offset);
     const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
     K = prior.covariance * H.transpose() * S.inverse();
-    delta = K * (z - prior.mean.T_world_imu.translation);
+    delta = K * (z - expected);
   }
 };
 
-const ByReadout kByReadout = (ByReadout() << 0.8, -0.3, 0.1, 0.02, -0.01, 0.03, 0.01, 0, 0,  //
-                              0.2, 0.5, -0.4, -0.03, 0.01, 0.02, 0, 0.01, 0,                 //
-                              -0.1, 0.6, 0.9, 0.01, 0.02, -0.02, 0, 0, 0.01)
-                                 .finished();
+FilterState state_with_distorted_images() {
+  FilterState x = some_state();
+  x.T_world_imu_reference = {so3_exp({0.25, -0.1, 0.2}), {0.2, -0.6, 0.3}};
+  x.reference_rate_offset << 0.3, -0.2, 0.5, 0.1, -0.3, 0.2;
+  x.model_rate_offset << -0.4, 0.1, 0.2, -0.2, 0.1, 0.3;
+  return x;
+}
+
+const ByReadout kByReadout = [] {
+  ByReadout by_readout = ByReadout::Zero();
+  by_readout.leftCols<3>() << 0.8, -0.3, 0.1, 0.2, 0.5, -0.4, -0.1, 0.6, 0.9;
+  by_readout.middleCols<3>(3) << 0.02, -0.01, 0.03, -0.03, 0.01, 0.02, 0.01, 0.02, -0.02;
+  by_readout.middleCols<3>(6).diagonal().setConstant(0.01);
+  by_readout.middleCols<3>(9) << -0.01, 0.02, 0.01, 0.02, 0.03, -0.01, -0.02, 0.01, 0.01;
+  by_readout.rightCols<3>().diagonal().setConstant(0.015);
+  return by_readout;
+}();
 
 TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
-  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const GaussianState prior{state_with_distorted_images(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
   const ReadOutUpdate expected(prior, z, 0.02, kByReadout);
   const StateMatrix transport = chart_transport(prior.mean, expected.delta);
   const StateMatrix covariance = transport * (StateMatrix::Identity() - expected.K * expected.H) *
                                  prior.covariance * transport.transpose();
   ReadoutVector undone;
-  undone << 0.01, -0.02, 0.015, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
+  undone << 0.01, -0.02, 0.015, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
   for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), undone}) {
     ReadOutMeasurement measurement(z, 0.02, kByReadout, prepared_for);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
@@ -214,7 +237,7 @@ TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
 }
 
 TEST(Iekf, ConsideredConstantsStayAndAreNotForgotten) {
-  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const GaussianState prior{state_with_distorted_images(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
   ReadOutUpdate schmidt(prior, z, 0.02, kByReadout);
   // Schmidt's filter: their rows of the gain are zero, and the covariance is Joseph's for that gain.

@@ -124,6 +124,36 @@ TEST(PoseClones, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   EXPECT_NEAR(after.covariance(kPosition, kModelPose + 3), 0.9 * 0.1 * 1e-4, 1e-12);
 }
 
+TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
+  // At the first fusion the whole model has the distortion of the frame; later ones average it away.
+  GaussianState state = known_at(kTo);
+  state.covariance.block<3, 3>(kAngularVelocity, kAngularVelocity) = 4.0 * Matrix3d::Identity();
+  state.covariance.block<3, 3>(kVelocity, kVelocity) = 0.25 * Matrix3d::Identity();
+  GaussianState fused = cloned_after_fusion(state, {.share = 1});
+  const auto rates = [&] {
+    const auto combinations = measured_combinations(fused.mean);
+    const auto covariance = (combinations * fused.covariance * combinations.transpose()).eval();
+    return Eigen::Matrix<double, 2 * kPoseSize, 1>(covariance.diagonal().tail<2 * kPoseSize>());
+  };
+  EXPECT_LT(rates().norm(), 1e-12);
+  fused = cloned_after_fusion(fused, {.share = 0.25});
+  EXPECT_LT(rates().head<kPoseSize>().norm(), 1e-12);  // the reference is the last frame
+
+  // The motion is another one now: the model shows a quarter of its error.
+  fused.covariance.middleRows<3>(kAngularVelocity).setZero();
+  fused.covariance.middleCols<3>(kAngularVelocity).setZero();
+  fused.covariance.middleRows<kPoseSize>(kModelRate).setZero();
+  fused.covariance.middleCols<kPoseSize>(kModelRate).setZero();
+  fused.covariance.block<3, 3>(kAngularVelocity, kAngularVelocity) = 4.0 * Matrix3d::Identity();
+  fused.mean.model_rate_offset << 0.4, 0, 0, 0, 0, 0.2;
+  const GaussianState next = cloned_after_fusion(fused, {.share = 0.25});
+  EXPECT_NEAR(next.covariance(kModelRate, kModelRate), 0.0625 * 4, 1e-12);
+  EXPECT_NEAR(next.covariance(kModelRate, kAngularVelocity), 0.25 * 4, 1e-12);
+  const Matrix6d carried = pose_transport(fused.mean.T_world_imu, fused.mean.T_world_imu_reference);
+  EXPECT_LT((next.mean.model_rate_offset - 0.75 * carried * fused.mean.model_rate_offset).norm(), 1e-12);
+  EXPECT_EQ(next.mean.reference_rate_offset.norm(), 0.0);
+}
+
 TEST(PoseClones, ADisplacedModelTurnsVelocityAndGravity) {
   // The model turned by a small angle about the pose: what is known against it is turned in the world.
   GaussianState state = known_at(kTo);
