@@ -16,6 +16,25 @@ void repeat_last(const Tracking& now, const SensorRig& rig, health::FrameReport&
   report.model_blocks = now.model.block_count();
 }
 
+bool is_carried_on(const Tracking& now, const Novelty& novelty, const config::Config& config) {
+  return !novelty.color && config.terms.prior == config::Prior::constant_velocity &&
+         config.terms.photometric_weight > 0 && now.estimate && now.lost_frames == 0 && !now.carried_on;
+}
+
+void carry_on(Tracking& now, const filter::GaussianState& predicted, std::int64_t now_ns,
+              const SensorRig& rig, health::FrameReport& report) {
+  now.estimate = predicted;
+  now.carried_on = true;
+  ++now.frames;
+  now.timestamp_ns = now_ns;
+  report.status = health::FrameStatus::tracked;
+  report.health = health::FrameHealth::repeated;
+  report.reason = "colour is that of the frame before: the pose is predicted";
+  health::describe_certainty(predicted, report);
+  health::describe_state(predicted, rig.T_imu_camera, report);
+  report.model_blocks = now.model.block_count();
+}
+
 void keep_moving(Tracking& now, std::int64_t now_ns, const SensorRig& rig, const config::Config& config,
                  health::FrameReport& report) {
   report.health = health::FrameHealth::diverged;

@@ -94,6 +94,11 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
     keep_moving(now, frame.capture_ns(), rig, config, report);
     return report;
   }
+  if (is_carried_on(now, novelty, config)) {
+    carry_on(now, *predicted, frame.capture_ns(), rig, report);
+    return report;
+  }
+  now.carried_on = false;
   preparation.prepare(frame, predicted->mean, report.stages);
 
   report.status = locate(*predicted, report);  // Eqs. 1-5, 15-23

@@ -32,6 +32,7 @@ struct Tracking {
   int frames = 0;                                 ///< since the start
   double turned_rad = 0;                          ///< since then, in all
   int lost_frames = 0;                            ///< in a row, before the current one
+  bool carried_on = false;                        ///< the last frame has its pose from the velocity alone
   RepeatedImages repeated_images;
   health::OcclusionGate occlusion_gate;
   filter::ColorDrift color_drift;

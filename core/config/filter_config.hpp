@@ -47,7 +47,7 @@ struct IekfConfig {
   double scatter_prior_freedom = 1.0;
   double scale_share = 0.2;
   int min_patches = 5;
-  int max_lost_frames = 900;
+  int max_lost_frames = 3000;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_iterations", self.max_iterations, 1, 200, "iterations of one update; 1 is the plain EKF");

@@ -82,6 +82,9 @@ struct FrameReport {
 /// Fills in the state after the frame: of the IMU that the camera is mounted to.
 void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report);
 
+/// Fills in how certain the pose is against the model.
+void describe_certainty(const filter::GaussianState& estimate, FrameReport& report);
+
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
                      std::span<const patches::Patch> patches, const config::Config& config,

@@ -22,4 +22,9 @@ Trajectory of_point(Trajectory trajectory, const Vector3d& point_m) {
   return trajectory;
 }
 
+Trajectory with_clock_offset(Trajectory trajectory, std::int64_t offset_ns) {
+  for (StampedPose& pose : trajectory) pose.timestamp_ns += offset_ns;
+  return trajectory;
+}
+
 }  // namespace fusebench::trajectory

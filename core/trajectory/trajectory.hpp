@@ -20,4 +20,7 @@ inline constexpr std::int64_t kMaxTruthGap_ns = 100'000'000;
 /// The poses of the point `point_m` of the body, with the body's axes.
 [[nodiscard]] Trajectory of_point(Trajectory trajectory, const Vector3d& point_m);
 
+/// The same poses by another clock: `offset_ns` is added to the stamps.
+[[nodiscard]] Trajectory with_clock_offset(Trajectory trajectory, std::int64_t offset_ns);
+
 }  // namespace fusebench::trajectory

@@ -171,6 +171,31 @@ TEST(Pipeline, BrightnessChangesAreAbsorbed) {
   EXPECT_LT(worst_error_m(darker, reports), 0.01);
 }
 
+TEST(Pipeline, BesideARepeatedColourTheVelocityCarriesOnOnce) {
+  // Two colour images are those of frame 4: depth of frame 5 is not asked, that of frame 6 is. A velocity of
+  // five frames is not exact; depth of an instant that is not the frame's would be off by as much again.
+  SimulatedRun stalled = shared_run();
+  for (const std::size_t k : {5U, 6U}) {
+    stalled.frames[k].grey = stalled.frames[4].grey;
+    stalled.frames[k].color = stalled.frames[4].color;
+  }
+  const auto reports = track(stalled, config_of("no-imu"));
+  EXPECT_EQ(reports[5].health, FrameHealth::repeated);
+  EXPECT_EQ(reports[5].patches_tracked, 0);
+  EXPECT_GT(reports[5].model_position_sigma_m, reports[4].model_position_sigma_m);
+  EXPECT_FALSE(reports[5].reason.empty());
+  EXPECT_GT(reports[6].patches_tracked, 0);
+  for (std::size_t k = 5; k < reports.size(); ++k) EXPECT_EQ(reports[k].status, FrameStatus::tracked) << k;
+  for (const std::size_t k : {5U, 6U})
+    EXPECT_EQ(reports[k].model_blocks, reports[4].model_blocks) << "not fused";
+  EXPECT_LT(worst_error_m(stalled, reports), 0.02);
+  // Depth alone does not ask for colour, and an IMU knows the motion.
+  Config by_depth = config_of("geometric-only");
+  by_depth.terms.prior = config::Prior::constant_velocity;
+  EXPECT_GT(track(stalled, by_depth)[5].patches_tracked, 0);
+  EXPECT_GT(track(stalled, config_of("full"))[5].patches_tracked, 0);
+}
+
 TEST(Pipeline, ALostFrameKeepsThePredictionAndTrackingResumes) {
   SimulatedRun interrupted = shared_run();
   for (const std::size_t k : {5U, 6U}) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -26,6 +27,7 @@ struct SilentOptions {
   double translation_m = 0.05;
   double rotation_deg = 3.0;
   std::vector<double> offset_m = {0, 0, 0};
+  double t_offset_s = 0;
   bool json = false;
 };
 
@@ -62,7 +64,8 @@ Result<int> run(const SilentOptions& options) {
     return fail(ErrorCode::usage, "silent failures need stamps, which the format kitti does not have",
                 "use TUM or EuRoC files");
   const auto found = trajectory_error::silent_failures(
-      trajectory::of_point(sides->reference.poses, Vector3d(options.offset_m.data())), sides->estimate.poses,
+      trajectory::of_point(sides->reference.poses, Vector3d(options.offset_m.data())),
+      trajectory::with_clock_offset(sides->estimate.poses, std::llround(1e9 * options.t_offset_s)),
       {options.interval_s, options.translation_m, radians(options.rotation_deg)});
   if (!found) return tl::unexpected(found.error());
   console::print_output(options.json ? to_json(*found) : to_text(*found));
@@ -94,6 +97,10 @@ console::Verb add_eval_silent_verb(CLI::App& eval) {
                    "Of the camera in the reference's body, as `eval ate --fit_offset` finds it")
       ->type_name("X Y Z")
       ->expected(3)
+      ->capture_default_str();
+  verb->add_option("--t_offset", options->t_offset_s, "Added to the estimate's stamps")
+      ->type_name("S")
+      ->check(CLI::Range(-1e6, 1e6))
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
   verb->footer("docs/metrics.md defines the numbers. Exit code 3 for files that cannot be compared.");

@@ -35,6 +35,16 @@ TEST(InterpolatePose, NothingOutsideOrAcrossAGap) {
   EXPECT_FALSE(interpolate_pose({}, 0, 1000));
 }
 
+TEST(WithClockOffset, StampsMoveAndPosesStay) {
+  const Trajectory by_other_clock = with_clock_offset(three_poses(), -40);
+  const Trajectory trajectory = three_poses();
+  ASSERT_EQ(by_other_clock.size(), trajectory.size());
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    EXPECT_EQ(by_other_clock[i].timestamp_ns, trajectory[i].timestamp_ns - 40);
+    EXPECT_EQ(by_other_clock[i].T_world_camera.translation, trajectory[i].T_world_camera.translation);
+  }
+}
+
 TEST(OfPoint, APointOfATurningBodyMovesOnACircle) {
   Trajectory turning;
   for (int i = 0; i < 12; ++i)
