@@ -19,6 +19,12 @@ Eigen::Matrix<double, kStateSize, kPoseSize> displacement(const FilterState& sta
   return moves;
 }
 
+/// Six rows, from `row` on, that take over a share of the errors of pose_rate().
+void take_rate(auto& rows, int row, double share) {
+  rows.template block<3, 3>(row, kAngularVelocity).diagonal().setConstant(share);
+  rows.template block<3, 3>(row + 3, kVelocity).diagonal().setConstant(share);
+}
+
 GaussianState transformed(const GaussianState& state, const StateMatrix& by) {
   return {state.mean, symmetrised(by * state.covariance * by.transpose())};
 }
@@ -43,8 +49,7 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
   rows.block<kTimingSize, kTimingSize>(2 * kPoseSize, kColorReadout).setIdentity();
   constexpr int kRates = 2 * kPoseSize + kTimingSize;
   for (const auto& [row, clone] : {std::pair{kRates, kReferenceRate}, {kRates + kPoseSize, kModelRate}}) {
-    rows.block<3, 3>(row, kAngularVelocity).setIdentity();
-    rows.block<3, 3>(row + 3, kVelocity).setIdentity();
+    take_rate(rows, row, 1);
     rows.block<kPoseSize, kPoseSize>(row, clone) = -carried;
   }
   return rows;
@@ -58,16 +63,14 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
   to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
   to_model.middleRows<kPoseSize>(kModelRate).setZero();
-  to_model.block<3, 3>(kModelRate, kAngularVelocity).diagonal().setConstant(drift.share);
-  to_model.block<3, 3>(kModelRate + 3, kVelocity).diagonal().setConstant(drift.share);
+  take_rate(to_model, kModelRate, drift.share);
   to_model.block<kPoseSize, kPoseSize>(kModelRate, kModelRate) = (1 - drift.share) * carried;
 
   StateMatrix clone = StateMatrix::Identity();
   clone.middleRows<kPoseSize>(kReferencePose).setZero();
   clone.block<kPoseSize, kPoseSize>(kReferencePose, 0).setIdentity();
   clone.middleRows<kPoseSize>(kReferenceRate).setZero();
-  clone.block<3, 3>(kReferenceRate, kAngularVelocity).setIdentity();
-  clone.block<3, 3>(kReferenceRate + 3, kVelocity).setIdentity();
+  take_rate(clone, kReferenceRate, 1);
 
   GaussianState result = transformed(state, clone * to_model);
   // The drift of the model beyond that of independent errors is no error of this pose.
