@@ -20,7 +20,8 @@ namespace fusebench::health {
 
 enum class FrameStatus {
   initialised,  ///< the first frame that could be used
-  tracked,      ///< the update was accepted; the frame was fused unless its health is occluded
+  tracked,      ///< the update was accepted; the frame was fused unless its health is occluded or repeated.
+                ///< Or the images are the last ones and asked for none: reason says so
   relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
   lost,         ///< too few usable patches, or after a gap ones that do not fit, and no keyframe was
                 ///< recognised: the prediction was kept, the frame not fused. Or no start yet
@@ -41,7 +42,7 @@ struct PoseEvidence {
 struct FrameReport {
   std::int64_t timestamp_ns = 0;
   FrameStatus status = FrameStatus::lost;
-  std::string reason;  ///< why it is lost, or started from again; empty otherwise
+  std::string reason;  ///< why it is lost, started from again, or has no update; empty otherwise
   FrameHealth health = FrameHealth::good;
   std::int64_t capture_ns = 0;  ///< the instant that the pose is of
   SE3 T_world_camera;
