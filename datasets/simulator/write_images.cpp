@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "datasets/images/image_files.hpp"
+#include "datasets/simulator/faults/person.hpp"
 #include "datasets/simulator/sensors/depth_distortion.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 
@@ -71,10 +72,29 @@ sensors::DepthSensor depth_sensor(const SimulationOptions& options) {
   return sensor;
 }
 
-/// The hand before a camera that is placed by T_color_camera.
-std::optional<sensors::MovingObject> hand_before(const faults::Scenery& scenery, const CaptureSetup& setup,
-                                                 const faults::FrameFaults& faults,
-                                                 const SE3& T_color_camera) {
+/// The person that a fault sends through the view of a camera that is placed by T_color_camera.
+sensors::MovingObject walking_person(const faults::Scenery& scenery, const CaptureSetup& setup,
+                                     const faults::SimulatedFault& fault, const SE3& T_color_camera) {
+  const std::int64_t first_ns = setup.frame_ns.front();
+  const double last_s = seconds_between(first_ns, setup.frame_ns.back());
+  const double middle_s = 0.5 * (fault.begin_s + std::min(fault.end_s, last_s));
+  const auto T_world_color = [&setup](std::int64_t t_ns) {
+    return setup.body.evaluate(t_ns).T_world_body * setup.T_body_color;
+  };
+  const faults::PersonWalk walk(T_world_color(first_ns + std::llround(1e9 * middle_s)), middle_s,
+                                fault.amount, scenery.floor_m);
+  return {*scenery.person, [=](std::int64_t t_ns) {
+            const SE3 T_world_person = walk.T_world_person(seconds_between(first_ns, t_ns));
+            return T_world_person.inverse() * T_world_color(t_ns) * T_color_camera;
+          }};
+}
+
+/// The hand or the person before a camera that is placed by T_color_camera.
+std::optional<sensors::MovingObject> object_before(const SimulationOptions& options,
+                                                   const faults::Scenery& scenery, const CaptureSetup& setup,
+                                                   const faults::FrameFaults& faults,
+                                                   const SE3& T_color_camera) {
+  if (faults.person) return walking_person(scenery, setup, options.faults[*faults.person], T_color_camera);
   if (!faults.hand) return std::nullopt;
   const faults::Scenery::MovingHand& moving = *scenery.hands[*faults.hand];
   return sensors::MovingObject{moving.surface, [&, T_color_camera](std::int64_t t_ns) {
@@ -96,12 +116,12 @@ struct ImageContext {
   }
 
   [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
-    const auto hand = hand_before(scenery, setup, faults, SE3{});
+    const auto before = object_before(options, scenery, setup, faults, SE3{});
     sensors::ColorSensor sensor = color_sensor(options, faults, exposures.empty() ? nullptr : &exposures[k]);
     if (!exposures.empty())
       sensor.blur_samples = samples_of_motion(options, setup, setup.frame_ns[k], sensor.exposure_s);
     return sensors::expose_color(scene(faults), sensor, setup.body, setup.T_body_color, setup.frame_ns[k],
-                                 options.seed, k, alone, hand ? &*hand : nullptr);
+                                 options.seed, k, alone, before ? &*before : nullptr);
   }
 
   [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const faults::FrameFaults& faults) const {
@@ -109,11 +129,11 @@ struct ImageContext {
     const sensors::DepthSensor sensor = depth_sensor(options);
     if (faults.no_depth) return {sensor.camera.width_px, sensor.camera.height_px, std::uint16_t{0}};
     const SE3 T_color_depth = rig.depth ? rig.depth->T_color_depth : SE3{};
-    const auto hand = hand_before(scenery, setup, faults, T_color_depth);
+    const auto before = object_before(options, scenery, setup, faults, T_color_depth);
     const std::int64_t depth_ns = setup.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
     Image<std::uint16_t> depth =
         sensors::sense_depth(scene(faults), sensor, setup.body, setup.T_body_color * T_color_depth, depth_ns,
-                             options.seed, k, alone, hand ? &*hand : nullptr);
+                             options.seed, k, alone, before ? &*before : nullptr);
     // Registered depth has the pixels of the colour image, which are distorted.
     if (!rig.depth && !rig.color.distortion.is_zero()) depth = sensors::distort_depth(depth, rig.color);
     return depth;

@@ -24,17 +24,21 @@ struct Planned {
 
 /// Whether a job is among those asked for.
 Result<bool> wanted(const std::vector<std::string>& only, const std::string& recording,
-                    const std::string& variant) {
+                    const std::string& split, const std::string& variant) {
   for (const std::string& filter : only) {
     const auto equals = filter.find('=');
     const std::string key = filter.substr(0, equals);
     const std::string value = equals == std::string::npos ? "" : filter.substr(equals + 1);
-    if ((key != "recording" && key != "variant") || value.empty()) {
-      return fail(ErrorCode::usage,
-                  fmt::format("--only {} (allowed: recording=TEXT | variant=NAME)", filter));
+    const bool known = key == "recording" || key == "variant" ||
+                       (key == "split" && (value == suites::kTuningSplit || value == suites::kHeldOutSplit));
+    if (!known || value.empty()) {
+      return fail(ErrorCode::usage, fmt::format("--only {} (allowed: recording=TEXT | variant=NAME | "
+                                                "split=tuning | split=held-out)",
+                                                filter));
     }
     if (key == "recording" && recording.find(value) == std::string::npos) return false;
     if (key == "variant" && variant != value) return false;
+    if (key == "split" && split != value) return false;
   }
   return true;
 }
@@ -189,7 +193,8 @@ Result<void> check_swept_once(const std::vector<suites::SweepBlock>& blocks,
 Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan& plan,
                       std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const std::string& variant : recording.variants) {
-    const auto take = wanted(common.options.only, recording.folder.filename().string(), variant);
+    const auto take =
+        wanted(common.options.only, recording.folder.filename().string(), recording.split, variant);
     if (!take) return tl::unexpected(take.error());
     if (!*take) continue;
     for (const suites::SweepPoint& point : common.points) {
@@ -265,7 +270,8 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
   }
   if (plan.jobs.empty() && plan.excluded.empty()) {
     return fail(ErrorCode::usage, fmt::format("--only leaves nothing of suite '{}'", suite.name),
-                "recording=TEXT keeps the recordings whose name contains it, variant=NAME one variant");
+                "recording=TEXT keeps the recordings whose name contains it, variant=NAME one variant, "
+                "split=held-out or tuning one split");
   }
   return plan;
 }

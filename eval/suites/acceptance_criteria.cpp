@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 18> kKeys = {
 struct CriterionTable {
   Criterion criterion;
   std::vector<std::string> metrics;
+  std::vector<std::string> variants;
   std::vector<std::string> against;
 };
 
@@ -104,8 +105,8 @@ Result<void> read_value(const config::TomlEntry& entry, CriterionTable& table) {
   if (key == "lost_counts") return store(flag_entry(entry), criterion.lost_counts);
   if (key == "within_bounds") return store(flag_entry(entry), criterion.within_bounds);
   if (key == "variant") {
-    if (auto stored = store(text_entry(entry), criterion.variant); !stored) return stored;
-    return check_variants(entry, {criterion.variant});
+    if (auto stored = store(names_entry(entry, true), table.variants); !stored) return stored;
+    return check_variants(entry, table.variants);
   }
   if (key == "against") {
     if (auto stored = store(names_entry(entry, true), table.against); !stored) return stored;
@@ -163,16 +164,25 @@ std::optional<std::string> contradiction(const Criterion& criterion, std::string
 Result<void> add_criteria(const EntryTable& entries, std::string_view reference, CriterionTable table,
                           std::vector<Criterion>& criteria) {
   if (table.against.empty()) table.against = {""};
+  const auto add = [&](const std::string& metric, const std::string& variant,
+                       const std::string& against) -> Result<void> {
+    Criterion criterion = table.criterion;
+    criterion.metric = metric;
+    criterion.variant = variant;
+    criterion.against = against;
+    if (table.metrics.size() > 1) criterion.title += fmt::format(": {}", metric);
+    if (table.variants.size() > 1) criterion.title += fmt::format(" ({})", variant);
+    if (table.against.size() > 1) criterion.title += fmt::format(" ({})", against);
+    if (const auto wrong = contradiction(criterion, reference))
+      return fail(ErrorCode::configuration, fmt::format("{}: {}", entries.place, *wrong));
+    criteria.push_back(std::move(criterion));
+    return {};
+  };
   for (const std::string& metric : table.metrics) {
-    for (const std::string& against : table.against) {
-      Criterion criterion = table.criterion;
-      criterion.metric = metric;
-      criterion.against = against;
-      if (table.metrics.size() > 1) criterion.title += fmt::format(": {}", metric);
-      if (table.against.size() > 1) criterion.title += fmt::format(" ({})", against);
-      if (const auto wrong = contradiction(criterion, reference))
-        return fail(ErrorCode::configuration, fmt::format("{}: {}", entries.place, *wrong));
-      criteria.push_back(std::move(criterion));
+    for (const std::string& variant : table.variants) {
+      for (const std::string& against : table.against) {
+        if (auto added = add(metric, variant, against); !added) return added;
+      }
     }
   }
   return {};

@@ -26,7 +26,7 @@ enum class CriterionComparison { ratio, difference };  ///< variant / against, v
 ///     title = "full is within 1 cm on slow motion"   # required
 ///     groups = ["slow"]                 # default: all groups
 ///     split = "held-out"                # default; the other split is measured, too, but decides nothing
-///     variant = "full"                  # required
+///     variant = "full"                  # required; a list makes a criterion for each
 ///     metric = "ate_rmse_m"             # required, see study_values(); a list makes a criterion for each
 ///     statistic = "worst"               # required: worst, mean, median, share
 ///     at_most = 0.01                    # or below; at_least, above; upper and lower limits may go together

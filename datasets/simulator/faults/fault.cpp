@@ -13,12 +13,14 @@ namespace fusebench::simulator::faults {
 
 namespace {
 
-constexpr std::array<FaultDescription, 7> kKinds = {{
+constexpr std::array<FaultDescription, 8> kKinds = {{
     {FaultKind::black, "black", "", 0, 0, 0, "no light reaches the colour camera, and there is no depth"},
     {FaultKind::no_depth, "no-depth", "", 0, 0, 0, "depth images are empty"},
     {FaultKind::no_texture, "no-texture", "", 0, 0, 0, "every surface is of one matt grey"},
     {FaultKind::hand, "hand", "share of the colour image", 0.5, 0.02, 0.9,
      "a textured thing moves 0.4 m before the camera"},
+    {FaultKind::person, "person", "distance in metres", 1.5, 0.5, 5,
+     "a person walks through the view at 1 m/s, before the camera halfway"},
     {FaultKind::brightness, "brightness", "factor on all light", 0.5, 0.05, 10,
      "the colour camera's gain jumps"},
     {FaultKind::drop, "drop", "", 0, 0, 0, "frames are missing"},
@@ -72,6 +74,8 @@ std::string complaint(const SimulatedFault& fault, std::span<const std::int64_t>
   return {};
 }
 
+bool moves_before_camera(FaultKind kind) { return kind == FaultKind::hand || kind == FaultKind::person; }
+
 std::int64_t nanoseconds(double time_s) { return std::llround(1e9 * time_s); }
 
 }  // namespace
@@ -123,13 +127,13 @@ Result<void> check_faults(std::span<const SimulatedFault> faults, std::span<cons
     if (const std::string wrong = complaint(faults[i], frame_ns); !wrong.empty())
       return fail(ErrorCode::configuration, fmt::format("fault {}: {}", to_string(faults[i]), wrong));
     for (const SimulatedFault& other : faults.subspan(i + 1)) {
-      if (other.kind != faults[i].kind || other.begin_s >= faults[i].end_s ||
-          faults[i].begin_s >= other.end_s)
-        continue;
-      return fail(
-          ErrorCode::configuration,
-          fmt::format("faults {} and {} are of one kind and overlap", to_string(faults[i]), to_string(other)),
-          "give one of them, or times that do not overlap");
+      if (other.begin_s >= faults[i].end_s || faults[i].begin_s >= other.end_s) continue;
+      const bool same = other.kind == faults[i].kind;
+      if (!same && !(moves_before_camera(other.kind) && moves_before_camera(faults[i].kind))) continue;
+      return fail(ErrorCode::configuration,
+                  fmt::format("faults {} and {} {} and overlap", to_string(faults[i]), to_string(other),
+                              same ? "are of one kind" : "both move before the camera"),
+                  "give one of them, or times that do not overlap");
     }
   }
   const std::vector<bool> dropped = dropped_frames(faults, frame_ns);
@@ -151,6 +155,7 @@ FrameFaults faults_at(std::span<const SimulatedFault> faults, std::int64_t since
     if (fault.kind == FaultKind::brightness) now.brightness = fault.amount;
     if (fault.kind == FaultKind::blur) now.exposure_s = fault.amount;
     if (fault.kind == FaultKind::hand) now.hand = i;
+    if (fault.kind == FaultKind::person) now.person = i;
   }
   return now;
 }

@@ -13,7 +13,7 @@
 
 namespace fusebench::simulator::faults {
 
-enum class FaultKind { black, no_depth, no_texture, hand, brightness, drop, blur };
+enum class FaultKind { black, no_depth, no_texture, hand, person, brightness, drop, blur };
 
 /// One row of the table of kinds.
 struct FaultDescription {
@@ -46,8 +46,8 @@ struct SimulatedFault {
 [[nodiscard]] std::string to_string(const SimulatedFault& fault);
 
 /// Errors (configuration) name the fault: times out of order, no frame within them, an amount out of range,
-/// two faults of a kind at once, an exposure longer than from frame to frame, a first frame that is dropped,
-/// fewer than two frames left. frame_ns: stamps, at least two.
+/// two faults of a kind at once, a hand beside a person, an exposure longer than from frame to frame, a first
+/// frame that is dropped, fewer than two frames left. frame_ns: stamps, at least two.
 [[nodiscard]] Result<void> check_faults(std::span<const SimulatedFault> faults,
                                         std::span<const std::int64_t> frame_ns);
 
@@ -59,7 +59,8 @@ struct FrameFaults {
   bool dropped = false;
   double brightness = 1;
   std::optional<double> exposure_s;
-  std::optional<std::size_t> hand;  ///< index of the fault
+  std::optional<std::size_t> hand;    ///< index of the fault; never beside a person
+  std::optional<std::size_t> person;  ///< index of the fault
 };
 [[nodiscard]] FrameFaults faults_at(std::span<const SimulatedFault> faults, std::int64_t since_first_ns);
 

@@ -25,6 +25,8 @@ struct Scenery {
   render::Renderer scene;
   std::optional<render::Renderer> matt;          ///< its shape in one grey, without light and shade
   std::vector<std::optional<MovingHand>> hands;  ///< by fault
+  std::optional<render::Renderer> person;        ///< in its own frame
+  double floor_m = 0;                            ///< z of the lowest point of the scene
 };
 
 }  // namespace fusebench::simulator::faults

@@ -44,8 +44,10 @@ void add_suite_options(CLI::App& verb, engine::Invocation& invocation) {
                   "Folder of the recordings that the suite simulates; those that are there are used again")
       ->type_name("DIR")
       ->capture_default_str();
-  verb.add_option("--only", batch.only,
-                  "Only some runs: recording=TEXT (the name contains it) or variant=NAME; may be repeated")
+  verb.add_option(
+          "--only", batch.only,
+          "Only some runs: recording=TEXT (the name contains it), variant=NAME, or split=held-out or tuning; "
+          "may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   verb.add_option(

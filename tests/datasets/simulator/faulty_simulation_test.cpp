@@ -226,6 +226,31 @@ TEST_F(FaultySimulation, AHandCoversItsShareOfColourAndDepth) {
   }
 }
 
+TEST_F(FaultySimulation, APersonIsInColourAndDepthAtItsDistance) {
+  SimulationOptions usual = options();
+  remove_noise(usual);
+  usual.exposure_s = 0;
+  SimulationOptions faulty = usual;
+  faulty.faults = {{FaultKind::person, 0, 1, 1.0}};
+  const fs::path plain = simulated(usual);
+  const fs::path folder = simulated(faulty);
+  const Image<std::uint16_t> with = depth(folder, 1);
+  const Image<std::uint16_t> without = depth(plain, 1);
+  const ColorImage color_with = color(folder, 1);
+  const ColorImage color_without = color(plain, 1);
+  std::size_t nearer = 0;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < with.data.size(); ++i) {
+    changed += color_with.data[i] != color_without.data[i] ? 1 : 0;
+    if (with.data[i] == without.data[i]) continue;
+    ++nearer;
+    EXPECT_GE(with.data[i], 5000 * 0.6);
+    EXPECT_LE(with.data[i], 5000 * 1.3);
+  }
+  EXPECT_GT(nearer, with.data.size() / 20);
+  EXPECT_NEAR(static_cast<double>(changed), static_cast<double>(nearer), 0.3 * static_cast<double>(nearer));
+}
+
 TEST_F(FaultySimulation, AHandMovesAndHasTexture) {
   SimulationOptions faulty = options("hand=0:1:0.3");
   remove_noise(faulty);

@@ -58,6 +58,14 @@ TEST(SuiteCriteriaTest, ListsMakeACriterionEach) {
   EXPECT_EQ((*criteria)[1].title, "t: ate_rmse_m (planar)");
   EXPECT_EQ((*criteria)[2].metric, "aie_grey");
   EXPECT_EQ((*criteria)[2].split, "held-out");
+
+  const auto variants = read(
+      "[[criteria]]\ntitle = \"t\"\nvariant = [\"full\", \"no-imu\"]\nmetric = \"silent_failures\"\n"
+      "statistic = \"worst\"\nat_most = 0\n");
+  ASSERT_TRUE(variants.has_value()) << variants.error().message;
+  ASSERT_EQ(variants->size(), 2U);
+  EXPECT_EQ((*variants)[1].variant, "no-imu");
+  EXPECT_EQ((*variants)[1].title, "t (no-imu)");
 }
 
 TEST(SuiteCriteriaTest, WhatMakesNoSenseIsRefusedWithItsLine) {
@@ -88,6 +96,10 @@ TEST(SuiteCriteriaTest, WhatMakesNoSenseIsRefusedWithItsLine) {
           "aie_common_grey");
   refused("metric = \"aie_common_grey\"\n" + worst + "at_most = 1\n", ":1", "compares a variant with full");
   refused(ate + worst + "at_most = 1\nsplit = \"left\"\n", ":7", "tuning");
+  const auto unknown =
+      read("[[criteria]]\ntitle = \"t\"\nvariant = [\"full\", \"no-imo\"]\n" + ate + worst + "at_most = 1\n");
+  ASSERT_FALSE(unknown.has_value());
+  EXPECT_NE(unknown.error().message.find("suite.toml:3"), std::string::npos) << unknown.error().message;
 }
 
 }  // namespace

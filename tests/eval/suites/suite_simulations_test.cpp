@@ -150,6 +150,23 @@ TEST_F(SuiteSimulationsTest, JobsKnowWhereTheRecordingIsAndHowItIsMade) {
   ASSERT_TRUE(jobs->jobs[0].simulation.has_value());
   EXPECT_EQ(jobs->jobs[0].simulation->seed, 2U);
 
+  options.only = {"recording=slow_rest", "split=held-out", "variant=dm"};
+  const auto held_out = plan_batch(*suite, options);
+  ASSERT_TRUE(held_out.has_value()) << held_out.error().message;
+  options.only[1] = "split=tuning";
+  const auto tuning = plan_batch(*suite, options);
+  ASSERT_TRUE(tuning.has_value()) << tuning.error().message;
+  options.only.erase(options.only.begin() + 1);
+  const auto both = plan_batch(*suite, options);
+  ASSERT_TRUE(both.has_value()) << both.error().message;
+  EXPECT_GT(held_out->jobs.size(), 0U);
+  EXPECT_GT(tuning->jobs.size(), 0U);
+  EXPECT_EQ(held_out->jobs.size() + tuning->jobs.size(), both->jobs.size());
+  for (const BatchJob& job : held_out->jobs) EXPECT_EQ(job.split, kHeldOutSplit);
+  for (const BatchJob& job : tuning->jobs) EXPECT_EQ(job.split, kTuningSplit);
+  options.only = {"recording=slow_rest", "split=both"};
+  EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage);
+
   options.only = {"recording=path"};
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::data_missing);
   options.data = folder_ / "data";

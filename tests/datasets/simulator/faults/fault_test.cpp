@@ -104,7 +104,11 @@ TEST(Fault, OneKindHoldsOnceAtATime) {
   const std::string message = refusal({{hand, 0, 0.5, 0.3}, {black, 0, 1, 0}, {hand, 0.4, 1, 0.3}});
   EXPECT_NE(message.find("hand=0:0.5:0.3 and hand=0.4:1:0.3 are of one kind and overlap"), std::string::npos)
       << message;
+  EXPECT_NE(refusal({{hand, 0, 0.5, 0.3}, {person, 0.4, 1, 1.5}})
+                .find("hand=0:0.5:0.3 and person=0.4:1:1.5 both move before the camera and overlap"),
+            std::string::npos);
   EXPECT_EQ(refusal({{hand, 0, 0.5, 0.3}, {hand, 0.5, 1, 0.3}}), "taken");
+  EXPECT_EQ(refusal({{hand, 0, 0.5, 0.3}, {person, 0.5, 1, 1.5}}), "taken");
   EXPECT_EQ(refusal({{hand, 0, 0.5, 0.3}, {blur, 0, 0.5, 0.03}}), "taken");
 }
 
