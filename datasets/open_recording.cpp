@@ -67,6 +67,15 @@ tl::unexpected<Error> unrecognised(const std::filesystem::path& folder) {
               "name the folder that holds these files, or say --format");
 }
 
+void note_ground_truth_offset(recording::Recording& recording) {
+  const Vector3d offset_m = recording::ground_truth_offset_m(recording);
+  if (offset_m.isZero(0)) return;
+  recording.notes.push_back(
+      fmt::format("camera in the body of the ground truth: ({:.3f}, {:.3f}, {:.3f}) m; a synthetic IMU and "
+                  "silent failures take account of it, ATE and RPE do not",
+                  offset_m.x(), offset_m.y(), offset_m.z()));
+}
+
 }  // namespace
 
 std::optional<std::string_view> recognise_format(const std::filesystem::path& folder) {
@@ -86,6 +95,7 @@ Result<recording::Recording> open_recording(const std::filesystem::path& folder,
       auto recording = format.open(folder, options.read);
       if (!recording) return recording;
       reading::note_simulation(folder, *recording);
+      note_ground_truth_offset(*recording);
       if (const auto read = reading::read_exact_truth_beside(folder, *recording); !read) {
         return tl::unexpected(read.error());
       }

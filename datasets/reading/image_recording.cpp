@@ -248,12 +248,6 @@ Result<void> attach_images(recording::Recording& recording, const ImageDecoding&
   recording.calibration->color = *camera;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
-  if (const Vector3d& offset_m = camera->ground_truth_offset_m; !offset_m.isZero(0)) {
-    recording.notes.push_back(
-        fmt::format("camera in the body of the ground truth: ({:.3f}, {:.3f}, {:.3f}) m; a synthetic IMU and "
-                    "silent failures take account of it, ATE and RPE do not",
-                    offset_m.x(), offset_m.y(), offset_m.z()));
-  }
   auto identity = identity_of(recording, decoding, *camera);
   if (!identity) return tl::unexpected(identity.error());
   recording.fingerprint = std::move(identity->fingerprint);

@@ -72,7 +72,7 @@ struct Recording {
 [[nodiscard]] Recording named_recording(const std::filesystem::path& folder, std::string_view format);
 
 /// Of the colour camera in the body whose poses ground_truth gives: the calibration's. Zero for pseudo ground
-/// truth, which is of the camera itself.
+/// truth and for that of simulations, which are of the camera itself, whatever camera it is read as.
 [[nodiscard]] Vector3d ground_truth_offset_m(const Recording& recording);
 
 /// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part

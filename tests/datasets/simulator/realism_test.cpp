@@ -64,6 +64,17 @@ TEST_F(Realism, TheSameBytesForOneAndFourThreads) {
   }
 }
 
+TEST_F(Realism, TheTruthIsOfTheCameraWhateverCameraItIsReadAs) {
+  const fs::path folder = simulated(options(), "twin");
+  recording::ReadOptions with_offset;
+  with_offset.camera = calibration::read_calibration(folder / "calibration.toml").value().color;
+  with_offset.camera->ground_truth_offset_m = {-0.03, 0, 0};  // as of a real camera under motion capture
+  const auto twin = datasets::open_recording(folder, {.format = "tum", .read = with_offset});
+  ASSERT_TRUE(twin) << twin.error().message;
+  EXPECT_EQ(recording::ground_truth_offset_m(*twin), Vector3d::Zero());
+  for (const std::string& note : twin->notes) EXPECT_EQ(note.find("ground truth"), std::string::npos) << note;
+}
+
 TEST_F(Realism, TheCalibrationDoesNotTellWhatTheSimulationDoes) {
   const fs::path folder = simulated(options(), "tum");
   const std::string calibration = testing::read_bytes(folder / "calibration.toml");
