@@ -115,6 +115,13 @@ std::size_t measured(const Image<std::uint16_t>& depth) {
   return depth.data.size() - static_cast<std::size_t>(std::ranges::count(depth.data, 0));
 }
 
+/// Pixels that differ between two images of one size.
+std::size_t changed_pixels(const ColorImage& a, const ColorImage& b) {
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < a.data.size(); ++i) changed += a.data[i] != b.data[i] ? 1 : 0;
+  return changed;
+}
+
 TEST_F(FaultySimulation, HoldForTheirFramesAndNoOthers) {
   const fs::path plain = simulated(options());
   for (const FaultDescription& kind : fault_kinds()) {
@@ -207,19 +214,14 @@ TEST_F(FaultySimulation, AHandCoversItsShareOfColourAndDepth) {
     const fs::path folder = simulated(faulty);
     const Image<std::uint16_t> with = depth(folder, 1);
     const Image<std::uint16_t> without = depth(plain, 1);
-    const ColorImage color_with = color(folder, 1);
-    const ColorImage color_without = color(plain, 1);
     std::size_t near = 0;
-    std::size_t changed = 0;
     for (std::size_t i = 0; i < with.data.size(); ++i) {
       if (with.data[i] == without.data[i]) continue;
       ++near;
       EXPECT_GE(with.data[i], 5000 * 0.36);  // 5000 units a metre
       EXPECT_LE(with.data[i], 5000 * 0.41);
     }
-    for (std::size_t i = 0; i < color_with.data.size(); ++i) {
-      changed += color_with.data[i] != color_without.data[i] ? 1 : 0;
-    }
+    const std::size_t changed = changed_pixels(color(folder, 1), color(plain, 1));
     const auto pixels = static_cast<double>(with.data.size());
     EXPECT_NEAR(static_cast<double>(near) / pixels, share, 0.02 + 0.05 * share);
     EXPECT_NEAR(static_cast<double>(changed) / pixels, share, 0.03 + 0.05 * share);
@@ -236,18 +238,15 @@ TEST_F(FaultySimulation, APersonIsInColourAndDepthAtItsDistance) {
   const fs::path folder = simulated(faulty);
   const Image<std::uint16_t> with = depth(folder, 1);
   const Image<std::uint16_t> without = depth(plain, 1);
-  const ColorImage color_with = color(folder, 1);
-  const ColorImage color_without = color(plain, 1);
   std::size_t nearer = 0;
-  std::size_t changed = 0;
   for (std::size_t i = 0; i < with.data.size(); ++i) {
-    changed += color_with.data[i] != color_without.data[i] ? 1 : 0;
     if (with.data[i] == without.data[i]) continue;
     ++nearer;
     EXPECT_GE(with.data[i], 5000 * 0.6);
     EXPECT_LE(with.data[i], 5000 * 1.3);
   }
   EXPECT_GT(nearer, with.data.size() / 20);
+  const std::size_t changed = changed_pixels(color(folder, 1), color(plain, 1));
   EXPECT_NEAR(static_cast<double>(changed), static_cast<double>(nearer), 0.3 * static_cast<double>(nearer));
 }
 
