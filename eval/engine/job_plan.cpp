@@ -29,8 +29,7 @@ Result<bool> wanted(const std::vector<std::string>& only, const std::string& rec
     const auto equals = filter.find('=');
     const std::string key = filter.substr(0, equals);
     const std::string value = equals == std::string::npos ? "" : filter.substr(equals + 1);
-    const bool known = key == "recording" || key == "variant" ||
-                       (key == "split" && (value == suites::kTuningSplit || value == suites::kHeldOutSplit));
+    const bool known = key == "recording" || key == "variant" || (key == "split" && suites::is_split(value));
     if (!known || value.empty()) {
       return fail(ErrorCode::usage, fmt::format("--only {} (allowed: recording=TEXT | variant=NAME | "
                                                 "split=tuning | split=held-out)",

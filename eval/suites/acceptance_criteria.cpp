@@ -90,8 +90,7 @@ Result<void> read_number(const config::TomlEntry& entry, Criterion& criterion) {
 
 Result<void> read_split(const config::TomlEntry& entry, Criterion& criterion) {
   if (auto stored = store(text_entry(entry), criterion.split); !stored) return stored;
-  if (criterion.split != kTuningSplit && criterion.split != kHeldOutSplit)
-    return wrong_entry(entry, "\"tuning\" or \"held-out\"");
+  if (!is_split(criterion.split)) return wrong_entry(entry, "\"tuning\" or \"held-out\"");
   return {};
 }
 

@@ -108,8 +108,7 @@ Result<void> read_recording(const EntryTable& table, Suite& suite) {
     auto text = text_entry(entry);
     if (!text) return tl::unexpected(text.error());
     *target->second = std::move(*text);
-    if (recording.split != kTuningSplit && recording.split != kHeldOutSplit)
-      return wrong_entry(entry, "\"tuning\" or \"held-out\"");
+    if (!is_split(recording.split)) return wrong_entry(entry, "\"tuning\" or \"held-out\"");
   }
   if (recording.name.empty())
     return fail(ErrorCode::configuration, fmt::format("{}: the key 'name' is missing", table.place));

@@ -14,6 +14,9 @@ namespace fusebench::suites {
 /// criteria are set on the other.
 inline constexpr std::string_view kTuningSplit = "tuning";
 inline constexpr std::string_view kHeldOutSplit = "held-out";
+[[nodiscard]] constexpr bool is_split(std::string_view name) {
+  return name == kTuningSplit || name == kHeldOutSplit;
+}
 
 /// One recording to simulate.
 ///
