@@ -51,6 +51,11 @@ class FramePreparation {
   }
   /// And the coarser ones that whole images are aligned by.
   [[nodiscard]] std::span<const GreyImage> whole_pyramid() const { return pyramid_; }
+  /// Depth that patches are cut by: gated or, if the configuration says so, not.
+  [[nodiscard]] const DepthImage& patch_depth_m() const {
+    const bool ungated = config_.patches.reference_surface == config::ReferenceSurface::frame_ungated;
+    return ungated ? ungated_depth_m_ : frame_.depth_m;
+  }
   [[nodiscard]] measurement::ObservedFrame observed(const Novelty& novelty) const {
     return {pyramid(), frame_.depth_m, novelty.color, novelty.depth};
   }

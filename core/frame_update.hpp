@@ -30,6 +30,11 @@ class FrameUpdate {
                                             const filter::GaussianState& prior, const Tracking& last,
                                             const FramePreparation& frame, const Novelty& novelty);
 
+  /// After an update: each patch goes to where a translation of its own puts it, from the prediction on.
+  void move_patches_alone(const filter::GaussianState& prior) {
+    measurement_.move_patches_alone(prior.mean.T_world_imu);
+  }
+
   /// Of the update that run() or run_from() returned last.
   [[nodiscard]] const measurement::PatchMeasurement& measurement() const { return measurement_; }
 

@@ -183,6 +183,8 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
     report.reason = fmt::format("{}: the update is not finite", health::to_string(report.health));
     return false;
   }
+  if (config.terms.patch_motion == config::PatchMotion::own_translation && novelty.color)
+    deformed_update.move_patches_alone(prior);
   const std::span<const measurement::PatchOutcome> outcomes = deformed_update.measurement().outcomes();
   health::describe_update(deformed_update.measurement(), update, now.reference.patches, config, report);
   report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config);
@@ -254,7 +256,8 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::refresh);
   Tracking& now = *tracking;
   const RgbdFrame& frame = preparation.frame();
-  const patches::ReferenceFrame reference{preparation.pyramid(), frame.depth_m, rig.camera, T_world_camera()};
+  const patches::ReferenceFrame reference{preparation.pyramid(), preparation.patch_depth_m(), rig.camera,
+                                          T_world_camera()};
   patches::refresh_patches(reference, now.model, now.survivors, config, workers, patch_workspace,
                            now.reference.patches);
   now.reference.points.take(preparation.whole_pyramid(), frame.depth_m, rig.camera, config.alignment);

@@ -25,10 +25,22 @@ struct WarpedPixel {
   float observed_grey = 0;
 };
 
-/// The same pixels in both lists.
+/// One of the size x size pixels of a tracked patch, whether it is used or not: what other definitions of the
+/// intensity error are computed from.
+struct SquarePixel {
+  std::uint32_t patch = 0;
+  bool accepted = false;       ///< its patch passed the chi-square gate
+  bool visible = false;        ///< it has a surface and is not occluded; otherwise it moves as the visible
+                               ///< ones of its patch do in the mean
+  float difference_grey = 0;   ///< absolute, the image interpolated where the pixel lands
+  float whole_pixel_grey = 0;  ///< absolute, the image at the nearest whole pixel
+};
+
+/// The same pixels in the first two lists.
 struct TrackedPixels {
   std::vector<IntensityResidual> intensity;
   std::vector<WarpedPixel> warped;
+  std::vector<SquarePixel> squares;  ///< by patch; empty unless evaluation.intensity_readings
 };
 
 }  // namespace base

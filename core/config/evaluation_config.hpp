@@ -1,15 +1,17 @@
-// Options: what a run counts as a silent failure. No estimate depends on them.
+// Options: what of a run is measured, and how. No estimate depends on them.
 #pragma once
 
 #include "core/config/options.hpp"
 
 namespace fusebench::config {
 
-/// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures).
+/// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures), and which intensity
+/// errors are recorded.
 struct EvaluationConfig {
   double silent_interval_s = 1.0;
   double silent_translation_m = 0.05;
   double silent_rotation_deg = 3.0;
+  bool intensity_readings = false;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
@@ -18,6 +20,8 @@ struct EvaluationConfig {
              "it is a silent failure if that motion is off by more than this");
     v.number("silent_rotation_deg", self.silent_rotation_deg, 0.01, 180.0,
              "or if it is rotated by more than this");
+    v.flag("intensity_readings", self.intensity_readings,
+           "also record the intensity error by other definitions than that of AIE (docs/metrics.md)");
   }
 };
 

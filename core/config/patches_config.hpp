@@ -5,6 +5,27 @@
 
 namespace fusebench::config {
 
+/// Where the depth and the normals of a patch's pixels come from.
+enum class ReferenceSurface { model, frame, frame_ungated };
+constexpr auto option_choices(ReferenceSurface) {
+  return choices<ReferenceSurface>({{"model", ReferenceSurface::model},
+                                    {"frame", ReferenceSurface::frame},
+                                    {"frame_ungated", ReferenceSurface::frame_ungated}});
+}
+
+/// What happens to a patch that was tracked well.
+enum class Refresh { each, keep };
+constexpr auto option_choices(Refresh) {
+  return choices<Refresh>({{"each", Refresh::each}, {"keep", Refresh::keep}});
+}
+
+/// When one of two pixels that land at one place is hidden by the other.
+enum class ShrinkTest { depth_jump, any_collision };
+constexpr auto option_choices(ShrinkTest) {
+  return choices<ShrinkTest>(
+      {{"depth_jump", ShrinkTest::depth_jump}, {"any_collision", ShrinkTest::any_collision}});
+}
+
 /// Patches: placement, size, and validity thresholds.
 struct PatchConfig {
   int max_count = 100;
@@ -16,6 +37,9 @@ struct PatchConfig {
   double min_valid_fraction = 0.5;
   double max_mean_error = 30.0;
   double occlusion_distance_m = 0.1;
+  ReferenceSurface reference_surface = ReferenceSurface::model;
+  Refresh refresh = Refresh::each;
+  ShrinkTest shrink_test = ShrinkTest::depth_jump;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_count", self.max_count, 1, 2000, "at most this many patches a frame (Sec. 3.1: 100)");
@@ -39,8 +63,24 @@ struct PatchConfig {
              "appeared behind it (twice as much while only coarse levels are in use); as wide as the "
              "association gate, "
              "since a tighter one drops every patch as soon as the pose has drifted by it");
+    v.choice("reference_surface", self.reference_surface,
+             "depth and normals of a patch: from the model (Sec. 2.3), from the frame that it is cut from "
+             "(Sec. 2.1.1), or from that frame with no gate on its depth");
+    v.choice("refresh", self.refresh,
+             "a patch that was tracked well is cut again in each frame (Sec. 2.3), or is kept with the grey "
+             "levels and the surface that it had until it is bad or the SE effect changes its shape; the "
+             "error of an older frame's pose is then taken for that of the last one");
+    v.choice("shrink_test", self.shrink_test,
+             "of two pixels that land at one place the farther one is dropped if it is clearly farther, or "
+             "always (Sec. 2.1.1 to the letter)");
   }
 };
+
+/// How the current image is read where a pixel lands.
+enum class Sampling { bicubic, whole_pixel };
+constexpr auto option_choices(Sampling) {
+  return choices<Sampling>({{"bicubic", Sampling::bicubic}, {"whole_pixel", Sampling::whole_pixel}});
+}
 
 /// Photometric residuals (Eq. 3).
 struct PhotometricConfig {
@@ -49,6 +89,7 @@ struct PhotometricConfig {
   double pixels_per_measurement = 300.0;
   double gain_sigma = 0.1;
   double offset_sigma_grey = 10.0;
+  Sampling sampling = Sampling::bicubic;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("noise_grey", self.noise_grey, 0.1, 255.0,
@@ -64,6 +105,9 @@ struct PhotometricConfig {
              "prior of the brightness gain of a patch around 1; 0 fixes it");
     v.number("offset_sigma_grey", self.offset_sigma_grey, 0.0, 255.0,
              "prior of the brightness offset of a patch around 0 (grey levels); 0 fixes it");
+    v.choice("sampling", self.sampling,
+             "the image is interpolated where a pixel lands, or read at the nearest whole pixel (Sec. 2.1.1 "
+             "to the letter)");
   }
 };
 

@@ -19,10 +19,18 @@ constexpr auto option_choices(Deformation) {
                                {"rigid_square", Deformation::rigid_square}});
 }
 
+/// What moves a patch to its place in the current frame.
+enum class PatchMotion { by_pose, own_translation };
+constexpr auto option_choices(PatchMotion) {
+  return choices<PatchMotion>(
+      {{"by_pose", PatchMotion::by_pose}, {"own_translation", PatchMotion::own_translation}});
+}
+
 /// The terms of the estimator that an ablation switches.
 struct TermsConfig {
   Prior prior = Prior::imu;
   Deformation deformation = Deformation::pixelwise;
+  PatchMotion patch_motion = PatchMotion::by_pose;
   bool visibility_test = true;
   bool motion_compensation = true;
   bool relocalisation = true;
@@ -35,6 +43,10 @@ struct TermsConfig {
         "deformation", self.deformation,
         "shape change of patches: each pixel by its own depth (Eqs. 1-2), one plane a patch (Bloesch et al. "
         "2017), or a rigid square at one depth (the direct method)");
+    v.choice(
+        "patch_motion", self.patch_motion,
+        "patches are found by the pose that all of them agree on (Eq. 5), or each by a translation in the "
+        "image of its own, from where the prediction puts it (Lucas & Kanade 1981); the pose is the same");
     v.flag("visibility_test", self.visibility_test,
            "drop pixels that are occluded in the current frame (the shrink effect, Sec. 2.1.1)");
     v.flag("motion_compensation", self.motion_compensation,

@@ -21,8 +21,16 @@ constexpr std::array kVariants = {
             "terms.deformation=rigid_square terms.visibility_test=false"},
     Variant{"no-imu", "without IMU", "constant velocity instead of the IMU as the prior; the same filter",
             "terms.prior=constant_velocity"},
-    Variant{"dm-no-imu", "", "the direct method without IMU",
-            "terms.deformation=rigid_square terms.visibility_test=false terms.prior=constant_velocity"},
+    Variant{"dm-no-imu", "", "the direct method without IMU", "terms.prior=constant_velocity", "dm"},
+    Variant{"dm-classic", "",
+            "a direct method as it is without this system around it: colour alone, one pyramid level, no "
+            "alignment of whole images, constant velocity",
+            "terms.prior=constant_velocity terms.geometric_weight=0 patches.levels=1 "
+            "alignment.coarsest_level=0",
+            "dm"},
+    Variant{"dm-patchwise", "",
+            "each square is found by a translation of its own, as trackers of features do; poses as in dm",
+            "terms.patch_motion=own_translation", "dm"},
     Variant{"planar", "", "each patch is warped by one plane, as Bloesch et al. 2017 do",
             "terms.deformation=planar"},
     Variant{"photometric-only", "", "no point-to-plane residuals", "terms.geometric_weight=0"},
@@ -43,6 +51,13 @@ constexpr std::array kVariants = {
         "self_calibration.imu_rotation_sigma_rad=0 self_calibration.gyroscope_scale_sigma=0 "
         "self_calibration.accelerometer_scale_sigma=0 "
         "terms.motion_compensation=false terms.relocalisation=false"},
+    Variant{
+        "literal-pixels", "",
+        "literal, and Sec. 2.1.1 and Eqs. 3-4 to the letter: pixels land on whole ones, the farther of two "
+        "at one place is dropped, absolute residuals",
+        "photometric.sampling=whole_pixel patches.shrink_test=any_collision "
+        "photometric.huber_sigmas=0.1 geometric.huber_sigmas=0.1",
+        "literal"},
 };
 }  // namespace
 
@@ -61,6 +76,11 @@ Result<Variant> find_variant(std::string_view name) {
 
 EffectiveConfig variant_config(const Variant& variant) {
   EffectiveConfig config;
+  if (!variant.base.empty()) {
+    const Result<Variant> base = find_variant(variant.base);
+    check(base.has_value(), "the table of variants is based on rows of itself");
+    config = variant_config(*base);
+  }
   std::istringstream edits{std::string(variant.edits)};
   for (std::string edit; edits >> edit;) {
     const auto equals = edit.find('=');

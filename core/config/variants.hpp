@@ -13,7 +13,8 @@ struct Variant {
   std::string_view name;         ///< e.g. "full"
   std::string_view paper_label;  ///< e.g. "Ours"; empty if the paper has none
   std::string_view sentence;
-  std::string_view edits;  ///< "key=value key=value", as --set takes them; empty for `full`
+  std::string_view edits;      ///< "key=value key=value", as --set takes them; empty for `full`
+  std::string_view base = {};  ///< the variant that is edited; empty: the defaults
 };
 
 /// All variants, in the order in which tables list them.

@@ -47,8 +47,10 @@ void find_survivors(std::span<const patches::Patch> patches,
   survivors.clear();
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const measurement::PatchOutcome& outcome = outcomes[p];
-    if (outcome.accepted && outcome.mean_error_grey <= config.max_mean_error)
-      survivors.push_back({outcome.centre_px, patches[p].age + 1});
+    if (!outcome.accepted || outcome.mean_error_grey > config.max_mean_error) continue;
+    survivors.push_back({outcome.centre_px, patches[p].age + 1});
+    const bool same_shape = !outcome.shrunk && !outcome.extended;
+    if (config.refresh == config::Refresh::keep && same_shape) survivors.back().kept = p;
   }
 }
 

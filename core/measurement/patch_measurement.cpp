@@ -6,6 +6,8 @@
 #include "core/base/bits.hpp"
 #include "core/base/error.hpp"
 #include "core/measurement/patch_scatter.hpp"
+#include "core/measurement/patch_squares.hpp"
+#include "core/measurement/patch_translation.hpp"
 #include "core/patches/posed_camera.hpp"
 #include "core/simd/image_lanes.hpp"
 
@@ -40,6 +42,13 @@ struct GreyResidual {
   float offset;
   float per_noise;
 };
+
+/// A coordinate at which the image is read: at a whole pixel cubic interpolation is the pixel itself, and its
+/// slope the central difference.
+simd::Float8 sampled_at(simd::Float8 coordinate, config::Sampling sampling) {
+  if (sampling == config::Sampling::bicubic) return coordinate;
+  return simd::to_float(simd::to_int(coordinate + 0.5F));
+}
 }  // namespace
 
 struct PatchMeasurement::PosedLevels {
@@ -148,7 +157,7 @@ void PatchMeasurement::warp_all(const PosedLevels& posed) {
     patches::LevelLanes& lanes = levels_[l].lanes;
     patches::warp_level(lanes.pixels, lanes.warp_points, posed.at[l], lanes.warped);
     if (!config_.terms.visibility_test) return;
-    levels_[l].occlusion.test(lanes.warped, config_.depth);
+    levels_[l].occlusion.test(lanes.warped, config_.depth, config_.patches.shrink_test);
     patches::test_measured_occlusion(lanes.warped, frame_->depth_m, 1 << l, tolerance_m, config_.depth);
   });
 }
@@ -191,7 +200,8 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       level.fixed[i].photometric = used;
       if (!simd::any(used)) continue;
       const simd::IntensityLanes observed = simd::sample_bicubic(
-          frame_->pyramid[l], used ? w.x : simd::all_lanes(1.0F), used ? w.y : simd::all_lanes(1.0F));
+          frame_->pyramid[l], sampled_at(used ? w.x : simd::all_lanes(1.0F), config_.photometric.sampling),
+          sampled_at(used ? w.y : simd::all_lanes(1.0F), config_.photometric.sampling));
       simd::Points point = posed.at[l].to_camera(lanes.projected(i));
       point.z = used ? point.z : simd::all_lanes(1.0F);
       const JacobianLanes jacobian = photometric_jacobian(posed.at[l], point, observed.dx, observed.dy);
@@ -260,6 +270,26 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
   }
 }
 
+void PatchMeasurement::move_patches_alone(const SE3& T_world_imu_predicted) {
+  check(frame_.has_value() && finest_ == 0, "patches are moved after the last linearisation");
+  warp_all(PosedLevels(rig_, {T_world_imu_predicted, T_world_imu_predicted}, config_.patches.levels,
+                       origin_world_));
+  workers_.for_chunks(patches_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      std::vector<PlacedPatch> placed;
+      for (std::size_t l = 0; l < levels_.size(); ++l) {
+        const patches::LevelLanes& lanes = levels_[l].lanes;
+        placed.push_back({lanes.pixels_of(p), lanes.warped_of(p), frame_->pyramid[l]});
+      }
+      patches::LevelLanes& finest = levels_.front().lanes;
+      const GreyImage& image = frame_->pyramid.front();
+      translate(finest.warped_of(p), own_translation_px(placed), image);
+      judge_visibility(finest.pixels_of(p), finest.warped_of(p), image, config_.patches, outcomes_[p]);
+      outcomes_[p].accepted &= outcomes_[p].tracked;
+    }
+  });
+}
+
 double PatchMeasurement::trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
                                     double fraction) {
   const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
@@ -322,9 +352,10 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
         x += lanes.warp_points[i].offset_x;
         y += lanes.warp_points[i].offset_y;
       }
-      const simd::Float8 observed =
-          simd::sample_bicubic_value(image, simd::clamp(x, 1.0F, static_cast<float>(image.width - 2)),
-                                     simd::clamp(y, 1.0F, static_cast<float>(image.height - 2)));
+      x = sampled_at(simd::clamp(x, 1.0F, static_cast<float>(image.width - 2)), config_.photometric.sampling);
+      y = sampled_at(simd::clamp(y, 1.0F, static_cast<float>(image.height - 2)),
+                     config_.photometric.sampling);
+      const simd::Float8 observed = simd::sample_bicubic_value(image, x, y);
       const simd::Float8 whitened = residual_of(observed, lanes.pixels[i].intensity) * residual_of.per_noise;
       cost += used ? huber(whitened, weighting.robust_sigmas).cost : simd::Float8{};
     }
@@ -347,6 +378,9 @@ TrackedPixels PatchMeasurement::tracked_pixels() const {
     if (!outcomes_[p].tracked) continue;
     const auto& pixels = patches_[p].levels.front().pixels;
     const auto warped = levels_.front().lanes.warped_of(p);
+    if (config_.evaluation.intensity_readings)
+      add_square({static_cast<std::uint32_t>(p), outcomes_[p].accepted, patches_[p], warped},
+                 frame_->pyramid.front(), rig_.camera.width_px, tracked.squares);
     for (std::size_t group = 0; group < warped.size(); ++group) {
       const patches::WarpedLanes& w = warped[group];
       const simd::Float8 observed = grey_at(frame_->pyramid.front(), w);

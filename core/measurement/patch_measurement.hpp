@@ -50,6 +50,10 @@ class PatchMeasurement final : public filter::PoseMeasurement {
                                   double fraction) override;
   void accept() override;
 
+  /// After the last linearise(): finds each patch by a translation of its own, from where this pose puts it
+  /// (terms.patch_motion). Changes where its pixels are and what is seen of it, and nothing else.
+  void move_patches_alone(const SE3& T_world_imu_predicted);
+
   /// One outcome a patch, from the last linearise() (which must have been of the last stage).
   [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
   /// False where the frame repeats an earlier colour image.

@@ -46,6 +46,10 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
                       std::span<const patches::WarpedLanes> warped, const GreyImage& image,
                       const config::PatchConfig& config, PatchOutcome& outcome) {
   const auto count = [](simd::Int8 condition) { return std::popcount(simd::lane_bits(condition)); };
+  outcome.usable_pixels = 0;
+  outcome.covered_pixels = 0;
+  outcome.correlation = 0;
+  outcome.mean_error_grey = 0;
   int in_image = 0;
   simd::Float8 difference{}, sum_x{}, sum_y{};
   Correlation correlation;

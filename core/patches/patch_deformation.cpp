@@ -140,7 +140,8 @@ void MutualOcclusion::resize(int width_px, int height_px) {
                     std::numeric_limits<float>::infinity());
 }
 
-void MutualOcclusion::test(std::span<WarpedLanes> warped, const config::DepthConfig& depth) {
+void MutualOcclusion::test(std::span<WarpedLanes> warped, const config::DepthConfig& depth,
+                           config::ShrinkTest rule) {
   const auto for_cells_in_image = [&](const auto& visit) {
     for (const WarpedLanes& w : warped) {
       const simd::Int8 cell = nearest_pixel(w.x, w.y, width_px_, w.in_image);
@@ -150,14 +151,16 @@ void MutualOcclusion::test(std::span<WarpedLanes> warped, const config::DepthCon
     }
   };
   for_cells_in_image([](float& nearest_m, float depth_m) { nearest_m = std::min(nearest_m, depth_m); });
-  // Pixels of one surface also collide, when the camera backs away: only a clear difference in depth is an
+  // Pixels of one surface also collide, when the camera backs away: a clear difference in depth is an
   // occlusion.
-  const auto jump = static_cast<float>(depth.edge_jump);
+  const bool any = rule == config::ShrinkTest::any_collision;
+  const float sigmas = any ? 0.0F : 3.0F;
+  const auto jump = any ? 0.0F : static_cast<float>(depth.edge_jump);
   for (WarpedLanes& w : warped) {
     const simd::Int8 cell = nearest_pixel(w.x, w.y, width_px_, w.in_image);
     const simd::Float8 front_m = w.in_image ? simd::gather(nearest_m_.data(), cell) : w.depth_m;
     const simd::Float8 tolerance_m =
-        simd::max(3.0F * preprocessing::depth_sigma_m(front_m, depth), jump * front_m);
+        simd::max(sigmas * preprocessing::depth_sigma_m(front_m, depth), jump * front_m);
     w.visible &= w.depth_m <= front_m + tolerance_m;
   }
   for_cells_in_image([](float& nearest_m, float) { nearest_m = std::numeric_limits<float>::infinity(); });

@@ -22,14 +22,14 @@ void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLan
                 const PosedLanes& camera, std::span<WarpedLanes> warped);
 
 /// Shrink test, over all patches at once: of the pixels that land in one cell, those clearly behind the
-/// nearest become invisible (an occluder may belong to another patch).
+/// nearest (or all but the nearest: ShrinkTest) become invisible (an occluder may belong to another patch).
 class MutualOcclusion {
  public:
   /// To the size of a level's image.
   void resize(int width_px, int height_px);
 
   /// All pixels of the level.
-  void test(std::span<WarpedLanes> warped, const config::DepthConfig& depth);
+  void test(std::span<WarpedLanes> warped, const config::DepthConfig& depth, config::ShrinkTest rule);
 
  private:
   int width_px_ = 0;

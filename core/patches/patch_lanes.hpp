@@ -81,6 +81,9 @@ struct LevelLanes {
   [[nodiscard]] std::span<const WarpedLanes> warped_of(std::size_t patch) const {
     return std::span(warped).subspan(first[patch], first[patch + 1] - first[patch]);
   }
+  [[nodiscard]] std::span<WarpedLanes> warped_of(std::size_t patch) {
+    return std::span(warped).subspan(first[patch], first[patch + 1] - first[patch]);
+  }
 };
 
 /// Takes a level of all patches over into `lanes`, whose memory is used again.

@@ -2,11 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "core/patches/corner_selection.hpp"
+#include "core/patches/measured_surfaces.hpp"
 #include "core/patches/patch_deformation.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/tsdf/block_slots.hpp"
@@ -102,14 +105,19 @@ void add_pixels(const Squares& squares, std::size_t patch, PatchWorkspace& work)
   }
 }
 
-/// The surface of the model behind a pixel, if it is usable there.
+bool takes_any_depth(const config::PatchConfig& config) {
+  return config.reference_surface == config::ReferenceSurface::frame_ungated;
+}
+
+/// The surface behind a pixel, if it is usable there.
 class UsableSurface {
  public:
   UsableSurface(const ReferenceFrame& frame, const config::Config& config)
       : frame_(frame),
         config_(config),
         R_world_camera_(frame.T_world_camera.rotation_matrix()),
-        min_cosine_(std::cos(radians(config.depth.max_incidence_deg))) {}
+        min_cosine_(takes_any_depth(config.patches) ? -1.0
+                                                    : std::cos(radians(config.depth.max_incidence_deg))) {}
 
   [[nodiscard]] std::optional<PatchPixel> operator()(const raycast::ExpectedSurface& pixel,
                                                      const raycast::SurfacePoint& surface) const {
@@ -150,6 +158,16 @@ void use_model_depth_in_holes(Patch& patch) {
   }
 }
 
+/// The grey levels of a square of level 0, 0 where it leaves the image (the patch is then dropped).
+void copy_square(const GreyImage& image, const Squares::Corner& corner, int size_px,
+                 std::vector<std::uint8_t>& grey) {
+  grey.clear();
+  for (int y = corner.y; y < corner.y + size_px; ++y) {
+    for (int x = corner.x; x < corner.x + size_px; ++x)
+      grey.push_back(image.contains(x, y) ? image(x, y) : 0);
+  }
+}
+
 /// The pixels of a patch that have a usable surface.
 void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usable,
                 const PatchWorkspace& work, std::span<const raycast::SurfacePoint> surfaces, Patch& patch) {
@@ -158,6 +176,7 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
   patch.centre_px = {static_cast<int>(std::lround(centre_px.x())),
                      static_cast<int>(std::lround(centre_px.y()))};
   patch.age = squares.centres[p].age;
+  copy_square(frame.pyramid.front(), squares.corner(p, 0), squares.size_px, patch.square_grey);
   patch.levels.resize(squares.levels);
   for (std::size_t l = 0; l < squares.levels; ++l) {
     std::vector<PatchPixel>& pixels = patch.levels[l].pixels;
@@ -176,10 +195,22 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
       pixels.push_back(*pixel);
       pixels.back().intensity = frame.pyramid[l](x >> l, y >> l);
       pixels.back().depth_confirmed =
+          takes_any_depth(squares.config.patches) ||
           preprocessing::is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
     }
   }
   use_model_depth_in_holes(patch);
+}
+
+/// Of the pixels that the patches need.
+std::span<const raycast::SurfacePoint> surfaces_of(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
+                                                   const config::Config& config, const Workers& workers,
+                                                   PatchWorkspace& work) {
+  if (config.patches.reference_surface == config::ReferenceSurface::model)
+    return work.surfaces.find(model, frame.camera, frame.T_world_camera, config.depth, work.pixels,
+                              work.first, workers);
+  work.measured = measured_surfaces(frame.depth_m, frame.camera, frame.T_world_camera, work.pixels);
+  return work.measured;
 }
 
 /// Patches with the pixels that have a usable surface.
@@ -195,8 +226,7 @@ void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
     add_pixels(squares, p, work);
     work.first.push_back(work.pixels.size());
   }
-  const std::span<const raycast::SurfacePoint> surfaces = work.surfaces.find(
-      model, frame.camera, frame.T_world_camera, config.depth, work.pixels, work.first, workers);
+  const std::span<const raycast::SurfacePoint> surfaces = surfaces_of(frame, model, config, workers, work);
   const UsableSurface usable(frame, config);
   patches.resize(centres.size());
   workers.for_chunks(patches.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -222,12 +252,25 @@ std::vector<TrackedCentre> select_separated(std::span<const TrackedCentre> survi
   return kept;
 }
 
+/// Those of the patches that go on as they are.
+std::vector<Patch> take_kept(std::span<const TrackedCentre> centres, std::vector<Patch>& patches) {
+  std::vector<Patch> kept;
+  for (const TrackedCentre& centre : centres) {
+    if (!centre.kept) continue;
+    check(*centre.kept < patches.size(), "a kept patch is one of those that were tracked");
+    kept.push_back(std::move(patches[*centre.kept]));
+    kept.back().age = centre.age;
+  }
+  return kept;
+}
+
 }  // namespace
 
 void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                      std::span<const TrackedCentre> survivors, const config::Config& config,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches) {
   std::vector<TrackedCentre> centres = select_separated(survivors, frame, config.patches);
+  std::vector<Patch> kept = take_kept(centres, patches);
   std::vector<Eigen::Vector2i> existing;
   for (const TrackedCentre& c : centres) {
     existing.emplace_back(static_cast<int>(std::lround(c.pixel_px.x())),
@@ -237,6 +280,7 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
        select_corners(frame.pyramid[0], frame.depth_m, existing, config.patches)) {
     centres.push_back({corner.cast<double>(), 0});
   }
+  std::erase_if(centres, [](const TrackedCentre& centre) { return centre.kept.has_value(); });
 
   cut_patches(frame, model, centres, config, workers, work, patches);
   const int square = config.patches.size_px * config.patches.size_px;
@@ -249,6 +293,7 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
     set_deformation(patch, frame.camera, frame.T_world_camera, config.terms.deformation);
   }
   std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
+  patches.insert(patches.begin(), std::move_iterator(kept.begin()), std::move_iterator(kept.end()));
 }
 
 std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,

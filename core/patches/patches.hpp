@@ -2,7 +2,9 @@
 // (Sec. 2.1.1, 2.3).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,12 +48,15 @@ struct Patch {
                                                         ///< [centre - size/2, centre + size/2)
   int age = 0;                                          ///< frames since its corner was detected
   std::vector<PatchLevel> levels;                       ///< fine to coarse
+  /// Grey levels of the whole square at level 0, row by row, with or without a surface. The square is in the
+  /// image.
+  std::vector<std::uint8_t> square_grey;
 };
 
 /// The frame that patches are cut from.
 struct ReferenceFrame {
   std::span<const GreyImage> pyramid;
-  const DepthImage& depth_m;  ///< gated
+  const DepthImage& depth_m;  ///< gated, unless patches.reference_surface is frame_ungated
   const PinholeCamera& camera;
   SE3 T_world_camera;
 };
@@ -60,6 +65,8 @@ struct ReferenceFrame {
 struct TrackedCentre {
   Vector2d pixel_px = Vector2d::Zero();
   int age = 0;
+  /// Its number among the patches that go on as they are, without being cut again (patches.refresh = keep).
+  std::optional<std::size_t> kept = std::nullopt;
 };
 
 /// Reusable buffers for cutting patches.
@@ -67,13 +74,15 @@ struct PatchWorkspace {
   std::vector<raycast::ExpectedSurface>
       pixels;                      ///< of level 0 that a patch needs at any level, by patch; depth 0 = none
   std::vector<std::size_t> first;  ///< of each patch, and the end
-  std::vector<std::int32_t> pixel_of;  ///< by patch, level, row, column; -1 = none
+  std::vector<std::int32_t> pixel_of;           ///< by patch, level, row, column; -1 = none
+  std::vector<raycast::SurfacePoint> measured;  ///< of the pixels, if patches take the frame's surface
   PatchSurfaces surfaces;
 };
 
 /// Sec. 2.3: surviving patches are cut again as squares at their new places, and FAST corners with enough
 /// depth fill the image up to max_count, spread over a grid. Intensity comes from the frame, depth and
-/// normals from the model. The memory of `patches` is used again.
+/// normals from the model (or from the frame: patches.reference_surface). `patches` are those that were
+/// tracked: kept survivors among them stay as they are, and the memory of all is used again.
 void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                      std::span<const TrackedCentre> survivors, const config::Config& config,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches);

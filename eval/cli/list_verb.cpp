@@ -42,8 +42,10 @@ struct ListOptions {
 Listing list_variants() {
   Listing listing{{"variant", "paper", "edits", "meaning"}, {}};
   for (const config::Variant& variant : config::all_variants()) {
-    listing.rows.push_back({std::string(variant.name), std::string(variant.paper_label),
-                            std::string(variant.edits), std::string(variant.sentence)});
+    const std::string edits = variant.base.empty() ? std::string(variant.edits)
+                                                   : fmt::format("{} and {}", variant.base, variant.edits);
+    listing.rows.push_back(
+        {std::string(variant.name), std::string(variant.paper_label), edits, std::string(variant.sentence)});
   }
   return listing;
 }

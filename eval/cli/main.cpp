@@ -61,6 +61,7 @@ int command_line(int argc, const char* const* argv) {
       "4 a run failed or was lost, or something cannot be written; 5 internal error; 130 interrupted.");
   const std::vector<console::Verb> verbs = {running::add_run_verb(app),
                                             running::add_bench_verb(app),
+                                            running::add_reproduce_verb(app),
                                             running::add_rerun_verb(app),
                                             running::add_slurm_task_verb(app),
                                             running::add_best_verb(app),

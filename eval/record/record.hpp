@@ -16,6 +16,7 @@
 #include "core/filter/sensor_constants.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
+#include "eval/metrics/intensity_readings.hpp"
 #include "eval/metrics/nees_metrics.hpp"
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/record/duration_histogram.hpp"
@@ -105,6 +106,7 @@ struct RecordedMetrics {
   Outcome<trajectory_error::RpeResult> rpe_frame;      ///< over one frame
   Outcome<trajectory_error::RpeResult> rpe_second;     ///< over one second
   Outcome<metrics::IntensityResult> aie;
+  Outcome<metrics::IntensityReadings> intensity_readings;  ///< by other definitions
   Outcome<RecordedMesh> mesh;
   RecordedNees nees;
   Outcome<metrics::ResidualSummary> residuals;

@@ -131,6 +131,21 @@ void read(const Json& json, metrics::IntensityResult& aie) {
   aie.accepted = summary_of(json.at("accepted"));
 }
 
+Json json_of(const metrics::IntensityReadings& readings) {
+  Json grey = Json::object();
+  for (const metrics::IntensityReading& reading : metrics::all_intensity_readings())
+    grey[metrics::to_string(reading)] = readings.of(reading);
+  return {{"protocol", "the intensity error by other definitions than AIE (docs/metrics.md)"},
+          {"unit", "grey levels 0-255"},
+          {"readings", grey}};
+}
+
+void read(const Json& json, metrics::IntensityReadings& readings) {
+  const auto all = metrics::all_intensity_readings();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    readings.grey[i] = number_at(json.at("readings"), metrics::to_string(all[i]).c_str());
+}
+
 Json json_of(const metrics::NeesResult& nees) {
   const metrics::NeesBounds bounds = metrics::nees_bounds_95(1, nees.part.dof);
   return {{"dof", nees.part.dof},        {"frames", nees.stats.count},
@@ -317,6 +332,7 @@ Json json_of_metrics(const RunRecord& record) {
       {"ate_fitted_offset", json_of(record.metrics.ate_fitted)},
       {"rpe", {{"frame", json_of(record.metrics.rpe_frame)}, {"second", json_of(record.metrics.rpe_second)}}},
       {"aie", json_of(record.metrics.aie)},
+      {"intensity_readings", json_of(record.metrics.intensity_readings)},
       {"mesh", json_of(record.metrics.mesh)},
       {"nees", json_of_nees(record.metrics.nees)},
       {"residuals", json_of(record.metrics.residuals)},
@@ -334,6 +350,7 @@ void read_metrics(const Json& json, RecordedMetrics& metrics) {
   metrics.rpe_frame = outcome_of<trajectory_error::RpeResult>(json.at("rpe").at("frame"));
   metrics.rpe_second = outcome_of<trajectory_error::RpeResult>(json.at("rpe").at("second"));
   metrics.aie = outcome_of<metrics::IntensityResult>(json.at("aie"));
+  metrics.intensity_readings = newer_outcome_of<metrics::IntensityReadings>(json, "intensity_readings");
   metrics.mesh = newer_outcome_of<RecordedMesh>(json, "mesh");
   metrics.nees = nees_of(json);
   metrics.residuals = newer_outcome_of<metrics::ResidualSummary>(json, "residuals");

@@ -98,6 +98,7 @@ record::RecordedMetrics metrics_of_import(const RunOutput& output, const recordi
                                           const Workers& workers) {
   record::RecordedMetrics metrics = metrics_of(output, recording, config::Config{}, workers);
   metrics.aie = {std::nullopt, "an imported run says nothing of intensities"};
+  metrics.intensity_readings = {std::nullopt, metrics.aie.reason};
   metrics.residuals = {std::nullopt, "an imported run says nothing of residuals"};
   metrics.nees.fill({std::nullopt, "an imported run has no covariance"});
   if (output.mesh.vertices.empty()) metrics.mesh = {std::nullopt, "no mesh was imported"};

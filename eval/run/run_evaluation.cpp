@@ -167,6 +167,9 @@ record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Rec
   record::RecordedMetrics metrics;
   metrics.aie = {output.intensity.result(), {}};
   if (metrics.aie.value->all.frames == 0) metrics.aie = {std::nullopt, "no frame has tracked pixels"};
+  metrics.intensity_readings = {output.intensity_readings.result(), {}};
+  if (output.intensity_readings.empty())
+    metrics.intensity_readings = {std::nullopt, "not asked for (evaluation.intensity_readings)"};
   metrics.residuals = {output.residuals.result(), {}};
   if (metrics.residuals.value->frames == 0) metrics.residuals = {std::nullopt, "no frame was tracked"};
   add_trajectory_metrics(metrics, output, recording);

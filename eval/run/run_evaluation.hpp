@@ -10,6 +10,7 @@
 #include "core/filter/stamped_state.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
+#include "eval/metrics/intensity_readings.hpp"
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/record/record.hpp"
 
@@ -20,6 +21,7 @@ struct RunOutput {
   Trajectory trajectory;                        ///< frames that were tracked; a predicted pose is no estimate
   std::vector<filter::StampedEstimate> states;  ///< of the same frames, at their capture instants
   metrics::IntensityAccumulator intensity;
+  metrics::IntensityReadingsAccumulator intensity_readings;  ///< empty if they are not asked for
   metrics::ResidualAccumulator residuals;
   Mesh mesh;  ///< of the model, in world
 };

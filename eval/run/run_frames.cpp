@@ -45,8 +45,10 @@ void take_report(RunProgress& progress, std::size_t frame, const health::FrameRe
     progress.stage_ms[stage] += report.stages.sums_ms()[stage];
   }
   // The first frame has nothing to be compared with: it is no frame without tracked pixels.
-  if (report.status != health::FrameStatus::initialised)
+  if (report.status != health::FrameStatus::initialised) {
     progress.output.intensity.add_frame(report.pixels.intensity);
+    progress.output.intensity_readings.add_frame(report.pixels.squares);
+  }
   if (report.status != health::FrameStatus::lost) {
     if (report.status == health::FrameStatus::relocalised)
       progress.log +=

@@ -169,9 +169,9 @@ Result<void> check_groups(const Suite& suite) {
   return {};
 }
 
-Result<void> check_suite(const Suite& suite, const fs::path& file) {
+Result<void> check_suite(const Suite& suite, const std::string& file) {
   const auto lacks = [&](std::string_view what) {
-    return fail(ErrorCode::configuration, fmt::format("{}: {}", file.string(), what));
+    return fail(ErrorCode::configuration, fmt::format("{}: {}", file, what));
   };
   if (suite.name.empty()) return lacks("the key 'name' is missing");
   if (suite.variants.empty()) return lacks("the key 'variants' is missing");
@@ -232,15 +232,11 @@ Result<fs::path> find_folder_named(const std::string& name, const fs::path& data
               fmt::format("did you mean {}? {}", nearest_name(name, known), there));
 }
 
-}  // namespace
-
-Result<Suite> read_suite(const fs::path& file) {
-  const auto document = config::read_toml(file);
-  if (!document) return tl::unexpected(document.error());
+Result<Suite> suite_of(const config::TomlDocument& document, const std::string& file) {
   constexpr std::array<std::string_view, 3> lists = {"recordings", "simulations", "criteria"};
   constexpr std::array<std::string_view, 2> lists_of_options = {"sweep",
                                                                 "exclude"};  // with tables of their own
-  for (const config::TomlTable& table : document->tables) {
+  for (const config::TomlTable& table : document.tables) {
     const auto list = list_of_key(table.key);
     const bool plain = list && std::find(lists.begin(), lists.end(), *list) != lists.end();
     const bool of_options =
@@ -251,12 +247,26 @@ Result<Suite> read_suite(const fs::path& file) {
     if (!known) return unknown_suite_key(table.place, table.key);
   }
   Suite suite;
-  for (const config::TomlEntry& entry : document->entries) {
+  for (const config::TomlEntry& entry : document.entries) {
     if (auto read = read_entry(entry, suite); !read) return tl::unexpected(read.error());
   }
-  if (auto read = read_tables(*document, suite); !read) return tl::unexpected(read.error());
+  if (auto read = read_tables(document, suite); !read) return tl::unexpected(read.error());
   if (auto complete = check_suite(suite, file); !complete) return tl::unexpected(complete.error());
   return suite;
+}
+
+}  // namespace
+
+Result<Suite> read_suite(const fs::path& file) {
+  const auto document = config::read_toml(file);
+  if (!document) return tl::unexpected(document.error());
+  return suite_of(*document, file.string());
+}
+
+Result<Suite> parse_suite(std::string_view text, const std::string& name) {
+  const auto document = config::parse_toml(text, name);
+  if (!document) return tl::unexpected(document.error());
+  return suite_of(*document, name);
 }
 
 Result<config::EffectiveConfig> suite_config(const Suite& suite, const config::Variant& variant) {

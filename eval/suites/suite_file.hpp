@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -69,6 +70,8 @@ struct Suite {
 /// Errors name file:line: data_missing (no such file), configuration (unknown key or variant, wrong type, a
 /// value that the option does not take, a missing or doubled key).
 [[nodiscard]] Result<Suite> read_suite(const std::filesystem::path& file);
+/// The same of a text; `name` stands for the file in messages.
+[[nodiscard]] Result<Suite> parse_suite(std::string_view text, const std::string& name);
 
 /// The configuration of one of the suite's variants, before --set.
 [[nodiscard]] Result<config::EffectiveConfig> suite_config(const Suite& suite,

@@ -7,6 +7,7 @@ namespace fusebench::cli::running {
 
 [[nodiscard]] console::Verb add_run_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_bench_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_reproduce_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_slurm_task_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_rerun_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_gc_verb(CLI::App& app);
