@@ -35,8 +35,9 @@ std::string terminal(FigureFormat format, bool equal) {
   const char* const size = equal ? "12cm,11cm" : "14cm,8cm";
   if (format == FigureFormat::pdf)
     return fmt::format("set terminal pdfcairo noenhanced size {} font \"Helvetica,10\"\n", size);
-  return fmt::format("set terminal svg noenhanced size {} dynamic font \"Helvetica,12\"\n",
-                     equal ? "480,440" : "560,320");
+  return fmt::format(
+      "set terminal svg noenhanced size {} dynamic font \"Helvetica,12\" background '#ffffff'\n",
+      equal ? "480,440" : "560,320");
 }
 
 void add_data(const Chart& chart, std::string& script) {
@@ -176,6 +177,44 @@ std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFo
   return script + "\n";
 }
 
+std::string figure_file(const std::string& name, FigureFormat format) {
+  return name + (format == FigureFormat::pdf ? ".pdf" : ".svg");
+}
+
+Result<void> draw_figure(const std::string& script, const std::filesystem::path& folder,
+                         const std::string& name, FigureFormat format) {
+  const std::filesystem::path file = folder / (name + ".gp");
+  if (auto written = text::write_text_file(file, script); !written) return written;
+  auto drawn = run_gnuplot(file);
+  std::error_code ignored;
+  if (!drawn) std::filesystem::remove(folder / figure_file(name, format), ignored);  // half is worth nothing
+  return drawn;
+}
+
+std::string panels_script(const std::vector<Panel>& panels, std::size_t columns,
+                          const Eigen::Vector2i& size_px, const std::string& file, FigureFormat format) {
+  constexpr int kTitle_px = 22;
+  const auto rows = static_cast<int>((panels.size() + columns - 1) / columns);
+  const int width_px = static_cast<int>(columns) * (size_px.x() + 6);
+  const int height_px = rows * (size_px.y() + kTitle_px);
+  std::string script =
+      format == FigureFormat::pdf
+          ? fmt::format("set terminal pdfcairo noenhanced size {:.1f}cm,{:.1f}cm font \"Helvetica,9\"\n",
+                        0.0265 * width_px, 0.0265 * height_px)
+          : fmt::format(
+                "set terminal svg noenhanced size {},{} dynamic font \"Helvetica,12\" background "
+                "'#ffffff'\n",
+                width_px, height_px);
+  script += "set output " + gnuplot_text(file) + "\nunset tics\nunset border\nunset key\n";
+  script += fmt::format("set multiplot layout {},{} margins 0.005,0.995,0.01,{:.3f} spacing 0.01,{:.3f}\n",
+                        rows, columns, 1.0 - static_cast<double>(kTitle_px) / height_px,
+                        static_cast<double>(kTitle_px) / height_px);
+  for (const Panel& panel : panels)
+    script += fmt::format("set title {} offset 0,-0.7\nplot {} binary filetype=png with rgbimage notitle\n",
+                          gnuplot_text(panel.title), gnuplot_text(panel.file));
+  return script + "unset multiplot\n";
+}
+
 Result<std::size_t> write_figures(const Page& page, const std::filesystem::path& folder,
                                   FigureFormat format) {
   std::string part;
@@ -188,17 +227,9 @@ Result<std::size_t> write_figures(const Page& page, const std::filesystem::path&
       std::string name = part + "-" + slug(chart.title);
       for (int copy = 2; !names.insert(name).second; ++copy)
         name = fmt::format("{}-{}-{}", part, slug(chart.title), copy);
-      const auto figure = folder / (name + (format == FigureFormat::pdf ? ".pdf" : ".svg"));
-      const auto script = folder / (name + ".gp");
-      if (auto written =
-              text::write_text_file(script, gnuplot_script(chart, figure.filename().string(), format));
-          !written)
-        return tl::unexpected(written.error());
-      if (auto drawn = run_gnuplot(script); !drawn) {
-        std::error_code ignored;
-        std::filesystem::remove(figure, ignored);  // half of it is worth nothing
+      const std::string script = gnuplot_script(chart, figure_file(name, format), format);
+      if (auto drawn = draw_figure(script, folder, name, format); !drawn)
         return tl::unexpected(drawn.error());
-      }
     }
   }
   return names.size();

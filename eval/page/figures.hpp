@@ -19,6 +19,24 @@ enum class FigureFormat { svg, pdf };
 /// A script that draws the chart into a file, with the data within it.
 [[nodiscard]] std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFormat format);
 
+/// One image of a figure of several.
+struct Panel {
+  std::string title;
+  std::string file;  ///< name of a PNG in the folder of the figure
+};
+
+/// A script that draws images side by side, row by row, at one scale, each below its title. size_px: of one.
+[[nodiscard]] std::string panels_script(const std::vector<Panel>& panels, std::size_t columns,
+                                        const Eigen::Vector2i& size_px, const std::string& file,
+                                        FigureFormat format);
+
+/// Writes a script as NAME.gp into a folder and draws NAME.svg (or .pdf) by it. Errors: io; usage where
+/// gnuplot is not installed.
+[[nodiscard]] Result<void> draw_figure(const std::string& script, const std::filesystem::path& folder,
+                                       const std::string& name, FigureFormat format);
+/// The name of the file of a figure.
+[[nodiscard]] std::string figure_file(const std::string& name, FigureFormat format);
+
 /// Writes each chart as RECORDING-TITLE.svg (or .pdf) into a folder, and beside it the script
 /// RECORDING-TITLE.gp that draws it again, to be edited. Returns how many. Errors: io; usage where gnuplot is
 /// not installed.

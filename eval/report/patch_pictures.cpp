@@ -9,9 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "datasets/images/image_files.hpp"
-#include "eval/text/base64.hpp"
-
 namespace fusebench::report {
 
 namespace {
@@ -88,7 +85,7 @@ cv::Mat cut(const GreyImage& image, const Window& window) {
   return tile;
 }
 
-std::string picture(const Pixels& pixels, const GreyImage& image) {
+ColorImage picture(const Pixels& pixels, const GreyImage& image) {
   const auto before = [](const run_files::PatchTablePixel& p) {
     return Eigen::Vector2f(p.reference_px.cast<float>());
   };
@@ -109,9 +106,7 @@ std::string picture(const Pixels& pixels, const GreyImage& image) {
     cv::resize(tiles[static_cast<std::size_t>(i)], large, {kTile_px, kTile_px}, 0, 0, cv::INTER_NEAREST);
     cv::cvtColor(large, view(cv::Rect(i * (kTile_px + kGap_px), 0, kTile_px, kTile_px)), cv::COLOR_GRAY2RGB);
   }
-  constexpr int kQuality = 92;
-  const auto jpeg = images::encode_jpeg(strip, kQuality);
-  return jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string();
+  return strip;
 }
 
 /// The number of a frame that all runs kept, the one with the most motion in the first run.
@@ -131,6 +126,11 @@ std::optional<std::size_t> common_frame(std::span<const LabelledPatches> runs) {
 }
 
 }  // namespace
+
+std::string PatchPicture::caption() const {
+  return fmt::format("{}: patch at ({}, {}), difference {:.1f} grey levels{}", run, corner_px.x(),
+                     corner_px.y(), difference_grey, accepted ? "" : " (rejected by the gate)");
+}
 
 PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
   PatchPictures result;
@@ -170,11 +170,9 @@ PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
     const Corner& corner = common[(2 * k + 1) * common.size() / (2 * std::min(kPatches, common.size()))];
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const Pixels& pixels = patches[i].at(corner);
-      result.images.push_back(
-          {fmt::format("{}: patch at ({}, {}), difference {:.1f} grey levels{}", runs[i].label, corner.first,
-                       corner.second, mean_difference(pixels),
-                       pixels.front().accepted ? "" : " (rejected by the gate)"),
-           picture(pixels, frames[i]->grey)});
+      result.pictures.push_back({runs[i].label, Eigen::Vector2i(corner.first, corner.second),
+                                 mean_difference(pixels), pixels.front().accepted,
+                                 picture(pixels, frames[i]->grey)});
     }
   }
   return result;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/page/page.hpp"
+#include "core/base/image.hpp"
 #include "eval/run_files/patch_table.hpp"
 
 namespace fusebench::report {
@@ -16,9 +16,20 @@ struct LabelledPatches {
   std::vector<run_files::PatchTableFrame> frames;
 };
 
+/// One patch as one run has it.
+struct PatchPicture {
+  std::string run;  ///< its label
+  Eigen::Vector2i corner_px = Eigen::Vector2i::Zero();
+  double difference_grey = 0;
+  bool accepted = false;
+  ColorImage strip;  ///< four squares side by side
+
+  [[nodiscard]] std::string caption() const;
+};
+
 struct PatchPictures {
   std::string text;  ///< which frame, and the mean error of the patches that all runs track in it
-  std::vector<page::PageImage> images;
+  std::vector<PatchPicture> pictures;  ///< by patch, then run
 };
 
 /// Of the frame that all runs kept and in which the patches moved most, a few patches that all of them track,

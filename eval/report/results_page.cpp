@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/mesh/ply_file.hpp"
+#include "datasets/images/image_files.hpp"
 #include "eval/mesh_error/error_colors.hpp"
 #include "eval/mesh_error/mesh_clustering.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
@@ -21,6 +22,7 @@
 #include "eval/report/run_series.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/tables/table.hpp"
+#include "eval/text/base64.hpp"
 
 namespace fusebench::report {
 
@@ -117,6 +119,17 @@ page::PageTable run_facts(Group group) {
 }
 
 /// Of the first variants that kept their patches.
+std::vector<page::PageImage> page_images(const PatchPictures& pictures) {
+  std::vector<page::PageImage> result;
+  for (const PatchPicture& picture : pictures.pictures) {
+    constexpr int kQuality = 92;
+    const auto jpeg = images::encode_jpeg(picture.strip, kQuality);
+    result.push_back(
+        {picture.caption(), jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string()});
+  }
+  return result;
+}
+
 PatchPictures pictures_of(Group group, std::vector<std::string>& warnings) {
   std::vector<LabelledPatches> runs;
   for (const run_files::FoundRun& run : group) {
@@ -254,8 +267,8 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   add_charts(page, "Position over time", position_charts(series, detail.buckets));
   add_charts(page, "Errors", error_charts(series, detail.buckets));
   add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
-  if (PatchPictures pictures = pictures_of(drawn, result.warnings); !pictures.images.empty())
-    page.sections.push_back({"Patches", pictures.text, std::move(pictures.images), 3});
+  if (const PatchPictures pictures = pictures_of(drawn, result.warnings); !pictures.pictures.empty())
+    page.sections.push_back({"Patches", pictures.text, page_images(pictures), 3});
   if (page::PageScene scene = scene_of(series, detail.triangles, result.warnings); !scene.meshes.empty()) {
     page.sections.push_back(
         {"Models", "Simplified for this page; mesh.ply of each run has all triangles.", std::move(scene), 3});

@@ -104,6 +104,13 @@ Result<std::string_view> text_of(std::string_view file) {
 
 constexpr std::string_view kReadings = "configs/reproduction/table1_readings.toml";
 constexpr std::string_view kRecordings = "configs/reproduction/table1_recordings.toml";
+constexpr std::string_view kFigures = "configs/reproduction/figures_recordings.toml";
+
+Result<suites::Suite> embedded_suite(std::string_view file) {
+  const auto text = text_of(file);
+  if (!text) return tl::unexpected(text.error());
+  return suites::parse_suite(*text, std::string(file));
+}
 
 }  // namespace
 
@@ -154,10 +161,8 @@ Result<Table1Protocol> table1_protocol() {
   return parse_table1_protocol(*text, std::string(kReadings));
 }
 
-Result<suites::Suite> table1_suite() {
-  const auto text = text_of(kRecordings);
-  if (!text) return tl::unexpected(text.error());
-  return suites::parse_suite(*text, std::string(kRecordings));
-}
+Result<suites::Suite> table1_suite() { return embedded_suite(kRecordings); }
+
+Result<suites::Suite> figures_suite() { return embedded_suite(kFigures); }
 
 }  // namespace fusebench::reproduction

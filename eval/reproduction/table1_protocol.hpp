@@ -51,5 +51,7 @@ struct ReproductionFile {
 [[nodiscard]] Result<Table1Protocol> table1_protocol();
 /// Its recordings.
 [[nodiscard]] Result<suites::Suite> table1_suite();
+/// The recordings and variants of the paper's figures.
+[[nodiscard]] Result<suites::Suite> figures_suite();
 
 }  // namespace fusebench::reproduction

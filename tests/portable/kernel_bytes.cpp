@@ -123,7 +123,7 @@ void track(const RgbdFrame& frame, const TsdfVolume& model, const Workers& worke
   warp_level(lanes.pixels, lanes.warp_points, posed, lanes.warped);
   MutualOcclusion occlusion;
   occlusion.resize(kCamera.width_px, kCamera.height_px);
-  occlusion.test(lanes.warped, DepthConfig{});
+  occlusion.test(lanes.warped, DepthConfig{}, ShrinkTest::depth_jump);
   test_measured_occlusion(lanes.warped, frame.depth_m, 1, 0.1, DepthConfig{});
   Bytes bytes;
   QuadraticSums sums;

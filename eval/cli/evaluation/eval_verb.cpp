@@ -16,6 +16,7 @@ console::Verb add_eval_verb(CLI::App& app) {
   metrics->push_back(add_eval_nees_verb(*verb));
   metrics->push_back(add_eval_silent_verb(*verb));
   metrics->push_back(add_eval_mesh_verb(*verb));
+  metrics->push_back(add_eval_aie_verb(*verb));
   return {verb, [metrics]() -> Result<int> {
             for (const console::Verb& metric : *metrics) {
               if (metric.app->parsed()) return metric.run();

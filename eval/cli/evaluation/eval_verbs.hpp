@@ -12,5 +12,6 @@ namespace fusebench::cli::evaluation {
 [[nodiscard]] console::Verb add_eval_nees_verb(CLI::App& eval);
 [[nodiscard]] console::Verb add_eval_silent_verb(CLI::App& eval);
 [[nodiscard]] console::Verb add_eval_mesh_verb(CLI::App& eval);
+[[nodiscard]] console::Verb add_eval_aie_verb(CLI::App& eval);
 
 }  // namespace fusebench::cli::evaluation

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
@@ -13,33 +15,60 @@
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/engine/plan_preview.hpp"
+#include "eval/page/figures.hpp"
+#include "eval/page/page.hpp"
+#include "eval/paper_figures/paper_figures.hpp"
 #include "eval/reproduction/table1.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::running {
 
 namespace {
 
+/// What both verbs need to run their runs.
 struct ReproduceOptions {
   engine::BatchOptions batch;
   engine::EngineOptions engine;
   std::vector<std::string> readings;
-  std::string format = "markdown";
+  std::string format;
+  std::filesystem::path figures;
   bool dry_run = false;
   bool json = false;
   bool threads_given = false;
 };
 
-void print_plan(const reproduction::Table1Plan& plan, const ReproduceOptions& options) {
-  const engine::BatchPlan batch{plan.jobs, {}, {}};
+/// The number of threads that each run has by default: its share of the machine. Returns all.
+int share_threads(ReproduceOptions& options) {
+  const int all_threads = options.batch.threads;
+  if (!options.threads_given) options.batch.threads = std::max(1, all_threads / options.engine.at_once);
+  return all_threads;
+}
+
+int print_plan(const std::vector<engine::BatchJob>& jobs, const ReproduceOptions& options) {
+  const engine::BatchPlan batch{jobs, {}, {}};
   const engine::PlanPreview preview = engine::preview_of(batch);
   const int at_once = options.engine.at_once;
   console::print_output(options.json ? engine::to_json(preview, batch, at_once)
                                      : engine::to_text(preview, batch, at_once));
+  return 0;
+}
+
+/// Simulates what is missing and runs the jobs.
+Result<std::vector<engine::BatchOutcome>> run_jobs(const std::vector<engine::BatchJob>& jobs, int all_threads,
+                                                   const suites::RunLimits& limits,
+                                                   const ReproduceOptions& options) {
+  if (auto made = console::simulate_missing(jobs, all_threads); !made) return tl::unexpected(made.error());
+  engine::EngineOptions engine = options.engine;
+  engine.limits = limits;
+  console::EngineConsole console(jobs);
+  auto outcomes = engine::run_locally(jobs, engine, console.control());
+  console.clear();
+  return outcomes;
 }
 
 Result<int> reproduce_table1(ReproduceOptions options) {
-  const int all_threads = options.batch.threads;
-  if (!options.threads_given) options.batch.threads = std::max(1, all_threads / options.engine.at_once);
+  const int all_threads = share_threads(options);
   const auto protocol = reproduction::table1_protocol();
   if (!protocol) return tl::unexpected(protocol.error());
   const auto recordings = reproduction::table1_suite();
@@ -48,16 +77,8 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& name : plan->absent)
     console::print_progress(fmt::format("left out, not there: {}", name));
-  if (options.dry_run) {
-    print_plan(*plan, options);
-    return 0;
-  }
-  if (auto made = console::simulate_missing(plan->jobs, all_threads); !made)
-    return tl::unexpected(made.error());
-  options.engine.limits = recordings->limits;
-  console::EngineConsole console(plan->jobs);
-  const auto outcomes = engine::run_locally(plan->jobs, options.engine, console.control());
-  console.clear();
+  if (options.dry_run) return print_plan(plan->jobs, options);
+  const auto outcomes = run_jobs(plan->jobs, all_threads, recordings->limits, options);
   if (!outcomes) return tl::unexpected(outcomes.error());
   const auto table = reproduction::table1_of(*protocol, *plan, *outcomes);
   if (!table) return tl::unexpected(table.error());
@@ -65,51 +86,122 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   return 0;
 }
 
-}  // namespace
+/// The runs of each recording, by its group.
+std::vector<paper_figures::RecordingRuns> runs_by_group(const std::vector<engine::BatchOutcome>& outcomes) {
+  std::vector<paper_figures::RecordingRuns> recordings;
+  for (const engine::BatchOutcome& outcome : outcomes) {
+    auto place = std::ranges::find(recordings, outcome.group, &paper_figures::RecordingRuns::label);
+    if (place == recordings.end()) place = recordings.insert(recordings.end(), {outcome.group, {}});
+    if (auto run = run_files::found_run(outcome.folder)) place->runs.push_back(std::move(*run));
+  }
+  return recordings;
+}
 
-console::Verb add_reproduce_verb(CLI::App& app) {
-  auto options = std::make_shared<ReproduceOptions>();
-  options->batch.out = "results/runs/table1";
-  CLI::App* verb = app.add_subcommand(
-      "reproduce", "Runs what the paper's table needs and prints it beside the published numbers");
-  CLI::App* table1 = verb->add_subcommand(
-      "table1",
-      "Table 1: intensity error of the direct method and of deformed patches, by each way to read it");
-  verb->require_subcommand(1);
-  console::add_data_option(*table1, options->batch.data);
-  table1->add_option("--out", options->batch.out, "Folder of the runs")
+Result<int> reproduce_figures(ReproduceOptions options) {
+  const int all_threads = share_threads(options);
+  const auto format = page::parse_figure_format(options.format);
+  if (!format) return tl::unexpected(format.error());
+  const auto suite = reproduction::figures_suite();
+  if (!suite) return tl::unexpected(suite.error());
+  const auto plan = engine::plan_batch(*suite, options.batch);
+  if (!plan) return tl::unexpected(plan.error());
+  if (options.dry_run) return print_plan(plan->jobs, options);
+  const auto outcomes = run_jobs(plan->jobs, all_threads, suite->limits, options);
+  if (!outcomes) return tl::unexpected(outcomes.error());
+  std::error_code error;
+  std::filesystem::create_directories(options.figures, error);
+  if (error)
+    return fail(ErrorCode::io,
+                fmt::format("{}: the folder cannot be made: {}", options.figures.string(), error.message()));
+  const auto written = paper_figures::write_paper_figures(runs_by_group(*outcomes), options.figures, *format);
+  if (!written) return tl::unexpected(written.error());
+  for (const std::string& warning : written->warnings) console::print_progress("warning: " + warning);
+  const std::filesystem::path file = options.figures / "figures.html";
+  if (auto saved = text::write_text_file(file, page::to_html(written->page)); !saved)
+    return tl::unexpected(saved.error());
+  console::print_progress(
+      fmt::format("{}: figures as {} with the scripts that draw them, and all of them on {}",
+                  options.figures.string(), options.format, file.filename().string()));
+  return 0;
+}
+
+void add_engine_options(CLI::App& verb, ReproduceOptions& options) {
+  verb.add_option("--out", options.batch.out, "Folder of the runs")->type_name("DIR")->capture_default_str();
+  verb.add_option("--simulated", options.batch.simulated,
+                  "Folder of the recordings that are simulated; those that are there are used again")
       ->type_name("DIR")
       ->capture_default_str();
-  table1
-      ->add_option("--simulated", options->batch.simulated,
-                   "Folder of the recordings that are simulated; those that are there are used again")
-      ->type_name("DIR")
-      ->capture_default_str();
-  table1->add_option("--reading", options->readings, "Only this reading, by its name; may be repeated")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  table1
-      ->add_option("--only", options->batch.only,
-                   "Only some recordings: recording=TEXT (the name contains it); may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  table1->add_option("-j,--jobs", options->engine.at_once, "Runs at a time, each in a process of its own")
+  verb.add_option("-j,--jobs", options.engine.at_once, "Runs at a time, each in a process of its own")
       ->check(CLI::Range(1, 1024))
       ->type_name("N")
       ->capture_default_str();
-  table1->add_flag("--dry-run", options->dry_run, "Prints the runs and runs nothing");
-  table1->add_option("--format", options->format, "markdown or latex")
+  verb.add_flag("--dry-run", options.dry_run, "Prints the runs and runs nothing");
+  console::add_threads_option(verb, options.batch.threads);
+}
+
+CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
+  CLI::App* table1 = verb.add_subcommand(
+      "table1",
+      "Table 1: intensity error of the direct method and of deformed patches, by each way to read it");
+  options.batch.out = "results/runs/table1";
+  options.format = "markdown";
+  console::add_data_option(*table1, options.batch.data);
+  add_engine_options(*table1, options);
+  table1->add_option("--reading", options.readings, "Only this reading, by its name; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  table1
+      ->add_option("--only", options.batch.only,
+                   "Only some recordings: recording=TEXT (the name contains it); may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  table1->add_option("--format", options.format, "markdown or latex")
       ->check(CLI::IsMember({"markdown", "latex"}))
       ->capture_default_str();
-  console::add_threads_option(*table1, options->batch.threads);
-  console::add_json_flag(*table1, options->json);
+  console::add_json_flag(*table1, options.json);
   table1->footer(
       "What the paper does not define (its direct method, its error) is a reading each; docs/table1.md\n"
       "explains them. Recordings that are not under --data have simulated stand-ins, and the output says\n"
       "which is which. A finished run is not repeated.");
-  return {verb, [options, table1] {
-            options->threads_given = table1->count("--threads") > 0;
-            return reproduce_table1(*options);
+  return table1;
+}
+
+CLI::App* add_figures(CLI::App& verb, ReproduceOptions& options) {
+  CLI::App* figures = verb.add_subcommand(
+      "figures",
+      "The figures: speed, patches under deformation, with and without an IMU, reconstructions side by side");
+  options.batch.out = "results/runs/figures";
+  options.figures = "results/figures";
+  options.format = "svg";
+  add_engine_options(*figures, options);
+  figures->add_option("--figures", options.figures, "Folder of the figures")
+      ->type_name("DIR")
+      ->capture_default_str();
+  figures->add_option("--format", options.format, "svg or pdf")
+      ->check(CLI::IsMember({"svg", "pdf"}))
+      ->capture_default_str();
+  figures->footer(
+      "The recordings are simulated. Drawn by gnuplot; figures.html shows all of them on one page.");
+  return figures;
+}
+
+}  // namespace
+
+console::Verb add_reproduce_verb(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand(
+      "reproduce", "Runs what the paper's table or its figures need, and shows it beside what is published");
+  verb->require_subcommand(1);
+  const auto table1_options = std::make_shared<ReproduceOptions>();
+  const auto figures_options = std::make_shared<ReproduceOptions>();
+  CLI::App* table1 = add_table1(*verb, *table1_options);
+  CLI::App* figures = add_figures(*verb, *figures_options);
+  return {verb, [=] {
+            if (figures->parsed()) {
+              figures_options->threads_given = figures->count("--threads") > 0;
+              return reproduce_figures(*figures_options);
+            }
+            table1_options->threads_given = table1->count("--threads") > 0;
+            return reproduce_table1(*table1_options);
           }};
 }
 

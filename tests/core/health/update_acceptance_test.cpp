@@ -98,6 +98,24 @@ TEST(UpdateAcceptance, OnlyAcceptedPatchesOfSmallErrorSurvive) {
   EXPECT_EQ(survivors[0].age, 8);
 }
 
+TEST(UpdateAcceptance, OnlyPatchesThatKeepTheirShapeAreKept) {
+  PatchConfig config;
+  const std::vector<Patch> patches(3);
+  std::vector<PatchOutcome> outcomes(3);
+  for (PatchOutcome& outcome : outcomes) outcome.accepted = true;
+  outcomes[0].shrunk = true;
+  outcomes[1].extended = true;
+  std::vector<TrackedCentre> survivors;
+  find_survivors(patches, outcomes, config, survivors);
+  for (const TrackedCentre& survivor : survivors) EXPECT_FALSE(survivor.kept.has_value());
+  config.refresh = Refresh::keep;
+  find_survivors(patches, outcomes, config, survivors);
+  ASSERT_EQ(survivors.size(), 3U);
+  EXPECT_FALSE(survivors[0].kept.has_value());
+  EXPECT_FALSE(survivors[1].kept.has_value());
+  EXPECT_EQ(survivors[2].kept, 2U);
+}
+
 TEST(UpdateAcceptance, WhatStaysBeforeTheSceneForASecondIsFused) {
   const HealthConfig config;
   OcclusionGate gate;

@@ -100,6 +100,56 @@ TEST(PatchMeasurement, NothingOfAnEarlierFrameShows) {
   }
 }
 
+TEST(PatchMeasurement, PatchesFindTheirOwnPlaceFromAWrongPrediction) {
+  Scene scene;
+  scene.config.terms.deformation = Deformation::rigid_square;
+  const std::vector<Patch> patches = scene.cut(40, Deformation::rigid_square);
+  PatchMeasurement measurement(scene.config, scene.rig, scene.workers);
+  // The same frame again, but the prediction is off by about 3 pixels: each square must go back to its place.
+  measurement.observe(scene.first.observed(), patches, {});
+  static_cast<void>(measurement.linearise({}, measurement.stages() - 1, false));
+  measurement.move_patches_alone(SE3{so3_exp({0.006, -0.009, 0}), {0, 0, 0}});
+  std::size_t found = 0;
+  std::size_t tracked = 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const PatchOutcome& outcome = measurement.outcomes()[p];
+    if (!outcome.tracked) continue;
+    ++tracked;
+    found += (outcome.centre_px - patches[p].centre_px.cast<double>()).norm() < 0.5 ? 1U : 0U;
+  }
+  EXPECT_GT(tracked, 20U);
+  EXPECT_GE(found * 10, tracked * 8) << "of " << tracked << ", " << found << " are back";
+}
+
+TEST(PatchMeasurement, WholeSquaresHoldThePixelsOfAIEAndTheOthers) {
+  Scene scene;
+  const std::vector<Patch> patches = scene.cut(40, Deformation::pixelwise);
+  PatchMeasurement plain(scene.config, scene.rig, scene.workers);
+  plain.observe(scene.near.observed(), patches, {});
+  static_cast<void>(plain.linearise({}, plain.stages() - 1, false));
+  EXPECT_TRUE(plain.tracked_pixels().squares.empty()) << "nobody asked for them";
+
+  scene.config.evaluation.intensity_readings = true;
+  PatchMeasurement measurement(scene.config, scene.rig, scene.workers);
+  measurement.observe(scene.near.observed(), patches, {});
+  static_cast<void>(measurement.linearise({}, measurement.stages() - 1, false));
+  const TrackedPixels tracked = measurement.tracked_pixels();
+  std::vector<float> visible;
+  for (const SquarePixel& pixel : tracked.squares) {
+    if (pixel.visible) visible.push_back(pixel.difference_grey);
+  }
+  ASSERT_EQ(visible.size(), tracked.intensity.size());
+  double sum = 0, expected = 0;
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    sum += static_cast<double>(visible[i]);
+    expected += static_cast<double>(tracked.intensity[i].difference_grey);
+  }
+  EXPECT_NEAR(sum, expected, 1e-3 * expected);
+  std::size_t seen = 0;
+  for (const PatchOutcome& outcome : measurement.outcomes()) seen += outcome.tracked ? 1U : 0U;
+  EXPECT_EQ(tracked.squares.size(), 100 * seen) << "no patch is at the border";
+}
+
 TEST(PatchMeasurement, WithoutAFrameThereIsNothingToMeasureBy) {
   const Scene scene;
   PatchMeasurement measurement(scene.config, scene.rig, scene.workers);

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tests/support/textured_room.hpp"
@@ -103,7 +106,7 @@ TEST(PatchDeformation, ShrinkTestRemovesTheOccludedFarPlaneAndNothingElse) {
   LevelLanes lanes = warp(patch, camera_at({-0.05, 0, 0}));
   MutualOcclusion occlusion;
   occlusion.resize(320, 240);
-  occlusion.test(lanes.warped, DepthConfig{});
+  occlusion.test(lanes.warped, DepthConfig{}, ShrinkTest::depth_jump);
   const auto warped = pixels_of(lanes);
   for (std::size_t i = 0; i < warped.size(); ++i) {
     const int x = static_cast<int>(patch.levels[0].pixels[i].reference_pixel % 320);
@@ -126,12 +129,12 @@ TEST(PatchDeformation, AnOccluderInAnotherPatchCounts) {
   occlusion.resize(320, 240);
   for (int time = 0; time < 2; ++time) {  // it forgets the test before
     LevelLanes lanes = warp(both, posed);
-    occlusion.test(lanes.warped, DepthConfig{});
+    occlusion.test(lanes.warped, DepthConfig{}, ShrinkTest::depth_jump);
     for (const Pixel& pixel : pixels_of(lanes, 0)) EXPECT_TRUE(pixel.visible);
     for (const Pixel& pixel : pixels_of(lanes, 1)) EXPECT_FALSE(pixel.visible);
   }
   LevelLanes alone = warp(far, posed);
-  occlusion.test(alone.warped, DepthConfig{});
+  occlusion.test(alone.warped, DepthConfig{}, ShrinkTest::depth_jump);
   for (const Pixel& pixel : pixels_of(alone)) EXPECT_TRUE(pixel.visible);
 }
 
@@ -142,9 +145,19 @@ TEST(PatchDeformation, BackingAwayFromOneSurfaceHidesNothing) {
   LevelLanes lanes = warp(patch, camera_at({0, 0, -1.5}));
   MutualOcclusion occlusion;
   occlusion.resize(320, 240);
-  occlusion.test(lanes.warped, DepthConfig{});
+  occlusion.test(lanes.warped, DepthConfig{}, ShrinkTest::depth_jump);
   for (const Pixel& pixel : pixels_of(lanes)) EXPECT_TRUE(pixel.visible);
   EXPECT_FALSE(is_extended(lanes.warped, kSize));
+  // To the letter of the paper, it is one: of the pixels in one cell only the nearest stays.
+  occlusion.test(lanes.warped, DepthConfig{}, ShrinkTest::any_collision);
+  std::set<std::pair<long, long>> cells;
+  for (const Pixel& pixel : pixels_of(lanes)) {
+    if (!pixel.visible) continue;
+    const bool first = cells.emplace(std::lround(pixel.pixel_px.x()), std::lround(pixel.pixel_px.y())).second;
+    EXPECT_TRUE(first) << "two visible pixels in one cell";
+  }
+  EXPECT_GT(cells.size(), 10U);
+  EXPECT_LT(cells.size(), 60U) << "the square is seen at half its size";
 }
 
 TEST(PatchDeformation, ExtendTestSeesTheOpeningGapAndTheApproach) {

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 
 #include "core/base/image.hpp"
+#include "core/patches/measured_surfaces.hpp"
 #include "tests/support/gated_depth.hpp"
 #include "tests/support/textured_room.hpp"
 
@@ -61,6 +64,68 @@ TEST(Patches, PixelsAreAlignedByWhereTheySeeOneSurface) {
     }
   }
   EXPECT_GT(mixed, 50U) << "the furniture has edges that coarse pixels reach over";
+}
+
+TEST(Patches, KeptOnesStayAsTheyAreWithNewOnesAround) {
+  const FusedFrame scene;
+  std::vector<Patch> patches = scene.cut({});
+  ASSERT_GT(patches.size(), 20U);
+  patches[5].levels.front().pixels.front().intensity = -7;  // as no image has it
+  const std::uint32_t key = patches[5].levels.front().pixels.front().reference_pixel;
+  const Eigen::Vector2i before = patches[5].centre_px;
+  const std::vector<TrackedCentre> survivors = {{before.cast<double>() + Vector2d(3, 1), 4, 5}};
+  PatchWorkspace work;
+  refresh_patches({scene.pyramid, scene.gated_m, scene.camera, SE3{}}, scene.model, survivors, scene.config,
+                  scene.workers, work, patches);
+  ASSERT_GT(patches.size(), 10U);
+  EXPECT_EQ(patches[0].levels.front().pixels.front().intensity, -7);
+  EXPECT_EQ(patches[0].levels.front().pixels.front().reference_pixel, key);
+  EXPECT_EQ(patches[0].centre_px, before) << "its place in the frame that it was cut from";
+  EXPECT_EQ(patches[0].age, 4);
+  for (std::size_t p = 1; p < patches.size(); ++p) {
+    EXPECT_EQ(patches[p].age, 0);
+    EXPECT_GE((patches[p].centre_px - before - Eigen::Vector2i(3, 1)).norm(), 10)
+        << "new ones keep clear of where it is now";
+  }
+}
+
+TEST(Patches, TheFramesOwnSurfaceIsWhatItMeasured) {
+  FusedFrame scene;
+  for (float& depth_m : scene.gated_m.data) depth_m *= 1.01F;  // a scale that the model does not have
+  const auto worst_depth_error_m = [&](ReferenceSurface surface) {
+    scene.config.patches.reference_surface = surface;
+    double worst = 0;
+    for (const Patch& patch : scene.cut({})) {
+      for (const PatchPixel& pixel : patch.levels.front().pixels)
+        worst = std::max(worst, std::abs(pixel.point_world.z() -
+                                         static_cast<double>(scene.gated_m.data[pixel.reference_pixel])));
+    }
+    return worst;
+  };
+  EXPECT_GT(worst_depth_error_m(ReferenceSurface::model), 0.01);
+  EXPECT_LT(worst_depth_error_m(ReferenceSurface::frame), 1e-6);
+  EXPECT_LT(worst_depth_error_m(ReferenceSurface::frame_ungated), 1e-6);
+}
+
+TEST(Patches, NormalsOfTheFrameAreThoseOfThePlane) {
+  // A plane with a known normal, seen by a turned camera.
+  const PinholeCamera camera = testing::small_camera();
+  const Vector3d normal = Vector3d(0.3, -0.2, -1).normalized();
+  DepthImage depth_m(camera.width_px, camera.height_px, 0);
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x)
+      depth_m(x, y) = static_cast<float>(-1.5 / normal.dot(camera.back_project(x, y, 1.0)));
+  }
+  depth_m(200, 100) = 0;
+  const SE3 T_world_camera{so3_exp({0.1, 0.4, -0.2}), {1, 2, 3}};
+  const std::vector<raycast::ExpectedSurface> pixels = {{100, 80, 0, 0}, {200, 100, 0, 0}, {204, 100, 0, 0}};
+  const auto surfaces = measured_surfaces(depth_m, camera, T_world_camera, pixels);
+  ASSERT_EQ(surfaces.size(), 3U);
+  EXPECT_TRUE(surfaces[0].valid);
+  EXPECT_LT((surfaces[0].normal_world - T_world_camera.rotation * normal).norm(), 1e-4);
+  EXPECT_FALSE(surfaces[1].valid) << "nothing was measured";
+  EXPECT_TRUE(surfaces[2].valid);
+  EXPECT_EQ(surfaces[2].normal_world, Vector3d::Zero()) << "a neighbour is missing";
 }
 
 TEST(Patches, CoarsePixelsWithoutMeasuredDepthAreLeftOut) {
