@@ -36,11 +36,19 @@ struct AlignmentConfig {
   }
 };
 
+/// What the update takes for its measurement.
+enum class MeasurementForm { residuals, scalar_energy };
+constexpr auto option_choices(MeasurementForm) {
+  return choices<MeasurementForm>(
+      {{"residuals", MeasurementForm::residuals}, {"scalar_energy", MeasurementForm::scalar_energy}});
+}
+
 /// The iterated extended Kalman filter (Eqs. 15-23).
 struct IekfConfig {
   int max_iterations = 10;
   int coarse_iterations = 2;
   bool prior_in_every_iteration = true;
+  MeasurementForm measurement = MeasurementForm::residuals;
   double converged_rotation_rad = 1e-4;
   double converged_translation_m = 1e-4;
   double max_chi2_per_measurement = 9.0;
@@ -57,6 +65,9 @@ struct IekfConfig {
            "each iteration weighs the distance to the prediction (the MAP estimate, Bell & Cathey 1993); "
            "false is "
            "Eq. 22 to the letter, which forgets it after the first one");
+    v.choice("measurement", self.measurement,
+             "all residuals, or one number, their energy, which should be zero (Eq. 17 to the letter, with "
+             "noise of variance 1): its gradient vanishes where it is least, so that it then says nothing");
     v.number("converged_rotation_rad", self.converged_rotation_rad, 0.0, 1.0,
              "converged when the last step rotates less than this");
     v.number("converged_translation_m", self.converged_translation_m, 0.0, 1.0,

@@ -58,6 +58,10 @@ constexpr std::array kVariants = {
         "photometric.sampling=whole_pixel patches.shrink_test=any_collision "
         "photometric.huber_sigmas=0.1 geometric.huber_sigmas=0.1",
         "literal"},
+    Variant{
+        "literal-energy", "",
+        "literal-pixels, and Eq. 17 to the letter: the update sees one number, the energy of all residuals",
+        "iekf.measurement=scalar_energy", "literal-pixels"},
 };
 }  // namespace
 

@@ -126,14 +126,23 @@ class Update {
     }
   };
   enum class Parts { all, by_reference };
-  static ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const Iterate& now,
-                                 Parts parts = Parts::all) {
+  ChartQuadratic in_chart(const MeasurementQuadratic& quadratic, const Iterate& now,
+                          Parts parts = Parts::all) const {
     ChartQuadratic result;
     result.add(quadratic.by_reference, quadratic.readout_by_reference, 0);
     if (parts == Parts::all) result.add(quadratic.by_model, quadratic.readout_by_model, kPoseSize);
     result.gradient += result.information.rightCols<kReadoutSize>() * (now.readout - quadratic.undone);
     result.carry(ChartJacobian(now));
+    if (config_.measurement == config::MeasurementForm::scalar_energy)
+      take_as_one_number(quadratic.cost(now.readout), result);
     return result;
+  }
+
+  /// Eq. 17: one residual, the energy, whose derivative is the gradient of all.
+  static void take_as_one_number(double energy, ChartQuadratic& quadratic) {
+    constexpr double kEnergyVariance = 1;  // U_k, which the paper does not give, of whitened residuals
+    quadratic.information = quadratic.gradient * quadratic.gradient.transpose() / kEnergyVariance;
+    quadratic.gradient *= energy / kEnergyVariance;
   }
 
   void iterate_stage(int stage, int budget, bool last, Iterate& now, MeasurementQuadratic& quadratic,

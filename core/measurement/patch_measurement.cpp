@@ -186,6 +186,7 @@ PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
 void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed) {
   PatchState& state = states_[patch];
   const Weighting weighting = photometric_weighting();
+  const config::Sampling sampling = config_.photometric.sampling;
   const GreyResidual residual_of(state.brightness.value, scale_.photometric * config_.photometric.noise_grey);
   QuadraticSums sums;
   BrightnessSums light;
@@ -199,9 +200,9 @@ void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& pos
       const simd::Int8 used = w.visible & pixels.depth_confirmed;
       level.fixed[i].photometric = used;
       if (!simd::any(used)) continue;
-      const simd::IntensityLanes observed = simd::sample_bicubic(
-          frame_->pyramid[l], sampled_at(used ? w.x : simd::all_lanes(1.0F), config_.photometric.sampling),
-          sampled_at(used ? w.y : simd::all_lanes(1.0F), config_.photometric.sampling));
+      const simd::IntensityLanes observed =
+          simd::sample_bicubic(frame_->pyramid[l], sampled_at(used ? w.x : simd::all_lanes(1.0F), sampling),
+                               sampled_at(used ? w.y : simd::all_lanes(1.0F), sampling));
       simd::Points point = posed.at[l].to_camera(lanes.projected(i));
       point.z = used ? point.z : simd::all_lanes(1.0F);
       const JacobianLanes jacobian = photometric_jacobian(posed.at[l], point, observed.dx, observed.dy);
@@ -331,6 +332,7 @@ double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& po
 
 double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
   const Weighting weighting = photometric_weighting();
+  const config::Sampling sampling = config_.photometric.sampling;
   const GreyResidual residual_of(states_[patch].brightness.trial,
                                  scale_.photometric * config_.photometric.noise_grey);
   simd::Float8 cost{};
@@ -352,9 +354,8 @@ double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& 
         x += lanes.warp_points[i].offset_x;
         y += lanes.warp_points[i].offset_y;
       }
-      x = sampled_at(simd::clamp(x, 1.0F, static_cast<float>(image.width - 2)), config_.photometric.sampling);
-      y = sampled_at(simd::clamp(y, 1.0F, static_cast<float>(image.height - 2)),
-                     config_.photometric.sampling);
+      x = sampled_at(simd::clamp(x, 1.0F, static_cast<float>(image.width - 2)), sampling);
+      y = sampled_at(simd::clamp(y, 1.0F, static_cast<float>(image.height - 2)), sampling);
       const simd::Float8 observed = simd::sample_bicubic_value(image, x, y);
       const simd::Float8 whitened = residual_of(observed, lanes.pixels[i].intensity) * residual_of.per_noise;
       cost += used ? huber(whitened, weighting.robust_sigmas).cost : simd::Float8{};

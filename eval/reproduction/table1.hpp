@@ -11,6 +11,7 @@
 #include "core/base/error.hpp"
 #include "eval/engine/job_outcome.hpp"
 #include "eval/metrics/intensity_readings.hpp"
+#include "eval/page/page.hpp"
 #include "eval/reproduction/table1_plan.hpp"
 
 namespace fusebench::reproduction {
@@ -80,6 +81,9 @@ struct Table1 {
 /// Reads the records of the runs. Errors: io, data_corrupt.
 [[nodiscard]] Result<Table1> table1_of(const Table1Protocol& protocol, const Table1Plan& plan,
                                        const std::vector<engine::BatchOutcome>& outcomes);
+
+/// The same as a page; readings with the paper's pattern are marked.
+[[nodiscard]] page::Page table1_page(const Table1& table);
 
 /// "markdown", "latex" or "json".
 [[nodiscard]] std::string render_table1(const Table1& table, const std::string& format);

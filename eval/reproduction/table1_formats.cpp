@@ -59,8 +59,7 @@ std::vector<text::TableCells> ratio_lines(const Table1& table, bool factorial) {
   heading.insert(heading.end(), {"slow", "fast", "pattern"});
   text::TableCells first = published_line(table, false);
   const Pattern published = table.published_pattern();
-  first.insert(first.end(),
-               {fmt::format("{:.2f}", published.slow), fmt::format("{:.2f}", published.fast), ""});
+  first.insert(first.end(), {mean_cell(published.slow), mean_cell(published.fast), ""});
   std::vector<text::TableCells> lines{heading, first};
   for (const std::size_t r : table.readings) {
     if (table.protocol.readings[r].factorial != factorial) continue;
@@ -219,7 +218,53 @@ Json json_of(const Table1& table) {
   return json;
 }
 
+page::PageTable page_table(const std::vector<text::TableCells>& lines) {
+  page::PageTable table;
+  table.header = lines.front();
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const bool published = lines[i].front() == "published";
+    table.rows.push_back({lines[i], published || lines[i].back() == "yes" ? "note" : ""});
+  }
+  return table;
+}
+
+page::PageTable readings_table(const Table1& table) {
+  page::PageTable readings{{"reading", "what it is", "for it in the text", "against it"}, {}};
+  for (const std::size_t r : table.readings) {
+    const Reading& reading = table.protocol.readings[r];
+    if (!reading.factorial)
+      readings.rows.push_back(
+          {{reading.name, reading.sentence, reading.speaks_for, reading.speaks_against}, ""});
+  }
+  return readings;
+}
+
+page::PageTable columns_table(const Table1& table) {
+  page::PageTable columns{{"column", "stands for", "speed", "what it is"}, {}};
+  for (const ResultColumn& column : table.columns)
+    columns.rows.push_back({{column.column.group, column.column.row, column.speed, column.column.is}, ""});
+  for (const std::string& absent : table.absent) columns.rows.push_back({{absent, "", "", "not there"}, ""});
+  return columns;
+}
+
 }  // namespace
+
+page::Page table1_page(const Table1& table) {
+  page::Page page;
+  page.title = "The paper's Table 1, by each way to read it";
+  page.subtitle = "Ratios of the intensity error of a direct method to that of deformed patches.";
+  page.sections.push_back({"Ratios", std::string(kProtocol), page_table(ratio_lines(table, false))});
+  const auto factors = ratio_lines(table, true);
+  if (factors.size() > 2)
+    page.sections.push_back({"By prior, pyramid levels and geometry", "", page_table(factors)});
+  page.sections.push_back({"Grey levels (DM / Ours)", "", page_table(grey_lines(table))});
+  for (const std::size_t r : readings_to_detail(table))
+    page.sections.push_back({"By definition of the error: " + table.protocol.readings[r].name, "",
+                             page_table(definition_lines(table, r))});
+  page.sections.push_back({"Readings", "", readings_table(table)});
+  page.sections.push_back({"Columns", "", columns_table(table)});
+  return page;
+}
 
 std::string render_table1(const Table1& table, const std::string& format) {
   if (format == "json") return text::json_text(json_of(table));

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "eval/metrics/nees_metrics.hpp"
@@ -131,6 +133,25 @@ std::optional<double> measured(const Study& study, const suites::Criterion& crit
   return criterion.statistic == suites::CriterionStatistic::mean ? stats.mean : stats.median;
 }
 
+/// The jackknife's standard error of a mean; nothing for other statistics (it is not one of a median, nor of
+/// the worst) and for too few recordings.
+std::optional<double> noise_of(const Study& study, const suites::Criterion& criterion, const Items& items) {
+  constexpr std::size_t kFewest = 3;
+  const std::size_t count = items.items.size();
+  if (criterion.statistic != suites::CriterionStatistic::mean || count < kFewest) return std::nullopt;
+  std::vector<double> without;
+  for (std::size_t i = 0; i < count; ++i) {
+    Items others;
+    others.items = items.items;
+    others.items.erase(others.items.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto value = measured(study, criterion, others);
+    if (!value) return std::nullopt;
+    without.push_back(*value);
+  }
+  const metrics::Statistics stats = metrics::statistics(without);
+  return std::sqrt(static_cast<double>(count - 1)) * stats.std;
+}
+
 struct Limit {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
@@ -140,6 +161,8 @@ struct Limit {
   [[nodiscard]] bool allows(double value) const {
     return strict ? value > lower && value < upper : value >= lower && value <= upper;
   }
+  /// Of an allowed value.
+  [[nodiscard]] double margin(double value) const { return std::min(upper - value, value - lower); }
 };
 
 Limit limit_of(const suites::Criterion& criterion, std::size_t runs) {
@@ -193,7 +216,10 @@ CriterionMeasurement measure(const Study& study, const suites::Criterion& criter
   if (!items.not_ok.empty() || (result.recordings > 0 && !items.valueless.empty())) {
     result.verdict = Verdict::failed;
   } else if (result.measured) {
+    result.noise = noise_of(study, criterion, items);
     result.verdict = limit.allows(*result.measured) ? Verdict::passed : Verdict::failed;
+    if (result.verdict == Verdict::passed && result.noise && limit.margin(*result.measured) < *result.noise)
+      result.verdict = Verdict::tied;
   }
   return result;
 }
@@ -204,6 +230,8 @@ std::string_view to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::passed:
       return "PASS";
+    case Verdict::tied:
+      return "TIE";
     case Verdict::failed:
       return "FAIL";
     case Verdict::not_applicable:

@@ -15,16 +15,19 @@ namespace fusebench::study {
 
 enum class Verdict {
   passed,
+  tied,  ///< passed by less than the noise of the number, so that it might as well have failed
   failed,
   not_applicable,  ///< no run has such a number: nothing was decided
 };
-[[nodiscard]] std::string_view to_string(Verdict verdict);  ///< "PASS", "FAIL", "n.a."
+[[nodiscard]] std::string_view to_string(Verdict verdict);  ///< "PASS", "TIE", "FAIL", "n.a."
 
 /// A criterion, evaluated on one split.
 struct CriterionMeasurement {
   std::string split;
   Verdict verdict = Verdict::not_applicable;
   std::optional<double> measured;
+  /// Standard error of a mean over at least three recordings (jackknife: from the means without each one).
+  std::optional<double> noise;
   std::size_t recordings = 0;  ///< that went into the number
   std::string limit;           ///< "<= 0.01", "0.8 .. 1.2", "0.51 .. 1.65 (95 % of 8 runs)"
   std::string note;  ///< the worst recording; runs without the number; empty if there is nothing to say

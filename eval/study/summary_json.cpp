@@ -64,6 +64,7 @@ Json json_of(const CriterionMeasurement& measurement) {
   return {{"split", measurement.split},
           {"verdict", to_string(measurement.verdict)},
           {"measured", number(measurement.measured)},
+          {"noise", number(measurement.noise)},
           {"limit", measurement.limit},
           {"recordings", measurement.recordings},
           {"note", measurement.note}};

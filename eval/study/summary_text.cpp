@@ -34,9 +34,12 @@ std::string criteria_text(const std::vector<CriterionResult>& criteria) {
     return std::count_if(criteria.begin(), criteria.end(),
                          [&](const CriterionResult& result) { return result.decided.verdict == verdict; });
   };
-  return markdown(criteria_table(criteria)) +
-         fmt::format("{} of {} criteria passed, {} failed, {} not applicable.\n\n", count(Verdict::passed),
-                     criteria.size(), count(Verdict::failed), count(Verdict::not_applicable));
+  return markdown(criteria_table(criteria)) + fmt::format(
+                                                  "{} of {} criteria passed ({} by less than their noise: a "
+                                                  "tie), {} failed, {} not applicable.\n\n",
+                                                  count(Verdict::passed) + count(Verdict::tied),
+                                                  criteria.size(), count(Verdict::tied),
+                                                  count(Verdict::failed), count(Verdict::not_applicable));
 }
 
 std::string summary_text(const StudySummary& summary) {

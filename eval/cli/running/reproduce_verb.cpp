@@ -33,6 +33,7 @@ struct ReproduceOptions {
   std::vector<std::string> readings;
   std::string format;
   std::filesystem::path figures;
+  std::filesystem::path page;
   bool dry_run = false;
   bool json = false;
   bool threads_given = false;
@@ -83,6 +84,10 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   const auto table = reproduction::table1_of(*protocol, *plan, *outcomes);
   if (!table) return tl::unexpected(table.error());
   console::print_output(reproduction::render_table1(*table, options.json ? "json" : options.format));
+  if (options.page.empty()) return 0;
+  const std::string html = page::to_html(reproduction::table1_page(*table));
+  if (auto written = text::write_text_file(options.page, html); !written)
+    return tl::unexpected(written.error());
   return 0;
 }
 
@@ -158,6 +163,8 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   table1->add_option("--format", options.format, "markdown or latex")
       ->check(CLI::IsMember({"markdown", "latex"}))
       ->capture_default_str();
+  table1->add_option("--page", options.page, "Writes the tables as a page as well (HTML, needs no network)")
+      ->type_name("FILE.html");
   console::add_json_flag(*table1, options.json);
   table1->footer(
       "What the paper does not define (its direct method, its error) is a reading each; docs/table1.md\n"

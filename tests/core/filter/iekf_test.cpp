@@ -84,6 +84,32 @@ class StagedMeasurement final : public PoseMeasurement {
   PositionMeasurement& one_;
 };
 
+TEST(Iekf, AScalarEnergyIsThePapersGainTimesItself) {
+  const GaussianState prior{some_state(), some_covariance(1e-3)};
+  const Vector3d z(0.101, -0.702, 0.4005);
+  constexpr double kSigma = 0.02;
+  PositionMeasurement measurement(z, kSigma);
+  IekfConfig config;
+  config.max_iterations = 1;
+  config.prior_in_every_iteration = false;
+  config.measurement = MeasurementForm::scalar_energy;
+  const IekfResult result = iekf_update(prior, measurement, config);
+  // Eqs. 19-22 with the energy E = |p - z|^2 / (2 sigma^2), H = (p - z)^T / sigma^2 and U = 1. The part by
+  // the model is measured against the pose, of which the position is the last three.
+  const Vector3d error = prior.mean.T_world_imu.translation - z;
+  const double energy = 0.5 * error.squaredNorm() / (kSigma * kSigma);
+  StateVector gradient = StateVector::Zero();
+  gradient.segment<3>(kPosition) = error / (kSigma * kSigma);
+  const StateVector gain = prior.covariance * gradient / (gradient.dot(prior.covariance * gradient) + 1.0);
+  const FilterState expected = plus(prior.mean, -gain * energy);
+  EXPECT_LT((result.posterior.mean.T_world_imu.translation - expected.T_world_imu.translation).norm(), 1e-9);
+  EXPECT_LT((result.posterior.mean.velocity_world_mps - expected.velocity_world_mps).norm(), 1e-9);
+  // Where the energy is least it has no gradient: the posterior is the prior.
+  PositionMeasurement at_rest(prior.mean.T_world_imu.translation, kSigma);
+  const IekfResult nothing = iekf_update(prior, at_rest, config);
+  EXPECT_LT((nothing.posterior.covariance - prior.covariance).norm(), 1e-12);
+}
+
 TEST(Iekf, LinearisesOnceAStepAndOnceMoreForThePosterior) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   PositionMeasurement position({0.13, -0.68, 0.47}, 0.02);

@@ -70,6 +70,9 @@ TEST(Table1, ThePapersPatternIsEqualWhenSlowAndTwiceWhenFast) {
   EXPECT_FALSE(lost.pattern_of(0).is_papers()) << "a method that lost a third of its frames";
   testing::expect_contains(render_table1(lost, "markdown"), "frames lost");
   testing::expect_contains(render_table1(lost, "markdown"), "(30 % lost)");
+  const page::Page page = table1_page(lost);
+  EXPECT_EQ(page.sections.front().title, "Ratios");
+  testing::expect_contains(page::to_html(page), "frames lost");
   const Pattern published = lost.published_pattern();
   EXPECT_NEAR(published.slow, 1.2, 1e-12);
   EXPECT_NEAR(published.fast, 2.0, 1e-12);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -103,6 +104,28 @@ TEST_F(StudyTest, WorstAgainstALimit) {
   measured = check(criterion);
   EXPECT_DOUBLE_EQ(*measured.measured, 0.008);  // the smallest is the worst over a lower limit
   EXPECT_EQ(measured.verdict, Verdict::failed);
+}
+
+TEST_F(StudyTest, APassByLessThanTheNoiseIsATie) {
+  for (const double ate_m : {0.001, 0.002, 0.003}) add(std::to_string(ate_m), "slow", "full", ate_m);
+  Criterion criterion = ate_criterion(CriterionStatistic::mean);
+  criterion.at_most = 0.0030;
+  // The standard error of the mean of 1, 2 and 3 mm is 1 mm / sqrt(3).
+  CriterionMeasurement measured = check(criterion);
+  ASSERT_TRUE(measured.noise.has_value());
+  EXPECT_NEAR(*measured.noise, 0.001 / std::sqrt(3.0), 1e-12);
+  EXPECT_EQ(measured.verdict, Verdict::passed);
+  criterion.at_most = 0.0025;
+  measured = check(criterion);
+  EXPECT_EQ(measured.verdict, Verdict::tied);
+  EXPECT_EQ(to_string(measured.verdict), "TIE");
+  criterion.at_most = 0.0019;
+  EXPECT_EQ(check(criterion).verdict, Verdict::failed);
+  criterion.statistic = CriterionStatistic::worst;
+  criterion.at_most = 0.0030;
+  measured = check(criterion);
+  EXPECT_EQ(measured.verdict, Verdict::passed) << "the worst has no standard error";
+  EXPECT_FALSE(measured.noise.has_value());
 }
 
 TEST_F(StudyTest, TheOtherSplitStandsBeside) {
