@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -107,15 +108,14 @@ void sort_by_recording(Table1Plan& plan) {
 }  // namespace
 
 Result<Table1Plan> plan_table1(const Table1Protocol& protocol, const suites::Suite& recordings,
-                               const engine::BatchOptions& options,
-                               const std::vector<std::string>& only_readings) {
-  if (auto known = check_names(protocol, only_readings); !known) return tl::unexpected(known.error());
+                               const engine::BatchOptions& options, const Table1Extent& extent) {
+  if (auto known = check_names(protocol, extent.readings); !known) return tl::unexpected(known.error());
   Table1Plan plan;
   const suites::Suite suite = available(recordings, options, plan.absent);
   UniqueJobs unique;
   for (std::size_t r = 0; r < protocol.readings.size(); ++r) {
     const Reading& reading = protocol.readings[r];
-    if (!only_readings.empty() && std::ranges::find(only_readings, reading.name) == only_readings.end())
+    if (!extent.readings.empty() && std::ranges::find(extent.readings, reading.name) == extent.readings.end())
       continue;
     std::vector<std::string> dm_edits = reading.set;
     dm_edits.insert(dm_edits.end(), reading.set_dm.begin(), reading.set_dm.end());
@@ -124,7 +124,10 @@ Result<Table1Plan> plan_table1(const Table1Protocol& protocol, const suites::Sui
     auto ours = plan_side(suite, reading.ours, options, reading.set);
     if (!ours) return tl::unexpected(ours.error());
     check(dm->jobs.size() == ours->jobs.size(), "both methods of a reading run over the same recordings");
+    std::set<std::string> groups;
     for (std::size_t i = 0; i < dm->jobs.size(); ++i) {
+      const bool first = groups.insert(dm->jobs[i].group).second;
+      if (reading.factorial && !first && !extent.factorial_everywhere) continue;
       ComparedRuns& runs = plan.compared.emplace_back();
       runs.reading = r;
       runs.group = dm->jobs[i].group;

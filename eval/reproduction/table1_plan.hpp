@@ -26,10 +26,16 @@ struct Table1Plan {
   std::vector<std::string> absent;  ///< "fr1_desk: no such folder ...": what could not be planned
 };
 
+/// Which runs of a reproduction are made.
+struct Table1Extent {
+  std::vector<std::string> readings;  ///< by name; empty: all
+  /// The factorial over all recordings, and not only over the first one of each column.
+  bool factorial_everywhere = false;
+};
+
 /// `options`: its `sets` are for all runs. Recordings and trajectories that are not there are left out.
-/// Errors: those of plan_batch() for everything else; usage for a name in `only_readings` that is none.
+/// Errors: those of plan_batch() for everything else; usage for a reading that is none.
 [[nodiscard]] Result<Table1Plan> plan_table1(const Table1Protocol& protocol, const suites::Suite& recordings,
-                                             const engine::BatchOptions& options,
-                                             const std::vector<std::string>& only_readings);
+                                             const engine::BatchOptions& options, const Table1Extent& extent);
 
 }  // namespace fusebench::reproduction

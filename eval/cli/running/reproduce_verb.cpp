@@ -30,7 +30,7 @@ namespace {
 struct ReproduceOptions {
   engine::BatchOptions batch;
   engine::EngineOptions engine;
-  std::vector<std::string> readings;
+  reproduction::Table1Extent extent;
   std::string format;
   std::filesystem::path figures;
   std::filesystem::path page;
@@ -74,7 +74,7 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   if (!protocol) return tl::unexpected(protocol.error());
   const auto recordings = reproduction::table1_suite();
   if (!recordings) return tl::unexpected(recordings.error());
-  const auto plan = reproduction::plan_table1(*protocol, *recordings, options.batch, options.readings);
+  const auto plan = reproduction::plan_table1(*protocol, *recordings, options.batch, options.extent);
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& name : plan->absent)
     console::print_progress(fmt::format("left out, not there: {}", name));
@@ -152,7 +152,7 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   options.format = "markdown";
   console::add_data_option(*table1, options.batch.data);
   add_engine_options(*table1, options);
-  table1->add_option("--reading", options.readings, "Only this reading, by its name; may be repeated")
+  table1->add_option("--reading", options.extent.readings, "Only this reading, by its name; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
   table1
@@ -163,6 +163,8 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   table1->add_option("--format", options.format, "markdown or latex")
       ->check(CLI::IsMember({"markdown", "latex"}))
       ->capture_default_str();
+  table1->add_flag("--all-seeds", options.extent.factorial_everywhere,
+                   "The factorial over all recordings, and not only over the first one of each column");
   table1->add_option("--page", options.page, "Writes the tables as a page as well (HTML, needs no network)")
       ->type_name("FILE.html");
   console::add_json_flag(*table1, options.json);

@@ -100,7 +100,7 @@ TEST(Table1, WithoutDataEveryRowOfThePaperHasASpeedAndEachRunIsPlannedOnce) {
   engine::BatchOptions options;
   options.data = "no such folder";
   options.out = "out";
-  const auto plan = plan_table1(*protocol, *suite, options, {"default", "patchwise"});
+  const auto plan = plan_table1(*protocol, *suite, options, {.readings = {"default", "patchwise"}});
   ASSERT_TRUE(plan.has_value()) << plan.error().message;
   // Two readings of two methods each, of which `full` is the same.
   const std::size_t recordings = plan->compared.size() / 2;
@@ -112,7 +112,12 @@ TEST(Table1, WithoutDataEveryRowOfThePaperHasASpeedAndEachRunIsPlannedOnce) {
     EXPECT_EQ(plan->jobs[runs.dm].recording.filename().string(), runs.recording);
   }
   EXPECT_FALSE(plan->absent.empty());
-  const auto unknown = plan_table1(*protocol, *suite, options, {"kept"});
+  // The factorial takes one recording of each of the four columns, or all of them.
+  const std::string cell = protocol->readings.back().name;
+  EXPECT_EQ(plan_table1(*protocol, *suite, options, {.readings = {cell}})->compared.size(), 4U);
+  const auto everywhere = plan_table1(*protocol, *suite, options, {{cell}, true});
+  EXPECT_EQ(everywhere->compared.size(), recordings);
+  const auto unknown = plan_table1(*protocol, *suite, options, {.readings = {"kept"}});
   ASSERT_FALSE(unknown.has_value());
   testing::expect_contains(unknown.error().message, "no reading 'kept' (nearest: keep)");
 }
