@@ -33,9 +33,16 @@ std::string pair_cell(double dm_grey, double ours_grey) {
   return std::isnan(dm_grey) ? "-" : fmt::format("{:.2f} / {:.2f}", dm_grey, ours_grey);
 }
 
+/// Columns with what their data are, since simulated recordings and synthetic IMUs are labelled wherever they
+/// stand.
 text::TableCells heading_of(const Table1& table, std::string first) {
   text::TableCells heading{std::move(first)};
-  for (const ResultColumn& column : table.columns) heading.push_back(column.column.group);
+  for (const ResultColumn& column : table.columns) {
+    const auto recording = std::ranges::find(table.numbers, column.column.group, &RecordingNumbers::group);
+    const bool known = recording != table.numbers.end() && !recording->data.empty();
+    heading.push_back(known ? fmt::format("{} ({})", column.column.group, recording->data)
+                            : column.column.group);
+  }
   return heading;
 }
 

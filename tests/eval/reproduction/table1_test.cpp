@@ -70,6 +70,7 @@ TEST(Table1, ThePapersPatternIsEqualWhenSlowAndTwiceWhenFast) {
   EXPECT_FALSE(lost.pattern_of(0).is_papers()) << "a method that lost a third of its frames";
   testing::expect_contains(render_table1(lost, "markdown"), "frames lost");
   testing::expect_contains(render_table1(lost, "markdown"), "(30 % lost)");
+  testing::expect_contains(render_table1(lost, "markdown"), "| calm (simulated) | wild (simulated) |");
   const page::Page page = table1_page(lost);
   EXPECT_EQ(page.sections.front().title, "Ratios");
   testing::expect_contains(page::to_html(page), "frames lost");
