@@ -102,11 +102,9 @@ struct ImageFigure {
   }
 };
 
-Result<void> draw(const ImageFigure& figure, const std::filesystem::path& folder, page::FigureFormat format,
-                  WrittenFigures& written) {
+Result<void> draw(const ImageFigure& figure, const std::filesystem::path& folder, page::FigureFormat format) {
   if (figure.panels.empty()) return {};
   const std::string file = page::figure_file(figure.name, format);
-  written.files.push_back(file);
   return page::draw_figure(page::panels_script(figure.panels, figure.columns, figure.size_px, file, format),
                            folder, figure.name, format);
 }
@@ -132,7 +130,7 @@ Result<void> add_patches(const Loaded& recording, const std::filesystem::path& f
     if (auto added = figure.add(folder, title, picture.strip); !added) return added;
   }
   written.page.sections.push_back({"Patches " + recording.label, pictures.text, figure.images});
-  return draw(figure, folder, format, written);
+  return draw(figure, folder, format);
 }
 
 /// From behind and above the first camera, so that drift shows as what does not fit.
@@ -174,7 +172,7 @@ Result<void> add_models(std::span<const Loaded> recordings, const std::filesyste
                                    "Models of all methods from one camera, behind and above the first one, "
                                    "at one scale. Walls that face away are looked through.",
                                    figure.images});
-  return draw(figure, folder, format, written);
+  return draw(figure, folder, format);
 }
 
 }  // namespace

@@ -21,7 +21,6 @@ struct RecordingRuns {
 };
 
 struct WrittenFigures {
-  std::vector<std::string> files;     ///< of the figures, in the folder
   std::vector<std::string> warnings;  ///< what could not be read and is therefore not shown
   page::Page page;                    ///< the same as a page
 };

@@ -118,7 +118,6 @@ page::PageTable run_facts(Group group) {
   return table;
 }
 
-/// Of the first variants that kept their patches.
 std::vector<page::PageImage> page_images(const PatchPictures& pictures) {
   std::vector<page::PageImage> result;
   for (const PatchPicture& picture : pictures.pictures) {
@@ -130,6 +129,7 @@ std::vector<page::PageImage> page_images(const PatchPictures& pictures) {
   return result;
 }
 
+/// Of the first variants that kept their patches.
 PatchPictures pictures_of(Group group, std::vector<std::string>& warnings) {
   std::vector<LabelledPatches> runs;
   for (const run_files::FoundRun& run : group) {
