@@ -1,0 +1,102 @@
+#include "datasets/exports/export_place.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace fusebench::exports {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+tl::unexpected<Error> exists_already(const fs::path& place) {
+  return fail(ErrorCode::usage,
+              fmt::format("{}: exists already, and exports replace nothing", place.string()),
+              "remove it, or choose another place with --out");
+}
+
+std::error_code sync_file(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return {errno, std::generic_category()};
+  const int failed = fsync(descriptor) == 0 ? 0 : errno;
+  close(descriptor);
+  if (failed == EINVAL || failed == ENOTSUP) return {};  // a file system that cannot sync
+  return {failed, std::generic_category()};
+}
+
+}  // namespace
+
+tl::unexpected<Error> cannot_be_written(const fs::path& file, std::string_view reason) {
+  return fail(ErrorCode::io,
+              fmt::format("{}: cannot be written{}{}", file.string(), reason.empty() ? "" : ": ", reason),
+              "choose another place with --out");
+}
+
+ExportPlace::ExportPlace(io::StagedFolder staged, fs::path out, Kind kind)
+    : staged_(std::move(staged)), out_(std::move(out)), name_(out_.filename().string()), kind_(kind) {}
+
+Result<ExportPlace> ExportPlace::create(const fs::path& out, Kind kind) {
+  if (!out.has_filename() && (kind == Kind::files || out.empty()))
+    return fail(ErrorCode::usage, fmt::format("out = '{}' is no name of a file", out.string()),
+                "give the name of the file to write, e.g. --out room.klg");
+  const fs::path place = out.has_filename() ? out : out.parent_path();  // "folder/"
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(place, error))) return exists_already(place);
+  auto staged = io::StagedFolder::create(place);
+  if (!staged) return tl::unexpected(staged.error());
+  return ExportPlace(std::move(*staged), place, kind);
+}
+
+std::string ExportPlace::beside(std::string_view ending) const {
+  return fmt::format("{}.{}", fs::path(name_).stem().string(), ending);
+}
+
+Result<void> ExportPlace::create_folder(std::string_view name) const {
+  std::error_code error;
+  fs::create_directories(file(name), error);
+  if (error) return cannot_be_written(file(name), error.message());
+  return {};
+}
+
+Result<void> ExportPlace::write(std::string_view name, std::string_view text) const {
+  return staged_.write(name, text);
+}
+
+Result<void> ExportPlace::commit() { return kind_ == Kind::folder ? staged_.commit() : move_files(); }
+
+Result<void> ExportPlace::move_files() const {
+  std::error_code error;
+  std::vector<fs::path> names;
+  for (fs::directory_iterator entry(staged_.path(), error), end; !error && entry != end;
+       entry.increment(error)) {
+    names.push_back(entry->path().filename());
+  }
+  if (error) return cannot_be_written(out_, error.message());
+  std::ranges::sort(names);
+  for (const fs::path& name : names) {
+    const fs::path target = out_.parent_path() / name;
+    if (fs::exists(fs::symlink_status(target, error))) return exists_already(target);
+  }
+  std::vector<fs::path> moved;
+  for (const fs::path& name : names) {
+    const fs::path target = out_.parent_path() / name;
+    error = sync_file(staged_.path() / name);
+    if (!error) fs::rename(staged_.path() / name, target, error);
+    if (error) {
+      std::error_code ignored;
+      for (const fs::path& file : moved) fs::remove(file, ignored);
+      return cannot_be_written(target, error.message());
+    }
+    moved.push_back(target);
+  }
+  return {};
+}
+
+}  // namespace fusebench::exports
