@@ -15,17 +15,16 @@ namespace {
 
 std::string intrinsic_json(const PinholeCamera& camera) {
   return fmt::format(
-      "{{\n  \"width\": {},\n  \"height\": {},\n  \"intrinsic_matrix\": [{:#}, 0.0, 0.0, 0.0, {:#}, 0.0, "
-      "{:#}, "
-      "{:#}, 1.0]\n}}\n",
+      "{{\n  \"width\": {},\n  \"height\": {},\n"
+      "  \"intrinsic_matrix\": [{}, 0, 0, 0, {}, 0, {}, {}, 1]\n}}\n",
       camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
 }
 
 /// What is not said here has the program's own default.
 std::string config_json() {
   return fmt::format(
-      "{{\n  \"name\": \"exported recording\",\n  \"path_dataset\": \".\",\n  \"path_intrinsic\": "
-      "\"intrinsic.json\",\n  \"depth_scale\": {:#}\n}}\n",
+      "{{\n  \"name\": \"exported recording\",\n  \"path_dataset\": \".\",\n"
+      "  \"path_intrinsic\": \"intrinsic.json\",\n  \"depth_scale\": {}\n}}\n",
       kOpen3dDepth.units_per_metre);
 }
 

@@ -55,7 +55,9 @@ std::string pose_table(std::span<const StampedPose> T_world_body) {
   std::string text =
       "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
   for (const StampedPose& pose : T_world_body) {
-    append_pose(text, pose.timestamp_ns, pose.T_world_camera);
+    SE3 T = pose.T_world_camera;
+    if (T.rotation.w() < 0) T.rotation.coeffs() *= -1;  // the same rotation; one sign makes files comparable
+    append_pose(text, pose.timestamp_ns, T);
     text += '\n';
   }
   return text;

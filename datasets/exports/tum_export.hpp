@@ -1,5 +1,4 @@
-// TUM RGB-D's layout (Sturm et al., IROS 2012), which ORB-SLAM2 and 3, RTAB-Map, supereight2 and this program
-// read.
+// TUM RGB-D's layout (Sturm et al., IROS 2012), which ORB-SLAM2 and 3, supereight2 and this program read.
 #pragma once
 
 #include "core/base/error.hpp"
