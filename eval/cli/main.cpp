@@ -77,6 +77,7 @@ int command_line(int argc, const char* const* argv) {
                                             add_config_verb(app),
                                             recordings::add_simulate_verb(app),
                                             recordings::add_inspect_verb(app),
+                                            recordings::add_export_verb(app),
                                             recordings::add_calibrate_verb(app),
                                             recordings::add_smooth_verb(app)};
   if (const auto known = check_verb(verbs, argc, argv); !known) return finish(known.error());

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <iterator>
+
+#include "core/filter/stamped_state.hpp"
+#include "datasets/exports/sensor_tables.hpp"
 
 namespace fusebench::simulator::layouts {
 
@@ -16,36 +18,22 @@ Result<void> write_text(const std::filesystem::path& file, std::string_view text
 }
 
 Result<void> write_imu_csv(const std::filesystem::path& file, const std::vector<ImuSample>& samples) {
-  std::string text =
-      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
-      "a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
-  for (const ImuSample& sample : samples) {
-    const Vector3d& w = sample.angular_velocity_radps;
-    const Vector3d& a = sample.specific_force_mps2;
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{}\n", sample.timestamp_ns, w.x(), w.y(),
-                   w.z(), a.x(), a.y(), a.z());
-  }
-  return write_text(file, text);
+  return write_text(file, exports::imu_table(samples));
 }
 
 Result<void> write_states(const std::filesystem::path& file, const std::vector<sensors::ImuState>& states,
                           const SE3& T_file_scene) {
-  std::string text =
-      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],"
-      "v_RS_R_x [m s^-1],v_RS_R_y [m s^-1],v_RS_R_z [m s^-1],b_w_RS_S_x [rad s^-1],b_w_RS_S_y [rad s^-1],"
-      "b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],b_a_RS_S_z [m s^-2]\n";
+  std::vector<filter::StampedState> in_file;
+  in_file.reserve(states.size());
   for (const sensors::ImuState& state : states) {
-    const SE3 T = T_file_scene * state.motion.T_world_body;
-    const Vector3d& p = T.translation;
-    const Quaterniond& q = T.rotation;
-    const Vector3d v = T_file_scene.rotation * state.motion.velocity_world_mps;
-    const Vector3d& w = state.bias.gyroscope_radps;
-    const Vector3d& a = state.bias.accelerometer_mps2;
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                   state.timestamp_ns, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(),
-                   w.x(), w.y(), w.z(), a.x(), a.y(), a.z());
+    filter::StampedState& stamped = in_file.emplace_back();
+    stamped.timestamp_ns = state.timestamp_ns;
+    stamped.state.T_world_imu = T_file_scene * state.motion.T_world_body;
+    stamped.state.velocity_world_mps = T_file_scene.rotation * state.motion.velocity_world_mps;
+    stamped.state.gyroscope_bias_radps = state.bias.gyroscope_radps;
+    stamped.state.accelerometer_bias_mps2 = state.bias.accelerometer_mps2;
   }
-  return write_text(file, text);
+  return write_text(file, exports::state_table(in_file));
 }
 
 }  // namespace fusebench::simulator::layouts

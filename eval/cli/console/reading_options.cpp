@@ -7,14 +7,14 @@
 
 namespace fusebench::cli::console {
 
-void add_reading_options(CLI::App& verb, ReadingOptions& options) {
+void add_reading_options(CLI::App& verb, ReadingOptions& options, const std::string& format_flag) {
   verb.add_option("--calibration", options.calibration,
                   "Calibration of all sensors (docs/datasets.md), in place of the recording's own")
       ->type_name("FILE.toml");
   verb.add_option("--camera", options.camera,
                   "Calibration of the colour camera: a preset's name, or fx,fy,cx,cy[,k1,k2,p1,p2,k3]")
       ->type_name("CAMERA");
-  verb.add_option("--format", options.format, "Format of the recording; recognised if not given")
+  verb.add_option(format_flag, options.format, "Format of the recording; recognised if not given")
       ->type_name("NAME");
   verb.add_option("--depth-units", options.depth_units_per_metre,
                   "Value of one metre in the depth images; default: the calibration's, or the format's")

@@ -27,8 +27,9 @@ struct ReadingOptions {
 };
 
 /// --calibration, --camera, --format, --depth-units, --max-difference, --frame-rate, --published-stamps,
-/// --filtered-depth.
-void add_reading_options(CLI::App& verb, ReadingOptions& options);
+/// --filtered-depth. format_flag: for a verb whose --format is that of what it writes.
+void add_reading_options(CLI::App& verb, ReadingOptions& options,
+                         const std::string& format_flag = "--format");
 
 /// Errors: an unknown camera (configuration), and those of read_calibration. Ranges are checked by the
 /// reader.

@@ -1,4 +1,4 @@
-// Verbs about recordings themselves: what is in them, made ones, and their calibration.
+// Verbs about recordings themselves: what is in them, made ones, other formats, and their calibration.
 #pragma once
 
 #include "eval/cli/console/verb.hpp"
@@ -7,6 +7,7 @@ namespace fusebench::cli::recordings {
 
 [[nodiscard]] console::Verb add_simulate_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_inspect_verb(CLI::App& app);
+[[nodiscard]] console::Verb add_export_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_calibrate_verb(CLI::App& app);
 [[nodiscard]] console::Verb add_smooth_verb(CLI::App& app);
 
