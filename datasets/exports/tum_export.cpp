@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
 #include <string>
+#include <string_view>
 
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
@@ -76,6 +78,16 @@ Result<void> write_truth(const recording::Recording& recording, const ExportPlac
   return place.write("groundtruth.txt", label + trajectory::tum_text(recording.ground_truth));
 }
 
+std::string accelerometer_text(const recording::Recording& recording) {
+  std::string text = "# timestamp ax ay az\n";
+  for (const recording::AccelerometerSample& sample : recording.accelerometer) {
+    const Vector3d& a = sample.specific_force_mps2;
+    fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", trajectory::stamp_text(sample.timestamp_ns),
+                   a.x(), a.y(), a.z());
+  }
+  return text;
+}
+
 Result<void> write_sensors(const recording::Recording& recording, const ExportPlace& place) {
   const std::string toml = calibration::to_toml(calibration_of(recording));
   if (auto written = place.write("calibration.toml", toml); !written) return written;
@@ -84,6 +96,14 @@ Result<void> write_sensors(const recording::Recording& recording, const ExportPl
   if (recording.simulated) {  // the file by which simulated data keep that label
     const std::string text = fmt::format("# exported from the simulated recording {}\n", recording.name);
     if (auto written = place.write("simulation.toml", text); !written) return written;
+  }
+  if (!recording.accelerometer.empty()) {
+    if (auto written = place.write("accelerometer.txt", accelerometer_text(recording)); !written)
+      return written;
+  }
+  if (!recording.state_truth.empty()) {
+    if (auto written = place.write("state_groundtruth.csv", state_table(recording.state_truth)); !written)
+      return written;
   }
   return recording.imu.empty() ? Result<void>{} : place.write("imu.csv", imu_table(recording.imu));
 }

@@ -13,7 +13,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they are in memory");
 
-std::size_t bytes_of(const Image<std::uint16_t>& depth) { return depth.data.size() * sizeof(std::uint16_t); }
+std::size_t depth_bytes(int width_px, int height_px) {
+  return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * sizeof(std::uint16_t);
+}
+
+std::size_t bytes_of(const Image<std::uint16_t>& depth) { return depth_bytes(depth.width, depth.height); }
 
 }  // namespace
 
@@ -29,8 +33,11 @@ std::string packed_depth(const Image<std::uint16_t>& depth) {
 }
 
 std::optional<Image<std::uint16_t>> unpacked_depth(std::string_view packed, int width_px, int height_px) {
+  // A file may claim any size, but one byte makes at most 1032.
+  constexpr std::size_t kMostPerByte = 1032;
+  uLongf size = depth_bytes(width_px, height_px);
+  if (size / kMostPerByte > packed.size()) return std::nullopt;
   Image<std::uint16_t> depth(width_px, height_px);
-  uLongf size = bytes_of(depth);
   const int done = uncompress(reinterpret_cast<Bytef*>(depth.data.data()), &size,
                               reinterpret_cast<const Bytef*>(packed.data()), packed.size());
   if (done != Z_OK || size != bytes_of(depth)) return std::nullopt;
@@ -38,8 +45,8 @@ std::optional<Image<std::uint16_t>> unpacked_depth(std::string_view packed, int 
 }
 
 std::optional<Image<std::uint16_t>> plain_depth(std::string_view values, int width_px, int height_px) {
+  if (values.size() != depth_bytes(width_px, height_px)) return std::nullopt;
   Image<std::uint16_t> depth(width_px, height_px);
-  if (values.size() != bytes_of(depth)) return std::nullopt;
   std::memcpy(depth.data.data(), values.data(), values.size());
   return depth;
 }

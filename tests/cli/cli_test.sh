@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|imports|recordings|interrupt|determinism|profile
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|imports|exports|recordings|interrupt|determinism|profile
 TEXT
 }
 
@@ -599,12 +599,52 @@ check_imports() {
   refused "no such mesh" 3 'absent.ply' -- import Other other.txt absent.ply --recording freiburg1_copy --out out
 }
 
+check_exports() {
+  fresh_copy
+  local format place
+  mkdir exported
+  for format in tum infinitam klg sens open3d euroc; do
+    checks=$((checks + 1))
+    place=exported/freiburg1_room.$format
+    "$binary" export freiburg1_copy --format "$format" --out "$place" --frames 1:3 >stdout 2>stderr ||
+      complain "export --format $format: exit code $?"
+    [[ -e $place ]] || complain "export --format $format writes nothing"
+    grep -qx "$place" stdout || complain "export --format $format does not say where"
+    grep -qx "  $format: 2 frames of 640x480 pixels from 'freiburg1_copy'" stdout ||
+      complain "export --format $format does not say what"
+    grep -q 'lost beyond that range: 0 of ' stdout || complain "export --format $format does not say what was lost"
+  done
+  [[ $(<exported/freiburg1_room.calibration.txt) == '517.306408 516.469215 318.64304 255.313989' ]] ||
+    complain "another calibration beside .klg"
+  [[ -z $(find exported -name '.*' ! -name .) ]] || complain "an export leaves hidden files"
+
+  # What was exported is a recording again, and its export is the same to the byte, but for the last digit of quaternions,
+  # which are normalised again.
+  checks=$((checks + 1))
+  "$binary" export exported/freiburg1_room.tum --format tum --out exported/again --json >stdout 2>stderr ||
+    complain "export of an export: exit code $?"
+  grep -q '"frames": 2' stdout || complain "--json does not tell the frames"
+  diff -r -x groundtruth.txt exported/freiburg1_room.tum exported/again >stderr || complain "the export of an export differs"
+
+  refused "no such format" 2 'format = euroq' 'hint:euroc' -- export freiburg1_copy --format euroq --out out
+  refused "a place that is taken" 2 'exported: exists already' 'hint:--out' -- \
+    export freiburg1_copy --format tum --out exported
+  refused "no such frames" 2 'frames = 4:9' -- export freiburg1_copy --format tum --frames 4:9 --out out
+  refused "no such recording to export" 3 'nowhere' -- export nowhere --format tum --out out
+  truncate -s 60000 freiburg1_copy/rgb/1305031229.628753.png
+  for format in tum klg; do
+    refused "a truncated image in an export" 3 'rgb/1305031229.628753.png' -- \
+      export freiburg1_copy --format "$format" --out out
+  done
+}
+
 case "$group" in
   bad-data) check_bad_data ;;
   bad-usage) check_bad_usage ;;
   evaluation) check_evaluation ;;
   meshes) check_meshes ;;
   imports) check_imports ;;
+  exports) check_exports ;;
   recordings) check_recordings ;;
   interrupt) check_interrupt ;;
   determinism) check_determinism ;;

@@ -85,7 +85,7 @@ std::string export_text(const exports::ExportSummary& summary, const recording::
   fmt::format_to(std::back_inserter(text), "  files: {}\n", fmt::join(names_of(summary.files), ", "));
   fmt::format_to(
       std::back_inserter(text),
-      "  depth: {:g} = 1 m, up to {:.4g} m; lost beyond that range: {} of {} measurements ({:.2g} %)\n",
+      "  depth: {:g} = 1 m, up to {:.1f} m; lost beyond that range: {} of {} measurements ({:.2g} %)\n",
       summary.depth_storage.units_per_metre, summary.depth_storage.farthest_m(), summary.depth.beyond_range,
       summary.depth.measured, 100 * lost_share(summary.depth));
   for (const std::string& note : summary.notes) fmt::format_to(std::back_inserter(text), "  {}\n", note);

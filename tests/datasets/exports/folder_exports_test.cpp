@@ -39,7 +39,9 @@ TEST_F(FolderExports, TumIsReadBackAsTheRecording) {
   recording::Recording recording = with_imu(4);
   recording.simulated = true;
   recording.truth_label = recording::kPseudoGroundTruth;
-  recording.rig.timing.depth_delay_s = 0.0;
+  recording.accelerometer = {{testing::kMadeFirst_ns, {0.5, -9.75, 0.25}}};
+  recording.state_truth = {{testing::kMadeFirst_ns, {}}};
+  recording.state_truth[0].state.velocity_world_mps = {0.5, 0.25, -1};
   export_to(ExportFormat::tum, recording);
   const auto read = datasets::open_recording(out_);
   ASSERT_TRUE(read) << read.error().message;
@@ -55,6 +57,10 @@ TEST_F(FolderExports, TumIsReadBackAsTheRecording) {
     EXPECT_EQ(read->imu[i].timestamp_ns, recording.imu[i].timestamp_ns);
     EXPECT_EQ(read->imu[i].angular_velocity_radps, recording.imu[i].angular_velocity_radps);
   }
+  ASSERT_EQ(read->accelerometer.size(), 1);
+  EXPECT_EQ(read->accelerometer[0].specific_force_mps2, Vector3d(0.5, -9.75, 0.25));
+  ASSERT_EQ(read->state_truth.size(), 1);
+  EXPECT_EQ(read->state_truth[0].state.velocity_world_mps, Vector3d(0.5, 0.25, -1));
   ASSERT_EQ(read->ground_truth.size(), 4);
   EXPECT_EQ(read->ground_truth[3].T_world_camera.translation, Vector3d(0.75, -0.5, 2));
   for (std::size_t k = 0; k < 4; ++k) {
