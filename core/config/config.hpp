@@ -12,6 +12,7 @@
 #include "core/config/prediction_config.hpp"
 #include "core/config/preprocessing_config.hpp"
 #include "core/config/relocalisation_config.hpp"
+#include "core/config/systems_config.hpp"
 #include "core/config/terms_config.hpp"
 #include "core/config/tsdf_config.hpp"
 
@@ -19,6 +20,7 @@ namespace fusebench::config {
 
 /// The whole effective configuration of a run.
 struct Config {
+  SystemConfig system;
   TermsConfig terms;
   DepthConfig depth;
   CompensationConfig compensation;
@@ -36,9 +38,12 @@ struct Config {
   PlaceFeaturesConfig place_features;
   PlacePoseConfig place_pose;
   TsdfConfig tsdf;
+  InfinitamConfig infinitam;
+  OpencvOdometryConfig opencv_odometry;
   EvaluationConfig evaluation;
 
   static constexpr void visit(auto& self, auto&& v) {
+    v.group("system", self.system);
     v.group("terms", self.terms);
     v.group("depth", self.depth);
     v.group("compensation", self.compensation);
@@ -56,15 +61,18 @@ struct Config {
     v.group("place_features", self.place_features);
     v.group("place_pose", self.place_pose);
     v.group("tsdf", self.tsdf);
+    v.group("infinitam", self.infinitam);
+    v.group("opencv_odometry", self.opencv_odometry);
     v.group("evaluation", self.evaluation);
   }
 };
 
-static_assert(options_cover_all_fields<
-                  TermsConfig, DepthConfig, CompensationConfig, MotionConfig, InitialisationConfig,
-                  SelfCalibrationConfig, PatchConfig, PhotometricConfig, GeometricConfig, AlignmentConfig,
-                  IekfConfig, ColorDriftConfig, HealthConfig, RelocalisationConfig, PlaceFeaturesConfig,
-                  PlacePoseConfig, TsdfConfig, EvaluationConfig, Config>(),
-              "each field of a configuration struct needs its option in visit()");
+static_assert(
+    options_cover_all_fields<SystemConfig, TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
+                             InitialisationConfig, SelfCalibrationConfig, PatchConfig, PhotometricConfig,
+                             GeometricConfig, AlignmentConfig, IekfConfig, ColorDriftConfig, HealthConfig,
+                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, TsdfConfig,
+                             InfinitamConfig, OpencvOdometryConfig, EvaluationConfig, Config>(),
+    "each field of a configuration struct needs its option in visit()");
 
 }  // namespace fusebench::config

@@ -12,6 +12,7 @@ struct EvaluationConfig {
   double silent_translation_m = 0.05;
   double silent_rotation_deg = 3.0;
   bool intensity_readings = false;
+  bool pose_intensity = false;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
@@ -22,6 +23,9 @@ struct EvaluationConfig {
              "or if it is rotated by more than this");
     v.flag("intensity_readings", self.intensity_readings,
            "also record the intensity error by other definitions than that of AIE (docs/metrics.md)");
+    v.flag("pose_intensity", self.pose_intensity,
+           "also record the intensity error of the poses alone, which every system has (docs/metrics.md); "
+           "the images are read once more");
   }
 };
 

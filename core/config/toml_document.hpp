@@ -1,5 +1,8 @@
-// A TOML file as a flat list of dotted keys with their lines: the one place that knows the parser.
+// A TOML file as a flat list of dotted keys with their lines (the one place that knows the parser), and what
+// readers ask of one entry.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <string>
@@ -46,5 +49,17 @@ struct TomlDocument {
 /// How a value is written in TOML: true, 8, 0.5, "text"; doubles with the shortest text that reads back the
 /// same.
 [[nodiscard]] std::string to_toml(const OptionValue& value);
+
+/// Error configuration: "file:line: key must be ...".
+[[nodiscard]] inline tl::unexpected<Error> wrong_value(const TomlEntry& entry, std::string_view expected) {
+  return fail(ErrorCode::configuration, fmt::format("{}: {} must be {}", entry.place, entry.key, expected));
+}
+
+/// The entry's value if it is one of this type and no list; else null.
+template <class T>
+[[nodiscard]] const T* plain_value(const TomlEntry& entry) {
+  const auto* value = std::get_if<OptionValue>(&entry.value);
+  return value == nullptr ? nullptr : std::get_if<T>(value);
+}
 
 }  // namespace fusebench::config

@@ -62,6 +62,26 @@ constexpr std::array kVariants = {
         "literal-energy", "",
         "literal-pixels, and Eq. 17 to the letter: the update sees one number, the energy of all residuals",
         "iekf.measurement=scalar_energy", "literal-pixels"},
+    Variant{
+        "infinitam", "InfiniTAM",
+        "InfiniTAM v3 as its program runs by default, but for voxels of 1 cm: the extended tracker on depth, "
+        "failures ignored",
+        "system.method=infinitam depth.min_m=0.2 depth.max_m=3 depth.noise_floor_m=1e-5 "
+        "depth.noise_quadratic_per_m=0 tsdf.truncation_m=0.05 tsdf.truncation_sigmas=0 tsdf.max_weight=100"},
+    Variant{"infinitam-color", "",
+            "infinitam with its tracker of depth and intensities, by the program's own settings for it",
+            "infinitam.use_color=true infinitam.rotation_levels=0 infinitam.full_levels=3", "infinitam"},
+    Variant{"infinitam-icp", "", "infinitam with the plain ICP tracker of KinectFusion",
+            "infinitam.tracker=icp infinitam.rotation_levels=3 infinitam.iterations_coarse=10 "
+            "infinitam.iterations_fine=2 infinitam.gate_coarse=0.01 infinitam.gate_fine=0.002 "
+            "infinitam.min_step=1e-3",
+            "infinitam"},
+    Variant{"opencv-rgbd", "", "OpenCV's RgbdOdometry from frame to frame (Steinbruecker et al. 2011)",
+            "system.method=opencv_odometry opencv_odometry.method=rgbd"},
+    Variant{"opencv-icp", "", "OpenCV's ICPOdometry from frame to frame",
+            "system.method=opencv_odometry opencv_odometry.method=icp"},
+    Variant{"opencv-rgbdicp", "", "OpenCV's RgbdICPOdometry from frame to frame: colour and depth",
+            "system.method=opencv_odometry opencv_odometry.method=rgbd_icp"},
 };
 }  // namespace
 

@@ -27,6 +27,8 @@ struct Variant {
 [[nodiscard]] EffectiveConfig variant_config(const Variant& variant);
 
 /// True if the effective configuration cannot run without inertial samples.
-[[nodiscard]] inline bool needs_imu(const Config& config) { return config.terms.prior == Prior::imu; }
+[[nodiscard]] inline bool needs_imu(const Config& config) {
+  return config.system.method == SystemMethod::filter && config.terms.prior == Prior::imu;
+}
 
 }  // namespace fusebench::config

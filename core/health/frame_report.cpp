@@ -18,20 +18,6 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-std::string_view to_string(FrameStatus status) {
-  switch (status) {
-    case FrameStatus::initialised:
-      return "initialised";
-    case FrameStatus::tracked:
-      return "tracked";
-    case FrameStatus::relocalised:
-      return "relocalised";
-    case FrameStatus::lost:
-      break;
-  }
-  return "lost";
-}
-
 FrameReport report_of(const RgbdFrame& frame) {
   FrameReport report;
   report.timestamp_ns = frame.timestamp_ns;

@@ -1,32 +1,20 @@
-// What the pipeline says of each frame.
+// What the filter says of each frame.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/base/intensity_residual.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/health/frame_diagnosis.hpp"
-#include "core/health/stage_times.hpp"
+#include "core/health/frame_outcome.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/patches/patches.hpp"
 
 namespace fusebench::health {
-
-enum class FrameStatus {
-  initialised,  ///< the first frame that could be used
-  tracked,      ///< the update was accepted; the frame was fused unless its health is occluded or repeated.
-                ///< Or the images are the last ones and asked for none: reason says so
-  relocalised,  ///< was lost and has found its place again by a frame seen before; tracked from there
-  lost,         ///< too few usable patches, or after a gap ones that do not fit, and no keyframe was
-                ///< recognised: the prediction was kept, the frame not fused. Or no start yet
-};
-[[nodiscard]] std::string_view to_string(FrameStatus status);
 
 /// What the images alone say about the pose of a frame, given the frame that its patches were cut from and
 /// the model: cost(T_world_imu * d) = information and gradient around the pose. Batch estimators use it.
@@ -38,14 +26,9 @@ struct PoseEvidence {
   filter::PoseTimingQuadratic timing;  ///< there
 };
 
-/// What happened in one frame.
-struct FrameReport {
-  std::int64_t timestamp_ns = 0;
-  FrameStatus status = FrameStatus::lost;
-  std::string reason;  ///< why it is lost, started from again, or has no update; empty otherwise
+/// What happened in one frame, as only a filter that tracks patches can tell.
+struct FrameReport : FrameOutcome {
   FrameHealth health = FrameHealth::good;
-  std::int64_t capture_ns = 0;  ///< the instant that the pose is of
-  SE3 T_world_camera;
   filter::GaussianState estimate;        ///< the whole state and its covariance, after the frame
   std::optional<PoseEvidence> evidence;  ///< of tracked frames but the first
   Vector3d velocity_world_mps = Vector3d::Zero();
@@ -67,14 +50,12 @@ struct FrameReport {
   /// Of the pose against the model, along the axis that it is least certain of.
   double model_rotation_sigma_rad = 0;
   double model_position_sigma_m = 0;
-  std::size_t model_blocks = 0;
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
   /// Median ZNCC of the tracked patches with their reference, of those with contrast; nothing if there are
   /// too few of these, or the colour is a repeated one.
   std::optional<double> correlation;
   double blur_px = 0;    ///< predicted length of motion blur at the image centre
   TrackedPixels pixels;  ///< of all tracked patches, by patch, then pixel
-  StageTimes stages;     ///< wall time; the only part that is not reproducible
 };
 
 /// The report of a frame of which nothing is known yet.

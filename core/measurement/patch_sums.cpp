@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/patches/measured_surfaces.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::measurement {
@@ -22,11 +23,10 @@ struct MeasuredNormals {
   simd::Int8 valid;
 };
 
-/// Central differences over +-4 pixels, since neighbouring pixels of structured-light depth share their
-/// disparity step.
+/// Central differences.
 MeasuredNormals measured_normals(const patches::PosedLanes& camera, const DepthImage& depth_m, simd::Int8 x,
                                  simd::Int8 y, simd::Int8 wanted) {
-  constexpr int kReach = 4;
+  constexpr int kReach = patches::kNormalReach_px;
   const simd::Int8 inside =
       wanted & (x >= kReach) & (y >= kReach) & (x < depth_m.width - kReach) & (y < depth_m.height - kReach);
   const simd::Int8 at = inside ? y * depth_m.width + x : simd::all_lanes(kReach * depth_m.width + kReach);

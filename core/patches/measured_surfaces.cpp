@@ -6,10 +6,6 @@ namespace fusebench::patches {
 
 namespace {
 
-/// As for the measured normals of the geometric residuals: neighbouring pixels of structured-light depth
-/// share their disparity step.
-constexpr int kNormalReachPx = 4;
-
 /// Unit, in the camera's frame, towards the camera.
 std::optional<Vector3d> measured_normal(const DepthImage& depth_m, const PinholeCamera& camera, int x,
                                         int y) {
@@ -17,10 +13,10 @@ std::optional<Vector3d> measured_normal(const DepthImage& depth_m, const Pinhole
     if (!depth_m.contains(u, v) || !(depth_m(u, v) > 0)) return std::nullopt;
     return camera.back_project(u, v, static_cast<double>(depth_m(u, v)));
   };
-  const auto left = at(x - kNormalReachPx, y);
-  const auto right = at(x + kNormalReachPx, y);
-  const auto up = at(x, y - kNormalReachPx);
-  const auto down = at(x, y + kNormalReachPx);
+  const auto left = at(x - kNormalReach_px, y);
+  const auto right = at(x + kNormalReach_px, y);
+  const auto up = at(x, y - kNormalReach_px);
+  const auto down = at(x, y + kNormalReach_px);
   if (!left || !right || !up || !down) return std::nullopt;
   // y points down, so down x across looks back at the camera.
   const Vector3d normal = (*down - *up).cross(*right - *left);

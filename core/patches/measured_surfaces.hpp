@@ -10,6 +10,10 @@
 
 namespace fusebench::patches {
 
+/// Normals of measured depth are differences over this many pixels either way, since neighbouring pixels of
+/// structured-light depth share their disparity step.
+inline constexpr int kNormalReach_px = 4;
+
 /// One surface a pixel: its measured depth, and the normal of the depth image around it. Invalid where
 /// nothing was measured; the normal is zero where a neighbour that it takes is missing.
 [[nodiscard]] std::vector<raycast::SurfacePoint> measured_surfaces(

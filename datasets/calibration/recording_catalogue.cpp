@@ -10,7 +10,6 @@
 
 #include "core/base/nearest_name.hpp"
 #include "core/config/toml_document.hpp"
-#include "core/config/toml_values.hpp"
 
 namespace fusebench::calibration {
 

@@ -122,6 +122,7 @@ Result<WrittenExport> write_euroc(const recording::Recording& recording, const E
     if (const auto written = write(recording, place); !written) return tl::unexpected(written.error());
   }
   WrittenExport result{*counts, {"mav0", "times.txt", "orbslam3.yaml"}, {}};
+  result.calibration = "orbslam3.yaml";
   result.notes = {"cam0 is grey, as EuRoC's; depth0 (mm, the stamps of cam0) is no part of EuRoC",
                   "ORB-SLAM3: mono_inertial_euroc VOCABULARY orbslam3.yaml FOLDER times.txt"};
   if (recording.imu.empty())

@@ -94,13 +94,18 @@ Result<ExportSummary> export_recording(const recording::Recording& recording, Ex
   auto written = row.write(recording, *place);
   if (!written) return tl::unexpected(written.error());
   if (const auto done = place->commit(); !done) return tl::unexpected(done.error());
+  // Files are in the folder of the export, or beside its file.
+  const std::filesystem::path folder = std::filesystem::is_directory(out) ? out : out.parent_path();
+  const std::filesystem::path calibration =
+      written->calibration.empty() ? std::filesystem::path() : folder / written->calibration;
   return ExportSummary{format,
                        out,
                        recording.frames.size(),
                        row.depth,
                        written->depth,
                        std::move(written->files),
-                       std::move(written->notes)};
+                       std::move(written->notes),
+                       calibration};
 }
 
 }  // namespace fusebench::exports

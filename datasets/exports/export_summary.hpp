@@ -33,6 +33,7 @@ struct WrittenExport {
   DepthCounts depth;
   std::vector<std::filesystem::path> files;  ///< that the other program is told
   std::vector<std::string> notes;            ///< for who starts it
+  std::filesystem::path calibration = {};    ///< of the files, the one that holds the camera; empty: none
 };
 
 struct ExportSummary {
@@ -43,6 +44,8 @@ struct ExportSummary {
   DepthCounts depth;
   std::vector<std::filesystem::path> files;
   std::vector<std::string> notes;
+  std::filesystem::path
+      calibration;  ///< where the camera is told, absolute or relative like `out`; empty: nowhere
 };
 
 }  // namespace fusebench::exports

@@ -64,6 +64,7 @@ Result<WrittenExport> write_infinitam(const recording::Recording& recording, con
   const auto timed = place.write("frame_times.txt", frame_time_table(recording.frames));
   if (!timed) return tl::unexpected(timed.error());
   WrittenExport result{*counts, {"calib.txt", kInfinitamColorMask, kInfinitamDepthMask}, {}};
+  result.calibration = "calib.txt";
   result.notes = {
       fmt::format("InfiniTAM: InfiniTAM_cli calib.txt {} {}", kInfinitamColorMask, kInfinitamDepthMask),
       "frames have numbers and no time: frame_times.txt has the stamp of each"};

@@ -74,6 +74,7 @@ Result<WrittenExport> write_klg(const recording::Recording& recording, const Exp
   const auto counts = write_frames(recording, place.file(place.name()));
   if (!counts) return tl::unexpected(counts.error());
   WrittenExport result{*counts, {place.name(), calibration}, {}};
+  result.calibration = calibration;
   result.notes = {
       fmt::format("ElasticFusion: ElasticFusion -l {} -cal {} -q; colour is red, green, blue: no -f",
                   place.name(), calibration),

@@ -49,6 +49,7 @@ Result<WrittenExport> write_open3d(const recording::Recording& recording, const 
   const auto times = place.write("frame_times.txt", frame_time_table(recording.frames));
   if (!times) return tl::unexpected(times.error());
   WrittenExport result{*counts, {"config.json", "intrinsic.json"}, {}};
+  result.calibration = "intrinsic.json";
   result.notes = {
       "Open3D: in the folder, run_system.py --config config.json --make --register --refine --integrate",
       "frames have numbers and no time: frame_times.txt has the stamp of each",

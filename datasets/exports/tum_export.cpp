@@ -125,6 +125,7 @@ Result<WrittenExport> write_tum(const recording::Recording& recording, const Exp
     if (const auto written = write(recording, place); !written) return tl::unexpected(written.error());
   }
   WrittenExport result{*counts, {"associations.txt", "orbslam3.yaml"}, {}};
+  result.calibration = "orbslam3.yaml";
   result.notes.push_back(
       "ORB-SLAM3: rgbd_tum VOCABULARY orbslam3.yaml FOLDER associations.txt; its estimate is "
       "CameraTrajectory.txt");

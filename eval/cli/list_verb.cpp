@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/all_systems.hpp"
 #include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/calibration/recording_catalogue.hpp"
@@ -46,6 +47,15 @@ Listing list_variants() {
                                                    : fmt::format("{} and {}", variant.base, variant.edits);
     listing.rows.push_back(
         {std::string(variant.name), std::string(variant.paper_label), edits, std::string(variant.sentence)});
+  }
+  return listing;
+}
+
+Listing list_systems() {
+  Listing listing{{"system", "option", "groups of options", "threads", "meaning"}, {}};
+  for (const core::SystemRow& row : core::all_systems()) {
+    listing.rows.push_back({std::string(row.name), fmt::format("system.method={}", row.name),
+                            std::string(row.options), std::string(row.threads), std::string(row.sentence)});
   }
   return listing;
 }
@@ -145,6 +155,7 @@ Result<Listing> list_runs_of(const ListOptions& options) {
 Result<Listing> listing_of(const ListOptions& options) {
   if (options.what == "runs") return list_runs_of(options);
   if (options.what == "variants") return list_variants();
+  if (options.what == "systems") return list_systems();
   if (options.what == "metrics") return list_metrics();
   if (options.what == "options") return list_options();
   if (options.what == "suites") return list_suites(options.configs);
@@ -199,10 +210,11 @@ Result<int> list(const ListOptions& options) {
 
 console::Verb add_list_verb(CLI::App& app) {
   auto options = std::make_shared<ListOptions>();
-  CLI::App* verb = app.add_subcommand("list", "Lists variants, metrics, recordings, suites, options or runs");
-  verb->add_option("WHAT", options->what, "variants, metrics, recordings, suites, options or runs")
+  CLI::App* verb =
+      app.add_subcommand("list", "Lists variants, systems, metrics, recordings, suites, options or runs");
+  verb->add_option("WHAT", options->what, "variants, systems, metrics, recordings, suites, options or runs")
       ->required()
-      ->check(CLI::IsMember({"variants", "metrics", "recordings", "suites", "options", "runs"}));
+      ->check(CLI::IsMember({"variants", "systems", "metrics", "recordings", "suites", "options", "runs"}));
   verb->add_option("RUNS", options->runs, "Of runs: their folder")->capture_default_str();
   verb->add_option("-o,--only", options->status, "Of runs: those that ended so: ok, lost or failed")
       ->check(CLI::IsMember({"ok", "lost", "failed"}))

@@ -168,6 +168,42 @@ const suites::Exclusion* exclusion_of(const suites::Suite& suite, const BatchJob
   return found == suite.exclusions.end() ? nullptr : &*found;
 }
 
+/// One run of an external program, but for its window and its repetition.
+BatchJob job_of_program(const Common& common, const Planned& recording,
+                        const std::shared_ptr<const external::ExternalProgram>& program) {
+  run::RunSpec spec;
+  spec.recording = recording.folder;
+  spec.imu = common.suite.imu;
+  spec.variant = program->name;
+  spec.program = program;
+  spec.threads = common.options.threads;
+  spec.kept = common.suite.kept;
+  spec.out = common.options.out;
+  const bool optional = common.suite.all && !recording.simulation;
+  return BatchJob{recording.folder, program->name,   std::move(spec),      optional,
+                  recording.group,  recording.split, recording.simulation, {}};
+}
+
+/// The runs of external programs over one recording; those that cannot run here are excluded.
+Result<void> add_program_runs(const Common& common, const Planned& recording, BatchPlan& plan,
+                              std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
+  for (const auto& program : common.suite.programs) {
+    const auto take =
+        wanted(common.options.only, recording.folder.filename().string(), recording.split, program->name);
+    if (!take) return tl::unexpected(take.error());
+    if (!*take) continue;
+    BatchJob job = job_of_program(common, recording, program);
+    const suites::Exclusion* const exclusion = exclusion_of(common.suite, job);
+    if (exclusion != nullptr) met.insert(exclusion);
+    if (exclusion != nullptr || !program->absent.empty()) {
+      plan.excluded.push_back({to_string(job), exclusion != nullptr ? exclusion->reason : program->absent});
+    } else {
+      jobs.push_back(std::move(job));
+    }
+  }
+  return {};
+}
+
 /// Of two values of one option it would be a matter of order which counts.
 Result<void> check_swept_once(const std::vector<suites::SweepBlock>& blocks,
                               const std::vector<std::string>& sets) {
@@ -220,9 +256,15 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
 void multiply(const suites::Suite& suite, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
   std::vector<std::optional<run::FrameWindow>> windows(suite.windows.begin(), suite.windows.end());
   if (windows.empty()) windows.emplace_back();
+  int most = suite.repetitions;
+  for (const auto& program : suite.programs) most = std::max(most, program->repetitions);
+  const auto repetitions = [&](const BatchJob& job) {
+    return job.spec.program ? std::max(suite.repetitions, job.spec.program->repetitions) : suite.repetitions;
+  };
   for (const auto& window : windows) {
-    for (int repetition = 1; repetition <= suite.repetitions; ++repetition) {
+    for (int repetition = 1; repetition <= most; ++repetition) {
       for (const BatchJob& job : jobs) {
+        if (repetition > repetitions(job)) continue;
         plan.jobs.push_back(job);
         plan.jobs.back().spec.frames = window;
         plan.jobs.back().spec.repetition = repetition;
@@ -259,6 +301,8 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
   for (const Planned& recording : *recordings) {
     std::vector<BatchJob> jobs;
     if (auto added = add_runs(common, recording, plan, met, jobs); !added)
+      return tl::unexpected(added.error());
+    if (auto added = add_program_runs(common, recording, plan, met, jobs); !added)
       return tl::unexpected(added.error());
     multiply(suite, jobs, plan);
   }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/config/variants.hpp"
-
 namespace fusebench::engine {
 
 const Result<recording::Recording>& OpenedRecordings::of(const run::RunSpec& spec) {
@@ -12,8 +10,8 @@ const Result<recording::Recording>& OpenedRecordings::of(const run::RunSpec& spe
     recording_ = spec.recording;
   }
   const std::string window = spec.frames ? fmt::format("{}:{}", spec.frames->begin, spec.frames->end) : "all";
-  const std::string key = fmt::format("{} {} {}", window, static_cast<int>(spec.imu),
-                                      config::needs_imu(spec.config.values) ? "imu" : "no imu");
+  const std::string key =
+      fmt::format("{} {} {}", window, static_cast<int>(spec.imu), run::wants_imu(spec) ? "imu" : "no imu");
   const auto found = opened_.find(key);
   if (found != opened_.end()) return found->second;
   return opened_.emplace(key, run::open_for_run(spec)).first->second;

@@ -6,8 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "datasets/images/image_files.hpp"
-#include "eval/text/base64.hpp"
+#include "eval/page/image_source.hpp"
 
 namespace fusebench::inspection_report {
 
@@ -43,8 +42,7 @@ std::string side_by_side(const RgbdFrame& frame, double far_m) {
   cv::Mat view(height, 2 * kWidth_px, CV_8UC3, both.data.data());
   small_color(frame.color, size).copyTo(view(cv::Rect(0, 0, kWidth_px, height)));
   small_depth(frame.depth_m, size, far_m).copyTo(view(cv::Rect(kWidth_px, 0, kWidth_px, height)));
-  const auto jpeg = images::encode_jpeg(both, kQuality);
-  return jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string();
+  return page::jpeg_source(both, kQuality);
 }
 
 struct Choice {

@@ -8,12 +8,12 @@
 
 #include "core/mesh/ply_file.hpp"
 #include "datasets/images/image_files.hpp"
+#include "eval/page/image_source.hpp"
 #include "eval/paper_figures/model_view.hpp"
 #include "eval/report/patch_pictures.hpp"
 #include "eval/report/run_charts.hpp"
 #include "eval/report/run_series.hpp"
 #include "eval/run_files/patch_table.hpp"
-#include "eval/text/base64.hpp"
 
 namespace fusebench::paper_figures {
 
@@ -79,11 +79,6 @@ void add_imu_experiment(const Loaded& recording, page::Page& page) {
                            "The same estimator with and without the inertial prior.", std::move(charts)});
 }
 
-std::string data_uri(const ColorImage& image) {
-  const auto jpeg = images::encode_jpeg(image, kQuality);
-  return jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string();
-}
-
 /// Images of one figure, as files and for the page.
 struct ImageFigure {
   std::string name;
@@ -97,7 +92,7 @@ struct ImageFigure {
     if (auto written = images::write_png(folder / file, image); !written) return written;
     size_px = size_px.cwiseMax(Eigen::Vector2i(image.width, image.height));
     panels.push_back({title, file});
-    images.push_back({title, data_uri(image)});
+    images.push_back({title, page::jpeg_source(image, kQuality)});
     return {};
   }
 };

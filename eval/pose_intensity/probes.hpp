@@ -1,7 +1,6 @@
 // The probe patches of a frame, and where their pixels are.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "core/base/types.hpp"

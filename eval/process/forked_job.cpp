@@ -22,6 +22,8 @@
 #include <utility>
 #include <vector>
 
+#include "eval/process/process_usage.hpp"
+
 namespace fusebench::process {
 
 namespace {
@@ -29,7 +31,6 @@ namespace {
 constexpr std::string_view kProgress = "progress";
 constexpr std::string_view kError = "error";
 constexpr std::string_view kFinished = "finished";
-constexpr std::size_t kKeptOutput = 16 * 1024;
 
 /// A field of a line.
 std::string plain(std::string_view text) {
@@ -86,10 +87,6 @@ void run_guarded(const std::function<void(const JobReporter& reporter)>& work, c
   run_guarded(work, JobReporter(pipe));
   std::fflush(nullptr);
   _exit(0);
-}
-
-double seconds_of(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 }  // namespace
@@ -248,14 +245,9 @@ std::string ForkedJob::reason_of(int status) const {
 JobEnd ForkedJob::ended(int status, const rusage& usage) {
   JobEnd end;
   end.wall_s = std::chrono::duration<double>(Clock::now() - start_).count();
-  end.cpu_s = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-  end.peak_rss_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-  std::fseek(output_.get(), 0, SEEK_END);
-  const long size = std::ftell(output_.get());
-  const long kept = std::min(size, static_cast<long>(kKeptOutput));
-  std::fseek(output_.get(), size - kept, SEEK_SET);
-  end.output.resize(static_cast<std::size_t>(kept));
-  end.output.resize(std::fread(end.output.data(), 1, end.output.size(), output_.get()));
+  end.cpu_s = cpu_seconds(usage);
+  end.peak_rss_bytes = peak_bytes(usage);
+  end.output = end_of_file(output_.get());
   end.finished = std::move(finished_);
   end.error = std::move(error_);
   if (!end.finished && !end.error) end.reason = reason_of(status);

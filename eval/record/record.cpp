@@ -148,6 +148,11 @@ RunStatus status_of(const std::string& text) {
   throw std::invalid_argument(fmt::format("status = {} (allowed: ok | lost | failed)", text));
 }
 
+PoseKind pose_kind_of(const std::string& text) {
+  if (const auto poses = parse_pose_kind(text)) return *poses;
+  throw std::invalid_argument(fmt::format("poses = {} (allowed: online | final)", text));
+}
+
 RunRecord record_of(const Json& json) {
   RunRecord record;
   record.schema = json.at("schema");
@@ -158,6 +163,7 @@ RunRecord record_of(const Json& json) {
   record.repetition = json.value("repetition", 1);
   read(json.at("recording"), record.recording);
   record.variant = json.at("variant");
+  record.poses = pose_kind_of(json.value("poses", "online"));  // older records do not say it
   record.config = config_of(json.at("config"));
   record.config_hash = json.at("config_hash");
   read_metrics(json.at("metrics"), record.metrics);
@@ -202,6 +208,15 @@ std::optional<RunStatus> parse_run_status(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view to_string(PoseKind poses) { return poses == PoseKind::online ? "online" : "final"; }
+
+std::optional<PoseKind> parse_pose_kind(std::string_view text) {
+  for (const PoseKind poses : {PoseKind::online, PoseKind::final}) {
+    if (text == to_string(poses)) return poses;
+  }
+  return std::nullopt;
+}
+
 std::string to_json(const RunRecord& record) {
   const Json json = {
       {"schema", record.schema},
@@ -211,6 +226,7 @@ std::string to_json(const RunRecord& record) {
       {"repetition", record.repetition},
       {"recording", json_of(record.recording)},
       {"variant", record.variant},
+      {"poses", to_string(record.poses)},
       {"config_hash", record.config_hash},
       {"metrics", json_of_metrics(record)},
       {"frames",

@@ -38,6 +38,13 @@ enum class RunStatus {
 };
 [[nodiscard]] std::string_view to_string(RunStatus status);
 [[nodiscard]] std::optional<RunStatus> parse_run_status(std::string_view text);
+/// Which poses of a run its metrics are of.
+enum class PoseKind {
+  online,  ///< as each was known when its frame came
+  final,   ///< as all were known at the end
+};
+[[nodiscard]] std::string_view to_string(PoseKind poses);
+[[nodiscard]] std::optional<PoseKind> parse_pose_kind(std::string_view text);
 /// The status as people see it: "ok (12 silent)" where so many of the poses that were claimed are wrong.
 [[nodiscard]] std::string status_text(RunStatus status, std::optional<std::size_t> silent);
 
@@ -94,6 +101,15 @@ struct RecordedMesh {
   std::vector<double> vertex_errors_m;
 };
 
+/// The intensity error of the poses alone (pose_intensity.hpp), over the frames of which this run has poses.
+struct RecordedPoseIntensity {
+  double aie_grey = 0;
+  double rms_grey = 0;
+  std::size_t frames = 0;
+  std::size_t pixels = 0;
+  bool visibility_by_truth = false;
+};
+
 /// Poses that were claimed and are wrong.
 struct RecordedSilentFailures {
   trajectory_error::SilentFailures failures;
@@ -111,6 +127,7 @@ struct RecordedMetrics {
   RecordedNees nees;
   Outcome<metrics::ResidualSummary> residuals;
   Outcome<RecordedSilentFailures> silent;
+  Outcome<RecordedPoseIntensity> pose_intensity;
 
   /// Number of silent failures, where there is truth to tell them by.
   [[nodiscard]] std::optional<std::size_t> silent_frames() const {
@@ -171,6 +188,7 @@ struct RunRecord {
   int repetition = 1;  ///< of the same run, for its time
   RecordedRecording recording;
   std::string variant;
+  PoseKind poses = PoseKind::online;
   std::vector<RecordedOption> config;  ///< every option, in declaration order
   std::string config_hash;
   RecordedMetrics metrics;

@@ -211,6 +211,20 @@ void read(const Json& json, RecordedSilentFailures& silent) {
   failures.worst_rotation_rad = number_at(json, "worst_rotation_rad");
 }
 
+Json json_of(const RecordedPoseIntensity& intensity) {
+  return {{"protocol", "the same probe patches for every system, moved by its poses; mean over frames"},
+          {"aie_grey", intensity.aie_grey},
+          {"rms_grey", intensity.rms_grey},
+          {"frames", intensity.frames},
+          {"pixels", intensity.pixels},
+          {"visibility_by_truth", intensity.visibility_by_truth}};
+}
+
+void read(const Json& json, RecordedPoseIntensity& intensity) {
+  intensity = {number_at(json, "aie_grey"), number_at(json, "rms_grey"), json.at("frames"), json.at("pixels"),
+               json.at("visibility_by_truth")};
+}
+
 mesh_error::MeshDistances distances_of(const Json& json) {
   if (json.is_null()) return {};
   return {statistics_of(json), number_at(json, "p90"), number_at(json, "p95")};
@@ -337,6 +351,7 @@ Json json_of_metrics(const RunRecord& record) {
       {"nees", json_of_nees(record.metrics.nees)},
       {"residuals", json_of(record.metrics.residuals)},
       {"silent_failures", json_of(record.metrics.silent)},
+      {"pose_intensity", json_of(record.metrics.pose_intensity)},
       {"coverage",
        {{"protocol", "tracked frames / frames of the recording"},
         {"tracked", record.frames.tracked},
@@ -355,6 +370,7 @@ void read_metrics(const Json& json, RecordedMetrics& metrics) {
   metrics.nees = nees_of(json);
   metrics.residuals = newer_outcome_of<metrics::ResidualSummary>(json, "residuals");
   metrics.silent = newer_outcome_of<RecordedSilentFailures>(json, "silent_failures");
+  metrics.pose_intensity = newer_outcome_of<RecordedPoseIntensity>(json, "pose_intensity");
 }
 
 }  // namespace fusebench::record

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "core/mesh/ply_file.hpp"
-#include "datasets/images/image_files.hpp"
 #include "eval/mesh_error/error_colors.hpp"
 #include "eval/mesh_error/mesh_clustering.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/page/image_source.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/report/patch_pictures.hpp"
 #include "eval/report/profile_charts.hpp"
@@ -22,7 +22,6 @@
 #include "eval/report/run_series.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/tables/table.hpp"
-#include "eval/text/base64.hpp"
 
 namespace fusebench::report {
 
@@ -122,9 +121,7 @@ std::vector<page::PageImage> page_images(const PatchPictures& pictures) {
   std::vector<page::PageImage> result;
   for (const PatchPicture& picture : pictures.pictures) {
     constexpr int kQuality = 92;
-    const auto jpeg = images::encode_jpeg(picture.strip, kQuality);
-    result.push_back(
-        {picture.caption(), jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string()});
+    result.push_back({picture.caption(), page::jpeg_source(picture.strip, kQuality)});
   }
   return result;
 }

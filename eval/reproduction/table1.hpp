@@ -20,7 +20,7 @@ namespace fusebench::reproduction {
 struct MethodNumbers {
   std::optional<metrics::IntensityReadings> grey;  ///< nothing if the run failed
   double lost_share = 1;                           ///< frames that were not tracked
-  std::string failure;
+  std::string failure;                             ///< why there is no number
 };
 
 /// Both methods of a reading on one recording.

@@ -138,6 +138,17 @@ std::string reading_list(const Table1& table) {
   return text;
 }
 
+/// Runs without an intensity error, and why: recording, reading, method, reason.
+std::vector<text::TableCells> failure_lines(const Table1& table) {
+  std::vector<text::TableCells> lines{{"recording", "reading", "method", "reason"}};
+  for (const RecordingNumbers& numbers : table.numbers) {
+    const std::string& reading = table.protocol.readings[numbers.reading].name;
+    if (!numbers.dm.grey) lines.push_back({numbers.recording, reading, "DM", numbers.dm.failure});
+    if (!numbers.ours.grey) lines.push_back({numbers.recording, reading, "Ours", numbers.ours.failure});
+  }
+  return lines;
+}
+
 /// The readings whose ratio is shown by each definition of the error: the first, and those with the pattern.
 std::vector<std::size_t> readings_to_detail(const Table1& table) {
   std::vector<std::size_t> detailed;
@@ -168,6 +179,8 @@ std::string markdown(const Table1& table) {
     text += fmt::format("\n## Ratios by definition of the intensity error: {}\n\n{}",
                         table.protocol.readings[r].name, text::markdown_table(definition_lines(table, r), 1));
   }
+  const auto failures = failure_lines(table);
+  if (failures.size() > 1) text += "\n## Runs without a number\n\n" + text::markdown_table(failures, 4);
   return text;
 }
 
@@ -222,6 +235,13 @@ Json json_of(const Table1& table) {
                                             {"published_ratio", column.published_ratio()}};
   json["absent"] = table.absent;
   for (const std::size_t r : table.readings) json["readings"].push_back(json_of(table, r));
+  const auto failures = failure_lines(table);
+  json["runs_without_number"] = Json::array();
+  for (std::size_t i = 1; i < failures.size(); ++i)
+    json["runs_without_number"].push_back({{"recording", failures[i][0]},
+                                           {"reading", failures[i][1]},
+                                           {"method", failures[i][2]},
+                                           {"reason", failures[i][3]}});
   return json;
 }
 
@@ -268,6 +288,8 @@ page::Page table1_page(const Table1& table) {
   for (const std::size_t r : readings_to_detail(table))
     page.sections.push_back({"By definition of the error: " + table.protocol.readings[r].name, "",
                              page_table(definition_lines(table, r))});
+  const auto failures = failure_lines(table);
+  if (failures.size() > 1) page.sections.push_back({"Runs without a number", "", page_table(failures)});
   page.sections.push_back({"Readings", "", readings_table(table)});
   page.sections.push_back({"Columns", "", columns_table(table)});
   return page;

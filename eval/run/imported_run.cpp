@@ -11,18 +11,15 @@
 #include "core/io/fingerprint.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/mesh/mesh_file.hpp"
-#include "core/trajectory/association.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/external/frame_poses.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
-#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::run {
 
 namespace {
-
-constexpr std::int64_t kSameFrame_ns = 20'000'000;
 
 Result<void> check_name(const std::string& name) {
   const bool letters = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
@@ -49,60 +46,6 @@ Result<recording::Recording> open(const ImportSpec& spec) {
   if (recording->frames.empty())
     return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
   return recording;
-}
-
-/// Poses without stamps get those of the frames.
-Result<Trajectory> stamped(trajectory_files::LoadedTrajectory loaded, const recording::Recording& recording) {
-  if (loaded.has_stamps()) return std::move(loaded.poses);
-  if (loaded.poses.size() != recording.frames.size()) {
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("{} poses without stamps for {} frames", loaded.poses.size(), recording.frames.size()),
-        "a trajectory with stamps (TUM) may have gaps");
-  }
-  for (std::size_t i = 0; i < loaded.poses.size(); ++i)
-    loaded.poses[i].timestamp_ns = recording.frames[i].timestamp_ns;
-  return std::move(loaded.poses);
-}
-
-/// The poses of frames, with the instants that they are of.
-struct OwnedPoses {
-  Trajectory poses;
-  std::vector<record::StampAndInstant> stamps;
-};
-
-Result<OwnedPoses> poses_of_frames(const Trajectory& poses, const recording::Recording& recording) {
-  std::vector<std::int64_t> frames_ns;
-  for (const recording::FrameEntry& frame : recording.frames) frames_ns.push_back(frame.timestamp_ns);
-  OwnedPoses owned;
-  for (const trajectory::AssociatedPair& pair :
-       trajectory::associate(frames_ns, trajectory_files::stamps_of(poses), kSameFrame_ns, 0)) {
-    const recording::FrameEntry& frame = recording.frames[pair.first];
-    const StampedPose& pose = poses[pair.second];
-    owned.poses.push_back(pose);
-    // The frame's instant may differ from its stamp; the pose's differs as much.
-    owned.stamps.emplace_back(pose.timestamp_ns, pose.timestamp_ns + frame.capture_ns - frame.timestamp_ns);
-  }
-  if (!owned.poses.empty()) return owned;
-  return fail(
-      ErrorCode::data_corrupt,
-      fmt::format("none of {} poses ({:.3f} to {:.3f} s) belongs to one of {} frames ({:.3f} to {:.3f} s)",
-                  poses.size(), trajectory_files::stamp_seconds(poses.front().timestamp_ns),
-                  trajectory_files::stamp_seconds(poses.back().timestamp_ns), frames_ns.size(),
-                  trajectory_files::stamp_seconds(frames_ns.front()),
-                  trajectory_files::stamp_seconds(frames_ns.back())),
-      "stamps must be those of the colour images, within 0.02 s");
-}
-
-record::RecordedMetrics metrics_of_import(const RunOutput& output, const recording::Recording& recording,
-                                          const Workers& workers) {
-  record::RecordedMetrics metrics = metrics_of(output, recording, config::Config{}, workers);
-  metrics.aie = {std::nullopt, "an imported run says nothing of intensities"};
-  metrics.intensity_readings = {std::nullopt, metrics.aie.reason};
-  metrics.residuals = {std::nullopt, "an imported run says nothing of residuals"};
-  metrics.nees.fill({std::nullopt, "an imported run has no covariance"});
-  if (output.mesh.vertices.empty()) metrics.mesh = {std::nullopt, "no mesh was imported"};
-  return metrics;
 }
 
 Result<std::string> hash_of(const ImportSpec& spec, trajectory_files::TrajectoryFormat format,
@@ -143,13 +86,12 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
                                                   trajectory::Duplicates::rare_last, run.warnings);
   if (!loaded) return tl::unexpected(loaded.error());
   const trajectory_files::TrajectoryFormat format = loaded->format;
-  const auto poses = stamped(std::move(*loaded), *recording);
-  if (!poses) return tl::unexpected(poses.error());
-  const auto owned = poses_of_frames(*poses, *recording);
+  const auto owned = external::poses_of_frames(std::move(*loaded), *recording);
   if (!owned) return tl::unexpected(owned.error());
   const auto hash = hash_of(spec, format, *recording);
   if (!hash) return tl::unexpected(hash.error());
   RunOutput output;
+  output.has_filter = false;
   output.trajectory = owned->poses;
   for (const auto& [stamp_ns, instant_ns] : owned->stamps) output.states.push_back({instant_ns, {}});
   if (!spec.mesh.empty()) {
@@ -172,7 +114,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.frames.tracked = owned->poses.size();
   record.frames.lost = record.frames.total - record.frames.tracked;
   record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
-  record.metrics = metrics_of_import(output, *recording, Workers(spec.threads));
+  record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));
   record.provenance = record::provenance_here(spec.threads);
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
   std::vector<record::StampAndInstant> stamps = record::frame_stamps(*recording);

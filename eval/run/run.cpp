@@ -7,15 +7,17 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "core/all_systems.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/meshing/marching_cubes.hpp"
-#include "core/pipeline.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/profile/trace_file.hpp"
 #include "eval/record/process_meter.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/run/program_run.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 #include "eval/run/run_frames.hpp"
@@ -28,16 +30,39 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Makes the mesh of the model, which ends with it: metrics need the memory.
-record::RecordedModel make_mesh(tsdf::TsdfVolume model, const config::Config& config, const Workers& workers,
-                                RunProgress& progress) {
-  // What else the pipeline had (keyframes, images) is gone, and the mesh needs the room.
+/// Turns what a system has reconstructed into a mesh.
+class SurfaceMesher {
+ public:
+  SurfaceMesher(const config::Config& config, const Workers& workers) : config_(config), workers_(workers) {}
+
+  record::RecordedModel operator()(std::monostate /*none*/) { return {}; }
+  record::RecordedModel operator()(const tsdf::TsdfVolume& model) {
+    mesh = meshing::extract_mesh(model, config_.tsdf.min_mesh_weight, workers_);
+    return {mesh.vertices.size(), mesh.triangles.size(), model.block_count()};
+  }
+  record::RecordedModel operator()(Mesh& made) {
+    mesh = std::move(made);
+    return {mesh.vertices.size(), mesh.triangles.size(), 0};
+  }
+
+  Mesh mesh;
+
+ private:
+  const config::Config& config_;
+  const Workers& workers_;
+};
+
+/// Makes the mesh of the surface, which ends with it: metrics need the memory.
+record::RecordedModel make_mesh(systems::Surface surface, const config::Config& config,
+                                const Workers& workers, RunProgress& progress) {
+  // What else the system had (keyframes, images) is gone, and the mesh needs the room.
   record::return_freed_memory();
-  Mesh& mesh = progress.output.mesh;
+  SurfaceMesher mesher(config, workers);
   progress.profile.mesh.begin = Clock::now();
-  mesh = meshing::extract_mesh(model, config.tsdf.min_mesh_weight, workers);
+  const record::RecordedModel model = std::visit(mesher, surface);
   progress.profile.mesh.end = Clock::now();
-  return {mesh.vertices.size(), mesh.triangles.size(), model.block_count()};
+  progress.output.mesh = std::move(mesher.mesh);
+  return model;
 }
 
 record::RecordedTiming timing_of(const RunProgress& progress, const record::ProcessCost& cost) {
@@ -60,6 +85,7 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
 }  // namespace
 
 Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
+  if (run.spec.program) return execute_program_run(run, control);
   const record::ProcessMeter meter;
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
@@ -67,10 +93,12 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
 
   const config::Config& config = run.spec.config.values;
   const Workers workers(run.spec.threads);
-  core::Pipeline pipeline(config, run.recording.rig, run.recording.imu, workers);
-  auto progress = process_frames(run, pipeline, *folder, control);
+  auto system = core::make_system(config, run.recording.rig, run.recording.imu, workers);
+  auto progress = process_frames(run, *system, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
-  record.model = make_mesh(std::move(pipeline).take_model(), config, workers, *progress);
+  systems::Surface surface = system->take_surface();
+  system.reset();
+  record.model = make_mesh(std::move(surface), config, workers, *progress);
   const record::ProcessCost cost = meter.cost();
 
   record.status = progress->status;
@@ -83,7 +111,8 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
-  if (all) {
+  const bool has_filter = progress->output.has_filter;
+  if (all && has_filter) {
     if (auto written = run_files::write_patch_table(folder->path(), progress->fastest.frames()); !written)
       return tl::unexpected(written.error());
   }
@@ -101,11 +130,11 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
        {"truth.tum",
         trajectory::tum_text(record::true_trajectory(run.recording, record::frame_stamps(run.recording)))},
        {"frames.csv", progress->frame_table},
-       {"states.csv", all ? progress->state_table : ""},
-       {"nees.csv", run_files::nees_table(record.metrics.nees)},
+       {"states.csv", all && has_filter ? progress->state_table : ""},
+       {"nees.csv", has_filter ? run_files::nees_table(record.metrics.nees) : ""},
        {profile::kTraceFile, run.spec.profile ? profile::trace_text(progress->profile, title) : ""},
        {"log.txt", progress->log}}};
-  Mesh* const mesh = all ? &progress->output.mesh : nullptr;
+  Mesh* const mesh = all && !progress->output.mesh.vertices.empty() ? &progress->output.mesh : nullptr;
   if (auto written = write_run_folder(*folder, mesh, texts, record); !written)
     return tl::unexpected(written.error());
   return record;

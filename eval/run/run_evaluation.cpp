@@ -6,6 +6,7 @@
 
 #include "core/config/variants.hpp"
 #include "core/mesh/ply_file.hpp"
+#include "eval/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/true_camera.hpp"
 #include "eval/run/recording_views.hpp"
@@ -71,6 +72,7 @@ record::RecordedNees nees_of(const RunOutput& output, const recording::Recording
     nees.fill({std::nullopt, reason});
     return nees;
   };
+  if (!output.has_filter) return none("the system has no covariance");
   if (recording.state_truth.empty()) return none("the recording has no true states");
   if (recording.imu_source == recording::ImuSource::synthetic) {
     return none("the true states are of the recorded IMU, and the run used a synthetic one");
@@ -119,6 +121,7 @@ KnownCameras known_cameras(const RunOutput& output, const recording::Recording& 
 Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const recording::Recording& recording,
                                            const record::Outcome<trajectory_error::AteResult>& ate,
                                            const config::DepthConfig& depth, const Workers& workers) {
+  if (output.mesh.vertices.empty()) return fail(ErrorCode::data_missing, "there is no reconstruction");
   if (recording.truth_mesh_file.empty()) {
     return fail(ErrorCode::data_missing, "the recording has no true mesh");
   }
@@ -160,21 +163,41 @@ Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const record
   return mesh;
 }
 
+Result<record::RecordedPoseIntensity> pose_intensity_of(const RunOutput& output,
+                                                        const recording::Recording& recording,
+                                                        const config::Config& config) {
+  if (!config.evaluation.pose_intensity)
+    return fail(ErrorCode::data_missing, "not asked for (evaluation.pose_intensity)");
+  const pose_intensity::NamedTrajectory poses{"run", output.trajectory};
+  // Probes by defaults, so that they are the same for every system and variant.
+  const auto result = pose_intensity::pose_intensity(recording, {&poses, 1}, {});
+  if (!result) return tl::unexpected(result.error());
+  const pose_intensity::TrajectoryIntensity& run = result->trajectories.front();
+  return record::RecordedPoseIntensity{run.aie_grey, run.rms_grey, result->frames, result->pixels,
+                                       result->visibility_by_truth};
+}
+
 }  // namespace
 
 record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Recording& recording,
                                    const config::Config& config, const Workers& workers) {
   record::RecordedMetrics metrics;
   metrics.aie = {output.intensity.result(), {}};
-  if (metrics.aie.value->all.frames == 0) metrics.aie = {std::nullopt, "no frame has tracked pixels"};
+  const std::string no_patches = "the system has no patches";
+  if (metrics.aie.value->all.frames == 0)
+    metrics.aie = {std::nullopt, output.has_filter ? "no frame has tracked pixels" : no_patches};
   metrics.intensity_readings = {output.intensity_readings.result(), {}};
   if (output.intensity_readings.empty())
-    metrics.intensity_readings = {std::nullopt, "not asked for (evaluation.intensity_readings)"};
+    metrics.intensity_readings = {
+        std::nullopt, output.has_filter ? "not asked for (evaluation.intensity_readings)" : no_patches};
   metrics.residuals = {output.residuals.result(), {}};
-  if (metrics.residuals.value->frames == 0) metrics.residuals = {std::nullopt, "no frame was tracked"};
+  if (metrics.residuals.value->frames == 0)
+    metrics.residuals = {std::nullopt, output.has_filter ? "no frame was tracked" : no_patches};
   add_trajectory_metrics(metrics, output, recording);
   metrics.silent = record::Outcome<record::RecordedSilentFailures>::from(
       silent_failures_of(output, recording, config.evaluation));
+  metrics.pose_intensity =
+      record::Outcome<record::RecordedPoseIntensity>::from(pose_intensity_of(output, recording, config));
   metrics.nees = nees_of(output, recording, config);
   metrics.mesh = record::Outcome<record::RecordedMesh>::from(
       mesh_error_of(output, recording, metrics.ate, config.depth, workers));

@@ -18,8 +18,10 @@ namespace fusebench::run {
 
 /// What metrics need of a run.
 struct RunOutput {
-  Trajectory trajectory;                        ///< frames that were tracked; a predicted pose is no estimate
-  std::vector<filter::StampedEstimate> states;  ///< of the same frames, at their capture instants
+  bool has_filter = true;  ///< a filter with patches: there are states, covariances, intensities, residuals
+  Trajectory trajectory;   ///< frames that were tracked; a predicted pose is no estimate
+  std::vector<filter::StampedEstimate> states;  ///< of the same frames, at their capture instants; without a
+  ///< filter the instants alone
   metrics::IntensityAccumulator intensity;
   metrics::IntensityReadingsAccumulator intensity_readings;  ///< empty if they are not asked for
   metrics::ResidualAccumulator residuals;

@@ -26,52 +26,63 @@ metrics::FrameResiduals residuals_of(const health::FrameReport& report) {
 }
 
 /// The run begins at this frame: those before are lost, also one that it began at before.
-void forget_earlier_start(RunProgress& progress, std::size_t frame, const health::FrameReport& report) {
+void forget_earlier_start(RunProgress& progress, std::size_t frame, const health::FrameOutcome& outcome) {
   progress.log +=
       fmt::format("frame {}: {}\n", frame,
-                  report.reason.empty() ? "started: no frame before could be used" : report.reason);
+                  outcome.reason.empty() ? "started: no frame before could be used" : outcome.reason);
   progress.frames.lost += std::exchange(progress.frames.tracked, 0);
   progress.output.trajectory.clear();
   progress.output.states.clear();
 }
 
-/// Takes one frame's report into the progress; ends the run when too many frames are lost in a row.
-void take_report(RunProgress& progress, std::size_t frame, const health::FrameReport& report,
-                 const PreparedRun& run, double decode_ms) {
-  progress.frame_table += run_files::frame_table_row(frame, report, decode_ms);
-  progress.state_table += run_files::state_table_row(report, run.recording.rig.timing);
+/// What only a filter says of a frame.
+void take_filter_report(RunProgress& progress, const health::FrameReport& report,
+                        const SensorTiming& timing) {
+  progress.state_table += run_files::state_table_row(report, timing);
+  // The first frame has nothing to be compared with: it is no frame without tracked pixels.
+  if (report.status == health::FrameStatus::initialised) return;
+  progress.output.intensity.add_frame(report.pixels.intensity);
+  progress.output.intensity_readings.add_frame(report.pixels.squares);
+  if (report.status != health::FrameStatus::lost) progress.output.residuals.add_frame(residuals_of(report));
+}
+
+/// A frame with a pose.
+void take_pose(RunProgress& progress, std::size_t frame, const health::FrameOutcome& outcome,
+               const health::FrameReport* filter) {
+  if (outcome.status == health::FrameStatus::relocalised)
+    progress.log +=
+        fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
+  if (outcome.status == health::FrameStatus::initialised && frame > 0)
+    forget_earlier_start(progress, frame, outcome);
+  // A start that is not the first one is none until a frame is tracked from it.
+  progress.lost_in_a_row = outcome.reason.empty() ? 0 : progress.lost_in_a_row + 1;
+  ++progress.frames.tracked;
+  progress.output.trajectory.push_back({outcome.timestamp_ns, outcome.T_world_camera});
+  progress.output.states.push_back(
+      {outcome.capture_ns, filter != nullptr ? filter->estimate : filter::GaussianState{}});
+}
+
+/// Takes one frame into the progress; ends the run when too many frames are lost in a row.
+void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOutcome& outcome,
+                const health::FrameReport* filter, const PreparedRun& run, double decode_ms) {
+  progress.frame_table += run_files::frame_table_row(frame, outcome, filter, decode_ms);
   progress.decode_ms += decode_ms;
   for (std::size_t stage = 0; stage < health::kStageNames.size(); ++stage) {
-    progress.stage_ms[stage] += report.stages.sums_ms()[stage];
+    progress.stage_ms[stage] += outcome.stages.sums_ms()[stage];
   }
-  // The first frame has nothing to be compared with: it is no frame without tracked pixels.
-  if (report.status != health::FrameStatus::initialised) {
-    progress.output.intensity.add_frame(report.pixels.intensity);
-    progress.output.intensity_readings.add_frame(report.pixels.squares);
-  }
-  if (report.status != health::FrameStatus::lost) {
-    if (report.status == health::FrameStatus::relocalised)
-      progress.log +=
-          fmt::format("frame {}: relocalised: found its place again by a frame seen before\n", frame);
-    if (report.status == health::FrameStatus::initialised && frame > 0)
-      forget_earlier_start(progress, frame, report);
-    // A start that is not the first one is none until a frame is tracked from it.
-    progress.lost_in_a_row = report.reason.empty() ? 0 : progress.lost_in_a_row + 1;
-    ++progress.frames.tracked;
-    progress.output.trajectory.push_back({report.timestamp_ns, report.T_world_camera});
-    progress.output.states.push_back({report.capture_ns, report.estimate});
-    if (report.status != health::FrameStatus::initialised)
-      progress.output.residuals.add_frame(residuals_of(report));
+  if (filter != nullptr) take_filter_report(progress, *filter, run.recording.rig.timing);
+  if (outcome.status != health::FrameStatus::lost) {
+    take_pose(progress, frame, outcome, filter);
     return;
   }
   ++progress.frames.lost;
   ++progress.lost_in_a_row;
-  progress.log += fmt::format("frame {}: lost: {}\n", frame, report.reason);
+  progress.log += fmt::format("frame {}: lost: {}\n", frame, outcome.reason);
   const int limit = run.spec.config.values.iekf.max_lost_frames;
   if (progress.lost_in_a_row > static_cast<std::size_t>(limit)) {
     progress.end(record::RunStatus::lost,
                  fmt::format("lost at frame {}: {} (iekf.max_lost_frames = {})",
-                             frame + 1 - progress.lost_in_a_row, report.reason, limit));
+                             frame + 1 - progress.lost_in_a_row, outcome.reason, limit));
   }
 }
 
@@ -95,7 +106,7 @@ void RunProgress::end(record::RunStatus how, std::string why) {
   log += fmt::format("{}: {}\n", record::to_string(status), reason);
 }
 
-Result<RunProgress> process_frames(const PreparedRun& run, core::Pipeline& pipeline,
+Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
                                    const io::StagedFolder& folder, const RunControl& control) {
   RunProgress progress;
   const recording::Recording& recording = run.recording;
@@ -105,7 +116,8 @@ Result<RunProgress> process_frames(const PreparedRun& run, core::Pipeline& pipel
 
   const PinholeCamera& camera = recording.rig.camera;
   std::optional<metrics::IntensityWriter> intensity;
-  if (run.spec.kept == KeptFiles::all) {
+  progress.output.has_filter = run.spec.config.values.system.method == config::SystemMethod::filter;
+  if (run.spec.kept == KeptFiles::all && progress.output.has_filter) {
     auto writer =
         metrics::IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
     if (!writer) return tl::unexpected(writer.error());
@@ -126,22 +138,27 @@ Result<RunProgress> process_frames(const PreparedRun& run, core::Pipeline& pipel
       if (!ended) return tl::unexpected(ended.error());
       break;
     }
-    const auto report = pipeline.process(loaded->frame);
-    if (!report) {
-      const auto ended = end_at_frame(progress, frame, report.error(), control);
+    const auto outcome = system.process(loaded->frame);
+    if (!outcome) {
+      const auto ended = end_at_frame(progress, frame, outcome.error(), control);
       if (!ended) return tl::unexpected(ended.error());
       break;
     }
     const auto processed = Clock::now();
-    take_report(progress, frame, *report, run, loaded->decode.milliseconds());
-    if (intensity) {
+    const health::FrameReport* const report = system.filter_report();
+    take_frame(progress, frame, *outcome, report, run, loaded->decode.milliseconds());
+    if (intensity && report != nullptr) {
       progress.fastest.offer(frame, *report, loaded->frame.grey);
       if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written)
         return tl::unexpected(written.error());
     }
     if (run.spec.profile) {
-      progress.profile.frames.push_back(
-          {frame, report->status, loaded->decode, {begin, ready}, report->stages, {processed, Clock::now()}});
+      progress.profile.frames.push_back({frame,
+                                         outcome->status,
+                                         loaded->decode,
+                                         {begin, ready},
+                                         outcome->stages,
+                                         {processed, Clock::now()}});
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }

@@ -1,4 +1,4 @@
-// The frames of a run through the pipeline, and what they leave behind for its files and metrics.
+// The frames of a run through its system, and what they leave behind for its files and metrics.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/health/frame_report.hpp"
 #include "core/io/staged_folder.hpp"
-#include "core/pipeline.hpp"
+#include "core/systems/system.hpp"
 #include "eval/profile/run_profile.hpp"
 #include "eval/record/record.hpp"
 #include "eval/run/run_control.hpp"
@@ -40,7 +40,7 @@ struct RunProgress {
 
 /// Processes all frames; intensity.bin goes into `folder` if it is kept. Errors: io, run_failed (a stop), and
 /// bad data if it is not recorded; whatever else goes wrong ends the run and is in the progress.
-[[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, core::Pipeline& pipeline,
+[[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
                                                  const io::StagedFolder& folder, const RunControl& control);
 
 }  // namespace fusebench::run

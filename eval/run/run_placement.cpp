@@ -12,16 +12,16 @@
 
 namespace fusebench::run {
 
-std::string run_identity(const config::Config& config, const recording::Recording& recording) {
+std::string run_identity(const RunSpec& spec, const recording::Recording& recording) {
   const PinholeCamera& camera = recording.rig.camera;
   io::Fingerprint identity;
-  identity.add(config::config_hash(config));
+  identity.add(config::config_hash(spec.config.values));
   identity.add(recording.fingerprint);
   identity.add(recording::to_string(recording.imu_source));
   identity.add(recording.imu_note);
   identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
                            camera.cx_px, camera.cy_px));
-  identity.add(record::build_info().estimator);
+  identity.add(spec.program ? spec.program->identity : record::build_info().estimator);
   return identity.hex();
 }
 
@@ -34,7 +34,7 @@ std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
 
 PreparedRun place_run(RunSpec spec, recording::Recording recording, const TakenFolders& taken) {
   PreparedRun run{std::move(spec), std::move(recording), {}, {}};
-  run.run_id = run_identity(run.spec.config.values, run.recording);
+  run.run_id = run_identity(run.spec, run.recording);
   const std::string again = run.spec.repetition > 1 ? fmt::format("-r{}", run.spec.repetition) : "";
   const auto parent = run.spec.out / run.recording.name / run.spec.variant;
   for (const std::size_t digits : {std::size_t{8}, std::size_t{16}, run.run_id.size()}) {

@@ -24,8 +24,8 @@ struct PreparedRun {
 
 /// 32 hex digits: identifies the values of the configuration, the content of the recording and its window,
 /// the camera, the IMU with the way it was made (seed, sensor, fit), and the version of the estimator
-/// (BuildInfo::estimator). Runs of one identity have the same results.
-[[nodiscard]] std::string run_identity(const config::Config& config, const recording::Recording& recording);
+/// (BuildInfo::estimator), or in its place the external program. Runs of one identity have the same results.
+[[nodiscard]] std::string run_identity(const RunSpec& spec, const recording::Recording& recording);
 
 /// What engines ask of a run that is there.
 struct RecordHead {

@@ -12,7 +12,7 @@ namespace fusebench::run {
 namespace {
 
 Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
-  if (!config::needs_imu(spec.config.values)) {
+  if (!wants_imu(spec)) {
     recording.imu.clear();
     recording.imu_source = recording::ImuSource::none;
     recording.imu_note.clear();
@@ -30,6 +30,10 @@ Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
 }
 
 }  // namespace
+
+bool wants_imu(const RunSpec& spec) {
+  return spec.program ? spec.program->imu != "none" : config::needs_imu(spec.config.values);
+}
 
 std::string_view to_string(KeptFiles kept) { return kept == KeptFiles::all ? "all" : "small"; }
 

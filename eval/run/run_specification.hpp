@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "core/base/error.hpp"
 #include "core/config/config_access.hpp"
 #include "datasets/open_recording.hpp"
+#include "eval/external/external_program.hpp"
 
 namespace fusebench::run {
 
@@ -40,15 +42,20 @@ struct RunSpec {
   std::filesystem::path recording;
   datasets::OpenOptions open;
   ImuChoice imu = ImuChoice::recorded;
-  std::string variant;
-  config::EffectiveConfig config;  ///< the variant's, with all edits
+  std::string variant;             ///< or the name of the program
+  config::EffectiveConfig config;  ///< the variant's, with all edits; a program's evaluation by defaults
+  /// What runs in place of a system of this program.
+  std::shared_ptr<const external::ExternalProgram> program = {};
   std::optional<FrameWindow> frames;
   int threads = 1;
-  int repetition = 1;  ///< the results are the same, the time is another sample
+  int repetition = 1;  ///< the time is another sample; so are a program's results, unless it is deterministic
   KeptFiles kept = KeptFiles::all;
   bool profile = false;  ///< also trace.json and the record's histograms of times; no part of the identity
   std::filesystem::path out;
 };
+
+/// Whether the run needs inertial samples.
+[[nodiscard]] bool wants_imu(const RunSpec& spec);
 
 /// The recording as a run of that specification sees it: opened, cut to the window, with its IMU. Errors:
 /// those of open_recording, select_frames and add_synthetic_imu; usage if the variant needs an IMU and there

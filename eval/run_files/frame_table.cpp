@@ -41,26 +41,40 @@ std::string frame_table_header() {
   return header + "\n";
 }
 
-std::string frame_table_row(std::size_t frame, const health::FrameReport& report, double decode_ms) {
-  const double angular_speed = report.angular_velocity_radps.norm();
+namespace {
+
+/// The cells between reason and model_blocks, each with a comma before it.
+std::string filter_cells(const health::FrameReport& report) {
   const auto sigma = [&](int offset) {
     return largest_sigma(report.estimate.covariance.block<3, 3>(offset, offset));
   };
-  std::string row = fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f}",
-      frame, trajectory::stamp_text(report.timestamp_ns), health::to_string(report.status),
-      health::to_string(report.health), text_cell(report.reason), report.patches, report.patches_tracked,
-      report.patches_accepted, report.patches_shrunk, report.patches_extended, report.pixels_photometric,
-      report.pixels_geometric, number_cell(metrics::frame_intensity_error(report.pixels.intensity)),
-      report.pixels.intensity.size(), report.iterations, report.converged ? 1 : 0,
-      number_cell(report.chi2_photometric), number_cell(report.chi2_geometric),
-      number_cell(report.variance_photometric), number_cell(report.variance_geometric),
-      number_cell(report.velocity_world_mps.norm()), number_cell(angular_speed), number_cell(report.blur_px),
+  return fmt::format(
+      ",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", report.patches,
+      report.patches_tracked, report.patches_accepted, report.patches_shrunk, report.patches_extended,
+      report.pixels_photometric, report.pixels_geometric,
+      number_cell(metrics::frame_intensity_error(report.pixels.intensity)), report.pixels.intensity.size(),
+      report.iterations, report.converged ? 1 : 0, number_cell(report.chi2_photometric),
+      number_cell(report.chi2_geometric), number_cell(report.variance_photometric),
+      number_cell(report.variance_geometric), number_cell(report.velocity_world_mps.norm()),
+      number_cell(report.angular_velocity_radps.norm()), number_cell(report.blur_px),
       number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)),
       number_cell(sigma(filter::kRotation)), number_cell(report.model_position_sigma_m),
       number_cell(report.model_rotation_sigma_rad), number_cell(report.estimate.mean.imu_time_offset_s),
-      report.correlation ? number_cell(*report.correlation) : "", report.model_blocks, decode_ms);
-  for (const double milliseconds : report.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
+      report.correlation ? number_cell(*report.correlation) : "");
+}
+constexpr std::size_t kFilterCells = 25;
+
+}  // namespace
+
+std::string frame_table_row(std::size_t frame, const health::FrameOutcome& outcome,
+                            const health::FrameReport* filter, double decode_ms) {
+  std::string row =
+      fmt::format("{},{},{},{},{}", frame, trajectory::stamp_text(outcome.timestamp_ns),
+                  health::to_string(outcome.status),
+                  filter != nullptr ? health::to_string(filter->health) : "", text_cell(outcome.reason));
+  row += filter != nullptr ? filter_cells(*filter) : std::string(kFilterCells, ',');
+  row += fmt::format(",{},{:.3f}", outcome.model_blocks, decode_ms);
+  for (const double milliseconds : outcome.stages.sums_ms()) row += fmt::format(",{:.3f}", milliseconds);
   return row + "\n";
 }
 

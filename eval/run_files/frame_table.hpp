@@ -25,9 +25,10 @@ namespace fusebench::run_files {
 
 [[nodiscard]] std::string frame_table_header();
 
-/// One line, with its line break. decode_ms: reading and undistorting the images.
-[[nodiscard]] std::string frame_table_row(std::size_t frame, const health::FrameReport& report,
-                                          double decode_ms);
+/// One line, with its line break. filter: what else a filter says of the frame; nullptr leaves these cells
+/// empty. decode_ms: reading and undistorting the images.
+[[nodiscard]] std::string frame_table_row(std::size_t frame, const health::FrameOutcome& outcome,
+                                          const health::FrameReport* filter, double decode_ms);
 
 /// A row, as far as reports need it. What the table leaves empty is absent.
 struct FrameTableRow {

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 14> kSuiteKeys = {
-    "name",     "recordings", "all",  "variants", "imu",   "config",  "simulations",
-    "criteria", "frames",     "keep", "limits",   "sweep", "exclude", "repetitions"};
+constexpr std::array<std::string_view, 15> kSuiteKeys = {
+    "name",     "recordings", "all",  "variants", "systems", "imu",     "config",     "simulations",
+    "criteria", "frames",     "keep", "limits",   "sweep",   "exclude", "repetitions"};
 constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "split", "variants"};
 constexpr std::string_view kConfigPrefix = "config.";
 constexpr std::string_view kLimitPrefix = "limits.";
@@ -62,6 +62,17 @@ Result<void> read_repetitions(const config::TomlEntry& entry, Suite& suite) {
   return {};
 }
 
+Result<void> read_programs(const config::TomlEntry& entry, Suite& suite) {
+  const auto files = names_entry(entry);
+  if (!files) return tl::unexpected(files.error());
+  for (const std::string& file : *files) {
+    auto program = external::read_external_program(file);
+    if (!program) return tl::unexpected(program.error());
+    suite.programs.push_back(std::make_shared<const external::ExternalProgram>(std::move(*program)));
+  }
+  return {};
+}
+
 Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   const auto store = [](auto value, auto& target) -> Result<void> {
     if (!value) return tl::unexpected(value.error());
@@ -71,6 +82,7 @@ Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   if (entry.key == "name") return store(folder_name_entry(entry), suite.name);
   if (entry.key == "all") return store(flag_entry(entry), suite.all);
   if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
+  if (entry.key == "systems") return read_programs(entry, suite);
   if (entry.key == "imu") return read_imu(entry, suite);
   if (entry.key == "keep") return read_kept(entry, suite);
   if (entry.key == "repetitions") return read_repetitions(entry, suite);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
+#include "eval/external/external_program.hpp"
 #include "eval/run/run.hpp"
 #include "eval/suites/acceptance_criteria.hpp"
 #include "eval/suites/run_selection.hpp"
@@ -39,6 +41,7 @@ struct SuiteRecording {
 ///     recordings = ["fr1_rpy", ...]   # folders, names of folders under --data or of the catalogue; or
 ///     all = true                      # every recording under --data; or simulated ones (SuiteSimulation)
 ///     variants = ["full", "dm"]       # required
+///     systems = ["configs/systems/open3d.toml"]   # external programs, over the same recordings
 ///     imu = "synthetic"               # or "auto", "recorded" (default): see ImuChoice
 ///     [config]                        # edits for all runs, as in a configuration file
 ///     iekf.max_iterations = 8
@@ -56,6 +59,7 @@ struct Suite {
   std::vector<SuiteRecording> recordings;
   std::vector<SuiteSimulation> simulations;
   std::vector<std::string> variants;
+  std::vector<std::shared_ptr<const external::ExternalProgram>> programs;
   run::ImuChoice imu = run::ImuChoice::recorded;
   std::vector<config::TomlEntry> config;  ///< keys without "config."
   int repetitions = 1;

@@ -6,7 +6,6 @@
 #include <variant>
 
 #include "core/config/toml_document.hpp"
-#include "core/config/toml_values.hpp"
 
 namespace fusebench::tables {
 

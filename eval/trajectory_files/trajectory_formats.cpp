@@ -10,6 +10,7 @@
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/trajectory_files/log_trajectory.hpp"
 #include "eval/trajectory_files/nearest_rotation.hpp"
 
 namespace fusebench::trajectory_files {
@@ -18,10 +19,12 @@ namespace {
 
 constexpr std::array kNames{
     std::pair{TrajectoryFormat::tum, "tum"}, std::pair{TrajectoryFormat::kitti, "kitti"},
-    std::pair{TrajectoryFormat::euroc, "euroc"}, std::pair{TrajectoryFormat::openvins, "openvins"}};
+    std::pair{TrajectoryFormat::euroc, "euroc"}, std::pair{TrajectoryFormat::log, "log"},
+    std::pair{TrajectoryFormat::openvins, "openvins"}};
 constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
 constexpr std::size_t kEurocColumns = 17;
+constexpr std::size_t kLogHeader = 3;
 constexpr std::size_t kOpenvinsColumns = 20;
 
 /// The format that the first row can only be. Of eight columns, an integer of nanoseconds is EuRoC's.
@@ -40,15 +43,16 @@ Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
     if (fields.size() == kEurocColumns) return TrajectoryFormat::euroc;
     if (fields.size() == kOpenvinsColumns) return TrajectoryFormat::openvins;
     constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
+    if (fields.size() == kLogHeader) return TrajectoryFormat::log;
     const bool integer = fields[0].find_first_not_of("0123456789") == std::string_view::npos;
     if (fields.size() == kTumColumns)
       return integer && fields[0].size() >= kNanosecondDigits ? TrajectoryFormat::euroc
                                                               : TrajectoryFormat::tum;
-    return fail(
-        ErrorCode::data_corrupt,
-        fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17, openvins 20)",
-                    file.string(), number, fields.size()),
-        "`--format` names the format if the first row does not");
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17, log 3, "
+                            "openvins 20)",
+                            file.string(), number, fields.size()),
+                "`--format` names the format if the first row does not");
   }
   return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected poses)", file.string()));
 }
@@ -147,7 +151,7 @@ Result<TrajectoryFormat> parse_trajectory_format(std::string_view text) {
     if (text == name) return format;
   }
   return fail(ErrorCode::usage, fmt::format("unknown trajectory format '{}'", text),
-              "formats are tum, kitti, euroc and openvins");
+              "formats are tum, kitti, euroc, log and openvins");
 }
 
 Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
@@ -165,6 +169,7 @@ Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
   }
   if (*format == TrajectoryFormat::openvins) return read_openvins(file, warnings);
   Result<Trajectory> poses = *format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
+                             : *format == TrajectoryFormat::log ? read_log_trajectory(file, warnings)
                              : *format == TrajectoryFormat::euroc
                                  ? read_euroc(file, duplicates, warnings)
                                  : trajectory::read_tum_trajectory(file, warnings, duplicates);

@@ -1,4 +1,4 @@
-// Trajectories as people keep them: TUM, KITTI and EuRoC files.
+// Trajectories as people keep them: TUM, KITTI, EuRoC and other files.
 #pragma once
 
 #include <filesystem>
@@ -17,6 +17,7 @@ enum class TrajectoryFormat {
   tum,       ///< "timestamp tx ty tz qx qy qz qw", seconds and metres
   kitti,     ///< the upper 3x4 of a pose, row by row; no stamps, poses go by their number
   euroc,     ///< "timestamp[ns] px py pz qw qx qy qz", with or without velocity and biases (data.csv)
+  log,       ///< Redwood's and Open3D's: the number of a frame, then its 4x4 pose (log_trajectory.hpp)
   openvins,  ///< tum, then the upper triangles of the covariances of orientation and position (ov_eval)
 };
 [[nodiscard]] std::string_view to_string(TrajectoryFormat format);  ///< "tum", "kitti", ...
@@ -33,7 +34,9 @@ struct LoadedTrajectory {
   TrajectoryFormat format = TrajectoryFormat::tum;
   Trajectory poses;  ///< without stamps, the number of a pose is its stamp in nanoseconds
   std::vector<PoseCovariance> covariances = {};  ///< one a pose with openvins; else none
-  [[nodiscard]] bool has_stamps() const { return format != TrajectoryFormat::kitti; }
+  [[nodiscard]] bool has_stamps() const { return format != TrajectoryFormat::kitti && !has_numbers(); }
+  /// Each pose says the number of its frame.
+  [[nodiscard]] bool has_numbers() const { return format == TrajectoryFormat::log; }
 };
 
 /// Reads a trajectory. Without a format, the first row's columns tell it; what cannot be read twice (a pipe)

@@ -6,6 +6,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/tables/paper_table.hpp"
+#include "eval/tables/systems_table.hpp"
 #include "eval/tables/table.hpp"
 
 namespace fusebench::cli::results {
@@ -15,6 +16,7 @@ namespace {
 struct TableOptions {
   std::filesystem::path runs;
   std::string paper;
+  bool systems = false;
   std::string format = "markdown";
   bool json = false;
 };
@@ -23,6 +25,11 @@ Result<int> table(const TableOptions& options) {
   const auto format = tables::parse_table_format(options.json ? "json" : options.format);
   if (!format) return tl::unexpected(format.error());
   const auto runs = run_files::find_runs(options.runs);
+  if (options.systems) {
+    if (!runs) return tl::unexpected(runs.error());
+    console::print_output(tables::render_systems_table(tables::systems_table_of(*runs), *format));
+    return 0;
+  }
   if (options.paper.empty()) {
     if (!runs) return tl::unexpected(runs.error());
     console::print_output(tables::render_table(tables::table_of(*runs), *format));
@@ -48,6 +55,11 @@ console::Verb add_table_verb(CLI::App& app) {
   verb->add_option("--paper", options->paper,
                    "A published table (table1, ate_tum, ate_icl, surface_icl) beside what was run here")
       ->type_name("NAME");
+  verb->add_flag(
+          "--systems", options->systems,
+          "A row a recording and system: medians and ranges over repetitions, with lost frames, CPU and "
+          "memory, and published numbers below")
+      ->excludes("--paper");
   console::add_json_flag(*verb, options->json);
   return {verb, [options] { return table(*options); }};
 }

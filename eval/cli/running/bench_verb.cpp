@@ -40,10 +40,6 @@ void add_suite_options(CLI::App& verb, engine::Invocation& invocation) {
       ->required();
   console::add_data_option(verb, batch.data);
   verb.add_option("--out", batch.out, "Folder of the runs; default: results/runs/<suite>")->type_name("DIR");
-  verb.add_option("--simulated", batch.simulated,
-                  "Folder of the recordings that the suite simulates; those that are there are used again")
-      ->type_name("DIR")
-      ->capture_default_str();
   verb.add_option(
           "--only", batch.only,
           "Only some runs: recording=TEXT (the name contains it), variant=NAME, or split=held-out or tuning; "
@@ -75,17 +71,9 @@ console::Verb add_bench_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "bench", "Runs a suite: every variant over every recording, and every point of its sweeps");
   add_suite_options(*verb, options->invocation);
-  verb->add_flag("--repeat", options->engine.repeat_finished, "Runs again what is finished");
-  verb->add_flag("--dry-run", options->dry_run,
-                 "Prints the runs, which are finished, and how long the others will take; runs nothing");
-  verb->add_option("-j,--jobs", options->engine.at_once,
-                   "Runs at a time, each in a process of its own; --threads is then by default its share of "
-                   "the machine")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N")
-      ->capture_default_str();
+  verb->add_flag("--repeat", options->controls.engine.repeat_finished, "Runs again what is finished");
+  add_batch_controls(*verb, options->invocation.options, options->controls);
   add_slurm_options(*verb, *options);
-  console::add_threads_option(*verb, options->invocation.options.threads);
   console::add_profile_flag(*verb, options->invocation.options.profile);
   verb->add_option(
           "--summary", options->summary,
@@ -95,7 +83,7 @@ console::Verb add_bench_verb(CLI::App& app) {
   verb->add_option("--summary-page", options->summary_page,
                    "Writes the summary as a page with charts (HTML, needs no network)")
       ->type_name("FILE");
-  console::add_json_flag(*verb, options->json);
+  console::add_json_flag(*verb, options->controls.json);
   verb->footer(
       "A finished run is never repeated: its folder is named by the hash of configuration, recording and\n"
       "estimator. With --profile, one that has no profile is. A run that fails, crashes, hangs or is lost\n"
@@ -104,7 +92,7 @@ console::Verb add_bench_verb(CLI::App& app) {
       "runs.\n"
       "docs/experiments.md says what a suite can ask for.");
   return {verb, [options, verb] {
-            options->threads_given = verb->count("--threads") > 0;
+            options->controls.threads_given = verb->count("--threads") > 0;
             return run_suite(*options);
           }};
 }

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
-#include "eval/cli/console/engine_console.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/running/batch_controls.hpp"
 #include "eval/cli/running/run_verbs.hpp"
-#include "eval/engine/local_engine.hpp"
-#include "eval/engine/plan_preview.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/page/page.hpp"
 #include "eval/paper_figures/paper_figures.hpp"
@@ -29,47 +27,16 @@ namespace {
 /// What both verbs need to run their runs.
 struct ReproduceOptions {
   engine::BatchOptions batch;
-  engine::EngineOptions engine;
+  BatchControls controls;
   reproduction::Table1Extent extent;
   std::string format;
   std::filesystem::path figures;
   std::filesystem::path page;
-  bool dry_run = false;
-  bool json = false;
-  bool threads_given = false;
 };
 
-/// The number of threads that each run has by default: its share of the machine. Returns all.
-int share_threads(ReproduceOptions& options) {
-  const int all_threads = options.batch.threads;
-  if (!options.threads_given) options.batch.threads = std::max(1, all_threads / options.engine.at_once);
-  return all_threads;
-}
-
-int print_plan(const std::vector<engine::BatchJob>& jobs, const ReproduceOptions& options) {
-  const engine::BatchPlan batch{jobs, {}, {}};
-  const engine::PlanPreview preview = engine::preview_of(batch);
-  const int at_once = options.engine.at_once;
-  console::print_output(options.json ? engine::to_json(preview, batch, at_once)
-                                     : engine::to_text(preview, batch, at_once));
-  return 0;
-}
-
-/// Simulates what is missing and runs the jobs.
-Result<std::vector<engine::BatchOutcome>> run_jobs(const std::vector<engine::BatchJob>& jobs, int all_threads,
-                                                   const suites::RunLimits& limits,
-                                                   const ReproduceOptions& options) {
-  if (auto made = console::simulate_missing(jobs, all_threads); !made) return tl::unexpected(made.error());
-  engine::EngineOptions engine = options.engine;
-  engine.limits = limits;
-  console::EngineConsole console(jobs);
-  auto outcomes = engine::run_locally(jobs, engine, console.control());
-  console.clear();
-  return outcomes;
-}
-
 Result<int> reproduce_table1(ReproduceOptions options) {
-  const int all_threads = share_threads(options);
+  const int all_threads = options.batch.threads;
+  share_threads(options.controls, options.batch);
   const auto protocol = reproduction::table1_protocol();
   if (!protocol) return tl::unexpected(protocol.error());
   const auto recordings = reproduction::table1_suite();
@@ -78,12 +45,15 @@ Result<int> reproduce_table1(ReproduceOptions options) {
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& name : plan->absent)
     console::print_progress(fmt::format("left out, not there: {}", name));
-  if (options.dry_run) return print_plan(plan->jobs, options);
-  const auto outcomes = run_jobs(plan->jobs, all_threads, recordings->limits, options);
+  if (options.controls.dry_run) {
+    print_preview({plan->jobs, {}, {}}, options.controls);
+    return 0;
+  }
+  const auto outcomes = run_here(plan->jobs, options.controls, recordings->limits, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
   const auto table = reproduction::table1_of(*protocol, *plan, *outcomes);
   if (!table) return tl::unexpected(table.error());
-  console::print_output(reproduction::render_table1(*table, options.json ? "json" : options.format));
+  console::print_output(reproduction::render_table1(*table, options.controls.json ? "json" : options.format));
   if (options.page.empty()) return 0;
   const std::string html = page::to_html(reproduction::table1_page(*table));
   if (auto written = text::write_text_file(options.page, html); !written)
@@ -103,15 +73,19 @@ std::vector<paper_figures::RecordingRuns> runs_by_group(const std::vector<engine
 }
 
 Result<int> reproduce_figures(ReproduceOptions options) {
-  const int all_threads = share_threads(options);
+  const int all_threads = options.batch.threads;
+  share_threads(options.controls, options.batch);
   const auto format = page::parse_figure_format(options.format);
   if (!format) return tl::unexpected(format.error());
   const auto suite = reproduction::figures_suite();
   if (!suite) return tl::unexpected(suite.error());
   const auto plan = engine::plan_batch(*suite, options.batch);
   if (!plan) return tl::unexpected(plan.error());
-  if (options.dry_run) return print_plan(plan->jobs, options);
-  const auto outcomes = run_jobs(plan->jobs, all_threads, suite->limits, options);
+  if (options.controls.dry_run) {
+    print_preview(*plan, options.controls);
+    return 0;
+  }
+  const auto outcomes = run_here(plan->jobs, options.controls, suite->limits, all_threads);
   if (!outcomes) return tl::unexpected(outcomes.error());
   std::error_code error;
   std::filesystem::create_directories(options.figures, error);
@@ -130,18 +104,9 @@ Result<int> reproduce_figures(ReproduceOptions options) {
   return 0;
 }
 
-void add_engine_options(CLI::App& verb, ReproduceOptions& options) {
+void add_running_options(CLI::App& verb, ReproduceOptions& options) {
   verb.add_option("--out", options.batch.out, "Folder of the runs")->type_name("DIR")->capture_default_str();
-  verb.add_option("--simulated", options.batch.simulated,
-                  "Folder of the recordings that are simulated; those that are there are used again")
-      ->type_name("DIR")
-      ->capture_default_str();
-  verb.add_option("-j,--jobs", options.engine.at_once, "Runs at a time, each in a process of its own")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N")
-      ->capture_default_str();
-  verb.add_flag("--dry-run", options.dry_run, "Prints the runs and runs nothing");
-  console::add_threads_option(verb, options.batch.threads);
+  add_batch_controls(verb, options.batch, options.controls);
 }
 
 CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
@@ -151,7 +116,7 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
   options.batch.out = "results/runs/table1";
   options.format = "markdown";
   console::add_data_option(*table1, options.batch.data);
-  add_engine_options(*table1, options);
+  add_running_options(*table1, options);
   table1->add_option("--reading", options.extent.readings, "Only this reading, by its name; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
@@ -167,7 +132,7 @@ CLI::App* add_table1(CLI::App& verb, ReproduceOptions& options) {
                    "The factorial over all recordings, and not only over the first one of each column");
   table1->add_option("--page", options.page, "Writes the tables as a page as well (HTML, needs no network)")
       ->type_name("FILE.html");
-  console::add_json_flag(*table1, options.json);
+  console::add_json_flag(*table1, options.controls.json);
   table1->footer(
       "What the paper does not define (its direct method, its error) is a reading each; docs/table1.md\n"
       "explains them. Recordings that are not under --data have simulated stand-ins, and the output says\n"
@@ -182,7 +147,7 @@ CLI::App* add_figures(CLI::App& verb, ReproduceOptions& options) {
   options.batch.out = "results/runs/figures";
   options.figures = "results/figures";
   options.format = "svg";
-  add_engine_options(*figures, options);
+  add_running_options(*figures, options);
   figures->add_option("--figures", options.figures, "Folder of the figures")
       ->type_name("DIR")
       ->capture_default_str();
@@ -206,10 +171,10 @@ console::Verb add_reproduce_verb(CLI::App& app) {
   CLI::App* figures = add_figures(*verb, *figures_options);
   return {verb, [=] {
             if (figures->parsed()) {
-              figures_options->threads_given = figures->count("--threads") > 0;
+              figures_options->controls.threads_given = figures->count("--threads") > 0;
               return reproduce_figures(*figures_options);
             }
-            table1_options->threads_given = table1->count("--threads") > 0;
+            table1_options->controls.threads_given = table1->count("--threads") > 0;
             return reproduce_table1(*table1_options);
           }};
 }

@@ -24,7 +24,7 @@ Result<int> rerun(const BenchOptions& options, const std::filesystem::path& runs
     if (!invocation) return tl::unexpected(invocation.error());
     BenchOptions again = options;
     again.invocation = std::move(*invocation);
-    again.engine.only_failed = true;
+    again.controls.engine.only_failed = true;
     const auto code = run_suite(std::move(again));
     if (!code) return code;
     worst = std::max(worst, *code);
@@ -42,12 +42,12 @@ console::Verb add_rerun_verb(CLI::App& app) {
   auto options = std::make_shared<RerunOptions>();
   CLI::App* verb = app.add_subcommand("rerun", "Repeats the failed runs of a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder that `fusebench bench` wrote (its --out)")->required();
-  verb->add_option("-j,--jobs", options->bench.engine.at_once, "Runs at a time")
+  verb->add_option("-j,--jobs", options->bench.controls.engine.at_once, "Runs at a time")
       ->check(CLI::Range(1, 1024))
       ->type_name("N")
       ->capture_default_str();
   return {verb, [options] {
-            options->bench.threads_given = true;  // as the runs were asked for
+            options->bench.controls.threads_given = true;  // as the runs were asked for
             return rerun(options->bench, options->runs);
           }};
 }

@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/external/external_program.hpp"
 #include "eval/run/run.hpp"
 
 namespace fusebench::cli::running {
@@ -15,22 +17,39 @@ namespace {
 
 struct RunOptions {
   console::RunRequest request;
+  std::filesystem::path system;
+  int repetition = 1;
   std::filesystem::path out = "results/runs";
   bool profile = false;
   bool json = false;
 };
 
+/// Puts an external program in place of the variant.
+Result<void> take_program(const std::filesystem::path& file, run::RunSpec& spec) {
+  if (file.empty()) return {};
+  auto program = external::read_external_program(file);
+  if (!program) return tl::unexpected(program.error());
+  if (!program->absent.empty())
+    return fail(ErrorCode::usage, fmt::format("{} cannot run here: {}", program->name, program->absent),
+                "install it, or change the command in its file");
+  spec.variant = program->name;
+  spec.program = std::make_shared<const external::ExternalProgram>(std::move(*program));
+  return {};
+}
+
 Result<int> run(const RunOptions& options) {
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   spec->out = options.out;
+  spec->repetition = options.repetition;
+  if (auto taken = take_program(options.system, *spec); !taken) return tl::unexpected(taken.error());
   spec->profile = options.profile;
   const auto prepared = run::prepare_run(std::move(*spec));
   if (!prepared) return tl::unexpected(prepared.error());
   for (const std::string& warning : prepared->recording.warnings)
     console::print_progress(fmt::format("warning: {}", warning));
 
-  const std::string title = fmt::format("{} {}", prepared->recording.name, options.request.variant);
+  const std::string title = fmt::format("{} {}", prepared->recording.name, prepared->spec.variant);
   console::ProgressBar bar(title);
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
@@ -55,6 +74,15 @@ console::Verb add_run_verb(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("run", "Runs one variant over one recording and writes the run's folder");
   console::add_run_request(*verb, options->request);
+  verb->add_option("--system", options->system,
+                   "Runs the external program of this file in place of a variant (docs/systems.md)")
+      ->type_name("FILE.toml")
+      ->excludes("--variant");
+  verb->add_option("--repetition", options->repetition,
+                   "Number of the repetition: in the folder's name, and an external program's {seed}")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
   verb->add_option("--out", options->out, "Results go to DIR/<recording>/<variant>/<hash8>/")
       ->type_name("DIR")
       ->capture_default_str();

@@ -68,7 +68,7 @@ Result<std::vector<study::CriterionResult>> conclude(const suites::Suite& suite,
         !written)
       return tl::unexpected(written.error());
   }
-  if (!options.json) console::print_output(study::summary_text(summary));
+  if (!options.controls.json) console::print_output(study::summary_text(summary));
   return std::move(summary.criteria);
 }
 

@@ -10,57 +10,51 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/engine_console.hpp"
 #include "eval/cli/running/suite_conclusion.hpp"
-#include "eval/engine/local_engine.hpp"
-#include "eval/engine/plan_preview.hpp"
 #include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {
 
 namespace {
 
-Result<int> preview(const BenchOptions& options, const engine::BatchPlan& plan) {
-  const engine::PlanPreview preview = engine::preview_of(plan);
-  const int at_once = options.engine.at_once;
-  console::print_output(options.json ? engine::to_json(preview, plan, at_once)
-                                     : engine::to_text(preview, plan, at_once));
-  return 0;
+Result<std::vector<engine::BatchOutcome>> run_on_cluster(const BenchOptions& options,
+                                                         const suites::Suite& suite,
+                                                         const engine::BatchPlan& plan, int all_threads,
+                                                         const std::filesystem::path& kept) {
+  if (auto made = console::simulate_missing(plan.jobs, all_threads); !made)
+    return tl::unexpected(made.error());
+  engine::EngineOptions engine = options.controls.engine;
+  engine.limits = suite.limits;
+  console::EngineConsole console(plan.jobs);
+  std::error_code ignored;
+  const engine::SlurmSite site{std::filesystem::absolute(kept, ignored),
+                               std::filesystem::read_symlink("/proc/self/exe", ignored)};
+  auto outcomes = engine::run_on_slurm(plan.jobs, engine, options.slurm, site, console.control());
+  console.clear();
+  return outcomes;
 }
 
 Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, const suites::Suite& suite,
                                                    const engine::BatchPlan& plan, int all_threads) {
   const auto kept = engine::keep(options.invocation);
   if (!kept) return tl::unexpected(kept.error());
-  if (auto made = console::simulate_missing(plan.jobs, all_threads); !made)
-    return tl::unexpected(made.error());
-  engine::EngineOptions engine = options.engine;
-  engine.limits = suite.limits;
-  console::EngineConsole console(plan.jobs);
-  const engine::EngineControl control = console.control();
-  std::error_code ignored;
-  const engine::SlurmSite site{std::filesystem::absolute(*kept, ignored),
-                               std::filesystem::read_symlink("/proc/self/exe", ignored)};
-  auto outcomes = options.executor == "slurm"
-                      ? engine::run_on_slurm(plan.jobs, engine, options.slurm, site, control)
-                      : engine::run_locally(plan.jobs, engine, control);
-  console.clear();
-  return outcomes;
+  if (options.executor == "slurm") return run_on_cluster(options, suite, plan, all_threads, *kept);
+  return run_here(plan.jobs, options.controls, suite.limits, all_threads);
 }
 
-/// Side by side, runs share the machine unless somebody says how many threads each has; on a cluster, a run
-/// has one, and the cluster many runs.
+/// On a cluster, a run has one thread unless somebody says how many, and the cluster many runs.
 Result<void> set_executor(BenchOptions& options) {
-  int& threads = options.invocation.options.threads;
-  const int at_once = options.engine.at_once;
   if (options.executor == "local") {
     if (options.slurm.submit_only || options.slurm.chunk > 0 || !options.slurm.arguments.empty())
       return fail(ErrorCode::usage, "--submit, --chunk and --slurm-arg are for --executor slurm");
-    if (!options.threads_given) threads = std::max(1, threads / at_once);
+    share_threads(options.controls, options.invocation.options);
     return {};
   }
-  if (!options.threads_given) threads = 1;
+  int& threads = options.invocation.options.threads;
+  const int at_once = options.controls.engine.at_once;
+  if (!options.controls.threads_given) threads = 1;
   options.slurm.at_once = at_once;
   options.slurm.cpus = at_once * threads;
-  if (!options.engine.repeat_finished) return {};
+  if (!options.controls.engine.repeat_finished) return {};
   return fail(ErrorCode::usage, "--repeat is for --executor local", "another --out starts afresh");
 }
 
@@ -89,7 +83,10 @@ Result<int> run_suite(BenchOptions options) {
   const auto plan = engine::plan_batch(*suite, batch);
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& warning : plan->warnings) console::print_progress("warning: " + warning);
-  if (options.dry_run) return preview(options, *plan);
+  if (options.controls.dry_run) {
+    print_preview(*plan, options.controls);
+    return 0;
+  }
   if (plan->jobs.empty()) {
     return fail(ErrorCode::usage,
                 fmt::format("all {} runs of suite '{}' are excluded, the first one because: {}",
@@ -102,7 +99,7 @@ Result<int> run_suite(BenchOptions options) {
   if (!outcomes) return tl::unexpected(outcomes.error());
 
   const RunCounts counts = counts_of(*outcomes);
-  if (options.engine.only_failed) {
+  if (options.controls.engine.only_failed) {
     console::print_progress(
         fmt::format("{}: {} runs were run again, {} of them ok", suite->name, counts.total, counts.ok));
     return counts.failed == 0 ? 0 : console::kExitRunFailed;
@@ -117,7 +114,7 @@ Result<int> run_suite(BenchOptions options) {
       plan->excluded.empty() ? "" : fmt::format(", {} excluded", plan->excluded.size()), batch.out.string()));
   const auto criteria = conclude(*suite, options, *plan, *outcomes);
   if (!criteria) return tl::unexpected(criteria.error());
-  if (options.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *criteria));
+  if (options.controls.json) console::print_output(json_of(*suite, *plan, *outcomes, counts, *criteria));
   return exit_code_of(counts, *criteria);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/error.hpp"
-#include "eval/engine/engine_options.hpp"
+#include "eval/cli/running/batch_controls.hpp"
 #include "eval/engine/invocation.hpp"
 #include "eval/engine/slurm_engine.hpp"
 
@@ -13,14 +13,11 @@ namespace fusebench::cli::running {
 
 struct BenchOptions {
   engine::Invocation invocation;
-  engine::EngineOptions engine;
+  BatchControls controls;
   std::string executor = "local";
   engine::SlurmOptions slurm;
-  bool threads_given = false;
-  bool dry_run = false;
   std::filesystem::path summary;
   std::filesystem::path summary_page;
-  bool json = false;
 };
 
 /// Plans and runs the suite, prints what came out of it and gives the exit code. Errors: those of suite_of(),

@@ -72,7 +72,7 @@ class ResultsPageTest : public testing::InTemporaryFolder {
       report.timestamp_ns = kStart_ns + i * 33'000'000LL;
       report.status = i < tracked ? FrameStatus::tracked : FrameStatus::lost;
       report.patches_accepted = 50;
-      table += frame_table_row(static_cast<std::size_t>(i), report, 1);
+      table += frame_table_row(static_cast<std::size_t>(i), report, &report, 1);
     }
     write(folder / "frames.csv", table);
     Mesh mesh = testing::sphere(1, 10).cast<float>();

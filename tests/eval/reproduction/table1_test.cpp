@@ -62,6 +62,19 @@ TEST(Table1, AFailedRunIsCountedAndInNoMean) {
   EXPECT_NEAR(ratio.ratio, 2.0, 1e-12);
 }
 
+TEST(Table1, AFailedRunIsARowWithItsReason) {
+  RecordingNumbers failed = recording("calm", 5, 1);
+  failed.dm.grey.reset();
+  failed.dm.failure = "killed after 60 s";
+  const Table1 table = table_of({recording("wild", 2, 1), failed});
+  const std::string row = "| r | only | DM | killed after 60 s |";
+  testing::expect_contains(render_table1(table, "markdown"), row);
+  testing::expect_contains(render_table1(table, "json"), "\"reason\": \"killed after 60 s\"");
+  testing::expect_contains(page::to_html(table1_page(table)), "killed after 60 s");
+  const Table1 whole = table_of({recording("wild", 2, 1)});
+  EXPECT_EQ(render_table1(whole, "markdown").find("Runs without a number"), std::string::npos);
+}
+
 TEST(Table1, ThePapersPatternIsEqualWhenSlowAndTwiceWhenFast) {
   EXPECT_TRUE(table_of({recording("calm", 1.2, 1), recording("wild", 2, 1)}).pattern_of(0).is_papers());
   EXPECT_FALSE(table_of({recording("calm", 1.1, 1), recording("wild", 1.2, 1)}).pattern_of(0).is_papers());

@@ -317,7 +317,7 @@ TEST_F(RunTest, TheHashTellsSyntheticImusApart) {
   const auto hash = [&](const std::string& imu_note) {
     Recording recording = prepared->recording;
     recording.imu_note = imu_note;
-    return run_identity(prepared->spec.config.values, recording);
+    return run_identity(prepared->spec, recording);
   };
   EXPECT_EQ(prepared->run_id, hash(prepared->recording.imu_note));
   EXPECT_EQ(prepared->folder.filename().string(), prepared->run_id.substr(0, 8));

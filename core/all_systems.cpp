@@ -1,0 +1,54 @@
+#include "core/all_systems.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/paper_system.hpp"
+#include "core/systems/infinitam/infinitam_system.hpp"
+#include "core/systems/opencv_odometry/opencv_odometry_system.hpp"
+
+namespace fusebench::core {
+
+namespace {
+
+using MadeSystem = std::unique_ptr<systems::System>;
+
+MadeSystem make_filter(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
+                       const Workers& workers) {
+  return std::make_unique<PaperSystem>(config, rig, imu, workers);
+}
+
+template <class WithoutImu>
+MadeSystem make_without_imu(const config::Config& config, const SensorRig& rig,
+                            std::span<const ImuSample> /*imu*/, const Workers& workers) {
+  return std::make_unique<WithoutImu>(config, rig, workers);
+}
+
+constexpr std::string_view kAnyThreads = "any number, with the same results";
+
+constexpr std::array kSystems = {
+    SystemRow{config::SystemMethod::filter, "filter",
+              "the paper's iterated filter over colour, depth and IMU (Zhu & Xu 2019), and its ablations",
+              "all but those named after a system", kAnyThreads, &make_filter},
+    SystemRow{config::SystemMethod::infinitam, "infinitam",
+              "InfiniTAM's trackers and relocaliser (Kaehler et al. 2015, Glocker et al. 2015) on this "
+              "program's TSDF and ray casting",
+              "infinitam depth tsdf", kAnyThreads, &make_without_imu<systems::infinitam::InfinitamSystem>},
+    SystemRow{config::SystemMethod::opencv_odometry, "opencv_odometry",
+              "OpenCV's odometries (module rgbd) from frame to frame, fused by this program's TSDF",
+              "opencv_odometry depth tsdf", kAnyThreads,
+              &make_without_imu<systems::opencv_odometry::OpencvOdometrySystem>},
+};
+
+}  // namespace
+
+std::span<const SystemRow> all_systems() { return kSystems; }
+
+MadeSystem make_system(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
+                       const Workers& workers) {
+  const auto row = std::ranges::find(kSystems, config.system.method, &SystemRow::method);
+  check(row != kSystems.end(), "the table of systems has a row for each system.method");
+  return row->make(config, rig, imu, workers);
+}
+
+}  // namespace fusebench::core

@@ -1,0 +1,133 @@
+// Options: which system runs, and those of each system that is not the paper's.
+#pragma once
+
+#include "core/config/options.hpp"
+
+namespace fusebench::config {
+
+/// The method as a whole.
+enum class SystemMethod { filter, infinitam, opencv_odometry };
+constexpr auto option_choices(SystemMethod) {
+  return choices<SystemMethod>({{"filter", SystemMethod::filter},
+                                {"infinitam", SystemMethod::infinitam},
+                                {"opencv_odometry", SystemMethod::opencv_odometry}});
+}
+
+/// Which system runs.
+struct SystemConfig {
+  SystemMethod method = SystemMethod::filter;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.choice("method", self.method,
+             "the system that runs: the paper's filter, which all groups of options belong to that are not "
+             "named after a system; InfiniTAM's method (Kaehler et al. 2015), or OpenCV's odometries from "
+             "frame to frame, both with the depth and tsdf options as well");
+  }
+};
+
+/// Which of its trackers InfiniTAM uses.
+enum class InfinitamTracker { extended, icp };
+constexpr auto option_choices(InfinitamTracker) {
+  return choices<InfinitamTracker>(
+      {{"extended", InfinitamTracker::extended}, {"icp", InfinitamTracker::icp}});
+}
+
+/// What InfiniTAM does with a frame that its quality measure calls a failure.
+enum class InfinitamFailure { ignore, stop_fusion, relocalise };
+constexpr auto option_choices(InfinitamFailure) {
+  return choices<InfinitamFailure>({{"ignore", InfinitamFailure::ignore},
+                                    {"stop_fusion", InfinitamFailure::stop_fusion},
+                                    {"relocalise", InfinitamFailure::relocalise}});
+}
+
+/// Whether the known defects of a published program are kept.
+enum class PeerDefects { fixed, as_published };
+constexpr auto option_choices(PeerDefects) {
+  return choices<PeerDefects>({{"fixed", PeerDefects::fixed}, {"as_published", PeerDefects::as_published}});
+}
+
+/// InfiniTAM v3: the tracker's schedule, gates and weights. Defaults are the program's.
+struct InfinitamConfig {
+  InfinitamTracker tracker = InfinitamTracker::extended;
+  bool use_color = false;
+  int rotation_levels = 2;
+  int full_levels = 2;
+  int iterations_coarse = 20;
+  int iterations_fine = 50;
+  double gate_coarse = 0.1;
+  double gate_fine = 0.004;
+  double gate_factor = 8.0;
+  double min_step = 1e-4;
+  int frames_to_skip = 20;
+  int frames_to_weight = 50;
+  double color_weight = 0.3;
+  double color_gate_coarse = 0.175;
+  double color_gate_fine = 0.005;
+  double min_color_gradient = 0.01;
+  double good_inlier_share = 0.5;
+  double failed_inlier_share = 0.2;
+  InfinitamFailure on_failure = InfinitamFailure::ignore;
+  PeerDefects defects = PeerDefects::fixed;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.choice("tracker", self.tracker,
+             "extended: robust weights by distance and confidence; icp: the plain one of KinectFusion");
+    v.flag("use_color", self.use_color,
+           "the extended tracker aligns intensities with those of the frame before as well");
+    v.number("rotation_levels", self.rotation_levels, 0, 6,
+             "coarsest levels of the depth pyramid, which only rotate");
+    v.number("full_levels", self.full_levels, 1, 6, "finer levels, which move in all six directions");
+    v.number("iterations_coarse", self.iterations_coarse, 1, 200,
+             "most iterations of the coarsest level; levels between are interpolated");
+    v.number("iterations_fine", self.iterations_fine, 1, 200, "most iterations of the finest level");
+    v.number("gate_coarse", self.gate_coarse, 1e-6, 10.0,
+             "of the coarsest level: width of Huber's norm (metres; extended), and bound of the squared "
+             "distance of a match (square metres), with gate_factor; levels between are interpolated");
+    v.number("gate_fine", self.gate_fine, 1e-6, 10.0, "the same of the finest level");
+    v.number("gate_factor", self.gate_factor, 1.0, 100.0,
+             "the extended tracker's bound of the squared distance is so many times the gate");
+    v.number("min_step", self.min_step, 0.0, 1.0, "a level ends when a step is smaller (radians and metres)");
+    v.number("frames_to_skip", self.frames_to_skip, 0, 1000,
+             "after a hundred frames, surfaces of this weight or less are not used (extended)");
+    v.number("frames_to_weight", self.frames_to_weight, 1, 1000,
+             "after a hundred frames, matches weigh in proportion to the weight of the surface beyond "
+             "that, 1 at so much (extended)");
+    v.number("color_weight", self.color_weight, 0.0, 100.0, "factor on the residuals of intensity");
+    v.number("color_gate_coarse", self.color_gate_coarse, 1e-6, 10.0,
+             "width of Tukey's norm of the coarsest level (intensities from 0 to 1)");
+    v.number("color_gate_fine", self.color_gate_fine, 1e-6, 10.0, "the same of the finest level");
+    v.number("min_color_gradient", self.min_color_gradient, 0.0, 1.0,
+             "pixels whose gradient is smaller in x or y are not used (intensity per pixel)");
+    v.number("good_inlier_share", self.good_inlier_share, 0.0, 1.0,
+             "a frame is good if this share of its depth pixels has a match on the finest level; a plain "
+             "gate in place of the program's trained classifier");
+    v.number("failed_inlier_share", self.failed_inlier_share, 0.0, 1.0,
+             "below this share a frame has failed; between the two it is poor and not fused");
+    v.choice("on_failure", self.on_failure,
+             "what follows from that: nothing (the program's default), bad frames are not fused, or the "
+             "place is looked for among stored frames (Glocker et al. 2015)");
+    v.choice("defects", self.defects,
+             "as_published: tests of the relocaliser see the top left quarter of its image alone");
+  }
+};
+
+/// OpenCV's odometries (module rgbd).
+enum class OdometryMethod { rgbd, icp, rgbd_icp, fast_icp };
+constexpr auto option_choices(OdometryMethod) {
+  return choices<OdometryMethod>({{"rgbd", OdometryMethod::rgbd},
+                                  {"icp", OdometryMethod::icp},
+                                  {"rgbd_icp", OdometryMethod::rgbd_icp},
+                                  {"fast_icp", OdometryMethod::fast_icp}});
+}
+
+/// OpenCV's odometries from frame to frame, with the library's own settings.
+struct OpencvOdometryConfig {
+  OdometryMethod method = OdometryMethod::rgbd_icp;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.choice("method", self.method,
+             "colour (Steinbruecker et al. 2011), depth, both, or depth as KinectFusion has it");
+  }
+};
+
+}  // namespace fusebench::config

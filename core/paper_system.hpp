@@ -1,0 +1,27 @@
+// The paper's filter and its ablations as one of the systems.
+#pragma once
+
+#include <span>
+
+#include "core/pipeline.hpp"
+#include "core/systems/system.hpp"
+
+namespace fusebench::core {
+
+class PaperSystem final : public systems::System {
+ public:
+  /// As Pipeline.
+  PaperSystem(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
+              const Workers& workers)
+      : pipeline_(config, rig, imu, workers) {}
+
+  [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
+  [[nodiscard]] const health::FrameReport* filter_report() const override { return &report_; }
+  [[nodiscard]] systems::Surface take_surface() override { return std::move(pipeline_).take_model(); }
+
+ private:
+  Pipeline pipeline_;
+  health::FrameReport report_;  ///< of the last frame
+};
+
+}  // namespace fusebench::core

@@ -1,0 +1,92 @@
+#include "core/systems/infinitam/fern_relocaliser.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/systems/infinitam/depth_pyramid.hpp"
+
+namespace fusebench::systems::infinitam {
+
+namespace {
+
+constexpr int kLevel = 4;                   // of the pyramid: 40x30 of 640x480
+constexpr double kSmoothing_px = 2.5;       // standard deviation
+constexpr int kSmoothingReach_px = 5;       // two of them
+constexpr double kKeptDissimilarity = 0.2;  // a frame that differs more from all others is stored
+constexpr std::uint64_t kSeed = 20150711;
+
+/// Of measured pixels alone; 0 where there is none in reach.
+DepthImage smoothed(const DepthImage& image) {
+  DepthImage result(image.width, image.height);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      double sum = 0, weights = 0;
+      for (int dy = -kSmoothingReach_px; dy <= kSmoothingReach_px; ++dy) {
+        for (int dx = -kSmoothingReach_px; dx <= kSmoothingReach_px; ++dx) {
+          if (!image.contains(x + dx, y + dy) || !(image(x + dx, y + dy) > 0)) continue;
+          const double weight = std::exp(-(dx * dx + dy * dy) / (2 * kSmoothing_px * kSmoothing_px));
+          sum += weight * static_cast<double>(image(x + dx, y + dy));
+          weights += weight;
+        }
+      }
+      if (weights > 0) result(x, y) = static_cast<float>(sum / weights);
+    }
+  }
+  return result;
+}
+
+/// From 0 to 1, the same on every machine.
+double uniform(std::mt19937_64& generator) { return std::ldexp(static_cast<double>(generator() >> 11), -53); }
+
+}  // namespace
+
+double dissimilarity(const FernCode& a, const FernCode& b) {
+  std::size_t different = 0;
+  for (std::size_t fern = 0; fern < kFerns; ++fern) different += a[fern] != b[fern] ? 1U : 0U;
+  return static_cast<double>(different) / static_cast<double>(kFerns);
+}
+
+FernRelocaliser::FernRelocaliser(const PinholeCamera& camera, const config::DepthConfig& depth,
+                                 config::PeerDefects defects) {
+  // The program draws places in an image of half the size of the one that it tests.
+  const int level = defects == config::PeerDefects::as_published ? kLevel + 1 : kLevel;
+  const PinholeCamera small = camera_of_level(camera, level);
+  std::mt19937_64 generator(kSeed);
+  for (Test& test : tests_) {
+    test.x = static_cast<int>(uniform(generator) * small.width_px);
+    test.y = static_cast<int>(uniform(generator) * small.height_px);
+    test.depth_m = static_cast<float>(depth.min_m + uniform(generator) * (depth.max_m - depth.min_m));
+  }
+}
+
+FernCode FernRelocaliser::code_of(const DepthImage& depth_m) const {
+  const DepthImage small = smoothed(depth_pyramid(depth_m, kLevel + 1).back());
+  FernCode code{};
+  for (std::size_t i = 0; i < tests_.size(); ++i) {
+    const Test& test = tests_[i];
+    if (small(test.x, test.y) >= test.depth_m)
+      code[i / kTestsOfFern] = static_cast<std::uint8_t>(code[i / kTestsOfFern] | (1U << (i % kTestsOfFern)));
+  }
+  return code;
+}
+
+const FernRelocaliser::StoredFrame* FernRelocaliser::nearest(const FernCode& code) const {
+  const auto found = std::ranges::min_element(
+      frames_, {}, [&](const StoredFrame& frame) { return dissimilarity(frame.code, code); });
+  return found == frames_.end() ? nullptr : &*found;
+}
+
+bool FernRelocaliser::offer(const FernCode& code, const SE3& T_world_camera) {
+  const StoredFrame* const like = nearest(code);
+  if (like != nullptr && dissimilarity(like->code, code) <= kKeptDissimilarity) return false;
+  frames_.push_back({code, T_world_camera});
+  return true;
+}
+
+const SE3* FernRelocaliser::most_similar(const FernCode& code) const {
+  const StoredFrame* const found = nearest(code);
+  return found == nullptr ? nullptr : &found->T_world_camera;
+}
+
+}  // namespace fusebench::systems::infinitam

@@ -1,0 +1,54 @@
+// Frames seen before, by random tests on a small depth image (Glocker et al., "Real-Time RGB-D Camera
+// Relocalization via Randomized Ferns for Keyframe Encoding", 2015).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+
+namespace fusebench::systems::infinitam {
+
+/// Of every fern one number: which of its tests the image passes.
+inline constexpr std::size_t kFerns = 500;
+using FernCode = std::array<std::uint8_t, kFerns>;
+
+/// Share of the ferns that differ, 0 to 1.
+[[nodiscard]] double dissimilarity(const FernCode& a, const FernCode& b);
+
+class FernRelocaliser {
+ public:
+  /// Tests compare depth at random places with random depths between depth.min_m and max_m; the same for the
+  /// same size of images.
+  FernRelocaliser(const PinholeCamera& camera, const config::DepthConfig& depth, config::PeerDefects defects);
+
+  [[nodiscard]] FernCode code_of(const DepthImage& depth_m) const;
+
+  /// Stores the frame unless one like it is there; returns whether it did.
+  bool offer(const FernCode& code, const SE3& T_world_camera);
+
+  /// The pose of the most similar stored frame; nothing if there is none.
+  [[nodiscard]] const SE3* most_similar(const FernCode& code) const;
+
+  [[nodiscard]] std::size_t size() const { return frames_.size(); }
+
+ private:
+  struct Test {
+    int x = 0;
+    int y = 0;
+    float depth_m = 0;
+  };
+  struct StoredFrame {
+    FernCode code;
+    SE3 T_world_camera;
+  };
+  [[nodiscard]] const StoredFrame* nearest(const FernCode& code) const;
+
+  static constexpr std::size_t kTestsOfFern = 4;
+  std::array<Test, kFerns * kTestsOfFern> tests_;
+  std::vector<StoredFrame> frames_;
+};
+
+}  // namespace fusebench::systems::infinitam

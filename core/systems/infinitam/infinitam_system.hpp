@@ -1,0 +1,47 @@
+// InfiniTAM's method, frame by frame: track against a view of the model, fuse, render the next view
+// (Kaehler et al., "Very High Frame Rate Volumetric Integration of Depth Images on Mobile Devices", 2015;
+// Prisacariu et al., "InfiniTAM v3", 2017). The model and its ray casting are those of this program.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/systems/infinitam/fern_relocaliser.hpp"
+#include "core/systems/infinitam/model_view.hpp"
+#include "core/systems/infinitam/pose_tracker.hpp"
+#include "core/systems/system.hpp"
+
+namespace fusebench::systems::infinitam {
+
+class InfinitamSystem final : public System {
+ public:
+  /// workers must outlive it.
+  InfinitamSystem(const config::Config& config, const SensorRig& rig, const Workers& workers);
+
+  /// The first frame with depth is the first one; the world is its camera. Error run_failed: a full model.
+  [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
+  [[nodiscard]] Surface take_surface() override;
+
+ private:
+  enum class Quality { good, poor, failed };
+  [[nodiscard]] Quality judge(const TrackedPose& pose) const;
+  Quality track(const FrameLevels& levels, health::StageTimes& stages);
+  Quality relocalise(const FrameLevels& levels, Quality quality, health::FrameOutcome& outcome);
+  Result<void> fuse(const RgbdFrame& frame, health::StageTimes& stages);
+  void render(health::StageTimes& stages);
+
+  config::Config config_;
+  PinholeCamera camera_;
+  const Workers& workers_;
+  tsdf::TsdfVolume model_;
+  ModelRenderer renderer_;
+  PoseTracker tracker_;
+  FernRelocaliser relocaliser_;
+  ModelView view_;
+  std::optional<FrameLevels> before_;  ///< the frame before
+  SE3 T_world_camera_;
+  std::uint32_t frames_ = 0;     ///< since the first one
+  int unfused_good_frames_ = 0;  ///< still to come after a relocalisation before frames are fused
+};
+
+}  // namespace fusebench::systems::infinitam

@@ -1,0 +1,59 @@
+// Where the camera is: damped Gauss-Newton over the levels of a frame, coarse to fine (Kaehler et al. 2015).
+#pragma once
+
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/systems/infinitam/color_matching.hpp"
+#include "core/systems/infinitam/depth_matching.hpp"
+#include "core/systems/infinitam/model_view.hpp"
+
+namespace fusebench::systems::infinitam {
+
+/// A frame's levels, the finest one first. Those of intensities are empty where colour is not used.
+struct FrameLevels {
+  std::vector<DepthImage> depth_m;
+  std::vector<Image<float>> intensity;
+  std::vector<Gradient> gradient;
+};
+[[nodiscard]] FrameLevels levels_of(const RgbdFrame& frame, const config::InfinitamConfig& config);
+
+/// What a frame is aligned with.
+struct TrackingTarget {
+  const ModelView& view;      ///< the model from where the camera was
+  const FrameLevels* before;  ///< the frame that was fused last, at the pose of the view; may be nullptr
+  bool by_weight = false;     ///< surfaces count by their weight
+};
+
+struct TrackedPose {
+  SE3 T_world_camera;
+  double inlier_share = 0;  ///< of the measured pixels of the finest level, those with a match
+};
+
+class PoseTracker {
+ public:
+  PoseTracker(const config::InfinitamConfig& config, const config::DepthConfig& depth,
+              const PinholeCamera& camera, const Workers& workers);
+
+  [[nodiscard]] TrackedPose track(const FrameLevels& frame, const SE3& T_world_start,
+                                  const TrackingTarget& target) const;
+
+ private:
+  struct Level;
+  struct Descent;
+  [[nodiscard]] Level level(int number) const;
+  [[nodiscard]] Descent descend(const FrameLevels& frame, const Level& level, const SE3& T_world_start,
+                                const TrackingTarget& target) const;
+  [[nodiscard]] PoseSums evaluate(const FrameLevels& frame, const Level& level, const SE3& T_world_camera,
+                                  const TrackingTarget& target, double& depth_pixels) const;
+  [[nodiscard]] bool is_small(const Vector6d& step) const;
+
+  const config::InfinitamConfig& config_;
+  const config::DepthConfig& depth_;
+  PinholeCamera camera_;
+  const Workers& workers_;
+};
+
+}  // namespace fusebench::systems::infinitam

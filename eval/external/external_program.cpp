@@ -1,0 +1,301 @@
+#include "eval/external/external_program.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+#include "core/base/nearest_name.hpp"
+#include "core/config/toml_document.hpp"
+#include "core/config/variants.hpp"
+#include "core/io/fingerprint.hpp"
+
+namespace fusebench::external {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 17> kKeys = {"name",
+                                                    "sentence",
+                                                    "export",
+                                                    "command",
+                                                    "version",
+                                                    "imu",
+                                                    "deterministic",
+                                                    "repetitions",
+                                                    "limits.time_s",
+                                                    "limits.memory_mb",
+                                                    "trajectory.file",
+                                                    "trajectory.format",
+                                                    "trajectory.unit",
+                                                    "trajectory.pose",
+                                                    "trajectory.online",
+                                                    "mesh.file",
+                                                    "mesh.unit"};
+constexpr std::array<std::string_view, 6> kPlaceholders = {"recording", "calibration", "output",
+                                                           "threads",   "seed",        "folder"};
+constexpr int kFewestRepetitions = 5;  // of what is not deterministic
+
+Result<std::string> text_of(const config::TomlEntry& entry) {
+  const auto* text = config::plain_value<std::string>(entry);
+  if (text == nullptr || text->empty()) return config::wrong_value(entry, "a text in quotes");
+  return *text;
+}
+
+template <class Value>
+Result<Value> one_of(const config::TomlEntry& entry,
+                     std::initializer_list<std::pair<std::string_view, Value>> choices) {
+  const auto text = text_of(entry);
+  std::vector<std::string_view> names;
+  for (const auto& [name, value] : choices) {
+    if (text && *text == name) return value;
+    names.push_back(name);
+  }
+  return config::wrong_value(entry, fmt::format("{}", fmt::join(names, " or ")));
+}
+
+Result<bool> flag_of(const config::TomlEntry& entry) {
+  const auto* flag = config::plain_value<bool>(entry);
+  if (flag == nullptr) return config::wrong_value(entry, "true or false");
+  return *flag;
+}
+
+Result<double> positive_number(const config::TomlEntry& entry) {
+  const auto* number = config::plain_value<double>(entry);
+  const auto* integer = config::plain_value<std::int64_t>(entry);
+  const double value = number != nullptr ? *number : integer != nullptr ? static_cast<double>(*integer) : 0;
+  if (!(value > 0)) return config::wrong_value(entry, "a number above 0");
+  return value;
+}
+
+Result<void> check_placeholders(const config::TomlEntry& entry, std::string_view argument) {
+  for (std::size_t begin = argument.find('{'); begin != std::string_view::npos;
+       begin = argument.find('{', begin + 1)) {
+    const std::size_t end = argument.find('}', begin);
+    const std::string_view name =
+        argument.substr(begin + 1, end == std::string_view::npos ? end : end - begin - 1);
+    if (std::ranges::find(kPlaceholders, name) != kPlaceholders.end()) continue;
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: {}: there is no placeholder {{{}}}", entry.place, entry.key, name),
+                fmt::format("there are {{{}}}", fmt::join(kPlaceholders, "}, {")));
+  }
+  return {};
+}
+
+Result<std::vector<std::string>> command_of(const config::TomlEntry& entry) {
+  const auto* list = std::get_if<config::TomlList>(&entry.value);
+  std::vector<std::string> command;
+  for (const config::OptionValue& value : list == nullptr ? config::TomlList{} : *list) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text == nullptr) return config::wrong_value(entry, "a list of texts: the program and its arguments");
+    if (auto known = check_placeholders(entry, *text); !known) return tl::unexpected(known.error());
+    command.push_back(*text);
+  }
+  if (command.empty()) return config::wrong_value(entry, "a list of texts: the program and its arguments");
+  return command;
+}
+
+/// Below {output}, and not outside of it.
+Result<std::string> output_file(const config::TomlEntry& entry) {
+  auto text = text_of(entry);
+  if (!text) return text;
+  const fs::path path = fs::path(*text).lexically_normal();
+  if (path.is_absolute() || (!path.empty() && *path.begin() == ".."))
+    return config::wrong_value(entry, "a path below {output}");
+  return text;
+}
+
+template <class Target>
+Result<void> store(Result<Target> value, Target& target) {
+  if (!value) return tl::unexpected(value.error());
+  target = std::move(*value);
+  return {};
+}
+
+Result<void> read_trajectory_entry(const config::TomlEntry& entry, std::string_view key,
+                                   ProgramTrajectory& trajectory) {
+  if (key == "file") return store(output_file(entry), trajectory.file);
+  if (key == "unit") return store(one_of<double>(entry, {{"m", 1.0}, {"mm", 1e-3}}), trajectory.unit_m);
+  if (key == "pose")
+    return store(one_of<bool>(entry, {{"camera_to_world", false}, {"world_to_camera", true}}),
+                 trajectory.world_to_camera);
+  if (key == "online") return store(flag_of(entry), trajectory.online);
+  const auto name = text_of(entry);
+  if (!name) return tl::unexpected(name.error());
+  const auto format = trajectory_files::parse_trajectory_format(*name);
+  if (!format) return config::wrong_value(entry, "a format of trajectories: " + format.error().hint);
+  trajectory.format = *format;
+  return {};
+}
+
+Result<void> read_name(const config::TomlEntry& entry, ExternalProgram& program) {
+  auto name = text_of(entry);
+  if (!name) return tl::unexpected(name.error());
+  const bool letters = std::ranges::all_of(*name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '+';
+  });
+  if (!letters || name->starts_with('.'))
+    return config::wrong_value(entry, "letters, digits, '-', '_', '+' and '.'");
+  if (config::find_variant(*name))
+    return config::wrong_value(entry, fmt::format("no variant of this program ({} is one)", *name));
+  program.name = std::move(*name);
+  return {};
+}
+
+Result<void> read_input(const config::TomlEntry& entry, ExternalProgram& program) {
+  const auto name = text_of(entry);
+  if (!name) return tl::unexpected(name.error());
+  if (*name == "none") return {};
+  const auto format = exports::parse_export_format(*name);
+  if (!format) return config::wrong_value(entry, "none or a format of exports: " + format.error().hint);
+  program.input = *format;
+  return {};
+}
+
+Result<void> read_repetitions(const config::TomlEntry& entry, ExternalProgram& program) {
+  const auto* count = config::plain_value<std::int64_t>(entry);
+  constexpr std::int64_t kMost = 1000;
+  if (count == nullptr || *count < 1 || *count > kMost)
+    return config::wrong_value(entry, fmt::format("an integer in 1 .. {}", kMost));
+  program.repetitions = static_cast<int>(*count);
+  return {};
+}
+
+Result<void> read_limit(const config::TomlEntry& entry, ExternalProgram& program) {
+  const auto number = positive_number(entry);
+  if (!number) return tl::unexpected(number.error());
+  if (entry.key == "limits.time_s") {
+    program.limits.time_s = *number;
+  } else {
+    program.limits.memory_bytes = static_cast<std::uint64_t>(*number * 1e6);
+  }
+  return {};
+}
+
+Result<void> read_entry(const config::TomlEntry& entry, ExternalProgram& program,
+                        std::vector<std::string>& version_command) {
+  constexpr std::string_view kTrajectory = "trajectory.";
+  const std::string& key = entry.key;
+  if (std::ranges::find(kKeys, key) == kKeys.end()) {
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: unknown key '{}' (nearest: {})", entry.place, key, nearest_name(key, kKeys)),
+                fmt::format("a system has {}", fmt::join(kKeys, ", ")));
+  }
+  if (key == "name") return read_name(entry, program);
+  if (key == "sentence") return store(text_of(entry), program.sentence);
+  if (key == "export") return read_input(entry, program);
+  if (key == "command") return store(command_of(entry), program.command);
+  if (key == "version") return store(command_of(entry), version_command);
+  if (key == "imu")
+    return store(one_of<std::string>(entry, {{"none", "none"}, {"recorded", "recorded"}}), program.imu);
+  if (key == "deterministic") return store(flag_of(entry), program.deterministic);
+  if (key == "repetitions") return read_repetitions(entry, program);
+  if (key.starts_with("limits.")) return read_limit(entry, program);
+  if (key == "mesh.file") return store(output_file(entry), program.mesh.file);
+  if (key == "mesh.unit")
+    return store(one_of<double>(entry, {{"m", 1.0}, {"mm", 1e-3}}), program.mesh.unit_m);
+  return read_trajectory_entry(entry, std::string_view(key).substr(kTrajectory.size()), program.trajectory);
+}
+
+/// The file of a program, as the system finds it; empty if there is none.
+fs::path file_of_program(const std::string& name) {
+  if (name.find('/') != std::string::npos)
+    return access(name.c_str(), X_OK) == 0 ? fs::path(name) : fs::path();
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder) / name;
+    if (access(file.c_str(), X_OK) == 0 && fs::is_regular_file(file)) return file;
+  }
+  return {};
+}
+
+/// {folder} as what it stands for.
+std::string with_folder(std::string argument, const fs::path& folder) {
+  constexpr std::string_view kFolder = "{folder}";
+  for (std::size_t at = argument.find(kFolder); at != std::string::npos; at = argument.find(kFolder, at))
+    argument.replace(at, kFolder.size(), folder.string());
+  return argument;
+}
+
+/// Its first line; or why the program cannot run here.
+void ask_version(const std::vector<std::string>& command, ExternalProgram& program) {
+  if (command.empty() || !program.absent.empty()) return;
+  constexpr double kPatience_s = 60;
+  std::vector<std::string> asked;
+  for (const std::string& argument : command) asked.push_back(with_folder(argument, program.folder));
+  const auto end = process::run_program(asked, program.folder, {kPatience_s, 0}, [] { return true; });
+  if (!end) {
+    program.absent = end.error().message;
+  } else if (!end->succeeded) {
+    const std::string said = end->output.substr(0, end->output.find_last_not_of('\n') + 1);
+    program.absent = fmt::format("its version cannot be asked: {} ({})", fmt::join(command, " "),
+                                 said.empty() ? end->how : said.substr(said.rfind('\n') + 1));
+  } else {
+    program.version = end->output.substr(0, end->output.find('\n'));
+  }
+}
+
+Result<void> identify(const fs::path& file, ExternalProgram& program) {
+  io::Fingerprint identity;
+  if (auto added = identity.add_file(file); !added) return tl::unexpected(added.error());
+  for (std::string& argument : program.command) {
+    const bool named = argument.find("{folder}") != std::string::npos;
+    argument = with_folder(std::move(argument), program.folder);
+    if (!named || !fs::is_regular_file(argument)) continue;
+    if (auto added = identity.add_file(argument); !added) return tl::unexpected(added.error());
+  }
+  const fs::path executable = file_of_program(program.command.front());
+  if (executable.empty()) {
+    program.absent = fmt::format("the program {} is not installed", program.command.front());
+    return {};
+  }
+  if (auto added = identity.add_file(executable); !added) return tl::unexpected(added.error());
+  identity.add(program.version);
+  program.identity = identity.hex();
+  return {};
+}
+
+}  // namespace
+
+Result<ExternalProgram> read_external_program(const fs::path& file) {
+  const auto document = config::read_toml(file);
+  if (!document) return tl::unexpected(document.error());
+  ExternalProgram program;
+  std::vector<std::string> version_command;
+  bool counted = false;
+  for (const config::TomlEntry& entry : document->entries) {
+    if (auto read = read_entry(entry, program, version_command); !read) return tl::unexpected(read.error());
+    counted |= entry.key == "repetitions";
+  }
+  const std::array<std::pair<std::string_view, bool>, 3> required = {
+      {{"name", !program.name.empty()},
+       {"command", !program.command.empty()},
+       {"trajectory.file", !program.trajectory.file.empty()}}};
+  for (const auto& [key, there] : required) {
+    if (!there)
+      return fail(ErrorCode::configuration, fmt::format("{}: a system needs {}", file.string(), key));
+  }
+  if (!program.deterministic && !counted) program.repetitions = kFewestRepetitions;
+  if (!program.deterministic && program.repetitions < kFewestRepetitions) {
+    return fail(
+        ErrorCode::configuration,
+        fmt::format("{}: repetitions = {} of a program that is not deterministic", file.string(),
+                    program.repetitions),
+        fmt::format("at least {}, so that its range is known; or deterministic = true", kFewestRepetitions));
+  }
+  std::error_code ignored;
+  program.folder = fs::absolute(file, ignored).parent_path();
+  ask_version(version_command, program);
+  if (auto identified = identify(file, program); !identified) return tl::unexpected(identified.error());
+  return program;
+}
+
+}  // namespace fusebench::external

@@ -1,0 +1,13 @@
+#include "eval/page/image_source.hpp"
+
+#include "datasets/images/image_files.hpp"
+#include "eval/text/base64.hpp"
+
+namespace fusebench::page {
+
+std::string jpeg_source(const ColorImage& image, int quality) {
+  const auto jpeg = images::encode_jpeg(image, quality);
+  return jpeg ? "data:image/jpeg;base64," + text::base64(*jpeg) : std::string();
+}
+
+}  // namespace fusebench::page

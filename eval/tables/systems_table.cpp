@@ -1,0 +1,264 @@
+#include "eval/tables/systems_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "datasets/calibration/recording_catalogue.hpp"
+#include "eval/record/data_labels.hpp"
+#include "eval/tables/published_table.hpp"
+#include "eval/text/json_text.hpp"
+#include "eval/text/plain_table.hpp"
+
+namespace fusebench::tables {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Value = std::optional<double>;
+
+/// A number of the rows: where it is, how it is called and shown, and what of a run it is.
+struct SystemColumn {
+  const char* key;      ///< of CSV and JSON, in the unit of the number
+  const char* heading;  ///< for people
+  double shown_factor;
+  int decimals;
+  std::optional<MedianRange> SystemRow::*value;
+  Value (*of)(const record::RunRecord& record);
+};
+
+Value ate_of(const record::RunRecord& record) {
+  return record.metrics.ate.value ? Value(record.metrics.ate.value->stats.rmse) : std::nullopt;
+}
+Value rpe_of(const record::RunRecord& record) {
+  const auto& rpe = record.metrics.rpe_second.value;
+  return rpe ? Value(rpe->translation.rmse) : std::nullopt;
+}
+Value pose_aie_of(const record::RunRecord& record) {
+  const auto& intensity = record.metrics.pose_intensity.value;
+  return intensity ? Value(intensity->aie_grey) : std::nullopt;
+}
+Value mesh_of(const record::RunRecord& record) {
+  const auto& mesh = record.metrics.mesh.value;
+  return mesh ? Value(mesh->poses.accuracy.stats.mean) : std::nullopt;
+}
+Value lost_of(const record::RunRecord& record) {
+  if (record.frames.total == 0) return std::nullopt;
+  return 1 - static_cast<double>(record.frames.tracked) / static_cast<double>(record.frames.total);
+}
+Value silent_of(const record::RunRecord& record) {
+  const auto silent = record.metrics.silent_frames();
+  return silent ? Value(static_cast<double>(*silent)) : std::nullopt;
+}
+Value cpu_of(const record::RunRecord& record) {
+  if (record.frames.total == 0 || !(record.timing.cpu_s > 0)) return std::nullopt;
+  return 1000 * record.timing.cpu_s / static_cast<double>(record.frames.total);
+}
+Value memory_of(const record::RunRecord& record) {
+  return record.timing.peak_rss_bytes > 0 ? Value(static_cast<double>(record.timing.peak_rss_bytes))
+                                          : std::nullopt;
+}
+
+constexpr std::array kColumns = {
+    SystemColumn{"ate_rmse_m", "ATE [cm]", 100, 2, &SystemRow::ate_m, ate_of},
+    SystemColumn{"rpe_second_m", "RPE [cm/s]", 100, 2, &SystemRow::rpe_second_m, rpe_of},
+    SystemColumn{"pose_aie_grey", "AIE of poses", 1, 2, &SystemRow::pose_aie_grey, pose_aie_of},
+    SystemColumn{"mesh_m", "mesh [cm]", 100, 2, &SystemRow::mesh_m, mesh_of},
+    SystemColumn{"lost_share", "lost [%]", 100, 1, &SystemRow::lost_share, lost_of},
+    SystemColumn{"silent", "silent", 1, 0, &SystemRow::silent, silent_of},
+    SystemColumn{"cpu_ms", "CPU [ms]", 1, 0, &SystemRow::cpu_ms, cpu_of},
+    SystemColumn{"memory_bytes", "memory [MB]", 1e-6, 0, &SystemRow::memory_bytes, memory_of}};
+
+constexpr std::size_t kTextColumns = 6;
+
+std::optional<MedianRange> median_range(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
+  std::ranges::sort(values);
+  const std::size_t middle = values.size() / 2;
+  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return MedianRange{median, values.front(), values.back()};
+}
+
+SystemRow row_of(const std::vector<const run_files::FoundRun*>& runs) {
+  const record::RunRecord& first = runs.front()->record;
+  SystemRow row;
+  row.recording = first.recording.name;
+  const record::DataWords words = record::words_of(first.recording);
+  row.data = record::data_cell(words);
+  row.imu = words.imu;
+  row.system = first.variant;
+  row.poses = record::to_string(first.poses);
+  row.runs = runs.size();
+  for (const run_files::FoundRun* const run : runs) {
+    const bool ok = run->record.status == record::RunStatus::ok;
+    row.ok += ok ? 1 : 0;
+    if (!ok && row.reason.empty()) row.reason = run->record.reason;
+  }
+  for (const SystemColumn& column : kColumns) {
+    std::vector<double> values;
+    for (const run_files::FoundRun* const run : runs) {
+      if (run->record.status == record::RunStatus::failed) continue;
+      if (const Value value = column.of(run->record)) values.push_back(*value);
+    }
+    row.*column.value = median_range(std::move(values));
+  }
+  return row;
+}
+
+/// Published ATE of a recording, a row a system.
+std::vector<SystemRow> published_rows(const std::string& recording) {
+  std::vector<SystemRow> rows;
+  for (const char* const name : {"ate_tum", "ate_icl"}) {
+    const auto table = published_table(name);
+    if (!table) continue;
+    for (const PublishedRow& published : table->rows) {
+      const calibration::CatalogueEntry* const entry = calibration::find_catalogue_entry(published.recording);
+      const auto is_it = [&](const std::string& folder) {
+        return std::filesystem::path(folder).filename() == recording;
+      };
+      if (published.recording != recording &&
+          (entry == nullptr || std::ranges::none_of(entry->folders, is_it)))
+        continue;
+      for (std::size_t i = 0; i < table->systems.size(); ++i) {
+        if (!published.published[i]) continue;
+        SystemRow row;
+        row.recording = recording;
+        row.data = "whole recording";
+        row.system = table->systems[i];
+        row.poses = "published";
+        row.ate_m = MedianRange{*published.published[i], *published.published[i], *published.published[i]};
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+std::string shown(const std::optional<MedianRange>& value, double factor, int decimals) {
+  if (!value) return "-";
+  const auto number = [&](double x) { return fmt::format("{:.{}f}", factor * x, decimals); };
+  if (number(value->least) == number(value->most)) return number(value->median);
+  return fmt::format("{} [{}, {}]", number(value->median), number(value->least), number(value->most));
+}
+
+std::vector<text::TableCells> cells_of(const SystemsTable& table) {
+  std::vector<text::TableCells> lines{{"recording", "data", "IMU", "system", "poses", "runs"}};
+  for (const SystemColumn& column : kColumns) lines.front().emplace_back(column.heading);
+  for (const SystemRow& row : table.rows) {
+    text::TableCells line{row.recording, row.data,
+                          row.imu,       row.system,
+                          row.poses,     row.runs == 0 ? "" : fmt::format("{}/{} ok", row.ok, row.runs)};
+    for (const SystemColumn& column : kColumns)
+      line.push_back(shown(row.*column.value, column.shown_factor, column.decimals));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string csv(const SystemsTable& table) {
+  std::string text = "recording,data,imu,system,poses,runs,ok,reason";
+  for (const SystemColumn& column : kColumns) text += fmt::format(",{0},{0}_least,{0}_most", column.key);
+  text += "\n";
+  for (const SystemRow& row : table.rows) {
+    text += fmt::format("{},{},{},{},{},{},{},{}", text::csv_cell(row.recording), text::csv_cell(row.data),
+                        text::csv_cell(row.imu), text::csv_cell(row.system), row.poses, row.runs, row.ok,
+                        text::csv_cell(row.reason));
+    for (const SystemColumn& column : kColumns) {
+      const auto& value = row.*column.value;
+      text += value ? fmt::format(",{},{},{}", value->median, value->least, value->most) : ",,,";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string json(const SystemsTable& table) {
+  Json rows = Json::array();
+  for (const SystemRow& row : table.rows) {
+    Json line = {{"recording", row.recording}, {"data", row.data}, {"imu", row.imu}, {"system", row.system},
+                 {"poses", row.poses},         {"runs", row.runs}, {"ok", row.ok},   {"reason", row.reason}};
+    for (const SystemColumn& column : kColumns) {
+      const auto& value = row.*column.value;
+      line[column.key] = nullptr;
+      if (value)
+        line[column.key] = {{"median", value->median}, {"least", value->least}, {"most", value->most}};
+    }
+    rows.push_back(std::move(line));
+  }
+  return text::json_text({{"rows", rows}, {"protocol", table.footer}}) + "\n";
+}
+
+std::string latex(const SystemsTable& table) {
+  const auto lines = cells_of(table);
+  std::string text = text::latex_begin(lines.front(), kTextColumns);
+  for (std::size_t i = 1; i < lines.size(); ++i) text += text::latex_line(lines[i]);
+  text += text::kLatexEnd;
+  for (const std::string& line : table.footer) text += fmt::format("% {}\n", line);
+  return text;
+}
+
+std::string markdown(const SystemsTable& table) {
+  std::string text = text::markdown_table(cells_of(table), kTextColumns) + "\n";
+  for (const SystemRow& row : table.rows) {
+    if (!row.reason.empty())
+      text += fmt::format("- {}, {}: {} of {} runs not ok: {}\n", row.recording, row.system,
+                          row.runs - row.ok, row.runs, row.reason);
+  }
+  text += "\n";
+  for (const std::string& line : table.footer) text += line + "\n";
+  return text;
+}
+
+}  // namespace
+
+SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& runs) {
+  SystemsTable table;
+  std::vector<std::vector<const run_files::FoundRun*>> groups;
+  for (const run_files::FoundRun& run : runs) {
+    const auto same = [&](const auto& group) {
+      const record::RunRecord& first = group.front()->record;
+      return first.recording.name == run.record.recording.name && first.variant == run.record.variant &&
+             first.recording.imu == run.record.recording.imu && first.config_hash == run.record.config_hash;
+    };
+    auto group = std::ranges::find_if(groups, same);
+    if (group == groups.end()) group = groups.insert(groups.end(), std::vector<const run_files::FoundRun*>{});
+    group->push_back(&run);
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    table.rows.push_back(row_of(groups[i]));
+    const std::string& recording = table.rows.back().recording;
+    const bool last = i + 1 == groups.size() || groups[i + 1].front()->record.recording.name != recording;
+    if (!last) continue;
+    for (SystemRow& row : published_rows(recording)) table.rows.push_back(std::move(row));
+  }
+  table.footer = {
+      "Medians over the runs of a system with their ranges; one number where all are the same. Poses: online "
+      "as each was known when its frame came, final as all were known at the end; published: numbers from "
+      "elsewhere (see configs/paper), by protocols of their own, and not run here.",
+      "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
+      "lost. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true surface. "
+      "Silent: frames with a wrong pose. CPU: user and system time of all threads by the frames of the "
+      "recording; of an external program everything it does."};
+  return table;
+}
+
+std::string render_systems_table(const SystemsTable& table, TableFormat format) {
+  switch (format) {
+    case TableFormat::csv:
+    case TableFormat::csv_long:
+      return csv(table);
+    case TableFormat::json:
+      return json(table);
+    case TableFormat::latex:
+      return latex(table);
+    case TableFormat::markdown:
+      break;
+  }
+  return markdown(table);
+}
+
+}  // namespace fusebench::tables

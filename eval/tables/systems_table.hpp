@@ -1,0 +1,52 @@
+// Systems beside each other: one row a recording and system, over the repetitions of its run.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/run_files/found_runs.hpp"
+#include "eval/tables/table.hpp"
+
+namespace fusebench::tables {
+
+/// The median of a number over repetitions, with its range.
+struct MedianRange {
+  double median = 0;
+  double least = 0;
+  double most = 0;
+};
+
+struct SystemRow {
+  std::string recording;
+  std::string data;    ///< "recorded, synthetic IMU", "simulated"
+  std::string imu;     ///< that the system used
+  std::string system;  ///< variant, or name of the program
+  std::string poses;   ///< "online" or "final"; "published" of numbers from elsewhere
+  std::size_t runs = 0;
+  std::size_t ok = 0;
+  std::string reason;  ///< of the first run that is not ok
+  std::optional<MedianRange> ate_m;
+  std::optional<MedianRange> rpe_second_m;
+  std::optional<MedianRange> pose_aie_grey;
+  std::optional<MedianRange> mesh_m;        ///< mean distance of the reconstruction to the true surface
+  std::optional<MedianRange> lost_share;    ///< frames without a pose
+  std::optional<MedianRange> silent;        ///< silent failures
+  std::optional<MedianRange> cpu_ms;        ///< a frame
+  std::optional<MedianRange> memory_bytes;  ///< largest resident memory
+};
+
+struct SystemsTable {
+  std::vector<SystemRow> rows;  ///< by recording; then those that ran here, then published numbers
+  std::vector<std::string> footer;
+};
+
+/// Numbers are over the runs that are ok; published ATE of the recordings that the catalogue knows stands
+/// below them.
+[[nodiscard]] SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& runs);
+
+/// csv_long is as csv here.
+[[nodiscard]] std::string render_systems_table(const SystemsTable& table, TableFormat format);
+
+}  // namespace fusebench::tables

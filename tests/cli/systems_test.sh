@@ -1,0 +1,128 @@
+#!/usr/bin/env bash
+# External programs as systems, from outside: one in another language that does well, and those that hang, die, or leave half
+# a trajectory, NaN, other units or mirrored poses. Each of these is a row with a reason that names the file and line.
+set -uo pipefail
+
+if (($# != 2)); then
+  printf 'Usage: tests/cli/systems_test.sh BINARY GOLDEN_TUM_FOLDER\n' >&2
+  exit 2
+fi
+binary=$(realpath -- "$1")
+golden=$(realpath -- "$2")
+unset FUSEBENCH_DATA
+
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+cd "$work" || exit 2
+cp -r "$golden" freiburg1_copy
+chmod -R u+w freiburg1_copy
+checks=0
+failures=0
+
+complain() {
+  failures=$((failures + 1))
+  printf 'FAILED: %s\n' "$1" >&2
+  if [[ -s stderr ]]; then sed 's/^/    stderr: /' stderr >&2; fi
+}
+
+# A system in awk: stands still at the stamps of the exported colour images. What else it does, $2 says.
+cat >mine.sh <<'TEXT'
+#!/bin/sh
+set -eu
+[ "${1:-}" = --version ] && { echo "mine 1.0"; exit 0; }
+still() { awk '!/^#/ { print $1, 0.001 * NR, 0, 0, 0, 0, 0, 1 }' "$1/rgb.txt"; }
+case $2 in
+  good) still "$1" >poses.txt
+    printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n' >mesh.ply
+    printf '0 0 1\n1 0 1\n0 1 1\n' >>mesh.ply ;;
+  hang) sleep 1000 ;;
+  die) echo "assertion failed in mapping"; exit 42 ;;
+  crash) kill -SEGV $$ ;;
+  none) true ;;
+  half) still "$1" | head -c 130 >poses.txt ;;
+  nan) still "$1" | awk 'NR == 3 { $2 = "nan" } { print }' >poses.txt ;;
+  units) still "$1" | awk '{ $2 = 1e5 * $2; print }' >poses.txt ;;
+  mirror) printf -- '-1 0 0 0 0 1 0 0 0 0 1 0\n%.0s' 1 2 3 4 5 >poses.txt ;;
+  few) still "$1" | head -n 2 >poses.txt ;;
+  truth) ls "$1"; test ! -e "$1/groundtruth.txt"; still "$1" >poses.txt ;;
+esac
+TEXT
+
+# definition NAME MODE [LINE...]: mine.toml for a mode of the program.
+definition() {
+  local name=$1 mode=$2
+  shift 2
+  {
+    printf 'name = "%s"\nexport = "tum"\ndeterministic = true\n' "$name"
+    printf 'command = ["sh", "{folder}/mine.sh", "{recording}", "%s"]\nversion = ["sh", "{folder}/mine.sh", "--version"]\n' "$mode"
+    printf '[limits]\ntime_s = 2\n[trajectory]\nfile = "poses.txt"\nonline = true\n'
+    printf '%s\n' "$@"
+  } >"$name.toml"
+}
+
+# row NAME CODE PATTERN: runs it, and looks for the pattern in what is said and in the record.
+row() {
+  local name=$1 code=$2 pattern=$3 status record
+  checks=$((checks + 1))
+  "$binary" run freiburg1_copy --system "$name.toml" --out runs >stdout 2>stderr
+  status=$?
+  if ((status != code)); then complain "$name: exit code $status instead of $code"; fi
+  if ! grep -qE "$pattern" stderr; then complain "$name: nothing like '$pattern'"; fi
+  record=$(find "runs/freiburg1_copy/$name" -name record.json 2>/dev/null | head -n 1)
+  if [[ -z $record ]]; then complain "$name: no record"; return; fi
+  if ((code != 0)) && ! grep -E '"reason"' "$record" | grep -qE "$pattern"; then complain "$name: the record does not say why"; fi
+  if find "runs/freiburg1_copy/$name" -name work | grep -q .; then complain "$name: its working folder is left"; fi
+}
+
+definition good good '[mesh]' 'file = "mesh.ply"'
+row good 0 '5/5|5 of 5'
+log=$(find runs/freiburg1_copy/good -name log.txt)
+if ! grep -q 'version: mine 1.0' "$log"; then complain 'the version is not in the log'; fi
+if [[ ! -s $(dirname "$log")/mesh.ply ]]; then complain 'the cloud of points is not there'; fi
+definition truth truth
+row truth 0 '5/5|5 of 5'
+definition few few
+row few 0 '2/5|2 of 5'
+definition hang hang
+row hang 4 'killed after 2 s, its limit'
+definition die die
+row die 4 'exit code 42'
+if ! grep -rq 'assertion failed in mapping' runs/freiburg1_copy/die/*/log.txt; then complain 'the last words are not in the log'; fi
+definition crash crash
+row crash 4 'signal 11'
+definition none none
+row none 4 'poses.txt'
+definition half half
+row half 4 'poses.txt:4'
+definition nan nan
+row nan 4 'poses.txt:3'
+definition units units
+row units 4 'poses.txt: the poses extend over .* unit'
+definition mirror mirror
+sed -i 's/file = "poses.txt"/file = "poses.txt"\nformat = "kitti"/' mirror.toml
+row mirror 4 'poses.txt:1: .*no rotation'
+definition absent good
+sed -i 's/"--version"/"--no-such-word", "nothing"/; s/"sh", "{folder}\/mine.sh", "--no/"no-such-program", "--no/' absent.toml
+
+# In a suite: repetitions with seeds, rows with reasons, and what is not installed is excluded with its reason.
+cat >suite.toml <<'TEXT'
+name = "programs"
+recordings = ["freiburg1_copy"]
+variants = ["infinitam"]
+systems = ["good.toml", "die.toml", "absent.toml", "drawing.toml"]
+TEXT
+definition drawing good
+sed -i 's/deterministic = true/deterministic = false/' drawing.toml
+checks=$((checks + 1))
+"$binary" bench suite.toml --out suite_runs -j 2 >stdout 2>stderr
+status=$?
+if ((status != 4)); then complain "suite: exit code $status instead of 4"; fi
+"$binary" bench suite.toml --out suite_runs -j 2 --dry-run >stdout 2>stderr
+if ! grep -q 'no-such-program' stdout; then complain 'what is not installed is not said'; cat stdout >&2; fi
+"$binary" table suite_runs --systems >stdout 2>stderr
+for pattern in 'drawing.*5/5 ok' 'die.*0/1 ok' 'infinitam.*1/1 ok' 'exit code 42'; do
+  if ! grep -qE "$pattern" stdout; then complain "the table has nothing like '$pattern'"; cat stdout >&2; fi
+done
+
+printf '%d checks, %d failures\n' "$checks" "$failures"
+((failures == 0))

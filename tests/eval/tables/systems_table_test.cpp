@@ -1,0 +1,70 @@
+#include "eval/tables/systems_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/expect_text.hpp"
+
+namespace fusebench {
+
+using namespace record;
+using namespace run_files;
+using namespace tables;
+
+namespace {
+
+FoundRun run_of(const std::string& system, double ate_m, const std::string& reason = "") {
+  FoundRun run;
+  run.record.status = reason.empty() ? RunStatus::ok : RunStatus::failed;
+  run.record.reason = reason;
+  run.record.recording.name = "rgbd_dataset_freiburg1_xyz";
+  run.record.variant = system;
+  run.record.frames = {100, 90, 10};
+  run.record.timing.cpu_s = 20;
+  if (reason.empty()) {
+    trajectory_error::AteResult ate;
+    ate.stats = metrics::statistics(std::vector<double>{ate_m});
+    run.record.metrics.ate = {ate, {}};
+    run.record.metrics.pose_intensity = {RecordedPoseIntensity{7.5, 9, 80, 1000, false}, {}};
+  }
+  return run;
+}
+
+TEST(SystemsTable, HasTheMedianAndTheRangeOfRepetitionsAndTheirFailures) {
+  std::vector<FoundRun> runs = {run_of("full", 0.01)};
+  for (const double ate_m : {0.05, 0.02, 0.03}) runs.push_back(run_of("drawing", ate_m));
+  runs.push_back(run_of("drawing", 0, "drawing: signal 9 (Killed)"));
+  runs.back().record.poses = PoseKind::final;
+  const SystemsTable table = systems_table_of(runs);
+  ASSERT_GE(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0].system, "full");
+  const SystemRow& drawing = table.rows[1];
+  EXPECT_EQ(drawing.runs, 4U);
+  EXPECT_EQ(drawing.ok, 3U);
+  ASSERT_TRUE(drawing.ate_m.has_value());
+  EXPECT_DOUBLE_EQ(drawing.ate_m->median, 0.03);
+  EXPECT_DOUBLE_EQ(drawing.ate_m->least, 0.02);
+  EXPECT_DOUBLE_EQ(drawing.ate_m->most, 0.05);
+  EXPECT_NEAR(drawing.lost_share->median, 0.1, 1e-12);
+  EXPECT_NEAR(drawing.cpu_ms->median, 200, 1e-9);
+  const std::string text = render_systems_table(table, TableFormat::markdown);
+  testing::expect_contains(text, "3.00 [2.00, 5.00]");
+  testing::expect_contains(text, "3/4 ok");
+  testing::expect_contains(text, "drawing: 1 of 4 runs not ok: drawing: signal 9 (Killed)");
+  testing::expect_contains(render_systems_table(table, TableFormat::json), "\"least\": 0.02");
+  testing::expect_contains(render_systems_table(table, TableFormat::csv), ",0.03,0.02,0.05,");
+}
+
+TEST(SystemsTable, LabelsPublishedNumbersAndKeepsThemApart) {
+  const SystemsTable table = systems_table_of({run_of("full", 0.01)});
+  const auto elastic = std::ranges::find(table.rows, "ElasticFusion", &SystemRow::system);
+  ASSERT_NE(elastic, table.rows.end());
+  EXPECT_EQ(elastic->poses, "published");
+  EXPECT_EQ(elastic->runs, 0U);
+  EXPECT_DOUBLE_EQ(elastic->ate_m->median, 0.011);
+  EXPECT_FALSE(elastic->cpu_ms.has_value());
+}
+
+}  // namespace
+}  // namespace fusebench
