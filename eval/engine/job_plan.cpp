@@ -169,9 +169,13 @@ const suites::Exclusion* exclusion_of(const suites::Suite& suite, const BatchJob
 }
 
 /// One run of an external program, but for its window and its repetition.
-BatchJob job_of_program(const Common& common, const Planned& recording,
-                        const std::shared_ptr<const external::ExternalProgram>& program) {
+Result<BatchJob> job_of_program(const Common& common, const Planned& recording,
+                                const std::shared_ptr<const external::ExternalProgram>& program) {
+  // Of the configuration it is the evaluation that counts.
+  auto config = suites::suite_config(common.suite, config::all_variants().front());
+  if (!config) return tl::unexpected(config.error());
   run::RunSpec spec;
+  spec.config = std::move(*config);
   spec.recording = recording.folder;
   spec.imu = common.suite.imu;
   spec.variant = program->name;
@@ -192,13 +196,14 @@ Result<void> add_program_runs(const Common& common, const Planned& recording, Ba
         wanted(common.options.only, recording.folder.filename().string(), recording.split, program->name);
     if (!take) return tl::unexpected(take.error());
     if (!*take) continue;
-    BatchJob job = job_of_program(common, recording, program);
-    const suites::Exclusion* const exclusion = exclusion_of(common.suite, job);
+    auto job = job_of_program(common, recording, program);
+    if (!job) return tl::unexpected(job.error());
+    const suites::Exclusion* const exclusion = exclusion_of(common.suite, *job);
     if (exclusion != nullptr) met.insert(exclusion);
     if (exclusion != nullptr || !program->absent.empty()) {
-      plan.excluded.push_back({to_string(job), exclusion != nullptr ? exclusion->reason : program->absent});
+      plan.excluded.push_back({to_string(*job), exclusion != nullptr ? exclusion->reason : program->absent});
     } else {
-      jobs.push_back(std::move(job));
+      jobs.push_back(std::move(*job));
     }
   }
   return {};

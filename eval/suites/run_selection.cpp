@@ -20,7 +20,7 @@ bool matches(std::string_view pattern, std::string_view name) {
   return name.starts_with(pattern.substr(0, pattern.size() - 1));
 }
 
-Result<Exclusion> read_exclusion(const EntryTable& table) {
+Result<Exclusion> read_exclusion(const EntryTable& table, const std::vector<std::string>& programs) {
   Exclusion exclusion;
   exclusion.place = table.place;
   config::EffectiveConfig scratch;  // whether the options exist and take the values
@@ -33,7 +33,8 @@ Result<Exclusion> read_exclusion(const EntryTable& table) {
       auto read = text_entry(entry);
       if (!read) return tl::unexpected(read.error());
       *text = std::move(*read);
-      if (entry.key != "variant") continue;
+      if (entry.key != "variant" || std::ranges::find(programs, exclusion.variant) != programs.end())
+        continue;
       if (const auto known = config::find_variant(exclusion.variant); !known)
         return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, known.error().message));
       continue;
@@ -65,10 +66,11 @@ bool Exclusion::covers(std::string_view recording_name, std::string_view variant
   });
 }
 
-Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables) {
+Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables,
+                                               const std::vector<std::string>& programs) {
   std::vector<Exclusion> exclusions;
   for (const EntryTable& table : tables) {
-    auto exclusion = read_exclusion(table);
+    auto exclusion = read_exclusion(table, programs);
     if (!exclusion) return tl::unexpected(exclusion.error());
     exclusions.push_back(std::move(*exclusion));
   }

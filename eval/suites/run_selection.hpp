@@ -20,7 +20,7 @@ namespace fusebench::suites {
 ///     [[exclude]]
 ///     reason = "no IMU was recorded"   # required; shown wherever the plan is
 ///     recording = "icl_*"              # a name, or with a final * its beginning; default: all
-///     variant = "full"                 # default: all
+///     variant = "full"                 # or the name of an external program; default: all
 ///     tsdf.voxel_m = 0.02              # options that must have these values; default: any
 struct Exclusion {
   std::string reason;
@@ -33,8 +33,10 @@ struct Exclusion {
   [[nodiscard]] bool covers(std::string_view recording_name, std::string_view variant_name,
                             const std::vector<config::OptionRow>& options_of_run) const;
 };
-/// Errors: configuration, with file:line.
-[[nodiscard]] Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables);
+/// programs: names of the external programs of the suite, which count as variants. Errors: configuration,
+/// with file:line.
+[[nodiscard]] Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables,
+                                                             const std::vector<std::string>& programs);
 
 /// What each run may use. A run that needs more is a row with that reason.
 ///

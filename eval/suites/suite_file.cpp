@@ -138,7 +138,9 @@ Result<void> read_tables(const config::TomlDocument& document, Suite& suite) {
   auto sweeps = read_sweeps(entry_tables(document, "sweep"));
   if (!sweeps) return tl::unexpected(sweeps.error());
   suite.sweeps = std::move(*sweeps);
-  auto exclusions = read_exclusions(entry_tables(document, "exclude"));
+  std::vector<std::string> programs;
+  for (const auto& program : suite.programs) programs.push_back(program->name);
+  auto exclusions = read_exclusions(entry_tables(document, "exclude"), programs);
   if (!exclusions) return tl::unexpected(exclusions.error());
   suite.exclusions = std::move(*exclusions);
   auto criteria =
