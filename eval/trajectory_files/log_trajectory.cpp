@@ -19,9 +19,10 @@ Result<std::int64_t> frame_number(const io::TextTable& table, const Trajectory& 
   if (table.has(3)) return table.fail_here("four numbers where a frame's line of three integers is expected");
   const auto number = table.number(0);
   if (!number) return tl::unexpected(number.error());
-  const auto frame = static_cast<std::int64_t>(std::llround(*number));
-  if (*number < 0 || static_cast<double>(frame) != *number)
+  constexpr double kMostFrames = 1e9;
+  if (!(*number >= 0 && *number <= kMostFrames) || std::floor(*number) != *number)
     return table.fail_here("the number of a frame is an integer from 0 on");
+  const auto frame = static_cast<std::int64_t>(*number);
   if (!before.empty() && frame <= before.back().timestamp_ns)
     return table.fail_here(
         fmt::format("frame {} after frame {}: numbers must rise", frame, before.back().timestamp_ns));
@@ -71,6 +72,8 @@ Result<Trajectory> read_log_trajectory(const std::filesystem::path& file,
     largest = std::max(largest, rotation.deviation);
     poses.push_back({*number, {Quaterniond(rotation.R), matrix->topRightCorner<3, 1>()}});
   }
+  if (poses.empty())
+    return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected poses)", file.string()));
   if (largest > kRounding)
     warnings.push_back(
         fmt::format("{}: rotations are off orthonormal by up to {:.2g} (replaced by the nearest "

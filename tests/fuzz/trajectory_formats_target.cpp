@@ -28,8 +28,10 @@ void check_read(const MemoryFile& file, std::optional<TrajectoryFormat> format, 
         "a covariance belongs to a pose");
   for (std::size_t i = 0; i < loaded->poses.size(); ++i) {
     const StampedPose& pose = loaded->poses[i];
-    check(loaded->has_stamps() || pose.timestamp_ns == static_cast<std::int64_t>(i),
+    check(loaded->has_stamps() || loaded->has_numbers() || pose.timestamp_ns == static_cast<std::int64_t>(i),
           "poses without stamps go by their number");
+    check(!loaded->has_numbers() || i == 0 || pose.timestamp_ns > loaded->poses[i - 1].timestamp_ns,
+          "numbers of frames rise");
     check(pose.T_world_camera.translation.allFinite(), "positions are finite");
     check(std::abs(pose.T_world_camera.rotation.norm() - 1) < 1e-12, "quaternions have unit length");
   }
@@ -43,7 +45,7 @@ void trajectory_formats(std::string_view bytes) {
   for (const std::optional<TrajectoryFormat> format :
        {std::optional<TrajectoryFormat>(), std::optional(TrajectoryFormat::tum),
         std::optional(TrajectoryFormat::kitti), std::optional(TrajectoryFormat::euroc),
-        std::optional(TrajectoryFormat::openvins)}) {
+        std::optional(TrajectoryFormat::log), std::optional(TrajectoryFormat::openvins)}) {
     for (const auto duplicates : {Duplicates::none, Duplicates::rare_last, Duplicates::rare_kept}) {
       check_read(file, format, duplicates);
     }

@@ -49,6 +49,8 @@ TEST_F(LogTrajectory, RefusesByLine) {
   testing::expect_contains(refused("0 0 1\n0 -1 0 nan\n1 0 0 0\n0 0 1 0\n0 0 0 1\n"), "t.log:2");
   testing::expect_contains(refused("0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), "not 0 0 0 1");
   testing::expect_contains(refused("0.5 0 1\n" + kPose), "an integer from 0 on");
+  testing::expect_contains(refused("1e300 0 1\n" + kPose), "an integer from 0 on");
+  testing::expect_contains(refused("# nothing\n"), "has no rows");
 }
 
 }  // namespace
