@@ -80,7 +80,12 @@ bool is_finished(const run::PreparedRun& run, const run::RecordHead& head) {
   if (lacks_one) return false;
   std::error_code ignored;
   if (run.spec.profile && !fs::exists(run.folder / profile::kTraceFile, ignored)) return false;
-  return run.spec.kept == run::KeptFiles::small || fs::exists(run.folder / "intensity.bin", ignored);
+  if (run.spec.kept == run::KeptFiles::small) return true;
+  // What a run of small files does not keep: pixels, or of a system without patches its model.
+  const bool has_patches =
+      !run.spec.program && run.spec.config.values.system.method == config::SystemMethod::filter;
+  if (has_patches) return fs::exists(run.folder / "intensity.bin", ignored);
+  return !head.has_model || fs::exists(run.folder / "mesh.ply", ignored);
 }
 
 void forget_not_started(const BatchJob& job) {

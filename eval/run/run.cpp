@@ -134,7 +134,8 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
        {"nees.csv", has_filter ? run_files::nees_table(record.metrics.nees) : ""},
        {profile::kTraceFile, run.spec.profile ? profile::trace_text(progress->profile, title) : ""},
        {"log.txt", progress->log}}};
-  Mesh* const mesh = all && !progress->output.mesh.vertices.empty() ? &progress->output.mesh : nullptr;
+  const bool has_mesh = has_filter || !progress->output.mesh.vertices.empty();
+  Mesh* const mesh = all && has_mesh ? &progress->output.mesh : nullptr;
   if (auto written = write_run_folder(*folder, mesh, texts, record); !written)
     return tl::unexpected(written.error());
   return record;

@@ -28,8 +28,12 @@ std::string run_identity(const RunSpec& spec, const recording::Recording& record
 std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
   const auto run = run_files::found_run(folder);
   if (!run) return std::nullopt;
-  return RecordHead{run->record.status, run->record.reason, run->record.run_id, run->state,
-                    run_files::missing_files(folder, run->record)};
+  return RecordHead{run->record.status,
+                    run->record.reason,
+                    run->record.run_id,
+                    run->state,
+                    run_files::missing_files(folder, run->record),
+                    run->record.model.vertices > 0};
 }
 
 PreparedRun place_run(RunSpec spec, recording::Recording recording, const TakenFolders& taken) {

@@ -34,6 +34,7 @@ struct RecordHead {
   std::string run_id;  ///< empty if the record does not say it, or cannot be read
   run_files::RunState state = run_files::RunState::whole;  ///< failed if it is not whole
   std::vector<std::string> missing{};                      ///< recorded files that are not there
+  bool has_model = false;                                  ///< the run reconstructed something
 };
 /// Reads the whole record and looks at the sizes of the files. Nothing if there is no record in the folder.
 [[nodiscard]] std::optional<RecordHead> record_head(const std::filesystem::path& folder);

@@ -117,6 +117,10 @@ checks=$((checks + 1))
 "$binary" bench suite.toml --out suite_runs -j 2 >stdout 2>stderr
 status=$?
 if ((status != 4)); then complain "suite: exit code $status instead of 4"; fi
+"$binary" bench suite.toml --out suite_runs -j 2 >stdout 2>stderr
+for run in infinitam good drawing 'drawing repetition 5'; do
+  if ! grep -q "$run: (was there)" stderr; then complain "$run: a finished run is repeated"; fi
+done
 "$binary" bench suite.toml --out suite_runs -j 2 --dry-run >stdout 2>stderr
 if ! grep -q 'no-such-program' stdout; then complain 'what is not installed is not said'; cat stdout >&2; fi
 "$binary" table suite_runs --systems >stdout 2>stderr

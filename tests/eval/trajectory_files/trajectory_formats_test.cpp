@@ -65,7 +65,7 @@ TEST_F(TrajectoryFormats, ColumnsTellTheFormat) {
   EXPECT_TRUE((kitti->poses[1].T_world_camera.rotation * Vector3d::UnitX()).isApprox(Vector3d::UnitY()));
   EXPECT_TRUE(warnings_.empty());
 
-  expect_refused("1 2 3\n", ":1: 3 columns are no trajectory");
+  expect_refused("1 2 3 4\n", ":1: 4 columns are no trajectory");
   expect_refused("# nothing\n", "has no rows");
 }
 
