@@ -6,15 +6,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <utility>
 
 #include "core/base/nearest_name.hpp"
 #include "core/config/toml_document.hpp"
-#include "core/config/variants.hpp"
 #include "core/io/fingerprint.hpp"
+#include "eval/external/system_name.hpp"
 
 namespace fusebench::external {
 
@@ -138,13 +137,14 @@ Result<void> read_trajectory_entry(const config::TomlEntry& entry, std::string_v
 Result<void> read_name(const config::TomlEntry& entry, ExternalProgram& program) {
   auto name = text_of(entry);
   if (!name) return tl::unexpected(name.error());
-  const bool letters = std::ranges::all_of(*name, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '+';
-  });
-  if (!letters || name->starts_with('.'))
-    return config::wrong_value(entry, "letters, digits, '-', '_', '+' and '.'");
-  if (config::find_variant(*name))
-    return config::wrong_value(entry, fmt::format("no variant of this program ({} is one)", *name));
+  switch (fault_of_system_name(*name)) {
+    case NameFault::characters:
+      return config::wrong_value(entry, "letters, digits, '-', '_', '+' and '.'");
+    case NameFault::is_variant:
+      return config::wrong_value(entry, fmt::format("no variant of this program ({} is one)", *name));
+    case NameFault::none:
+      break;
+  }
   program.name = std::move(*name);
   return {};
 }

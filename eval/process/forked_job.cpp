@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "eval/process/child_setup.hpp"
 #include "eval/process/process_usage.hpp"
 
 namespace fusebench::process {
@@ -70,20 +70,8 @@ void run_guarded(const std::function<void(const JobReporter& reporter)>& work, c
 /// Never returns. Nothing of the parent's is flushed, closed or destroyed by the child.
 [[noreturn]] void be_the_child(const std::function<void(const JobReporter& reporter)>& work,
                                const JobLimits& limits, int pipe, int output, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
-  setpgid(0, 0);  // Ctrl-C is for the parent, which asks its children in its turn
+  set_up_child(parent, output, limits.memory_bytes);
   std::signal(SIGPIPE, SIG_IGN);
-  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  dup2(nothing, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
-  dup2(output, STDERR_FILENO);
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  if (limits.memory_bytes > 0) {
-    const rlimit memory{limits.memory_bytes, limits.memory_bytes};
-    setrlimit(RLIMIT_DATA, &memory);
-  }
   run_guarded(work, JobReporter(pipe));
   std::fflush(nullptr);
   _exit(0);

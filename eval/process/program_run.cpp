@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 #include <cstring>
 #include <thread>
 
+#include "eval/process/child_setup.hpp"
 #include "eval/process/nameless_file.hpp"
 #include "eval/process/process_usage.hpp"
 
@@ -28,20 +28,8 @@ constexpr std::chrono::milliseconds kBetweenLooks(100);
 [[noreturn]] void be_the_program(const std::vector<std::string>& command,
                                  const std::filesystem::path& working_folder, const ProgramLimits& limits,
                                  int output, int pipe, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);
-  setpgid(0, 0);
+  set_up_child(parent, output, limits.memory_bytes);
   std::signal(SIGPIPE, SIG_DFL);
-  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  dup2(nothing, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
-  dup2(output, STDERR_FILENO);
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  if (limits.memory_bytes > 0) {
-    const rlimit memory{limits.memory_bytes, limits.memory_bytes};
-    setrlimit(RLIMIT_DATA, &memory);
-  }
   std::vector<char*> arguments;
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);

@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <set>
 #include <utility>
 
-#include "core/config/variants.hpp"
 #include "core/io/fingerprint.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/mesh/mesh_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/external/frame_poses.hpp"
+#include "eval/external/system_name.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 
@@ -22,18 +21,17 @@ namespace fusebench::run {
 namespace {
 
 Result<void> check_name(const std::string& name) {
-  const bool letters = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.' || c == '+';
-  });
-  if (!letters || name.starts_with('.')) {
-    return fail(ErrorCode::usage, fmt::format("'{}' is no name of a system", name),
-                "letters, digits, '-', '_', '+' and '.', as in ORB-SLAM3");
+  switch (external::fault_of_system_name(name)) {
+    case external::NameFault::characters:
+      return fail(ErrorCode::usage, fmt::format("'{}' is no name of a system", name),
+                  "letters, digits, '-', '_', '+' and '.', as in ORB-SLAM3");
+    case external::NameFault::is_variant:
+      return fail(ErrorCode::usage, fmt::format("{} is a variant of this program", name),
+                  "give the imported system a name of its own");
+    case external::NameFault::none:
+      break;
   }
-  const auto ours =
-      std::ranges::find(config::all_variants(), name, [](const config::Variant& v) { return v.name; });
-  if (ours == config::all_variants().end()) return {};
-  return fail(ErrorCode::usage, fmt::format("{} is a variant of this program", name),
-              "give the imported system a name of its own");
+  return {};
 }
 
 Result<recording::Recording> open(const ImportSpec& spec) {
@@ -90,10 +88,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   if (!owned) return tl::unexpected(owned.error());
   const auto hash = hash_of(spec, format, *recording);
   if (!hash) return tl::unexpected(hash.error());
-  RunOutput output;
-  output.has_filter = false;
-  output.trajectory = owned->poses;
-  for (const auto& [stamp_ns, instant_ns] : owned->stamps) output.states.push_back({instant_ns, {}});
+  RunOutput output = foreign_output(*owned, {});
   if (!spec.mesh.empty()) {
     const auto mesh = mesh::read_mesh(spec.mesh);
     if (!mesh) return tl::unexpected(mesh.error());
@@ -110,18 +105,11 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.recording.imu_note = "";
   record.variant = spec.name;
   record.config_hash = *hash;
-  record.frames.total = recording->frames.size();
-  record.frames.tracked = owned->poses.size();
-  record.frames.lost = record.frames.total - record.frames.tracked;
-  record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
+  describe_foreign_output(output, *recording, record);
   record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));
   record.provenance = record::provenance_here(spec.threads);
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
-  std::vector<record::StampAndInstant> stamps = record::frame_stamps(*recording);
-  stamps.insert(stamps.end(), owned->stamps.begin(), owned->stamps.end());
-  const std::set<record::StampAndInstant> in_order(stamps.begin(), stamps.end());
-  stamps.assign(in_order.begin(), in_order.end());
-  if (auto written = write(run, output, record::true_trajectory(*recording, stamps)); !written)
+  if (auto written = write(run, output, truth_beside(*owned, *recording)); !written)
     return tl::unexpected(written.error());
   return run;
 }

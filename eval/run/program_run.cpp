@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "core/io/staged_folder.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/external/program_results.hpp"
-#include "eval/record/record_origin.hpp"
+#include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 
@@ -41,16 +39,6 @@ record::RecordedTiming timing_of(const external::ProgramResults& results, std::s
   return timing;
 }
 
-/// The stamps of all frames and of all poses, with the instants that they are of.
-std::vector<record::StampAndInstant> all_stamps(const recording::Recording& recording,
-                                                const std::vector<record::StampAndInstant>& of_poses) {
-  std::vector<record::StampAndInstant> stamps = record::frame_stamps(recording);
-  stamps.insert(stamps.end(), of_poses.begin(), of_poses.end());
-  std::ranges::sort(stamps);
-  stamps.erase(std::ranges::unique(stamps).begin(), stamps.end());
-  return stamps;
-}
-
 }  // namespace
 
 Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunControl& control) {
@@ -73,25 +61,17 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   if (!results) return tl::unexpected(results.error());
   std::filesystem::remove_all(work, error);
 
-  RunOutput output;
-  output.has_filter = false;
-  output.trajectory = results->frames.poses;
-  for (const auto& [stamp_ns, instant_ns] : results->frames.stamps) output.states.push_back({instant_ns, {}});
-  output.mesh = std::move(results->mesh);
+  RunOutput output = foreign_output(results->frames, std::move(results->mesh));
   record::RunRecord record = requested_record(run);
   record.status = results->reason.empty() ? record::RunStatus::ok : record::RunStatus::failed;
   record.reason = results->reason;
-  record.frames.total = total;
-  record.frames.tracked = output.trajectory.size();
-  record.frames.lost = total - record.frames.tracked;
-  record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
+  describe_foreign_output(output, recording, record);
   record.metrics = metrics_of(output, recording, run.spec.config.values, Workers(run.spec.threads));
   record.timing = timing_of(*results, total);
   record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   const std::array<NamedText, 3> texts = {
       {{"trajectory.tum", trajectory::tum_text(output.trajectory)},
-       {"truth.tum", trajectory::tum_text(
-                         record::true_trajectory(recording, all_stamps(recording, results->frames.stamps)))},
+       {"truth.tum", trajectory::tum_text(truth_beside(results->frames, recording))},
        {"log.txt", log_of(program.version, *results, record)}}};
   Mesh* const mesh =
       run.spec.kept == KeptFiles::all && !output.mesh.vertices.empty() ? &output.mesh : nullptr;

@@ -1,0 +1,23 @@
+// What another system made of a recording, whether it was imported or run as a program, as the output of a
+// run.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "datasets/recording/recording.hpp"
+#include "eval/external/frame_poses.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run/run_evaluation.hpp"
+
+namespace fusebench::run {
+
+[[nodiscard]] RunOutput foreign_output(const external::FramePoses& frames, Mesh mesh);
+
+/// Fills in the frames with and without a pose, and the model.
+void describe_foreign_output(const RunOutput& output, const recording::Recording& recording,
+                             record::RunRecord& record);
+
+/// The true camera at the stamps of all frames and of all poses.
+[[nodiscard]] Trajectory truth_beside(const external::FramePoses& frames,
+                                      const recording::Recording& recording);
+
+}  // namespace fusebench::run
