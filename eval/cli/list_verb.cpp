@@ -116,6 +116,13 @@ std::string recordings_of(const suites::Suite& suite) {
   return fmt::format("{}{}{} simulated", text, text.empty() ? "" : " ", suite.simulations.size());
 }
 
+/// The variants, then the files that define external programs (which need not be there).
+std::string systems_of(const suites::Suite& suite) {
+  std::string text = fmt::format("{}", fmt::join(suite.variants, " "));
+  for (const std::string& file : suite.systems) text += fmt::format(" {}", file);
+  return text;
+}
+
 Result<Listing> list_suites(const std::filesystem::path& configs) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
@@ -134,8 +141,7 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
   for (const auto& file : files) {
     const auto suite = suites::read_suite(file);
     if (!suite) return tl::unexpected(suite.error());
-    listing.rows.push_back({suite->name, file.string(), fmt::format("{}", fmt::join(suite->variants, " ")),
-                            recordings_of(*suite)});
+    listing.rows.push_back({suite->name, file.string(), systems_of(*suite), recordings_of(*suite)});
   }
   return listing;
 }

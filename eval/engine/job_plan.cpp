@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -130,10 +131,28 @@ Result<config::EffectiveConfig> config_of(const suites::Suite& suite, const conf
   return config;
 }
 
+using Programs = std::vector<std::shared_ptr<const external::ExternalProgram>>;
+
+/// The external programs of the suite, each asked for its version.
+Result<Programs> programs_of(const suites::Suite& suite) {
+  Programs programs;
+  std::vector<std::string> names;
+  for (const std::string& file : suite.systems) {
+    auto program = external::read_external_program(file);
+    if (!program) return tl::unexpected(program.error());
+    names.push_back(program->name);
+    programs.push_back(std::make_shared<const external::ExternalProgram>(std::move(*program)));
+  }
+  if (auto known = suites::check_excluded_variants(suite.exclusions, names); !known)
+    return tl::unexpected(known.error());
+  return programs;
+}
+
 /// What all runs of a suite have in common.
 struct Common {
   const suites::Suite& suite;
   const BatchOptions& options;
+  Programs programs;
   std::vector<std::string> sets;  ///< those that sweep nothing
   std::vector<suites::SweepPoint> points;
 };
@@ -191,7 +210,7 @@ Result<BatchJob> job_of_program(const Common& common, const Planned& recording,
 /// The runs of external programs over one recording; those that cannot run here are excluded.
 Result<void> add_program_runs(const Common& common, const Planned& recording, BatchPlan& plan,
                               std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
-  for (const auto& program : common.suite.programs) {
+  for (const auto& program : common.programs) {
     const auto take =
         wanted(common.options.only, recording.folder.filename().string(), recording.split, program->name);
     if (!take) return tl::unexpected(take.error());
@@ -258,11 +277,12 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
 }
 
 /// In the order of the plan: windows, then repetitions, then the runs.
-void multiply(const suites::Suite& suite, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
+void multiply(const Common& common, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
+  const suites::Suite& suite = common.suite;
   std::vector<std::optional<run::FrameWindow>> windows(suite.windows.begin(), suite.windows.end());
   if (windows.empty()) windows.emplace_back();
   int most = suite.repetitions;
-  for (const auto& program : suite.programs) most = std::max(most, program->repetitions);
+  for (const auto& program : common.programs) most = std::max(most, program->repetitions);
   const auto repetitions = [&](const BatchJob& job) {
     return job.spec.program ? std::max(suite.repetitions, job.spec.program->repetitions) : suite.repetitions;
   };
@@ -289,7 +309,9 @@ std::string to_string(const BatchJob& job) {
 }
 
 Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options) {
-  Common common{suite, options, options.sets, {}};
+  auto programs = programs_of(suite);
+  if (!programs) return tl::unexpected(programs.error());
+  Common common{suite, options, std::move(*programs), options.sets, {}};
   std::vector<suites::SweepBlock> blocks = suite.sweeps;
   auto swept = suites::take_swept_sets(common.sets);
   if (!swept) return tl::unexpected(swept.error());
@@ -309,7 +331,7 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
       return tl::unexpected(added.error());
     if (auto added = add_program_runs(common, recording, plan, met, jobs); !added)
       return tl::unexpected(added.error());
-    multiply(suite, jobs, plan);
+    multiply(common, jobs, plan);
   }
   for (const suites::Exclusion& exclusion : suite.exclusions) {
     if (!met.contains(&exclusion) && options.only.empty())

@@ -20,7 +20,7 @@ bool matches(std::string_view pattern, std::string_view name) {
   return name.starts_with(pattern.substr(0, pattern.size() - 1));
 }
 
-Result<Exclusion> read_exclusion(const EntryTable& table, const std::vector<std::string>& programs) {
+Result<Exclusion> read_exclusion(const EntryTable& table) {
   Exclusion exclusion;
   exclusion.place = table.place;
   config::EffectiveConfig scratch;  // whether the options exist and take the values
@@ -33,10 +33,7 @@ Result<Exclusion> read_exclusion(const EntryTable& table, const std::vector<std:
       auto read = text_entry(entry);
       if (!read) return tl::unexpected(read.error());
       *text = std::move(*read);
-      if (entry.key != "variant" || std::ranges::find(programs, exclusion.variant) != programs.end())
-        continue;
-      if (const auto known = config::find_variant(exclusion.variant); !known)
-        return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, known.error().message));
+      if (entry.key == "variant") exclusion.variant_place = entry.place;
       continue;
     }
     const auto* value = std::get_if<config::OptionValue>(&entry.value);
@@ -66,15 +63,26 @@ bool Exclusion::covers(std::string_view recording_name, std::string_view variant
   });
 }
 
-Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables,
-                                               const std::vector<std::string>& programs) {
+Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables) {
   std::vector<Exclusion> exclusions;
   for (const EntryTable& table : tables) {
-    auto exclusion = read_exclusion(table, programs);
+    auto exclusion = read_exclusion(table);
     if (!exclusion) return tl::unexpected(exclusion.error());
     exclusions.push_back(std::move(*exclusion));
   }
   return exclusions;
+}
+
+Result<void> check_excluded_variants(const std::vector<Exclusion>& exclusions,
+                                     const std::vector<std::string>& programs) {
+  for (const Exclusion& exclusion : exclusions) {
+    if (exclusion.variant.empty() || std::ranges::find(programs, exclusion.variant) != programs.end())
+      continue;
+    if (const auto known = config::find_variant(exclusion.variant); !known)
+      return fail(ErrorCode::configuration,
+                  fmt::format("{}: {}", exclusion.variant_place, known.error().message));
+  }
+  return {};
 }
 
 Result<void> read_limit(const config::TomlEntry& entry, std::string_view key, RunLimits& limits) {

@@ -28,15 +28,18 @@ struct Exclusion {
   std::string variant;
   SweepPoint options;
   std::string place;
+  std::string variant_place = {};  ///< of `variant`; empty: all
 
   /// `options_of_run`: all of a run's effective options.
   [[nodiscard]] bool covers(std::string_view recording_name, std::string_view variant_name,
                             const std::vector<config::OptionRow>& options_of_run) const;
 };
-/// programs: names of the external programs of the suite, which count as variants. Errors: configuration,
-/// with file:line.
-[[nodiscard]] Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables,
-                                                             const std::vector<std::string>& programs);
+/// Errors: configuration, with file:line.
+[[nodiscard]] Result<std::vector<Exclusion>> read_exclusions(const std::vector<EntryTable>& tables);
+/// Whether each exclusion's variant is one, or one of `programs`, the names of the external programs of the
+/// suite. Errors: configuration, with file:line.
+[[nodiscard]] Result<void> check_excluded_variants(const std::vector<Exclusion>& exclusions,
+                                                   const std::vector<std::string>& programs);
 
 /// What each run may use. A run that needs more is a row with that reason.
 ///

@@ -62,17 +62,6 @@ Result<void> read_repetitions(const config::TomlEntry& entry, Suite& suite) {
   return {};
 }
 
-Result<void> read_programs(const config::TomlEntry& entry, Suite& suite) {
-  const auto files = names_entry(entry);
-  if (!files) return tl::unexpected(files.error());
-  for (const std::string& file : *files) {
-    auto program = external::read_external_program(file);
-    if (!program) return tl::unexpected(program.error());
-    suite.programs.push_back(std::make_shared<const external::ExternalProgram>(std::move(*program)));
-  }
-  return {};
-}
-
 Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   const auto store = [](auto value, auto& target) -> Result<void> {
     if (!value) return tl::unexpected(value.error());
@@ -82,7 +71,7 @@ Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   if (entry.key == "name") return store(folder_name_entry(entry), suite.name);
   if (entry.key == "all") return store(flag_entry(entry), suite.all);
   if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
-  if (entry.key == "systems") return read_programs(entry, suite);
+  if (entry.key == "systems") return store(names_entry(entry), suite.systems);
   if (entry.key == "imu") return read_imu(entry, suite);
   if (entry.key == "keep") return read_kept(entry, suite);
   if (entry.key == "repetitions") return read_repetitions(entry, suite);
@@ -138,9 +127,7 @@ Result<void> read_tables(const config::TomlDocument& document, Suite& suite) {
   auto sweeps = read_sweeps(entry_tables(document, "sweep"));
   if (!sweeps) return tl::unexpected(sweeps.error());
   suite.sweeps = std::move(*sweeps);
-  std::vector<std::string> programs;
-  for (const auto& program : suite.programs) programs.push_back(program->name);
-  auto exclusions = read_exclusions(entry_tables(document, "exclude"), programs);
+  auto exclusions = read_exclusions(entry_tables(document, "exclude"));
   if (!exclusions) return tl::unexpected(exclusions.error());
   suite.exclusions = std::move(*exclusions);
   auto criteria =

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +11,6 @@
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
-#include "eval/external/external_program.hpp"
 #include "eval/run/run.hpp"
 #include "eval/suites/acceptance_criteria.hpp"
 #include "eval/suites/run_selection.hpp"
@@ -41,7 +39,8 @@ struct SuiteRecording {
 ///     recordings = ["fr1_rpy", ...]   # folders, names of folders under --data or of the catalogue; or
 ///     all = true                      # every recording under --data; or simulated ones (SuiteSimulation)
 ///     variants = ["full", "dm"]       # required
-///     systems = ["configs/systems/open3d.toml"]   # external programs, over the same recordings
+///     systems = ["configs/systems/open3d.toml"]   # external programs, over the same recordings; files are
+///                                     # read when runs are planned (engine::plan_batch())
 ///     imu = "synthetic"               # or "auto", "recorded" (default): see ImuChoice
 ///     [config]                        # edits for all runs, as in a configuration file
 ///     iekf.max_iterations = 8
@@ -59,7 +58,7 @@ struct Suite {
   std::vector<SuiteRecording> recordings;
   std::vector<SuiteSimulation> simulations;
   std::vector<std::string> variants;
-  std::vector<std::shared_ptr<const external::ExternalProgram>> programs;
+  std::vector<std::string> systems;  ///< files that define external programs, as the suite names them
   run::ImuChoice imu = run::ImuChoice::recorded;
   std::vector<config::TomlEntry> config;  ///< keys without "config."
   int repetitions = 1;

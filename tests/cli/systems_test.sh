@@ -113,6 +113,13 @@ systems = ["good.toml", "die.toml", "absent.toml", "drawing.toml"]
 TEXT
 definition drawing good
 sed -i 's/deterministic = true/deterministic = false/' drawing.toml
+mkdir -p listed/suites
+cp suite.toml listed/suites/
+checks=$((checks + 1))
+if ! (cd / && "$binary" list suites --configs "$OLDPWD/listed") >stdout 2>stderr || ! grep -q 'drawing.toml' stdout; then
+  complain 'suites with external programs cannot be listed from elsewhere'
+  cat stderr >&2
+fi
 checks=$((checks + 1))
 "$binary" bench suite.toml --out suite_runs -j 2 >stdout 2>stderr
 status=$?

@@ -92,6 +92,34 @@ TEST_F(SuiteTest, RelationsAreCheckedBeforeAnyRun) {
                "depth.min_m");
 }
 
+TEST_F(SuiteTest, ExternalProgramsAreReadWhenRunsArePlanned) {
+  add_recording("data/a");
+  const std::string text =
+      "name = \"x\"\nall = true\nvariants = [\"full\"]\nsystems = [\"not_there.toml\"]\n";
+  const auto suite = read(text);
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  EXPECT_EQ(suite->systems, std::vector<std::string>{"not_there.toml"});
+  BatchOptions options;
+  options.data = folder_ / "data";
+  const auto planned = plan_batch(*suite, options);
+  ASSERT_FALSE(planned.has_value());
+  EXPECT_EQ(planned.error().code, ErrorCode::data_missing);
+  EXPECT_NE(planned.error().message.find("not_there.toml"), std::string::npos);
+}
+
+TEST_F(SuiteTest, AnExclusionOfAnUnknownVariantStopsThePlan) {
+  add_recording("data/a");
+  const auto suite = read(
+      "name = \"x\"\nall = true\nvariants = [\"full\"]\n[[exclude]]\nreason = \"slow\"\nvariant = \"ful\"\n");
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  BatchOptions options;
+  options.data = folder_ / "data";
+  const auto planned = plan_batch(*suite, options);
+  ASSERT_FALSE(planned.has_value());
+  EXPECT_EQ(planned.error().code, ErrorCode::configuration);
+  EXPECT_NE(planned.error().message.find("suite.toml:6"), std::string::npos) << planned.error().message;
+}
+
 TEST_F(SuiteTest, JobsAreInAFixedOrder) {
   add_recording("data/b");
   add_recording("data/a");
