@@ -7,6 +7,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/filter/pose_clones.hpp"
 #include "core/health/stage_times.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/preprocessing/camera_motion.hpp"
@@ -37,10 +38,12 @@ class FramePreparation {
 
   /// The motion that the read-out was undone for; nothing if none was.
   [[nodiscard]] const filter::FilterState* undone_motion() const { return compensated_ ? &motion_ : nullptr; }
-  /// How far a rate (filter::pose_rate()) is from the one that was undone; zero if none was.
-  [[nodiscard]] Vector6d rate_left(const filter::FilterState& motion) const {
-    if (!compensated_) return Vector6d::Zero();
-    return filter::pose_rate(motion) - filter::pose_rate(motion_);
+  /// What was undone, against the motion that the frame turned out to have; of no time if nothing was.
+  [[nodiscard]] filter::UndoneReadout undone_readout(const filter::FilterState& motion) const {
+    const Vector6d rate = filter::pose_rate(motion);
+    if (!compensated_) return {.rate = rate};
+    const Vector6d undone = filter::pose_rate(motion_);
+    return {rate - undone, undone, timing_.color_readout_s, timing_.depth_readout_s, timing_.depth_delay_s};
   }
   [[nodiscard]] const preprocessing::FrameTiming& timing() const { return timing_; }
 

@@ -23,16 +23,20 @@ double agreement(std::span<const measurement::PatchOutcome> outcomes) {
 measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, const FramePreparation& frame) {
   measurement::ReadoutMotion motion;
   const filter::FilterState& undone = frame.undone_motion() ? *frame.undone_motion() : prior;
+  motion.undone[filter::kTimingSize] = -1;
   if (frame.undone_motion()) {
     motion.color_readout_s = frame.timing().color_readout_s;
     motion.depth_readout_s = frame.timing().depth_readout_s;
     motion.depth_delay_s = frame.timing().depth_delay_s;
     const Vector6d rate_change = filter::pose_rate(undone) - filter::pose_rate(prior);
-    motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(), rate_change, rate_change;
+    motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(), -1, rate_change, rate_change;
   }
   motion.rate = filter::pose_rate(undone);
-  motion.reference_rate =
-      filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference) * prior.reference_rate;
+  const Matrix6d carried = filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference);
+  motion.reference_rate = carried * prior.reference_rate;
+  motion.reference_color_readout_s = prior.reference_color_readout_s;
+  const filter::FusedReadout& model = prior.model_readout;
+  motion.model = {carried * model.rate, carried * model.by_readout, carried * model.by_delay};
   // That of the IMU has its noise twice; its bias drops out.
   const double change_radps = (motion.rate - motion.reference_rate).head<3>().norm();
   const double noise_radps = std::sqrt(2.0) * prior.angular_velocity_noise_radps;

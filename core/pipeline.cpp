@@ -265,7 +265,7 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   const double share = patches::fused_share(now.model, now.reference.patches, reference, config.depth);
   now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor},
                                              now.color_drift.noise(config.color_drift),
-                                             preparation.rate_left(now.estimate->mean));
+                                             preparation.undone_readout(now.estimate->mean));
   now.relocalisation.add_keyframe(
       frame, T_world_camera(), now.timestamp_ns,
       preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));

@@ -35,9 +35,10 @@ enum StateOffset : int {
 };
 inline constexpr int kPoseSize = 6;    ///< rotation and position lead the error state
 inline constexpr int kTimingSize = 3;  ///< from kColorReadout on
-/// What decides where a row that was read apart from the frame's instant is seen from: the timing, then the
-/// rate of the pose (as pose_rate()) against that of the reference, and against that of the model.
-inline constexpr int kReadoutSize = kTimingSize + 2 * kPoseSize;
+/// What decides where a row that was read apart from the frame's instant is seen from: the timing, one for
+/// the timing that was undone in reference and model, then the rate of the pose (as pose_rate()) against that
+/// of the reference, and against that of the model.
+inline constexpr int kReadoutSize = kTimingSize + 1 + 2 * kPoseSize;
 /// The constants of the sensors: from kImuTimeOffset on.
 inline constexpr int kSensorSize = kReferencePose - kImuTimeOffset;
 
@@ -59,6 +60,15 @@ struct SensorErrors {
   [[nodiscard]] Vector3d timing_s() const { return {color_readout_s, depth_readout_s, depth_delay_s}; }
 };
 
+/// The motion during the read-out of the frames that the model was fused from, weighted as these are in it:
+/// tangents of the pose (pose_rate()) at the reference pose.
+struct FusedReadout {
+  Vector6d rate = Vector6d::Zero();
+  // Displacements that were undone: the rate, times the time that was supposed then.
+  Vector6d by_readout = Vector6d::Zero();
+  Vector6d by_delay = Vector6d::Zero();
+};
+
 struct FilterState {
   SE3 T_world_imu;
   Vector3d velocity_world_mps = Vector3d::Zero();
@@ -78,6 +88,8 @@ struct FilterState {
   Vector6d reference_rate_offset = Vector6d::Zero();  ///< correction of reference_rate since
   /// By how much the motion differs from what was undone in the frames that are in the model.
   Vector6d model_rate_offset = Vector6d::Zero();
+  double reference_color_readout_s = 0;  ///< that was supposed there; no errors of their own, these two
+  FusedReadout model_readout;
 };
 
 /// Mean and covariance (in the tangent space at the mean).

@@ -29,6 +29,15 @@ GaussianState transformed(const GaussianState& state, const StateMatrix& by) {
   return {state.mean, symmetrised(by * state.covariance * by.transpose())};
 }
 
+FusedReadout fused(const FusedReadout& model, const UndoneReadout& frame, double share,
+                   const Matrix6d& carried) {
+  const auto mixed = [&](const Vector6d& before, const Vector6d& now) -> Vector6d {
+    return (1 - share) * carried * before + share * now;
+  };
+  return {mixed(model.rate, frame.rate), mixed(model.by_readout, frame.depth_readout_s * frame.rate),
+          mixed(model.by_delay, frame.depth_delay_s * frame.rate)};
+}
+
 }  // namespace
 
 Matrix6d pose_transport(const SE3& to, const SE3& from) {
@@ -47,7 +56,7 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
   rows.block<kPoseSize, kPoseSize>(0, kReferencePose) = -carried;
   rows.block<kPoseSize, kPoseSize>(kPoseSize, 0).setIdentity();
   rows.block<kTimingSize, kTimingSize>(2 * kPoseSize, kColorReadout).setIdentity();
-  constexpr int kRates = 2 * kPoseSize + kTimingSize;
+  constexpr int kRates = kMeasuredSize - 2 * kPoseSize;
   for (const auto& [row, clone] : {std::pair{kRates, kReferenceRate}, {kRates + kPoseSize, kModelRate}}) {
     take_rate(rows, row, 1);
     rows.block<kPoseSize, kPoseSize>(row, clone) = -carried;
@@ -56,7 +65,7 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
 }
 
 GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
-                                  const ReferenceNoise& noise, const Vector6d& rate_left) {
+                                  const ReferenceNoise& noise, const UndoneReadout& undone) {
   StateMatrix to_model = StateMatrix::Identity();
   to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
   to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * Matrix6d::Identity();
@@ -82,11 +91,13 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
       noise.translation_m * noise.translation_m;
   result.mean.model_offset = carried * state.mean.model_offset;
   result.mean.model_rate_offset =
-      (1 - drift.share) * carried * state.mean.model_rate_offset + drift.share * rate_left;
+      (1 - drift.share) * carried * state.mean.model_rate_offset + drift.share * undone.rate_left;
+  result.mean.model_readout = fused(state.mean.model_readout, undone, drift.share, carried);
   result.mean.T_world_imu_reference = state.mean.T_world_imu;
   result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();
-  result.mean.reference_rate_offset = rate_left;
+  result.mean.reference_rate_offset = undone.rate_left;
+  result.mean.reference_color_readout_s = undone.color_readout_s;
   return result;
 }
 

@@ -9,7 +9,9 @@
 //
 // An image of which the rows are read one after the other is compensated by the motion that is known, and
 // keeps a distortion by the error of it. Both what the patches were cut from and the model have such errors
-// (kReferenceRate, kModelRate): images that are distorted alike say nothing of the motion.
+// (kReferenceRate, kModelRate): images that are distorted alike say nothing of the motion. Nor do they say
+// anything of the read-out: a model of frames that were read during the same motion, by a wrong read-out, has
+// their distortion (FusedReadout).
 #pragma once
 
 #include "core/filter/color_drift.hpp"
@@ -26,8 +28,9 @@ inline constexpr int kMeasuredSize = 2 * kPoseSize + kReadoutSize;
 
 /// What images measure, as linear combinations of the error state: the pose against the reference frame (rows
 /// 0-5) and against the model (rows 6-11), both in the tangent of the pose, the timing of the sensors (rows
-/// 12-14: read-out of colour, read-out of depth, delay of depth), and the rate of the pose against the error
-/// of that in the reference (rows 15-20) and in the model (rows 21-26).
+/// 12-14: read-out of colour, read-out of depth, delay of depth), nothing (row 15, for what is known), and
+/// the rate of the pose against the error of that in the reference (rows 16-21) and in the model (rows
+/// 22-27).
 [[nodiscard]] Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(
     const FilterState& state);
 
@@ -37,12 +40,20 @@ struct ModelDrift {
   double factor = 1;  ///< how much larger its drift is than that of independent errors (sigmas)
 };
 
+/// What was undone in the images of a frame.
+struct UndoneReadout {
+  Vector6d rate_left = Vector6d::Zero();  ///< of its rate, what was not
+  Vector6d rate = Vector6d::Zero();       ///< what was
+  double color_readout_s = 0;             ///< over these times
+  double depth_readout_s = 0;
+  double depth_delay_s = 0;
+};
+
 /// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its
-/// pose, which colour knows with an error of its own. rate_left: of its rate, what was not undone in its
-/// images.
+/// pose, which colour knows with an error of its own.
 [[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
                                                 const ReferenceNoise& noise = {},
-                                                const Vector6d& rate_left = Vector6d::Zero());
+                                                const UndoneReadout& undone = {});
 
 /// The estimate in the world of the first camera: the uncertainty of the model's pose is added to that of the
 /// pose, the velocity and the direction of gravity.

@@ -28,7 +28,8 @@ bool is_valid(const GaussianState& state) {
          is_valid_pose(x.T_world_imu_reference) && within(x.reference_rate, kMaxMean) &&
          within(x.reference_offset, kMaxMean) && within(x.model_offset, kMaxMean) &&
          within(x.reference_rate_offset, kMaxMean) && within(x.model_rate_offset, kMaxMean) &&
-         within(state.covariance, kMaxVariance);
+         within(x.model_readout.rate, kMaxMean) && within(x.model_readout.by_readout, kMaxMean) &&
+         within(x.model_readout.by_delay, kMaxMean) && within(state.covariance, kMaxVariance);
 }
 
 }  // namespace fusebench::filter

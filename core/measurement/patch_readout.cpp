@@ -8,7 +8,8 @@ namespace {
 constexpr int kColorReadout = 0;
 constexpr int kDepthReadout = 1;
 constexpr int kDepthDelay = 2;
-constexpr int kRateAgainstReference = filter::kTimingSize;
+constexpr int kOtherTiming = filter::kTimingSize;
+constexpr int kRateAgainstReference = filter::kTimingSize + 1;
 constexpr int kRateAgainstModel = kRateAgainstReference + filter::kPoseSize;
 
 std::array<PoseByReadout, 2> none() { return {PoseByReadout::Zero(), PoseByReadout::Zero()}; }
@@ -51,6 +52,8 @@ std::array<PoseByReadout, 2> color_displacement(const ReadoutMotion& motion) {
     now.col(kColorReadout) = motion.rate;
     reference.col(kColorReadout) = -motion.reference_rate;
   }
+  reference.col(kOtherTiming) =
+      -(motion.color_readout_s - motion.reference_color_readout_s) * motion.reference_rate;
   // A patch is in about the same row of both: the difference of the rates tells.
   displace_by_rate(now, kRateAgainstReference, motion.color_readout_s);
   return maps;
@@ -59,9 +62,13 @@ std::array<PoseByReadout, 2> color_displacement(const ReadoutMotion& motion) {
 std::array<PoseByReadout, 2> depth_displacement(const ReadoutMotion& motion) {
   std::array<PoseByReadout, 2> maps = none();
   auto& [always, now] = maps;
-  always.col(kDepthDelay) = motion.rate;
+  // Surfaces that were fused in the same row, during the same motion, are displaced alike.
+  const filter::FusedReadout& model = motion.model;
+  always.col(kDepthDelay) = motion.rate - model.rate;
+  always.col(kOtherTiming) = model.by_delay - motion.depth_delay_s * model.rate;
   displace_by_rate(always, kRateAgainstModel, motion.depth_delay_s);
-  now.col(kDepthReadout) = motion.rate;
+  now.col(kDepthReadout) = motion.rate - model.rate;
+  now.col(kOtherTiming) = model.by_readout - motion.depth_readout_s * model.rate;
   displace_by_rate(now, kRateAgainstModel, motion.depth_readout_s);
   return maps;
 }

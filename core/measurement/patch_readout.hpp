@@ -20,7 +20,10 @@ struct ReadoutMotion {
   double depth_delay_s = 0;
   Vector6d rate = Vector6d::Zero();            ///< in the frame
   Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
-  /// By how much timing and rate differ from the prior's (filter::MeasurementQuadratic::undone).
+  double reference_color_readout_s = 0;        ///< that was supposed there
+  filter::FusedReadout model = {};             ///< of the frames in the model
+  /// By how much timing and rate differ from the prior's (filter::MeasurementQuadratic::undone); between
+  /// them -1, for which the displacements of reference and model by another timing count once.
   filter::ReadoutVector undone = filter::ReadoutVector::Zero();
   /// The rates differ by more than their noise. Two frames are distorted alike unless they do.
   bool tells_color_readout = false;
