@@ -94,7 +94,8 @@ struct SelfCalibrationConfig {
   double imu_rotation_sigma_rad = 0.01;
   double gyroscope_scale_sigma = 0.01;
   double accelerometer_scale_sigma = 0.01;
-  double turn_before_rad = 0.2;
+  double turn_before_rad = 0.02;
+  double timing_walk = 0.1;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.flag("color_readout", self.color_readout,
@@ -112,6 +113,11 @@ struct SelfCalibrationConfig {
     v.number("turn_before_rad", self.turn_before_rad, 0.0, 100.0,
              "all of these, and the offset of the IMU's clock, stay as they are until the camera has turned "
              "by so much in all (rad); their uncertainty counts from the first frame on");
+    v.number(
+        "timing_walk", self.timing_walk, 0.0, 10.0,
+        "read-outs, delay of depth and offset of the IMU's clock may wander by so many standard "
+        "deviations of their priors in a second (random walk, 1/sqrt(s)), so that quicker motion corrects "
+        "what slow motion told of them; 0: constants");
   }
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/prediction/smoothed_sample.hpp"
+#include "core/prediction/timing_prior.hpp"
 
 namespace fusebench::prediction {
 
@@ -98,17 +99,7 @@ Result<filter::GaussianState> initialise_with_imu(std::span<const ImuSample> sam
   set_variance(state, filter::kGravity, 2,
                at_rest ? tilt_sigma : std::hypot(tilt_sigma, config.moving_gravity_sigma_rad));
   set_variance(state, filter::kAngularVelocity, 3, config.gyroscope_bias_sigma_radps);
-  set_variance(state, filter::kImuTimeOffset, 1, config.imu_time_offset_sigma_s);
   return state;
-}
-
-void set_timing_priors(filter::GaussianState& state, const SensorTiming& timing,
-                       const config::Config& config) {
-  if (!config.terms.motion_compensation) return;  // nothing is learnt of it, and nothing depends on it
-  const config::SelfCalibrationConfig& estimated = config.self_calibration;
-  set_variance(state, filter::kColorReadout, 1, estimated.color_readout ? timing.color_readout_sigma_s : 0.0);
-  set_variance(state, filter::kDepthReadout, 1, estimated.depth_readout ? timing.depth_readout_sigma_s : 0.0);
-  set_variance(state, filter::kDepthDelay, 1, estimated.depth_delay ? timing.depth_delay_sigma_s : 0.0);
 }
 
 void set_imu_priors(filter::GaussianState& state, const config::SelfCalibrationConfig& config) {
@@ -132,10 +123,9 @@ Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples, 
       inertial ? initialise_with_imu(samples, first_frame_ns, rig, config.initialisation)
                : initialise_without_imu(config.initialisation);
   if (!initial) return initial;
-  set_timing_priors(*initial, rig.timing, config);
-  if (inertial) {
-    if (!rig.imu_axes_are_exact) set_imu_priors(*initial, config.self_calibration);
-  }
+  for (const TimingPrior& prior : timing_priors(rig.timing, config))
+    set_variance(*initial, prior.at, 1, prior.sigma_s);
+  if (inertial && !rig.imu_axes_are_exact) set_imu_priors(*initial, config.self_calibration);
   if (motion) {
     initial->mean.velocity_world_mps = motion->velocity_world_mps;
     if (!inertial) initial->mean.angular_velocity_imu_radps = motion->angular_velocity_imu_radps;

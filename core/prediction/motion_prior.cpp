@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/prediction/timing_prior.hpp"
+
 namespace fusebench::prediction {
 
 namespace {
@@ -112,7 +114,7 @@ Prediction predict_by_constant_velocity(const filter::GaussianState& state, doub
 }
 
 Result<filter::GaussianState> predict_state(const filter::GaussianState& state, const FrameInterval& interval,
-                                            std::span<const ImuSample> samples, const ImuNoise& noise,
+                                            std::span<const ImuSample> samples, const SensorRig& rig,
                                             const config::Config& config) {
   if (config.terms.prior == config::Prior::constant_velocity) {
     const double duration_s = seconds_between(interval.begin_ns, interval.end_ns);
@@ -122,9 +124,13 @@ Result<filter::GaussianState> predict_state(const filter::GaussianState& state, 
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
   const Result<PreintegratedImu> increments =  // Eqs. 11-13
       preintegrate(samples, interval.begin_ns + offset_ns, interval.end_ns + offset_ns, inertial_errors(x),
-                   noise);
+                   rig.imu_noise);
   if (!increments) return tl::unexpected(increments.error());
-  return predict_by_imu(state, *increments, noise, config.motion).state;  // Eqs. 8-10, 14
+  filter::GaussianState predicted =
+      predict_by_imu(state, *increments, rig.imu_noise, config.motion).state;  // Eqs. 8-10, 14
+  add_timing_walk(predicted.covariance, rig.timing, seconds_between(interval.begin_ns, interval.end_ns),
+                  config);
+  return predicted;
 }
 
 }  // namespace fusebench::prediction

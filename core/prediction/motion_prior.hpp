@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/base/error.hpp"
+#include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/prediction/imu_preintegration.hpp"
@@ -42,7 +43,6 @@ struct FrameInterval {
 [[nodiscard]] Result<filter::GaussianState> predict_state(const filter::GaussianState& state,
                                                           const FrameInterval& interval,
                                                           std::span<const ImuSample> samples,
-                                                          const ImuNoise& noise,
-                                                          const config::Config& config);
+                                                          const SensorRig& rig, const config::Config& config);
 
 }  // namespace fusebench::prediction

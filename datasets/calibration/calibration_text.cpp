@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
 #include <vector>
 
 #include "datasets/calibration/rig_calibration.hpp"
@@ -25,7 +26,10 @@ std::string pinhole_text(const PinholeCamera& p) {
 
 /// What is said without an uncertainty is exact; what is not known is not said.
 std::string timing_text(std::string_view name, double value_s, double sigma_s) {
-  if (value_s == 0 && sigma_s == (name == "delay" ? kUnknownDelaySigma_s : kUnknownReadoutSigma_s)) return "";
+  const auto [unknown_s, unknown_sigma_s] = name == "delay"
+                                                ? std::pair{0.0, kUnknownDelaySigma_s}
+                                                : std::pair{kUnknownReadout_s, kUnknownReadoutSigma_s};
+  if (value_s == unknown_s && sigma_s == unknown_sigma_s) return "";
   const std::string text = fmt::format("{}_s = {}\n", name, value_s);
   return sigma_s > 0 ? text + fmt::format("{}_sigma_s = {}\n", name, sigma_s) : text;
 }

@@ -10,9 +10,14 @@
 
 namespace fusebench::calibration {
 
-/// How far a timing that nobody said may be from zero, as a standard deviation.
-inline constexpr double kUnknownReadoutSigma_s = 0.015;
-inline constexpr double kUnknownDelaySigma_s = 0.01;
+/// A timing that nobody said. Rows are read all at once (a global shutter) or during any part of a frame's
+/// time, which is 33 ms at 30 Hz: about the mean and standard deviation of that range.
+inline constexpr double kUnknownReadout_s = 0.015;
+inline constexpr double kUnknownReadoutSigma_s = 0.01;
+inline constexpr double kUnknownDelaySigma_s = 0.01;  ///< around none
+inline constexpr SensorTiming kUnknownTiming{
+    kUnknownReadout_s,      kUnknownReadout_s,      0,
+    kUnknownReadoutSigma_s, kUnknownReadoutSigma_s, kUnknownDelaySigma_s};
 
 /// Brown-Conrady distortion (OpenCV's "plumb bob", five coefficients) on the plane z = 1:
 ///   x_d = x (1 + k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 x y + p2 (r2 + 2 x^2),  r2 = x^2 + y^2

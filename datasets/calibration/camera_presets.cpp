@@ -25,10 +25,6 @@ constexpr std::string_view kDefaultName = "default";
 // devices and recordings: drivers stamp as they like.
 constexpr SensorTiming kPrimeSense{0.0261, 0.0305, -0.018, 0.002, 0.002, 0.005};
 
-// A rolling shutter reads within the time of a frame; which, and how its depth is stamped, is not known.
-constexpr SensorTiming kUnknown{
-    0, 0, 0, kUnknownReadoutSigma_s, kUnknownReadoutSigma_s, kUnknownDelaySigma_s};
-
 // Where the camera is in the body that the motion capture of freiburg1 tracks: the fitted offset of `no-imu`,
 // which no ground truth enters, on 8 s of freiburg1_rpy, (0.034, 0.003, 0.014) +- (0.006, 0.007, 0.005) m
 // (docs/metrics.md).
@@ -83,7 +79,7 @@ Result<CalibratedCamera> camera_from_numbers(std::string_view text,
   }
   return CalibratedCamera{{0, 0, value[0], value[1], value[2], value[3]},
                           {value[4], value[5], value[6], value[7], value[8]},
-                          kUnknown};
+                          kUnknownTiming};
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ CalibratedCamera read_color_table(Section& section) {
   camera.pinhole = read_pinhole(section, false);
   if (const auto k = section.numbers("distortion", 5); !k.empty())
     camera.distortion = {k[0], k[1], k[2], k[3], k[4]};
-  camera.timing.color_readout_s = section.number("readout_s", kReadout, 0.0);
+  camera.timing.color_readout_s = section.number("readout_s", kReadout, kUnknownReadout_s);
   camera.timing.color_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
   camera.ground_truth_offset_m = section.translation("ground_truth_offset_m");
   return camera;
@@ -221,7 +221,7 @@ void read_depth_table(Section& section, RigCalibration& calibration) {
   if (section.has("units_per_metre"))
     calibration.depth_units_per_metre = section.number("units_per_metre", {1e-3, 1e6});
   SensorTiming& timing = calibration.color.timing;
-  timing.depth_readout_s = section.number("readout_s", kReadout, 0.0);
+  timing.depth_readout_s = section.number("readout_s", kReadout, kUnknownReadout_s);
   timing.depth_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
   timing.depth_delay_s = section.number("delay_s", kOffset, 0.0);
   timing.depth_delay_sigma_s = sigma_of(section, "delay", kOffset, kUnknownDelaySigma_s);

@@ -178,12 +178,7 @@ Result<void> write_rest(const SimulationOptions& options, const CaptureSetup& se
   data.rig.imu->time_offset_s = options.imu.time_offset_s;
   data.rig.imu->T_imu_camera =
       faults::miscalibrated(options.rig.imu->T_imu_camera, options.calibration_error, options.seed);
-  if (options.untold_shutters) {
-    data.rig.color.timing = {};
-    data.rig.color.timing.color_readout_sigma_s = calibration::kUnknownReadoutSigma_s;
-    data.rig.color.timing.depth_readout_sigma_s = calibration::kUnknownReadoutSigma_s;
-    data.rig.color.timing.depth_delay_sigma_s = calibration::kUnknownDelaySigma_s;
-  }
+  if (options.untold_shutters) data.rig.color.timing = calibration::kUnknownTiming;
   data.frame_ns = setup.frame_ns;
   data.color = setup.color;
   data.depth = setup.depth;

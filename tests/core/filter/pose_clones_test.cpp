@@ -154,6 +154,24 @@ TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
   EXPECT_EQ(next.mean.reference_rate_offset.norm(), 0.0);
 }
 
+TEST(PoseClones, TheModelKeepsTheReadoutThatWasUndoneInItsFrames) {
+  UndoneReadout undone;
+  undone.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
+  undone.color_readout_s = 0.021;
+  undone.depth_readout_s = 0.03;
+  undone.depth_delay_s = -0.01;
+  const GaussianState first = cloned_after_fusion(known_at(kTo), {.share = 1}, {}, undone);
+  EXPECT_LT((first.mean.model_readout.rate - undone.rate).norm(), 1e-15);
+  EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * undone.rate).norm(), 1e-15);
+  EXPECT_LT((first.mean.model_readout.by_delay + 0.01 * undone.rate).norm(), 1e-15);
+  EXPECT_EQ(first.mean.reference_color_readout_s, 0.021);
+  // A frame at rest averages half of it away.
+  const GaussianState second = cloned_after_fusion(first, {.share = 0.5}, {}, {});
+  EXPECT_LT((second.mean.model_readout.rate - 0.5 * undone.rate).norm(), 1e-15);
+  EXPECT_LT((second.mean.model_readout.by_readout - 0.015 * undone.rate).norm(), 1e-15);
+  EXPECT_EQ(second.mean.reference_color_readout_s, 0.0);
+}
+
 TEST(PoseClones, ADisplacedModelTurnsVelocityAndGravity) {
   // The model turned by a small angle about the pose: what is known against it is turned in the world.
   GaussianState state = known_at(kTo);

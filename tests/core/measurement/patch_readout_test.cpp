@@ -21,6 +21,11 @@ ReadoutMotion some_motion() {
   motion.rate << 0.5, -1.8, 0.7, 0.3, 0.2, -0.4;
   motion.reference_rate << 0.2, -1.1, 0.9, 0.1, 0.4, -0.2;
   motion.tells_color_readout = true;
+  // The reference and the frames in the model were compensated by other read-outs, these from rest on.
+  motion.reference_color_readout_s = 0.022;
+  motion.model.rate << 0.4, -0.9, 0.2, 0.2, 0.3, -0.1;
+  motion.model.by_readout = 0.014 * motion.model.rate;
+  motion.model.by_delay = -0.004 * motion.model.rate;
   return motion;
 }
 
@@ -33,17 +38,23 @@ Vector6d moved(double share, double readout_s, double delay_s, const Vector6d& r
 Vector6d displaced_color(const PatchRows& rows, const filter::ReadoutVector& errors) {
   const ReadoutMotion motion = some_motion();
   const double readout_s = motion.color_readout_s + errors[0];
-  const auto rate = errors.segment<6>(3);
+  const double undone_s = motion.color_readout_s - errors[3] * (motion.color_readout_s - 0.022);
+  const auto rate = errors.segment<6>(4);
   return moved(rows.now, readout_s, 0, motion.rate + rate) -
          moved(rows.reference, readout_s, 0, motion.reference_rate) -
          (moved(rows.now, motion.color_readout_s, 0, motion.rate) -
-          moved(rows.reference, motion.color_readout_s, 0, motion.reference_rate));
+          moved(rows.reference, undone_s, 0, motion.reference_rate));
 }
 Vector6d displaced_depth(const PatchRows& rows, const filter::ReadoutVector& errors) {
   const ReadoutMotion motion = some_motion();
-  return moved(rows.now, motion.depth_readout_s + errors[1], motion.depth_delay_s + errors[2],
-               motion.rate + errors.tail<6>()) -
-         moved(rows.now, motion.depth_readout_s, motion.depth_delay_s, motion.rate);
+  const double readout_s = motion.depth_readout_s + errors[1];
+  const double delay_s = motion.depth_delay_s + errors[2];
+  const double undone_readout_s = motion.depth_readout_s - errors[3] * (motion.depth_readout_s - 0.014);
+  const double undone_delay_s = motion.depth_delay_s - errors[3] * (motion.depth_delay_s + 0.004);
+  return moved(rows.now, readout_s, delay_s, motion.rate + errors.tail<6>()) -
+         moved(rows.now, readout_s, delay_s, motion.model.rate) -
+         (moved(rows.now, motion.depth_readout_s, motion.depth_delay_s, motion.rate) -
+          moved(rows.now, undone_readout_s, undone_delay_s, motion.model.rate));
 }
 
 TEST(PatchReadout, ErrorsDisplaceAPatchByTheMotionUntilItsRow) {
@@ -66,6 +77,13 @@ TEST(PatchReadout, ColourOfTwoFramesInOneMotionSaysNothingOfTheTiming) {
   ReadoutMotion motion = some_motion();
   motion.tells_color_readout = false;
   for (const PoseByReadout& map : color_displacement(motion)) EXPECT_EQ(map.col(0).norm(), 0.0);
+}
+
+TEST(PatchReadout, DepthAgainstAModelOfTheSameMotionSaysNothingOfTheTiming) {
+  ReadoutMotion motion = some_motion();
+  motion.model = {motion.rate, motion.depth_readout_s * motion.rate, motion.depth_delay_s * motion.rate};
+  for (const PoseByReadout& map : depth_displacement(motion))
+    EXPECT_LT(map.leftCols<filter::kTimingSize + 1>().norm(), 1e-15);
 }
 
 TEST(PatchReadout, SumsAreTheDerivativesOfTheCost) {
