@@ -153,7 +153,11 @@ class Update {
     bool gated = false;
     for (int iteration = 0; iteration < budget && !result.converged; ++iteration) {
       const PoseHypothesis before = now.poses;
-      if (!step(now, quadratic)) break;
+      const Step step = this->step(now, quadratic);
+      if (step != Step::taken) {
+        result.converged = step == Step::not_needed;
+        break;
+      }
       ++result.iterations;
       result.converged = is_small_step(before.T_world_imu_by_reference, now.poses.T_world_imu_by_reference) &&
                          is_small_step(before.T_world_imu_by_model, now.poses.T_world_imu_by_model);
@@ -163,6 +167,11 @@ class Update {
       gated = last;
     }
     if (last && !gated) quadratic = measurement_.linearise(now.poses, stage, true);
+  }
+
+  bool is_small(const Vector6d& tangent) const {
+    return tangent.head<3>().norm() < config_.converged_rotation_rad &&
+           tangent.tail<3>().norm() < config_.converged_translation_m;
   }
 
   bool is_small_step(const SE3& from, const SE3& to) const {
@@ -211,8 +220,10 @@ class Update {
     return result;
   }
 
-  /// Gauss-Newton step with halving until the MAP cost falls; false if it does not.
-  bool step(Iterate& now, const MeasurementQuadratic& quadratic) {
+  /// Gauss-Newton step with halving until the MAP cost falls. If it does not, none was needed where the step
+  /// is so small that rounding decides.
+  enum class Step { taken, not_needed, not_found };
+  Step step(Iterate& now, const MeasurementQuadratic& quadratic) {
     const ChartQuadratic local = in_chart(quadratic, now);
     // Stationarity of J in y: (I + Lambda S) y = Lambda S y_now - g, with S = B P B^T. Eq. 22 of the paper
     // takes each iterate for a new prediction: (I + Lambda S) (y - y_now) = -g.
@@ -233,10 +244,12 @@ class Update {
       if (cost <= cost_now) {
         measurement_.accept();
         now = trial;
-        return true;
+        return Step::taken;
       }
     }
-    return false;
+    return is_small(tangent_step.head<kPoseSize>()) && is_small(tangent_step.tail<kPoseSize>())
+               ? Step::not_needed
+               : Step::not_found;
   }
 
   GaussianState posterior(const Iterate& now, const MeasurementQuadratic& quadratic,

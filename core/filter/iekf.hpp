@@ -4,7 +4,7 @@
 //
 // (Bell & Cathey 1993). The paper's Eq. 22 drops the prior term after the first iteration; here it is in
 // every one (iekf.prior_in_every_iteration). A measurement depends on few linear combinations B d of the
-// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^27: the update
+// error state only (pose_clones.hpp), so the optimum is x_prior (+) P B^T y for some y in R^28: the update
 // iterates on y, never inverts P (which may be singular), and carries velocity, biases and gravity along by
 // their correlations.
 #pragma once
@@ -39,8 +39,9 @@ struct PoseHypothesis {
 /// Tangents of the two poses of a hypothesis: by reference, then by model.
 using TangentVector = Eigen::Matrix<double, 2 * kPoseSize, 1>;
 
-/// Errors of the timing (read-out of colour, read-out of depth, delay of depth; s) and of the pose's rate (as
-/// pose_rate()), against that of the reference and of the model.
+/// Errors of the timing (read-out of colour, read-out of depth, delay of depth; s), then the number 0, and
+/// errors of the pose's rate (as pose_rate()), against that of the reference and of the model. A measurement
+/// that has a known displacement counts it in the column of the 0, and says -1 in `undone` there.
 using ReadoutVector = Eigen::Matrix<double, kReadoutSize, 1>;
 
 /// How the cost of a measurement depends on these, around none: by the information that it shares with the

@@ -154,7 +154,7 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
 
   MeasuredVector far_start;
   far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300, 200, -100, 400, 100, -300, 600,
-      -700, 200, 500, 300, -400, 200, -600, 100, 700;
+      -700, 200, 500, 300, -400, 200, -600, 100, 700, -300;
   for (const MeasuredVector& start : {MeasuredVector(MeasuredVector::Zero()), far_start}) {
     PositionMeasurement measurement(z, sigma);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
@@ -218,8 +218,9 @@ struct ReadOutUpdate {
       H.block<3, kPoseSize>(0, clone) = -by_rate * carried;
       expected -= by_rate * carried * offset;
     };
-    add_rate(kTimingSize, kReferenceRate, prior.mean.reference_rate_offset);
-    add_rate(kTimingSize + kPoseSize, kModelRate, prior.mean.model_rate_offset);
+    // Between timing and rates is what is known: it has no error.
+    add_rate(kTimingSize + 1, kReferenceRate, prior.mean.reference_rate_offset);
+    add_rate(kTimingSize + 1 + kPoseSize, kModelRate, prior.mean.model_rate_offset);
     const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
     K = prior.covariance * H.transpose() * S.inverse();
     delta = K * (z - expected);
@@ -237,9 +238,10 @@ FilterState state_with_distorted_images() {
 const ByReadout kByReadout = [] {
   ByReadout by_readout = ByReadout::Zero();
   by_readout.leftCols<3>() << 0.8, -0.3, 0.1, 0.2, 0.5, -0.4, -0.1, 0.6, 0.9;
-  by_readout.middleCols<3>(3) << 0.02, -0.01, 0.03, -0.03, 0.01, 0.02, 0.01, 0.02, -0.02;
-  by_readout.middleCols<3>(6).diagonal().setConstant(0.01);
-  by_readout.middleCols<3>(9) << -0.01, 0.02, 0.01, 0.02, 0.03, -0.01, -0.02, 0.01, 0.01;
+  by_readout.col(3) << 0.02, -0.05, 0.03;
+  by_readout.middleCols<3>(4) << 0.02, -0.01, 0.03, -0.03, 0.01, 0.02, 0.01, 0.02, -0.02;
+  by_readout.middleCols<3>(7).diagonal().setConstant(0.01);
+  by_readout.middleCols<3>(10) << -0.01, 0.02, 0.01, 0.02, 0.03, -0.01, -0.02, 0.01, 0.01;
   by_readout.rightCols<3>().diagonal().setConstant(0.015);
   return by_readout;
 }();
@@ -252,7 +254,7 @@ TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
   const StateMatrix covariance = transport * (StateMatrix::Identity() - expected.K * expected.H) *
                                  prior.covariance * transport.transpose();
   ReadoutVector undone;
-  undone << 0.01, -0.02, 0.015, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
+  undone << 0.01, -0.02, 0.015, -1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
   for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), undone}) {
     ReadOutMeasurement measurement(z, 0.02, kByReadout, prepared_for);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
