@@ -54,8 +54,7 @@ Result<calibration::RigCalibration> layout_rig(RecordingLayout layout, const ima
   }
   scale_camera(rig->color.pinhole, size);
   // What is simulated is known exactly.
-  SensorTiming& timing = rig->color.timing;
-  timing.color_readout_sigma_s = timing.depth_readout_sigma_s = timing.depth_delay_sigma_s = 0;
+  rig->color.timing = {};
   rig->source = fmt::format("simulated: cameras of the {} layout, IMU of {}", to_string(layout), kZr300);
   return rig;
 }
