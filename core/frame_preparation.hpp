@@ -38,12 +38,11 @@ class FramePreparation {
 
   /// The motion that the read-out was undone for; nothing if none was.
   [[nodiscard]] const filter::FilterState* undone_motion() const { return compensated_ ? &motion_ : nullptr; }
-  /// What was undone, against the motion that the frame turned out to have; of no time if nothing was.
+  /// What was undone, against the motion that the frame turned out to have.
   [[nodiscard]] filter::UndoneReadout undone_readout(const filter::FilterState& motion) const {
-    const Vector6d rate = filter::pose_rate(motion);
-    if (!compensated_) return {.rate = rate};
-    const Vector6d undone = filter::pose_rate(motion_);
-    return {rate - undone, undone, timing_.color_readout_s, timing_.depth_readout_s, timing_.depth_delay_s};
+    const filter::FilterState& undone = compensated_ ? motion_ : motion;
+    const Vector6d rate = filter::pose_rate(undone);
+    return {filter::pose_rate(motion) - rate, rate, undone.sensors.timing_s()};
   }
   [[nodiscard]] const preprocessing::FrameTiming& timing() const { return timing_; }
 

@@ -34,6 +34,7 @@ measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, cons
   motion.rate = filter::pose_rate(undone);
   const Matrix6d carried = filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference);
   motion.reference_rate = carried * prior.reference_rate;
+  motion.supposed_s = undone.sensors.timing_s();
   motion.reference_color_readout_s = prior.reference_color_readout_s;
   const filter::FusedReadout& model = prior.model_readout;
   motion.model = {carried * model.rate, carried * model.by_readout, carried * model.by_delay};

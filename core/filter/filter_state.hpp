@@ -64,7 +64,7 @@ struct SensorErrors {
 /// tangents of the pose (pose_rate()) at the reference pose.
 struct FusedReadout {
   Vector6d rate = Vector6d::Zero();
-  // Displacements that were undone: the rate, times the time that was supposed then.
+  // The rate, times the errors of the timing that were supposed then (SensorErrors::timing_s()).
   Vector6d by_readout = Vector6d::Zero();
   Vector6d by_delay = Vector6d::Zero();
 };
@@ -88,7 +88,8 @@ struct FilterState {
   Vector6d reference_rate_offset = Vector6d::Zero();  ///< correction of reference_rate since
   /// By how much the motion differs from what was undone in the frames that are in the model.
   Vector6d model_rate_offset = Vector6d::Zero();
-  double reference_color_readout_s = 0;  ///< that was supposed there; no errors of their own, these two
+  /// The error of the read-out of colour that was supposed there; no errors of their own, these two.
+  double reference_color_readout_s = 0;
   FusedReadout model_readout;
 };
 

@@ -34,8 +34,9 @@ FusedReadout fused(const FusedReadout& model, const UndoneReadout& frame, double
   const auto mixed = [&](const Vector6d& before, const Vector6d& now) -> Vector6d {
     return (1 - share) * carried * before + share * now;
   };
-  return {mixed(model.rate, frame.rate), mixed(model.by_readout, frame.depth_readout_s * frame.rate),
-          mixed(model.by_delay, frame.depth_delay_s * frame.rate)};
+  return {mixed(model.rate, frame.rate),
+          mixed(model.by_readout, frame.timing_s[kDepthReadout - kColorReadout] * frame.rate),
+          mixed(model.by_delay, frame.timing_s[kDepthDelay - kColorReadout] * frame.rate)};
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();
   result.mean.reference_rate_offset = undone.rate_left;
-  result.mean.reference_color_readout_s = undone.color_readout_s;
+  result.mean.reference_color_readout_s = undone.timing_s[0];
   return result;
 }
 

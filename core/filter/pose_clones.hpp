@@ -44,9 +44,7 @@ struct ModelDrift {
 struct UndoneReadout {
   Vector6d rate_left = Vector6d::Zero();  ///< of its rate, what was not
   Vector6d rate = Vector6d::Zero();       ///< what was
-  double color_readout_s = 0;             ///< over these times
-  double depth_readout_s = 0;
-  double depth_delay_s = 0;
+  Vector3d timing_s = Vector3d::Zero();   ///< the errors of the timing that were supposed: SensorErrors
 };
 
 /// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its

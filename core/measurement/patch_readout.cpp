@@ -53,7 +53,7 @@ std::array<PoseByReadout, 2> color_displacement(const ReadoutMotion& motion) {
     reference.col(kColorReadout) = -motion.reference_rate;
   }
   reference.col(kOtherTiming) =
-      -(motion.color_readout_s - motion.reference_color_readout_s) * motion.reference_rate;
+      -(motion.supposed_s[kColorReadout] - motion.reference_color_readout_s) * motion.reference_rate;
   // A patch is in about the same row of both: the difference of the rates tells.
   displace_by_rate(now, kRateAgainstReference, motion.color_readout_s);
   return maps;
@@ -65,10 +65,10 @@ std::array<PoseByReadout, 2> depth_displacement(const ReadoutMotion& motion) {
   // Surfaces that were fused in the same row, during the same motion, are displaced alike.
   const filter::FusedReadout& model = motion.model;
   always.col(kDepthDelay) = motion.rate - model.rate;
-  always.col(kOtherTiming) = model.by_delay - motion.depth_delay_s * model.rate;
+  always.col(kOtherTiming) = model.by_delay - motion.supposed_s[kDepthDelay] * model.rate;
   displace_by_rate(always, kRateAgainstModel, motion.depth_delay_s);
   now.col(kDepthReadout) = motion.rate - model.rate;
-  now.col(kOtherTiming) = model.by_readout - motion.depth_readout_s * model.rate;
+  now.col(kOtherTiming) = model.by_readout - motion.supposed_s[kDepthReadout] * model.rate;
   displace_by_rate(now, kRateAgainstModel, motion.depth_readout_s);
   return maps;
 }

@@ -20,8 +20,10 @@ struct ReadoutMotion {
   double depth_delay_s = 0;
   Vector6d rate = Vector6d::Zero();            ///< in the frame
   Vector6d reference_rate = Vector6d::Zero();  ///< when the reference was read
-  double reference_color_readout_s = 0;        ///< that was supposed there
   filter::FusedReadout model = {};             ///< of the frames in the model
+  // Errors of the timing that were supposed (SensorErrors::timing_s()): in the frame, in the reference.
+  Vector3d supposed_s = Vector3d::Zero();
+  double reference_color_readout_s = 0;
   /// By how much timing and rate differ from the prior's (filter::MeasurementQuadratic::undone); between
   /// them -1, for which the displacements of reference and model by another timing count once.
   filter::ReadoutVector undone = filter::ReadoutVector::Zero();

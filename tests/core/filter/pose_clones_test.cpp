@@ -157,9 +157,7 @@ TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
 TEST(PoseClones, TheModelKeepsTheReadoutThatWasUndoneInItsFrames) {
   UndoneReadout undone;
   undone.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
-  undone.color_readout_s = 0.021;
-  undone.depth_readout_s = 0.03;
-  undone.depth_delay_s = -0.01;
+  undone.timing_s = {0.021, 0.03, -0.01};
   const GaussianState first = cloned_after_fusion(known_at(kTo), {.share = 1}, {}, undone);
   EXPECT_LT((first.mean.model_readout.rate - undone.rate).norm(), 1e-15);
   EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * undone.rate).norm(), 1e-15);

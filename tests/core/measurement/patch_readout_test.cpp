@@ -22,6 +22,7 @@ ReadoutMotion some_motion() {
   motion.reference_rate << 0.2, -1.1, 0.9, 0.1, 0.4, -0.2;
   motion.tells_color_readout = true;
   // The reference and the frames in the model were compensated by other read-outs, these from rest on.
+  motion.supposed_s = {0.03, 0.02, -0.01};
   motion.reference_color_readout_s = 0.022;
   motion.model.rate << 0.4, -0.9, 0.2, 0.2, 0.3, -0.1;
   motion.model.by_readout = 0.014 * motion.model.rate;
