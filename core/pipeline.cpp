@@ -134,8 +134,7 @@ Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
                                                        health::StageTimes& stages) const {
   const health::StageClock clock(stages, health::Stage::predict);
   if (!tracking->estimate) return prediction::initial_state(imu, now_ns, rig, config, initial_motion);
-  return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig,
-                                   config);
+  return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig, config);
 }
 
 health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,

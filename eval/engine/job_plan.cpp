@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "eval/external/external_program.hpp"
+
 namespace fusebench::engine {
 
 namespace fs = std::filesystem;
