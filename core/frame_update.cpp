@@ -23,14 +23,13 @@ double agreement(std::span<const measurement::PatchOutcome> outcomes) {
 measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, const FramePreparation& frame) {
   measurement::ReadoutMotion motion;
   const filter::FilterState& undone = frame.undone_motion() ? *frame.undone_motion() : prior;
-  motion.undone[filter::kTimingSize] = -1;
   if (frame.undone_motion()) {
     motion.color_readout_s = frame.timing().color_readout_s;
     motion.depth_readout_s = frame.timing().depth_readout_s;
     motion.depth_delay_s = frame.timing().depth_delay_s;
-    const Vector6d rate_change = filter::pose_rate(undone) - filter::pose_rate(prior);
-    motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(), -1, rate_change, rate_change;
   }
+  const Vector6d rate_change = filter::pose_rate(undone) - filter::pose_rate(prior);
+  motion.undone << undone.sensors.timing_s() - prior.sensors.timing_s(), -1, rate_change, rate_change;
   motion.rate = filter::pose_rate(undone);
   const Matrix6d carried = filter::pose_transport(prior.T_world_imu, prior.T_world_imu_reference);
   motion.reference_rate = carried * prior.reference_rate;
