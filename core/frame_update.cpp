@@ -35,8 +35,7 @@ measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, cons
   motion.reference_rate = carried * prior.reference_rate;
   motion.supposed_s = undone.sensors.timing_s();
   motion.reference_color_readout_s = prior.reference_color_readout_s;
-  const filter::FusedReadout& model = prior.model_readout;
-  motion.model = {carried * model.rate, carried * model.by_readout, carried * model.by_delay};
+  motion.model = filter::transported(carried, prior.model_readout);
   // That of the IMU has its noise twice; its bias drops out.
   const double change_radps = (motion.rate - motion.reference_rate).head<3>().norm();
   const double noise_radps = std::sqrt(2.0) * prior.angular_velocity_noise_radps;

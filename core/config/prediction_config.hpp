@@ -95,7 +95,7 @@ struct SelfCalibrationConfig {
   double gyroscope_scale_sigma = 0.01;
   double accelerometer_scale_sigma = 0.01;
   double turn_before_rad = 0.02;
-  double timing_walk = 0.1;
+  double timing_walk = 0.0;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.flag("color_readout", self.color_readout,
@@ -116,8 +116,8 @@ struct SelfCalibrationConfig {
     v.number(
         "timing_walk", self.timing_walk, 0.0, 10.0,
         "read-outs, delay of depth and offset of the IMU's clock may wander by so many standard "
-        "deviations of their priors in a second (random walk, 1/sqrt(s)), so that quicker motion corrects "
-        "what slow motion told of them; 0: constants");
+        "deviations of their priors in a second (random walk, 1/sqrt(s)); 0: constants, as they are in a "
+        "recording of minutes by one device");
   }
 };
 

@@ -159,8 +159,9 @@ class Update {
         break;
       }
       ++result.iterations;
-      result.converged = is_small_step(before.T_world_imu_by_reference, now.poses.T_world_imu_by_reference) &&
-                         is_small_step(before.T_world_imu_by_model, now.poses.T_world_imu_by_model);
+      result.converged =
+          is_small(pose_minus(now.poses.T_world_imu_by_reference, before.T_world_imu_by_reference)) &&
+          is_small(pose_minus(now.poses.T_world_imu_by_model, before.T_world_imu_by_model));
       // The next stage linearises by itself where this one ends.
       if (!last && (result.converged || iteration + 1 == budget)) break;
       quadratic = measurement_.linearise(now.poses, stage, last);
@@ -172,11 +173,6 @@ class Update {
   bool is_small(const Vector6d& tangent) const {
     return tangent.head<3>().norm() < config_.converged_rotation_rad &&
            tangent.tail<3>().norm() < config_.converged_translation_m;
-  }
-
-  bool is_small_step(const SE3& from, const SE3& to) const {
-    return rotation_angle_rad(from.rotation, to.rotation) < config_.converged_rotation_rad &&
-           (to.translation - from.translation).norm() < config_.converged_translation_m;
   }
 
   /// Both parts around the posterior: the one by reference was taken at another pose.

@@ -29,10 +29,10 @@ GaussianState transformed(const GaussianState& state, const StateMatrix& by) {
   return {state.mean, symmetrised(by * state.covariance * by.transpose())};
 }
 
-FusedReadout fused(const FusedReadout& model, const UndoneReadout& frame, double share,
-                   const Matrix6d& carried) {
+/// Both at the pose of the frame.
+FusedReadout fused(const FusedReadout& model, const UndoneReadout& frame, double share) {
   const auto mixed = [&](const Vector6d& before, const Vector6d& now) -> Vector6d {
-    return (1 - share) * carried * before + share * now;
+    return (1 - share) * before + share * now;
   };
   return {mixed(model.rate, frame.rate),
           mixed(model.by_readout, frame.timing_s[kDepthReadout - kColorReadout] * frame.rate),
@@ -47,6 +47,10 @@ Matrix6d pose_transport(const SE3& to, const SE3& from) {
   transport.topLeftCorner<3, 3>() = to.rotation_matrix().transpose() * R_from;
   transport.bottomLeftCorner<3, 3>() = -hat(to.translation - from.translation) * R_from;
   return transport;
+}
+
+FusedReadout transported(const Matrix6d& transport, const FusedReadout& readout) {
+  return {transport * readout.rate, transport * readout.by_readout, transport * readout.by_delay};
 }
 
 Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const FilterState& state) {
@@ -93,7 +97,7 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   result.mean.model_offset = carried * state.mean.model_offset;
   result.mean.model_rate_offset =
       (1 - drift.share) * carried * state.mean.model_rate_offset + drift.share * undone.rate_left;
-  result.mean.model_readout = fused(state.mean.model_readout, undone, drift.share, carried);
+  result.mean.model_readout = fused(transported(carried, state.mean.model_readout), undone, drift.share);
   result.mean.T_world_imu_reference = state.mean.T_world_imu;
   result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();

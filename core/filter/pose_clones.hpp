@@ -23,6 +23,9 @@ namespace fusebench::filter {
 /// (right rotation in rad, world position in m).
 [[nodiscard]] Matrix6d pose_transport(const SE3& to, const SE3& from);
 
+/// The same of what is undone in the model, by pose_transport().
+[[nodiscard]] FusedReadout transported(const Matrix6d& transport, const FusedReadout& readout);
+
 /// Two poses, the timing of the sensors, and the motion during the read-out, against that of either.
 inline constexpr int kMeasuredSize = 2 * kPoseSize + kReadoutSize;
 

@@ -57,9 +57,7 @@ filter::GaussianState with_reference_pose(const filter::GaussianState& state, co
       filter::kReferencePose, filter::kReferencePose) = place.reference_covariance;
   result.mean.model_offset = carried * state.mean.model_offset;
   result.mean.model_rate_offset = carried * state.mean.model_rate_offset;
-  filter::FusedReadout& readout = result.mean.model_readout;
-  for (Vector6d* tangent : {&readout.rate, &readout.by_readout, &readout.by_delay})
-    *tangent = (carried * *tangent).eval();
+  result.mean.model_readout = filter::transported(carried, state.mean.model_readout);
   result.mean.T_world_imu_reference = place.T_world_imu_reference;
   result.mean.reference_offset.setZero();
   result.mean.reference_rate_offset.setZero();

@@ -45,8 +45,15 @@ Result<bool> wanted(const std::vector<std::string>& only, const std::string& rec
   return true;
 }
 
+/// Whether --only can leave a run of that variant.
+bool variant_may_be_wanted(const std::vector<std::string>& only, const std::string& variant) {
+  return std::ranges::all_of(only, [&](const std::string& filter) {
+    return !filter.starts_with("variant=") || filter == "variant=" + variant;
+  });
+}
+
 /// Whether --only can leave something of a recording that the suite calls by that name ("begin*" as well).
-bool may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
+bool recording_may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
   if (name.ends_with('*')) name.remove_suffix(1);
   return std::all_of(only.begin(), only.end(), [&](const std::string& filter) {
     constexpr std::string_view key = "recording=";
@@ -72,7 +79,7 @@ Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, con
   for (const suites::SuiteRecording& recording : suite.recordings) {
     const auto folders = suites::find_recordings(recording.name, options.data);
     if (!folders) {
-      if (!may_be_wanted(options.only, recording.name)) continue;
+      if (!recording_may_be_wanted(options.only, recording.name)) continue;
       return tl::unexpected(folders.error());
     }
     for (const fs::path& folder : *folders) {
@@ -102,7 +109,7 @@ Result<std::vector<Planned>> recordings_of(const suites::Suite& suite, const Bat
   auto planned = existing_recordings(suite, options);
   if (!planned) return planned;
   for (const suites::SuiteSimulation& simulation : suite.simulations) {
-    if (!may_be_wanted(options.only, simulation.name)) continue;
+    if (!recording_may_be_wanted(options.only, simulation.name)) continue;
     auto recording = simulated_recording(simulation, options);
     if (!recording) return tl::unexpected(recording.error());
     planned->push_back(std::move(*recording));
@@ -135,14 +142,16 @@ Result<config::EffectiveConfig> config_of(const suites::Suite& suite, const conf
 
 using Programs = std::vector<std::shared_ptr<const external::ExternalProgram>>;
 
-/// The external programs of the suite, each asked for its version.
-Result<Programs> programs_of(const suites::Suite& suite) {
+/// The external programs of the suite that are wanted, each asked for its version.
+Result<Programs> programs_of(const suites::Suite& suite, const std::vector<std::string>& only) {
   Programs programs;
   std::vector<std::string> names;
   for (const std::string& file : suite.systems) {
     auto program = external::read_external_program(file);
     if (!program) return tl::unexpected(program.error());
     names.push_back(program->name);
+    if (!variant_may_be_wanted(only, program->name)) continue;
+    if (auto found = external::find_installed(*program); !found) return tl::unexpected(found.error());
     programs.push_back(std::make_shared<const external::ExternalProgram>(std::move(*program)));
   }
   if (auto known = suites::check_excluded_variants(suite.exclusions, names); !known)
@@ -311,7 +320,7 @@ std::string to_string(const BatchJob& job) {
 }
 
 Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options) {
-  auto programs = programs_of(suite);
+  auto programs = programs_of(suite, options.only);
   if (!programs) return tl::unexpected(programs.error());
   Common common{suite, options, std::move(*programs), options.sets, {}};
   std::vector<suites::SweepBlock> blocks = suite.sweeps;

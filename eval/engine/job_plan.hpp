@@ -55,10 +55,10 @@ struct BatchPlan {
 /// By recording (those of the suite, then the simulated ones), window, repetition, variant as they are
 /// listed, and point of the sweep: repetitions of one run are apart, so that a slow minute of the machine
 /// does not meet all of them. What --only leaves out need not be there. Reads the definitions of external
-/// programs, and asks each for its version. Errors: those of read_external_program(); data_missing (a
-/// recording or a trajectory that is not there), configuration (--set, a recording named twice, a point of
-/// the sweep that no run can have, an exclusion of a variant that there is not), usage (--only that names no
-/// key or leaves nothing).
+/// programs, and asks each that is wanted for its version. Errors: those of read_external_program();
+/// data_missing (a recording or a trajectory that is not there), configuration (--set, a recording named
+/// twice, a point of the sweep that no run can have, an exclusion of a variant that there is not), usage
+/// (--only that names no key or leaves nothing).
 [[nodiscard]] Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options);
 
 }  // namespace fusebench::engine

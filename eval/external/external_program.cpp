@@ -179,8 +179,7 @@ Result<void> read_limit(const config::TomlEntry& entry, ExternalProgram& program
   return {};
 }
 
-Result<void> read_entry(const config::TomlEntry& entry, ExternalProgram& program,
-                        std::vector<std::string>& version_command) {
+Result<void> read_entry(const config::TomlEntry& entry, ExternalProgram& program) {
   constexpr std::string_view kTrajectory = "trajectory.";
   const std::string& key = entry.key;
   if (std::ranges::find(kKeys, key) == kKeys.end()) {
@@ -192,7 +191,7 @@ Result<void> read_entry(const config::TomlEntry& entry, ExternalProgram& program
   if (key == "sentence") return store(text_of(entry), program.sentence);
   if (key == "export") return read_input(entry, program);
   if (key == "command") return store(command_of(entry), program.command);
-  if (key == "version") return store(command_of(entry), version_command);
+  if (key == "version") return store(command_of(entry), program.version_command);
   if (key == "imu")
     return store(one_of<std::string>(entry, {{"none", "none"}, {"recorded", "recorded"}}), program.imu);
   if (key == "deterministic") return store(flag_of(entry), program.deterministic);
@@ -226,12 +225,13 @@ std::string with_folder(std::string argument, const fs::path& folder) {
 }
 
 /// Its first line; or why the program cannot run here.
-void ask_version(const std::vector<std::string>& command, ExternalProgram& program) {
+void ask_version(ExternalProgram& program) {
+  const std::vector<std::string>& command = program.version_command;
   if (command.empty() || !program.absent.empty()) return;
   constexpr double kPatience_s = 60;
   std::vector<std::string> asked;
-  for (const std::string& argument : command) asked.push_back(with_folder(argument, program.folder));
-  const auto end = process::run_program(asked, program.folder, {kPatience_s, 0}, [] { return true; });
+  for (const std::string& argument : command) asked.push_back(with_folder(argument, program.folder()));
+  const auto end = process::run_program(asked, program.folder(), {kPatience_s, 0}, [] { return true; });
   if (!end) {
     program.absent = end.error().message;
   } else if (!end->succeeded) {
@@ -243,14 +243,14 @@ void ask_version(const std::vector<std::string>& command, ExternalProgram& progr
   }
 }
 
-Result<void> identify(const fs::path& file, ExternalProgram& program) {
+Result<void> identify(ExternalProgram& program) {
   io::Fingerprint identity;
-  if (auto added = identity.add_file(file); !added) return tl::unexpected(added.error());
-  for (std::string& argument : program.command) {
-    const bool named = argument.find("{folder}") != std::string::npos;
-    argument = with_folder(std::move(argument), program.folder);
-    if (!named || !fs::is_regular_file(argument)) continue;
-    if (auto added = identity.add_file(argument); !added) return tl::unexpected(added.error());
+  if (auto added = identity.add_file(program.file); !added) return tl::unexpected(added.error());
+  for (const std::string& argument : program.command) {
+    if (argument.find("{folder}") == std::string::npos) continue;
+    const std::string named = with_folder(argument, program.folder());
+    if (!fs::is_regular_file(named)) continue;
+    if (auto added = identity.add_file(named); !added) return tl::unexpected(added.error());
   }
   const fs::path executable = file_of_program(program.command.front());
   if (executable.empty()) {
@@ -269,10 +269,9 @@ Result<ExternalProgram> read_external_program(const fs::path& file) {
   const auto document = config::read_toml(file);
   if (!document) return tl::unexpected(document.error());
   ExternalProgram program;
-  std::vector<std::string> version_command;
   bool counted = false;
   for (const config::TomlEntry& entry : document->entries) {
-    if (auto read = read_entry(entry, program, version_command); !read) return tl::unexpected(read.error());
+    if (auto read = read_entry(entry, program); !read) return tl::unexpected(read.error());
     counted |= entry.key == "repetitions";
   }
   const std::array<std::pair<std::string_view, bool>, 3> required = {
@@ -292,10 +291,13 @@ Result<ExternalProgram> read_external_program(const fs::path& file) {
         fmt::format("at least {}, so that its range is known; or deterministic = true", kFewestRepetitions));
   }
   std::error_code ignored;
-  program.folder = fs::absolute(file, ignored).parent_path();
-  ask_version(version_command, program);
-  if (auto identified = identify(file, program); !identified) return tl::unexpected(identified.error());
+  program.file = fs::absolute(file, ignored);
   return program;
+}
+
+Result<void> find_installed(ExternalProgram& program) {
+  ask_version(program);
+  return identify(program);
 }
 
 }  // namespace fusebench::external

@@ -65,17 +65,24 @@ struct ExternalProgram {
   process::ProgramLimits limits{3600, 0};
   ProgramTrajectory trajectory;
   ProgramMesh mesh;
-  std::filesystem::path folder;  ///< of the file
-  std::string version;           ///< what it says of itself; empty if it cannot be asked
-  std::string absent;            ///< why it cannot run here; empty if it can
+  std::filesystem::path file;  ///< that all of this is from; absolute
+  std::vector<std::string> version_command;
+  // What find_installed() finds:
+  std::string version;  ///< what it says of itself; empty if it cannot be asked
+  std::string absent;   ///< why it cannot run here; empty if it can
   /// 32 hex digits of the definition, of the program's file and version, and of the files of {folder} that
   /// the command names.
   std::string identity;
+
+  [[nodiscard]] std::filesystem::path folder() const { return file.parent_path(); }
 };
 
-/// Asks the program for its version as well. Errors name file:line: data_missing; configuration (unknown or
-/// missing keys, wrong types or values, a name that is a variant of this program, {placeholders} that there
-/// are not).
+/// The definition; starts nothing. Errors name file:line: data_missing; configuration (unknown or missing
+/// keys, wrong types or values, a name that is a variant of this program, {placeholders} that there are not).
 [[nodiscard]] Result<ExternalProgram> read_external_program(const std::filesystem::path& file);
+
+/// Looks for the program of a definition on this machine and asks it for its version. Errors: of reading
+/// the files that it consists of.
+[[nodiscard]] Result<void> find_installed(ExternalProgram& program);
 
 }  // namespace fusebench::external

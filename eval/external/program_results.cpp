@@ -48,6 +48,7 @@ Result<Placeholders> prepare_input(const ExternalProgram& program, const recordi
   return Placeholders{{"recording", fs::absolute(input, ignored).string()},
                       {"calibration", fs::absolute(calibration, ignored).string()},
                       {"output", fs::absolute(place.work_folder / "output", ignored).string()},
+                      {"folder", program.folder().string()},
                       {"threads", std::to_string(place.threads)},
                       {"seed", std::to_string(place.seed)}};
 }

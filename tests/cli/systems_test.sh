@@ -130,6 +130,8 @@ for run in infinitam good drawing 'drawing repetition 5'; do
 done
 "$binary" bench suite.toml --out suite_runs -j 2 --dry-run >stdout 2>stderr
 if ! grep -q 'no-such-program' stdout; then complain 'what is not installed is not said'; cat stdout >&2; fi
+"$binary" bench suite.toml --out suite_runs --dry-run --only variant=infinitam >stdout 2>stderr
+if grep -q 'no-such-program' stdout stderr; then complain 'a program that is left out is asked for its version'; fi
 "$binary" table suite_runs --systems >stdout 2>stderr
 for pattern in 'drawing.*5/5 ok' 'die.*0/1 ok' 'infinitam.*1/1 ok' 'exit code 42'; do
   if ! grep -qE "$pattern" stdout; then complain "the table has nothing like '$pattern'"; cat stdout >&2; fi

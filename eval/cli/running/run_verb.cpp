@@ -29,6 +29,7 @@ Result<void> take_program(const std::filesystem::path& file, run::RunSpec& spec)
   if (file.empty()) return {};
   auto program = external::read_external_program(file);
   if (!program) return tl::unexpected(program.error());
+  if (auto found = external::find_installed(*program); !found) return found;
   if (!program->absent.empty())
     return fail(ErrorCode::usage, fmt::format("{} cannot run here: {}", program->name, program->absent),
                 "install it, or change the command in its file");

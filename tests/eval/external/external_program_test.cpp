@@ -19,7 +19,10 @@ class ExternalProgramFile : public testing::InTemporaryFolder {
  protected:
   Result<ExternalProgram> read(const std::string& text) {
     write("mine.toml", text);
-    return read_external_program(folder_ / "mine.toml");
+    auto program = read_external_program(folder_ / "mine.toml");
+    if (!program) return program;
+    if (auto found = find_installed(*program); !found) return tl::unexpected(found.error());
+    return program;
   }
   std::string refused(const std::string& text) {
     const auto program = read(text);
