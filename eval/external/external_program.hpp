@@ -43,7 +43,7 @@ struct ProgramMesh {
 ///     memory_mb = 8000
 ///     [trajectory]
 ///     file = "trajectory.txt"
-///     format = "tum"             # tum, kitti, euroc, openvins or log; recognised if it is missing
+///     format = "tum"             # tum, kitti, euroc, openvins, log or sens; recognised if missing
 ///     unit = "m"                 # or "mm"
 ///     pose = "camera_to_world"   # or "world_to_camera"
 ///     online = false

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/mesh/mesh_file.hpp"
 #include "core/trajectory/association.hpp"
+#include "eval/external/foreign_mesh.hpp"
 #include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::external {
@@ -104,11 +104,9 @@ Result<void> read_poses(const ExternalProgram& program, const recording::Recordi
 
 Result<void> read_mesh(const ProgramMesh& mesh, const fs::path& output, ProgramResults& results) {
   if (mesh.file.empty()) return {};
-  auto read = mesh::read_mesh(output / mesh.file);
+  auto read = read_foreign_mesh(output / mesh.file, mesh.unit_m);
   if (!read) return tl::unexpected(read.error());
-  for (Vector3d& vertex : read->vertices) vertex *= mesh.unit_m;
-  results.mesh = read->cast<float>();
-  results.mesh.quality.clear();  // ours is the error of each vertex
+  results.mesh = std::move(*read);
   return {};
 }
 

@@ -7,8 +7,8 @@
 
 #include "core/io/fingerprint.hpp"
 #include "core/io/staged_folder.hpp"
-#include "core/mesh/mesh_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/external/foreign_mesh.hpp"
 #include "eval/external/frame_poses.hpp"
 #include "eval/external/system_name.hpp"
 #include "eval/record/record_origin.hpp"
@@ -90,10 +90,9 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   if (!hash) return tl::unexpected(hash.error());
   RunOutput output = foreign_output(*owned, {});
   if (!spec.mesh.empty()) {
-    const auto mesh = mesh::read_mesh(spec.mesh);
+    auto mesh = external::read_foreign_mesh(spec.mesh);
     if (!mesh) return tl::unexpected(mesh.error());
-    output.mesh = mesh->cast<float>();
-    output.mesh.quality.clear();  // ours is the error of each vertex
+    output.mesh = std::move(*mesh);
   }
 
   record::RunRecord& record = run.record;

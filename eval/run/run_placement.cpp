@@ -68,7 +68,8 @@ record::RunRecord requested_record(const PreparedRun& run) {
     record.config.push_back(
         {row.key, config::parse_option_value(row.value), run.spec.config.origin(row.key)});
   }
-  record.config_hash = config::config_hash(run.spec.config.values);
+  record.config_hash =
+      run.spec.program ? run.spec.program->identity : config::config_hash(run.spec.config.values);
   record.run_id = run.run_id;
   record.repetition = run.spec.repetition;
   record.provenance = record::provenance_here(run.spec.threads);
