@@ -43,13 +43,9 @@ struct ProgramMesh {
 ///     memory_mb = 8000
 ///     [trajectory]
 ///     file = "trajectory.txt"
-///     format = "tum"             # tum, kitti, euroc, openvins, log or sens; recognised if missing
-///     unit = "m"                 # or "mm"
-///     pose = "camera_to_world"   # or "world_to_camera"
-///     online = false
-///     [mesh]                     # may be missing
-///     file = "mesh.ply"
-///     unit = "m"
+///     format = "tum"             # tum, kitti, euroc, openvins or log; recognised if missing, as NAME.sens
+///     is unit = "m"                 # or "mm" pose = "camera_to_world"   # or "world_to_camera" online =
+///     false [mesh]                     # may be missing file = "mesh.ply" unit = "m"
 ///
 /// In arguments of the command {recording} is the export (or the recording), {calibration} the file of it
 /// that holds the camera, {output} a new folder, {threads} and {seed} numbers, {folder} that of the TOML

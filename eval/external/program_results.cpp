@@ -9,6 +9,7 @@
 
 #include "core/trajectory/association.hpp"
 #include "eval/external/foreign_mesh.hpp"
+#include "eval/external/system_trajectory.hpp"
 #include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::external {
@@ -55,8 +56,7 @@ Result<Placeholders> prepare_input(const ExternalProgram& program, const recordi
 
 Result<trajectory_files::LoadedTrajectory> load_poses(const ProgramTrajectory& trajectory,
                                                       const fs::path& file, std::vector<std::string>& notes) {
-  auto loaded =
-      trajectory_files::load_trajectory(file, trajectory.format, trajectory::Duplicates::rare_last, notes);
+  auto loaded = load_system_trajectory(file, trajectory.format, notes);
   if (!loaded) return loaded;
   for (StampedPose& pose : loaded->poses) {
     pose.T_world_camera.translation *= trajectory.unit_m;

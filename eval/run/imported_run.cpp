@@ -11,6 +11,7 @@
 #include "eval/external/foreign_mesh.hpp"
 #include "eval/external/frame_poses.hpp"
 #include "eval/external/system_name.hpp"
+#include "eval/external/system_trajectory.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
@@ -80,8 +81,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   const auto recording = open(spec);
   if (!recording) return tl::unexpected(recording.error());
   ImportedRun run;
-  auto loaded = trajectory_files::load_trajectory(spec.trajectory, spec.format,
-                                                  trajectory::Duplicates::rare_last, run.warnings);
+  auto loaded = external::load_system_trajectory(spec.trajectory, spec.format, run.warnings);
   if (!loaded) return tl::unexpected(loaded.error());
   const trajectory_files::TrajectoryFormat format = loaded->format;
   const auto owned = external::poses_of_frames(std::move(*loaded), *recording);

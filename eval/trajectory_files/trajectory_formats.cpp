@@ -10,7 +10,6 @@
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_file.hpp"
-#include "datasets/exports/sens_file.hpp"
 #include "eval/trajectory_files/log_trajectory.hpp"
 #include "eval/trajectory_files/nearest_rotation.hpp"
 
@@ -19,9 +18,9 @@ namespace fusebench::trajectory_files {
 namespace {
 
 constexpr std::array kNames{
-    std::pair{TrajectoryFormat::tum, "tum"},     std::pair{TrajectoryFormat::kitti, "kitti"},
+    std::pair{TrajectoryFormat::tum, "tum"}, std::pair{TrajectoryFormat::kitti, "kitti"},
     std::pair{TrajectoryFormat::euroc, "euroc"}, std::pair{TrajectoryFormat::log, "log"},
-    std::pair{TrajectoryFormat::sens, "sens"},   std::pair{TrajectoryFormat::openvins, "openvins"}};
+    std::pair{TrajectoryFormat::openvins, "openvins"}};
 constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
 constexpr std::size_t kEurocColumns = 17;
@@ -30,7 +29,6 @@ constexpr std::size_t kOpenvinsColumns = 20;
 
 /// The format that the first row can only be. Of eight columns, an integer of nanoseconds is EuRoC's.
 Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
-  if (file.extension() == ".sens") return TrajectoryFormat::sens;
   std::ifstream stream(file);
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::string line;
@@ -142,25 +140,6 @@ Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std
   return poses;
 }
 
-/// Of the formats that have poses and nothing else.
-Result<Trajectory> read_poses(const std::filesystem::path& file, TrajectoryFormat format,
-                              trajectory::Duplicates duplicates, std::vector<std::string>& warnings) {
-  switch (format) {
-    case TrajectoryFormat::kitti:
-      return read_kitti(file, warnings);
-    case TrajectoryFormat::log:
-      return read_log_trajectory(file, warnings);
-    case TrajectoryFormat::euroc:
-      return read_euroc(file, duplicates, warnings);
-    case TrajectoryFormat::sens:
-      return exports::read_sens_trajectory(file);
-    case TrajectoryFormat::tum:
-    case TrajectoryFormat::openvins:
-      break;
-  }
-  return trajectory::read_tum_trajectory(file, warnings, duplicates);
-}
-
 }  // namespace
 
 std::string_view to_string(TrajectoryFormat format) {
@@ -172,7 +151,7 @@ Result<TrajectoryFormat> parse_trajectory_format(std::string_view text) {
     if (text == name) return format;
   }
   return fail(ErrorCode::usage, fmt::format("unknown trajectory format '{}'", text),
-              "formats are tum, kitti, euroc, log, sens and openvins");
+              "formats are tum, kitti, euroc, log and openvins");
 }
 
 Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
@@ -189,7 +168,11 @@ Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
     format = *found;
   }
   if (*format == TrajectoryFormat::openvins) return read_openvins(file, warnings);
-  Result<Trajectory> poses = read_poses(file, *format, duplicates, warnings);
+  Result<Trajectory> poses = *format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
+                             : *format == TrajectoryFormat::log ? read_log_trajectory(file, warnings)
+                             : *format == TrajectoryFormat::euroc
+                                 ? read_euroc(file, duplicates, warnings)
+                                 : trajectory::read_tum_trajectory(file, warnings, duplicates);
   if (!poses) return tl::unexpected(poses.error());
   return LoadedTrajectory{*format, std::move(*poses), {}};
 }

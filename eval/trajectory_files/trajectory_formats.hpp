@@ -18,7 +18,6 @@ enum class TrajectoryFormat {
   kitti,     ///< the upper 3x4 of a pose, row by row; no stamps, poses go by their number
   euroc,     ///< "timestamp[ns] px py pz qw qx qy qz", with or without velocity and biases (data.csv)
   log,       ///< Redwood's and Open3D's: the number of a frame, then its 4x4 pose (log_trajectory.hpp)
-  sens,      ///< the poses of a .sens file (datasets/exports/sens_file.hpp), as BundleFusion writes them
   openvins,  ///< tum, then the upper triangles of the covariances of orientation and position (ov_eval)
 };
 [[nodiscard]] std::string_view to_string(TrajectoryFormat format);  ///< "tum", "kitti", ...
@@ -40,11 +39,11 @@ struct LoadedTrajectory {
   [[nodiscard]] bool has_numbers() const { return format == TrajectoryFormat::log; }
 };
 
-/// Reads a trajectory. Without a format, the first row's columns tell it, or a name that ends in ".sens"; what
-/// cannot be read twice (a pipe) is taken for TUM text. Rotations are made unit and orthonormal; warnings say how far off they were, and
+/// Reads a trajectory. Without a format, the first row's columns tell it; what cannot be read twice (a pipe)
+/// is taken for TUM text. Rotations are made unit and orthonormal; warnings say how far off they were, and
 /// what ordered() did.
 ///
-/// Errors name file:line: data_missing; those of read_sens_trajectory(); data_corrupt for a row that is no pose, a matrix that is no rotation
+/// Errors name file:line: data_missing; data_corrupt for a row that is no pose, a matrix that is no rotation
 /// to a hundredth, those of ordered(), columns that fit no format, or (openvins) time that does not increase
 /// or a variance below zero.
 [[nodiscard]] Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,

@@ -96,7 +96,7 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
       ->expected(2, 3)
       ->required();
   verb.add_option("--format", options.format,
-                  "Format of both files: tum, kitti, euroc, log, sens or openvins; recognised if not given")
+                  "Format of both files: tum, kitti, euroc, log or openvins; recognised if not given")
       ->type_name("NAME");
   verb.add_option("--protocol", options.protocol,
                   "evo, tum, rpg, eth3d or kitti: sets the defaults of the options below")

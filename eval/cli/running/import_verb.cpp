@@ -75,7 +75,7 @@ console::Verb add_import_verb(CLI::App& app) {
       "Imports another system's trajectory and mesh as a run, evaluated like the runs of this program");
   verb->add_option("NAME", options->name, "The other system: the run's variant in tables and reports")
       ->required();
-  verb->add_option("TRAJECTORY", options->trajectory, "Its poses of the colour camera (--trajectory-format)")
+  verb->add_option("TRAJECTORY", options->trajectory, "Its poses of the colour camera (--trajectory-format), or NAME.sens")
       ->required();
   verb->add_option("MESH", options->mesh, "Its mesh in the world frame of these poses, .ply or .obj");
   verb->add_option("--recording", options->recording,
@@ -86,7 +86,7 @@ console::Verb add_import_verb(CLI::App& app) {
       ->type_name("DIR")
       ->required();
   verb->add_option("--trajectory-format", options->trajectory_format,
-                   "tum, kitti, euroc, log, sens or openvins; recognised if not given")
+                   "tum, kitti, euroc, log or openvins; recognised if not given, as is NAME.sens")
       ->type_name("NAME");
   verb->add_option("--imu", options->imu,
                    "Inertial data that it used: none, recorded or synthetic; labels its rows in tables")

@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/exports/sens_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -68,26 +67,6 @@ TEST_F(TrajectoryFormats, ColumnsTellTheFormat) {
 
   expect_refused("1 2 3 4\n", ":1: 4 columns are no trajectory");
   expect_refused("# nothing\n", "has no rows");
-}
-
-TEST_F(TrajectoryFormats, PosesOfASensFileAreKnownByItsName) {
-  exports::SensHeader header{"made", {2, 1, 500, 500, 0.5, 0}, {2, 1, 500, 500, 0.5, 0}};
-  header.frames = 1;
-  exports::SensFrame frame;
-  frame.T_world_camera = SE3{Quaterniond::Identity(), {0.25, 1, -2}};
-  frame.color_timestamp_us = 5000;
-  frame.color = "a JPEG";
-  frame.depth = Image<std::uint16_t>(2, 1, 1234);
-  const auto file = folder_.path() / "room.sens";
-  std::ofstream(file, std::ios::binary)
-      << exports::sens_bytes(header) << exports::sens_bytes(frame) << std::string(8, '\0');
-  const auto loaded = load_trajectory(file, {}, Duplicates::none, warnings_);
-  ASSERT_TRUE(loaded.has_value()) << loaded.error().message;
-  EXPECT_EQ(loaded->format, TrajectoryFormat::sens);
-  EXPECT_TRUE(loaded->has_stamps());
-  ASSERT_EQ(loaded->poses.size(), 1);
-  EXPECT_EQ(loaded->poses[0].timestamp_ns, 5'000'000);
-  EXPECT_EQ(loaded->poses[0].T_world_camera.translation, Vector3d(0.25, 1, -2));
 }
 
 TEST_F(TrajectoryFormats, MatricesBecomeRotationsOrAreRefused) {
