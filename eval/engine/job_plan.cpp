@@ -335,6 +335,9 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
   const auto recordings = recordings_of(suite, options);
   if (!recordings) return tl::unexpected(recordings.error());
   BatchPlan plan;
+  for (const auto& program : common.programs) {
+    if (!program->absent.empty()) plan.absent.push_back(program->name + ": " + program->absent);
+  }
   std::set<const suites::Exclusion*> met;
   for (const Planned& recording : *recordings) {
     std::vector<BatchJob> jobs;

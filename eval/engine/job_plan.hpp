@@ -49,7 +49,8 @@ struct ExcludedRun {
 struct BatchPlan {
   std::vector<BatchJob> jobs;
   std::vector<ExcludedRun> excluded;
-  std::vector<std::string> warnings;  ///< exclusions that meet no run
+  std::vector<std::string> warnings;     ///< exclusions that meet no run
+  std::vector<std::string> absent = {};  ///< "NAME: why" of each external program that cannot run here
 };
 
 /// By recording (those of the suite, then the simulated ones), window, repetition, variant as they are

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -78,8 +80,10 @@ Result<void> check_placeholders(const config::TomlEntry& entry, std::string_view
   for (std::size_t begin = argument.find('{'); begin != std::string_view::npos;
        begin = argument.find('{', begin + 1)) {
     const std::size_t end = argument.find('}', begin);
-    const std::string_view name =
-        argument.substr(begin + 1, end == std::string_view::npos ? end : end - begin - 1);
+    if (end == std::string_view::npos)
+      return fail(ErrorCode::configuration,
+                  fmt::format("{}: {}: '{}' has no '}}'", entry.place, entry.key, argument.substr(begin)));
+    const std::string_view name = argument.substr(begin + 1, end - begin - 1);
     if (std::ranges::find(kPlaceholders, name) != kPlaceholders.end()) continue;
     return fail(ErrorCode::configuration,
                 fmt::format("{}: {}: there is no placeholder {{{}}}", entry.place, entry.key, name),
@@ -119,8 +123,13 @@ Result<void> store(Result<Target> value, Target& target) {
 }
 
 Result<void> read_trajectory_entry(const config::TomlEntry& entry, std::string_view key,
-                                   ProgramTrajectory& trajectory) {
-  if (key == "file") return store(output_file(entry), trajectory.file);
+                                   SystemTrajectory& trajectory) {
+  if (key == "file") {
+    auto file = output_file(entry);
+    if (!file) return tl::unexpected(file.error());
+    trajectory.file = std::move(*file);
+    return {};
+  }
   if (key == "unit") return store(one_of<double>(entry, {{"m", 1.0}, {"mm", 1e-3}}), trajectory.unit_m);
   if (key == "pose")
     return store(one_of<bool>(entry, {{"camera_to_world", false}, {"world_to_camera", true}}),
@@ -154,7 +163,9 @@ Result<void> read_input(const config::TomlEntry& entry, ExternalProgram& program
   if (!name) return tl::unexpected(name.error());
   if (*name == "none") return {};
   const auto format = exports::parse_export_format(*name);
-  if (!format) return config::wrong_value(entry, "none or a format of exports: " + format.error().hint);
+  if (!format)
+    return config::wrong_value(entry,
+                               fmt::format("none, {}", fmt::join(exports::export_format_names(), ", ")));
   program.input = *format;
   return {};
 }
@@ -236,7 +247,7 @@ void ask_version(ExternalProgram& program) {
     program.absent = end.error().message;
   } else if (!end->succeeded) {
     const std::string said = end->output.substr(0, end->output.find_last_not_of('\n') + 1);
-    program.absent = fmt::format("its version cannot be asked: {} ({})", fmt::join(command, " "),
+    program.absent = fmt::format("its version cannot be asked: {} ({})", fmt::join(asked, " "),
                                  said.empty() ? end->how : said.substr(said.rfind('\n') + 1));
   } else {
     program.version = end->output.substr(0, end->output.find('\n'));
@@ -292,6 +303,8 @@ Result<ExternalProgram> read_external_program(const fs::path& file) {
   }
   std::error_code ignored;
   program.file = fs::absolute(file, ignored);
+  std::ifstream stream(file, std::ios::binary);
+  program.definition.assign(std::istreambuf_iterator<char>(stream), {});
   return program;
 }
 

@@ -10,19 +10,10 @@
 
 #include "core/base/error.hpp"
 #include "datasets/exports/export_recording.hpp"
+#include "eval/external/system_trajectory.hpp"
 #include "eval/process/program_run.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::external {
-
-/// Where a program leaves its poses, below {output}.
-struct ProgramTrajectory {
-  std::string file;
-  std::optional<trajectory_files::TrajectoryFormat> format;  ///< nothing: the first row tells it
-  double unit_m = 1;
-  bool world_to_camera = false;  ///< the inverse of the pose of the camera
-  bool online = false;           ///< poses as they were when each frame came; else those of the end
-};
 
 /// Where it leaves its mesh or cloud of points, below {output}; empty: it has none.
 struct ProgramMesh {
@@ -59,9 +50,10 @@ struct ExternalProgram {
   bool deterministic = false;
   int repetitions = 1;
   process::ProgramLimits limits{3600, 0};
-  ProgramTrajectory trajectory;
+  SystemTrajectory trajectory;
   ProgramMesh mesh;
   std::filesystem::path file;  ///< that all of this is from; absolute
+  std::string definition;      ///< its text
   std::vector<std::string> version_command;
   // What find_installed() finds:
   std::string version;  ///< what it says of itself; empty if it cannot be asked

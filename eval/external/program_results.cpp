@@ -7,10 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/trajectory/association.hpp"
 #include "eval/external/foreign_mesh.hpp"
 #include "eval/external/system_trajectory.hpp"
-#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::external {
 
@@ -54,50 +52,13 @@ Result<Placeholders> prepare_input(const ExternalProgram& program, const recordi
                       {"seed", std::to_string(place.seed)}};
 }
 
-Result<trajectory_files::LoadedTrajectory> load_poses(const ProgramTrajectory& trajectory,
-                                                      const fs::path& file, std::vector<std::string>& notes) {
-  auto loaded = load_system_trajectory(file, trajectory.format, notes);
-  if (!loaded) return loaded;
-  for (StampedPose& pose : loaded->poses) {
-    pose.T_world_camera.translation *= trajectory.unit_m;
-    if (trajectory.world_to_camera) pose.T_world_camera = pose.T_world_camera.inverse();
-  }
-  return loaded;
-}
-
-double extent_m(const Trajectory& poses) {
-  Eigen::AlignedBox3d box;
-  for (const StampedPose& pose : poses) box.extend(pose.T_world_camera.translation);
-  return box.isEmpty() ? 0 : box.diagonal().norm();
-}
-
-/// Poses in another unit are mistaken for bad ones; a factor of a hundred is no bad tracking.
-Result<void> check_scale(const Trajectory& poses, const recording::Recording& recording,
-                         const std::string& file) {
-  constexpr double kFactor = 100;
-  Trajectory truth;
-  for (const StampedPose& pose : recording.ground_truth) {
-    if (pose.timestamp_ns >= poses.front().timestamp_ns && pose.timestamp_ns <= poses.back().timestamp_ns)
-      truth.push_back(pose);
-  }
-  const double is_m = extent_m(poses), should_be_m = extent_m(truth);
-  if (!(should_be_m > 0) || (is_m <= kFactor * should_be_m)) return {};
-  return fail(
-      ErrorCode::data_corrupt,
-      fmt::format("{}: the poses extend over {:.3g} m, and the truth over {:.3g} m: is the unit right?", file,
-                  is_m, should_be_m));
-}
-
 /// Nothing, or why the poses cannot be used.
 Result<void> read_poses(const ExternalProgram& program, const recording::Recording& recording,
                         const fs::path& output, ProgramResults& results) {
-  auto loaded = load_poses(program.trajectory, output / program.trajectory.file, results.notes);
-  if (!loaded) return tl::unexpected(loaded.error());
-  auto frames = poses_of_frames(std::move(*loaded), recording);
-  if (!frames)
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{}: {}", program.trajectory.file, frames.error().message));
-  if (auto checked = check_scale(frames->poses, recording, program.trajectory.file); !checked) return checked;
+  SystemTrajectory trajectory = program.trajectory;
+  trajectory.file = output / trajectory.file;
+  auto frames = read_system_trajectory(trajectory, recording, results.notes);
+  if (!frames) return tl::unexpected(frames.error());
   results.frames = std::move(*frames);
   return {};
 }
@@ -116,6 +77,20 @@ std::string without_folder(std::string text, const fs::path& folder) {
   for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at))
     text.erase(at, prefix.size());
   return text;
+}
+
+/// How a program ended that did not succeed, with the last line that it printed.
+std::string reason_of(const ExternalProgram& program, const process::ProgramEnd& end) {
+  std::string reason = fmt::format("{}: {}", program.command.front(), end.how);
+  constexpr double kNearLimit = 0.5;  // what a program could not get, it did not use
+  if (program.limits.memory_bytes > 0 &&
+      static_cast<double>(end.peak_rss_bytes) > kNearLimit * static_cast<double>(program.limits.memory_bytes))
+    reason += fmt::format(" (memory_mb = {:g} is its limit)",
+                          static_cast<double>(program.limits.memory_bytes) / 1e6);
+  const std::string_view printed =
+      std::string_view(end.output).substr(0, end.output.find_last_not_of(" \r\n") + 1);  // of npos: 0
+  if (!printed.empty()) reason += fmt::format(": {}", printed.substr(printed.rfind('\n') + 1));
+  return reason;
 }
 
 }  // namespace
@@ -137,13 +112,14 @@ Result<ProgramResults> run_external_program(const ExternalProgram& program,
   if (!end) return tl::unexpected(end.error());
   results.end = std::move(*end);
   if (!results.end.succeeded) {
-    results.reason = fmt::format("{}: {}", program.command.front(), results.end.how);
+    results.reason = reason_of(program, results.end);
     return results;
   }
   if (auto read = read_poses(program, recording, output, results); !read) {
     results.reason = without_folder(read.error().message, output);
   } else if (auto mesh = read_mesh(program.mesh, output, results); !mesh) {
-    results.notes.push_back("warning: " + without_folder(mesh.error().message, output));
+    // A promise of the definition that is not kept: not the same as a system without a surface.
+    results.reason = without_folder(mesh.error().message, output);
   }
   for (std::string& note : results.notes) note = without_folder(std::move(note), output);
   return results;

@@ -1,19 +1,72 @@
 #include "eval/external/system_trajectory.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "datasets/exports/sens_file.hpp"
 
 namespace fusebench::external {
 
-Result<trajectory_files::LoadedTrajectory> load_system_trajectory(
-    const std::filesystem::path& file, std::optional<trajectory_files::TrajectoryFormat> format,
-    std::vector<std::string>& warnings) {
-  if (format || file.extension() != ".sens")
-    return trajectory_files::load_trajectory(file, format, trajectory::Duplicates::rare_last, warnings);
-  auto poses = exports::read_sens_trajectory(file);
+namespace {
+
+Result<trajectory_files::LoadedTrajectory> load(const SystemTrajectory& trajectory,
+                                                std::vector<std::string>& warnings) {
+  if (trajectory.format || trajectory.file.extension() != ".sens")
+    return trajectory_files::load_trajectory(trajectory.file, trajectory.format,
+                                             trajectory::Duplicates::rare_last, warnings);
+  auto poses = exports::read_sens_trajectory(trajectory.file);
   if (!poses) return tl::unexpected(poses.error());
   return trajectory_files::LoadedTrajectory{trajectory_files::TrajectoryFormat::tum, std::move(*poses), {}};
+}
+
+double extent_m(const Trajectory& poses) {
+  Eigen::AlignedBox3d box;
+  for (const StampedPose& pose : poses) box.extend(pose.T_world_camera.translation);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// Poses in another unit are mistaken for bad ones; a factor of a hundred is no bad tracking. Of poses that
+/// are too near to each other it may be.
+Result<void> check_scale(const Trajectory& poses, const recording::Recording& recording,
+                         const std::string& file, std::vector<std::string>& warnings) {
+  constexpr double kFactor = 100;
+  Trajectory truth;
+  for (const StampedPose& pose : recording.ground_truth) {
+    if (pose.timestamp_ns >= poses.front().timestamp_ns && pose.timestamp_ns <= poses.back().timestamp_ns)
+      truth.push_back(pose);
+  }
+  const double is_m = extent_m(poses), should_be_m = extent_m(truth);
+  if (!(should_be_m > 0)) return {};
+  const std::string extents =
+      fmt::format("{}: the poses extend over {:.3g} m, and the truth over {:.3g} m", file, is_m, should_be_m);
+  if (is_m > kFactor * should_be_m)
+    return fail(ErrorCode::data_corrupt, extents + ": is the unit of the trajectory right (m or mm)?",
+                "`unit` in [trajectory] of a system, or `import --unit`, says it");
+  if (is_m > 0 && kFactor * is_m < should_be_m)
+    warnings.push_back(extents + ": is the unit of the trajectory right (m or mm)?");
+  return {};
+}
+
+}  // namespace
+
+Result<FramePoses> read_system_trajectory(const SystemTrajectory& trajectory,
+                                          const recording::Recording& recording,
+                                          std::vector<std::string>& warnings) {
+  auto loaded = load(trajectory, warnings);
+  if (!loaded) return tl::unexpected(loaded.error());
+  for (StampedPose& pose : loaded->poses) {
+    pose.T_world_camera.translation *= trajectory.unit_m;
+    if (trajectory.world_to_camera) pose.T_world_camera = pose.T_world_camera.inverse();
+  }
+  auto frames = poses_of_frames(std::move(*loaded), recording);
+  if (!frames)
+    return fail(frames.error().code, fmt::format("{}: {}", trajectory.file.string(), frames.error().message),
+                frames.error().hint);
+  if (auto checked = check_scale(frames->poses, recording, trajectory.file.string(), warnings); !checked)
+    return tl::unexpected(checked.error());
+  return frames;
 }
 
 }  // namespace fusebench::external

@@ -164,6 +164,8 @@ RunRecord record_of(const Json& json) {
   read(json.at("recording"), record.recording);
   record.variant = json.at("variant");
   record.poses = pose_kind_of(json.value("poses", "online"));  // older records do not say it
+  if (const auto program = json.find("program"); program != json.end())
+    record.program = {program->at("definition"), program->at("version"), program->at("seed")};
   record.config = config_of(json.at("config"));
   record.config_hash = json.at("config_hash");
   read_metrics(json.at("metrics"), record.metrics);
@@ -218,7 +220,7 @@ std::optional<PoseKind> parse_pose_kind(std::string_view text) {
 }
 
 std::string to_json(const RunRecord& record) {
-  const Json json = {
+  Json json = {
       {"schema", record.schema},
       {"status", to_string(record.status)},
       {"reason", record.reason},
@@ -240,6 +242,11 @@ std::string to_json(const RunRecord& record) {
       {"config", json_of(record.config)},
       {"timing", json_of(record.timing)},
       {"provenance", json_of(record.provenance)}};
+  if (record.program) {
+    json["program"] = {{"definition", record.program->definition},
+                       {"version", record.program->version},
+                       {"seed", record.program->seed}};
+  }
   return text::json_text(json) + "\n";
 }
 

@@ -66,6 +66,13 @@ struct RecordedOption {
   std::string origin;
 };
 
+/// A program from outside, as it was called.
+struct RecordedProgram {
+  std::string definition;  ///< the text of its file
+  std::string version;     ///< what it says of itself; empty if it cannot be asked
+  int seed = 1;
+};
+
 struct RecordedRecording {
   std::string name;
   std::string format;
@@ -188,9 +195,10 @@ struct RunRecord {
   int repetition = 1;  ///< of the same run, for its time
   RecordedRecording recording;
   std::string variant;
+  std::optional<RecordedProgram> program;  ///< that ran in place of a variant
   PoseKind poses = PoseKind::online;
-  std::vector<RecordedOption> config;  ///< every option, in declaration order
-  std::string config_hash;
+  std::vector<RecordedOption> config;  ///< every option, in declaration order; of a program the evaluation's
+  std::string config_hash;             ///< of the configuration; the identity of a program
   RecordedMetrics metrics;
   RecordedFrames frames;
   RecordedModel model;

@@ -199,7 +199,7 @@ page::PageDetails configuration_of(const run_files::FoundRun& run, Group group) 
       fmt::format("{}: configuration {} and provenance", label_of(run, group), r.config_hash), {}};
   details.table.header = {"key", "value", "from"};
   const record::RecordedProvenance& p = r.provenance;
-  const bool imported = r.timing.stages_ms.empty();  // then it ran elsewhere, and was evaluated here
+  const bool imported = r.timing.stages_ms.empty() && !r.program;  // it ran elsewhere, and was evaluated here
   const auto add = [&](const char* key, std::string value) {
     details.table.rows.push_back({{key, std::move(value), imported ? "the import" : "the run"}, ""});
   };
@@ -213,6 +213,11 @@ page::PageDetails configuration_of(const run_files::FoundRun& run, Group group) 
   if (!imported) {
     add("peak memory", fmt::format("{:.0f} MB", static_cast<double>(r.timing.peak_rss_bytes) / 1e6));
     add("wall and CPU time", fmt::format("{:.1f} s, {:.1f} s", r.timing.wall_s, r.timing.cpu_s));
+  }
+  if (r.program) {
+    add("program's version", r.program->version);
+    add("program's seed", fmt::format("{}", r.program->seed));
+    add("program's definition", r.program->definition);
   }
   for (const record::RecordedOption& option : r.config)
     details.table.rows.push_back({{option.key, value_text(option.value), option.origin}, ""});

@@ -54,10 +54,11 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
   series.run = &run;
   series.label = std::move(label);
   std::error_code ignored;
-  const bool imported = run.record.config.empty() && !fs::exists(run.folder / "frames.csv", ignored);
+  const bool foreign = (run.record.config.empty() || run.record.program.has_value()) &&
+                       !fs::exists(run.folder / "frames.csv", ignored);
   Result<std::vector<run_files::FrameTableRow>> frames =
-      imported ? std::vector<run_files::FrameTableRow>()
-               : run_files::read_frame_table(run.folder / "frames.csv");
+      foreign ? std::vector<run_files::FrameTableRow>()
+              : run_files::read_frame_table(run.folder / "frames.csv");
   if (frames) {
     series.frames = std::move(*frames);
   } else {

@@ -16,6 +16,7 @@
 #include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
+#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::run {
 
@@ -47,16 +48,18 @@ Result<recording::Recording> open(const ImportSpec& spec) {
   return recording;
 }
 
-Result<std::string> hash_of(const ImportSpec& spec, trajectory_files::TrajectoryFormat format,
-                            const recording::Recording& recording) {
+Result<std::string> hash_of(const ImportSpec& spec, const recording::Recording& recording) {
   io::Fingerprint identity;
-  for (const auto& file : {spec.trajectory, spec.mesh}) {
+  for (const auto& file : {spec.trajectory.file, spec.mesh}) {
     if (file.empty()) continue;
     if (auto added = identity.add_file(file); !added) return tl::unexpected(added.error());
   }
   identity.add(recording.fingerprint);
   identity.add(spec.imu);
-  identity.add(trajectory_files::to_string(format));
+  const external::SystemTrajectory& poses = spec.trajectory;
+  identity.add(fmt::format("{} {} {} {}",
+                           poses.format ? trajectory_files::to_string(*poses.format) : "recognised",
+                           poses.unit_m, poses.world_to_camera, poses.online));
   const PinholeCamera& camera = recording.rig.camera;
   identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
                            camera.cx_px, camera.cy_px));
@@ -81,16 +84,13 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   const auto recording = open(spec);
   if (!recording) return tl::unexpected(recording.error());
   ImportedRun run;
-  auto loaded = external::load_system_trajectory(spec.trajectory, spec.format, run.warnings);
-  if (!loaded) return tl::unexpected(loaded.error());
-  const trajectory_files::TrajectoryFormat format = loaded->format;
-  const auto owned = external::poses_of_frames(std::move(*loaded), *recording);
+  const auto owned = external::read_system_trajectory(spec.trajectory, *recording, run.warnings);
   if (!owned) return tl::unexpected(owned.error());
-  const auto hash = hash_of(spec, format, *recording);
+  const auto hash = hash_of(spec, *recording);
   if (!hash) return tl::unexpected(hash.error());
   RunOutput output = foreign_output(*owned, {});
   if (!spec.mesh.empty()) {
-    auto mesh = external::read_foreign_mesh(spec.mesh);
+    auto mesh = external::read_foreign_mesh(spec.mesh, spec.mesh_unit_m);
     if (!mesh) return tl::unexpected(mesh.error());
     output.mesh = std::move(*mesh);
   }
@@ -103,6 +103,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.recording.imu = spec.imu;
   record.recording.imu_note = "";
   record.variant = spec.name;
+  record.poses = spec.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   record.config_hash = *hash;
   describe_foreign_output(output, *recording, record);
   record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "datasets/open_recording.hpp"
+#include "eval/external/system_trajectory.hpp"
 #include "eval/record/record.hpp"
 #include "eval/run/run.hpp"
-#include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::run {
 
 struct ImportSpec {
-  std::string name;                  ///< of the other system: the run's variant
-  std::filesystem::path trajectory;  ///< its poses of the colour camera
-  std::optional<trajectory_files::TrajectoryFormat> format;
-  std::filesystem::path mesh;  ///< PLY or OBJ, in the world of these poses; may be empty
+  std::string name;                       ///< of the other system: the run's variant
+  external::SystemTrajectory trajectory;  ///< its poses of the colour camera
+  std::filesystem::path mesh;             ///< PLY or OBJ, in the world of these poses; may be empty
+  double mesh_unit_m = 1;
   std::filesystem::path recording;
   datasets::OpenOptions open;
   std::optional<FrameWindow> frames;
@@ -37,7 +37,7 @@ struct ImportedRun {
 /// without stamps (KITTI) must be as many as the frames.
 ///
 /// Errors: usage for a name that is a variant of ours or no name of a folder; those of open_recording,
-/// load_trajectory and read_mesh; data_corrupt for poses that belong to no frame; io.
+/// external::read_system_trajectory() and read_foreign_mesh(); io.
 [[nodiscard]] Result<ImportedRun> import_run(const ImportSpec& spec);
 
 }  // namespace fusebench::run

@@ -65,11 +65,14 @@ record::RunRecord requested_record(const PreparedRun& run) {
                                                 run.spec.frames ? run.spec.frames->begin : 0);
   record.variant = run.spec.variant;
   for (const config::OptionRow& row : config::describe_options(run.spec.config.values)) {
+    if (run.spec.program && !row.key.starts_with("evaluation.")) continue;
     record.config.push_back(
         {row.key, config::parse_option_value(row.value), run.spec.config.origin(row.key)});
   }
   record.config_hash =
       run.spec.program ? run.spec.program->identity : config::config_hash(run.spec.config.values);
+  if (run.spec.program)
+    record.program = {run.spec.program->definition, run.spec.program->version, run.spec.repetition};
   record.run_id = run.run_id;
   record.repetition = run.spec.repetition;
   record.provenance = record::provenance_here(run.spec.threads);

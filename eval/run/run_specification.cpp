@@ -22,6 +22,11 @@ Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
   if (spec.imu == ImuChoice::synthetic || (spec.imu == ImuChoice::automatic && !recorded))
     return synthetic_imu::add_synthetic_imu(recording);
   if (recorded) return {};
+  if (spec.program)
+    return fail(ErrorCode::usage,
+                fmt::format("{}: imu = \"recorded\", and recording '{}' has no inertial samples",
+                            spec.program->file.string(), recording.name),
+                "--imu synthetic makes some from the ground truth and says so in every table");
   return fail(
       ErrorCode::usage,
       fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),

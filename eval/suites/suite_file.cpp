@@ -175,7 +175,8 @@ Result<void> check_suite(const Suite& suite, const std::string& file) {
     return fail(ErrorCode::configuration, fmt::format("{}: {}", file, what));
   };
   if (suite.name.empty()) return lacks("the key 'name' is missing");
-  if (suite.variants.empty()) return lacks("the key 'variants' is missing");
+  if (suite.variants.empty() && suite.systems.empty())
+    return lacks("the key 'variants' is missing, or 'systems' for external programs alone");
   const bool simulates = !suite.simulations.empty();
   if (suite.all ? !suite.recordings.empty() : suite.recordings.empty() && !simulates)
     return lacks("either 'recordings' or 'all = true' is needed, or [[simulations]]");

@@ -83,7 +83,51 @@ std::optional<MedianRange> median_range(std::vector<double> values) {
   return MedianRange{median, values.front(), values.back()};
 }
 
-SystemRow row_of(const std::vector<const run_files::FoundRun*>& runs) {
+/// Runs of one system, in one version, over the same frames.
+using RunGroup = std::vector<const run_files::FoundRun*>;
+
+bool same_frames(const record::RunRecord& a, const record::RunRecord& b) {
+  return a.recording.first_frame == b.recording.first_frame && a.recording.frames == b.recording.frames;
+}
+/// As far as a row names it.
+bool same_name(const record::RunRecord& a, const record::RunRecord& b) {
+  return a.recording.name == b.recording.name && a.variant == b.variant && a.recording.imu == b.recording.imu;
+}
+
+std::vector<RunGroup> groups_of(const std::vector<run_files::FoundRun>& runs) {
+  std::vector<RunGroup> groups;
+  for (const run_files::FoundRun& run : runs) {
+    const auto same = [&](const RunGroup& group) {
+      const record::RunRecord& first = group.front()->record;
+      return same_name(first, run.record) && same_frames(first, run.record) &&
+             first.config_hash == run.record.config_hash;
+    };
+    auto group = std::ranges::find_if(groups, same);
+    if (group == groups.end()) group = groups.insert(groups.end(), RunGroup{});
+    group->push_back(&run);
+  }
+  return groups;
+}
+
+/// Rows of one name are of different frames, or of different versions or configurations.
+std::string what_tells_apart(const std::vector<RunGroup>& groups, std::size_t row) {
+  const record::RunRecord& here = groups[row].front()->record;
+  bool by_frames = false, by_version = false;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const record::RunRecord& other = groups[i].front()->record;
+    if (i == row || !same_name(here, other)) continue;
+    by_frames |= !same_frames(here, other);
+    by_version |= here.config_hash != other.config_hash;
+  }
+  std::string text;
+  if (by_version) text += " #" + here.config_hash.substr(0, 8);
+  if (by_frames)
+    text += fmt::format(" [{}:{}]", here.recording.first_frame,
+                        here.recording.first_frame + here.recording.frames);
+  return text;
+}
+
+SystemRow row_of(const RunGroup& runs) {
   const record::RunRecord& first = runs.front()->record;
   SystemRow row;
   row.recording = first.recording.name;
@@ -217,19 +261,10 @@ std::string markdown(const SystemsTable& table) {
 
 SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& runs) {
   SystemsTable table;
-  std::vector<std::vector<const run_files::FoundRun*>> groups;
-  for (const run_files::FoundRun& run : runs) {
-    const auto same = [&](const auto& group) {
-      const record::RunRecord& first = group.front()->record;
-      return first.recording.name == run.record.recording.name && first.variant == run.record.variant &&
-             first.recording.imu == run.record.recording.imu && first.config_hash == run.record.config_hash;
-    };
-    auto group = std::ranges::find_if(groups, same);
-    if (group == groups.end()) group = groups.insert(groups.end(), std::vector<const run_files::FoundRun*>{});
-    group->push_back(&run);
-  }
+  const std::vector<RunGroup> groups = groups_of(runs);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     table.rows.push_back(row_of(groups[i]));
+    table.rows.back().system += what_tells_apart(groups, i);
     const std::string& recording = table.rows.back().recording;
     const bool last = i + 1 == groups.size() || groups[i + 1].front()->record.recording.name != recording;
     if (!last) continue;
@@ -238,7 +273,9 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& runs) {
   table.footer = {
       "Medians over the runs of a system with their ranges; one number where all are the same. Poses: online "
       "as each was known when its frame came, final as all were known at the end; published: numbers from "
-      "elsewhere (see configs/paper), by protocols of their own, and not run here.",
+      "elsewhere (see configs/paper), by protocols of their own, and not run here. #: version of a program "
+      "or "
+      "configuration of a variant; [A:B]: frames, where rows of one system differ in them.",
       "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
       "lost. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true surface. "
       "Silent: frames with a wrong pose. CPU: user and system time of all threads by the frames of the "

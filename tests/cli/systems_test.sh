@@ -37,6 +37,7 @@ case $2 in
     printf '0 0 1\n1 0 1\n0 1 1\n' >>mesh.ply ;;
   hang) sleep 1000 ;;
   die) echo "assertion failed in mapping"; exit 42 ;;
+  loud) echo begin; echo "the reason is this"; exit 3 ;;
   crash) kill -SEGV $$ ;;
   none) true ;;
   half) still "$1" | head -c 130 >poses.txt ;;
@@ -101,6 +102,10 @@ row units 4 'poses.txt: the poses extend over .* unit'
 definition mirror mirror
 sed -i 's/file = "poses.txt"/file = "poses.txt"\nformat = "kitti"/' mirror.toml
 row mirror 4 'poses.txt:1: .*no rotation'
+definition promised truth '[mesh]' 'file = "mesh.ply"'
+row promised 4 'mesh.ply: cannot'
+definition loud loud
+row loud 4 'sh: exit code 3: the reason is this'
 definition absent good
 sed -i 's/"--version"/"--no-such-word", "nothing"/; s/"sh", "{folder}\/mine.sh", "--no/"no-such-program", "--no/' absent.toml
 
@@ -124,6 +129,7 @@ checks=$((checks + 1))
 "$binary" bench suite.toml --out suite_runs -j 2 >stdout 2>stderr
 status=$?
 if ((status != 4)); then complain "suite: exit code $status instead of 4"; fi
+if ! grep -q 'left out: absent: .*no-such-program' stderr; then complain 'what cannot run here is not said'; fi
 "$binary" bench suite.toml --out suite_runs -j 2 >stdout 2>stderr
 for run in infinitam good drawing 'drawing repetition 5'; do
   if ! grep -q "$run: (was there)" stderr; then complain "$run: a finished run is repeated"; fi
@@ -132,6 +138,17 @@ done
 if ! grep -q 'no-such-program' stdout; then complain 'what is not installed is not said'; cat stdout >&2; fi
 "$binary" bench suite.toml --out suite_runs --dry-run --only variant=infinitam >stdout 2>stderr
 if grep -q 'no-such-program' stdout stderr; then complain 'a program that is left out is asked for its version'; fi
+printf 'name = "alone"\nrecordings = ["freiburg1_copy"]\nsystems = ["good.toml"]\n' >alone.toml
+if ! "$binary" bench alone.toml --out alone_runs >stdout 2>stderr; then complain 'a suite of a system alone does not run'; cat stderr >&2; fi
+printf '# another version\n' >>good.toml
+"$binary" bench alone.toml --out alone_runs >stdout 2>stderr
+"$binary" table alone_runs --systems >stdout 2>stderr
+if (($(grep -c 'good #' stdout) != 2)); then complain 'two versions of a program are one row'; cat stdout >&2; fi
+if grep -q 'frames.csv' <("$binary" report alone_runs --out alone.html 2>&1); then complain 'the report misses frames.csv of a program'; fi
+if ! grep -q 'another version' alone.html; then complain 'the report does not show the definition'; fi
+for option in --profile '--set=iekf.max_iterations=3'; do
+  if "$binary" run freiburg1_copy --system good.toml --out runs $option >stdout 2>stderr; then complain "$option is taken and does nothing"; fi
+done
 "$binary" table suite_runs --systems >stdout 2>stderr
 for pattern in 'drawing.*5/5 ok' 'die.*0/1 ok' 'infinitam.*1/1 ok' 'exit code 42'; do
   if ! grep -qE "$pattern" stdout; then complain "the table has nothing like '$pattern'"; cat stdout >&2; fi

@@ -21,6 +21,9 @@ struct ImportOptions {
   std::filesystem::path trajectory;
   std::filesystem::path mesh;
   std::string trajectory_format;
+  std::string unit = "m";
+  std::string pose = "camera_to_world";
+  std::string poses = "final";
   std::string recording;
   std::filesystem::path data;
   std::filesystem::path out;
@@ -33,12 +36,16 @@ struct ImportOptions {
 Result<run::ImportSpec> spec_of(const ImportOptions& options) {
   run::ImportSpec spec;
   spec.name = options.name;
-  spec.trajectory = options.trajectory;
+  spec.trajectory.file = options.trajectory;
+  spec.trajectory.unit_m = options.unit == "mm" ? 1e-3 : 1;
+  spec.trajectory.world_to_camera = options.pose == "world_to_camera";
+  spec.trajectory.online = options.poses == "online";
   spec.mesh = options.mesh;
+  spec.mesh_unit_m = spec.trajectory.unit_m;
   if (!options.trajectory_format.empty()) {
     const auto format = trajectory_files::parse_trajectory_format(options.trajectory_format);
     if (!format) return tl::unexpected(format.error());
-    spec.format = *format;
+    spec.trajectory.format = *format;
   }
   const auto folder = suites::find_recording(options.recording, options.data);
   if (!folder) return tl::unexpected(folder.error());
@@ -75,7 +82,8 @@ console::Verb add_import_verb(CLI::App& app) {
       "Imports another system's trajectory and mesh as a run, evaluated like the runs of this program");
   verb->add_option("NAME", options->name, "The other system: the run's variant in tables and reports")
       ->required();
-  verb->add_option("TRAJECTORY", options->trajectory, "Its poses of the colour camera (--trajectory-format), or NAME.sens")
+  verb->add_option("TRAJECTORY", options->trajectory,
+                   "Its poses of the colour camera (--trajectory-format), or NAME.sens")
       ->required();
   verb->add_option("MESH", options->mesh, "Its mesh in the world frame of these poses, .ply or .obj");
   verb->add_option("--recording", options->recording,
@@ -88,6 +96,17 @@ console::Verb add_import_verb(CLI::App& app) {
   verb->add_option("--trajectory-format", options->trajectory_format,
                    "tum, kitti, euroc, log or openvins; recognised if not given, as is NAME.sens")
       ->type_name("NAME");
+  verb->add_option("--unit", options->unit, "Unit of its positions and of its mesh")
+      ->check(CLI::IsMember({"m", "mm"}))
+      ->capture_default_str();
+  verb->add_option("--pose", options->pose, "What its poses map: the camera to the world, or the inverse")
+      ->check(CLI::IsMember({"camera_to_world", "world_to_camera"}))
+      ->capture_default_str();
+  verb->add_option("--poses", options->poses,
+                   "online: as each was known when its frame came; final: as all were known at the end. A "
+                   "label in tables")
+      ->check(CLI::IsMember({"online", "final"}))
+      ->capture_default_str();
   verb->add_option("--imu", options->imu,
                    "Inertial data that it used: none, recorded or synthetic; labels its rows in tables")
       ->check(CLI::IsMember({"none", "recorded", "synthetic"}));

@@ -24,15 +24,31 @@ struct RunOptions {
   bool json = false;
 };
 
+/// What would do nothing is refused: a program has no options and no profile of ours.
+Result<void> check_options(const RunOptions& options) {
+  const auto useless = [](const std::string& option, std::string_view why) {
+    return fail(ErrorCode::usage, fmt::format("{} does nothing with --system: {}", option, why));
+  };
+  if (options.profile) return useless("--profile", "an external program's stages are not known");
+  for (const std::string& set : options.request.sets) {
+    if (!set.starts_with("evaluation."))
+      return useless("--set " + set, "only evaluation.* counts; its own options belong into its command");
+  }
+  return {};
+}
+
 /// Puts an external program in place of the variant.
-Result<void> take_program(const std::filesystem::path& file, run::RunSpec& spec) {
-  if (file.empty()) return {};
-  auto program = external::read_external_program(file);
+Result<void> take_program(const RunOptions& options, run::RunSpec& spec) {
+  if (options.system.empty()) return {};
+  auto program = external::read_external_program(options.system);
   if (!program) return tl::unexpected(program.error());
+  if (auto sensible = check_options(options); !sensible) return sensible;
   if (auto found = external::find_installed(*program); !found) return found;
   if (!program->absent.empty())
-    return fail(ErrorCode::usage, fmt::format("{} cannot run here: {}", program->name, program->absent),
-                "install it, or change the command in its file");
+    return fail(
+        ErrorCode::usage,
+        fmt::format("{}: {} cannot run here: {}", options.system.string(), program->name, program->absent),
+        "install it, or change `command` or `version` in that file");
   spec.variant = program->name;
   spec.program = std::make_shared<const external::ExternalProgram>(std::move(*program));
   return {};
@@ -43,7 +59,7 @@ Result<int> run(const RunOptions& options) {
   if (!spec) return tl::unexpected(spec.error());
   spec->out = options.out;
   spec->repetition = options.repetition;
-  if (auto taken = take_program(options.system, *spec); !taken) return tl::unexpected(taken.error());
+  if (auto taken = take_program(options, *spec); !taken) return tl::unexpected(taken.error());
   spec->profile = options.profile;
   const auto prepared = run::prepare_run(std::move(*spec));
   if (!prepared) return tl::unexpected(prepared.error());

@@ -82,7 +82,7 @@ TEST_F(ExternalProgramFile, RefusesWhatItDoesNotKnowByFileAndLine) {
   testing::expect_contains(refused("name = \"mine\"\ncommand = \"sh\"\n"), "a list of texts");
   testing::expect_contains(refused(kLeast + "unit = \"cm\"\n"), "m or mm");
   testing::expect_contains(refused(kLeast + "format = \"tmu\"\n"), "formats are tum, kitti");
-  testing::expect_contains(refused("export = \"rosbag\"\n" + kLeast), "none or a format of exports");
+  testing::expect_contains(refused("export = \"rosbag\"\n" + kLeast), "export must be none, tum, infinitam");
   testing::expect_contains(refused("name = \"mine\"\n[trajectory]\nfile = \"../p\"\n"),
                            "a path below {output}");
   testing::expect_contains(refused("name = \"mine\"\n"), "a system needs command");
