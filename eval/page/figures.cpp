@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <thread>
@@ -31,13 +33,48 @@ std::string gnuplot_text(std::string_view text) {
   return result + "\"";
 }
 
+/// As wide as a column of a two-column paper (8.5 cm), with letters of 8 points there.
 std::string terminal(FigureFormat format, bool equal) {
-  const char* const size = equal ? "12cm,11cm" : "14cm,8cm";
   if (format == FigureFormat::pdf)
-    return fmt::format("set terminal pdfcairo noenhanced size {} font \"Helvetica,10\"\n", size);
+    return fmt::format("set terminal pdfcairo noenhanced size 8.5cm,{}cm font \"Helvetica,8\"\n",
+                       equal ? 7.5 : 5.2);
   return fmt::format(
-      "set terminal svg noenhanced size {} dynamic font \"Helvetica,12\" background '#ffffff'\n",
-      equal ? "480,440" : "560,320");
+      "set terminal svg noenhanced size 340,{} dynamic font \"Helvetica,11\" background '#ffffff'\n",
+      equal ? 300 : 210);
+}
+
+/// The range of an axis, and of both the distance of ticks. A metre is as long on either axis, so the shorter
+/// one gets room for its ticks.
+std::string equal_axes(const Chart& chart) {
+  Eigen::AlignedBox2d box;
+  for (const ChartSeries& series : chart.series) {
+    for (const Vector2d& point : series.points) {
+      if (point.allFinite()) box.extend(point);
+    }
+  }
+  if (box.isEmpty()) return "";
+  constexpr double kMargin = 1.06;
+  constexpr double kLeastShare = 0.4;
+  constexpr double kTicks = 5;
+  const double longest = std::max(box.sizes().maxCoeff(), 1e-6) * kMargin;
+  std::string script;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double half = 0.5 * std::max(kMargin * box.sizes()[axis], kLeastShare * longest);
+    script += fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis == 0 ? 'x' : 'y', box.center()[axis] - half,
+                          box.center()[axis] + half);
+  }
+  const double decade = std::pow(10.0, std::floor(std::log10(longest / kTicks)));
+  double step = 10 * decade;
+  for (const double digit : {5.0, 2.0, 1.0}) {
+    if (digit * decade * kTicks >= longest) step = digit * decade;
+  }
+  return script + fmt::format("set xtics {0:.6g}\nset ytics {0:.6g}\nset size ratio -1\n", step);
+}
+
+/// Of lines, so that they can be told apart in print as well, and where they cover each other.
+std::string dashes(std::size_t place) {
+  constexpr std::array<const char*, 4> kDashes = {"", " dt (8,4)", " dt (3,3)", " dt (9,3,2,3)"};
+  return kDashes[place % kDashes.size()];
 }
 
 void add_data(const Chart& chart, std::string& script) {
@@ -70,6 +107,13 @@ std::string box_places(const Chart& chart, std::size_t place) {
   return fmt::format("using ($1+{:.6g}):2:3:4:5:({:.6g})", shift, 0.8 * width);
 }
 
+std::size_t lines_before(const Chart& chart, std::size_t i) {
+  const auto end = chart.series.begin() + static_cast<std::ptrdiff_t>(i);
+  return static_cast<std::size_t>(std::count_if(chart.series.begin(), end, [](const ChartSeries& series) {
+    return series.style == SeriesStyle::line;
+  }));
+}
+
 std::string curve(const Chart& chart, std::size_t i) {
   const ChartSeries& series = chart.series[i];
   const char* const colour = kColours[series.colour.value_or(i) % kColours.size()];
@@ -77,7 +121,8 @@ std::string curve(const Chart& chart, std::size_t i) {
   const char* const axes = series.right ? " axes x1y2" : "";
   switch (series.style) {
     case SeriesStyle::line:
-      return fmt::format("$series{}{} with lines lw 1.2 lc rgb '{}' title {}", i, axes, colour, title);
+      return fmt::format("$series{}{} with lines lw 1.4{} lc rgb '{}' title {}", i, axes,
+                         dashes(lines_before(chart, i)), colour, title);
     case SeriesStyle::backdrop:
       return fmt::format("$series{}{} with lines lw 4 lc rgb '#66{}' title {}", i, axes, colour + 1, title);
     case SeriesStyle::dots:
@@ -162,14 +207,14 @@ Result<FigureFormat> parse_figure_format(std::string_view text) {
 
 std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFormat format) {
   std::string script = terminal(format, chart.equal_scale) + "set output " + gnuplot_text(file) + "\n";
-  script += "set key outside top center horizontal\nset grid lc rgb '#d8dde2'\nset tics nomirror\n";
+  script += "set key above center Left reverse samplen 2.5\nset grid lc rgb '#d8dde2'\nset tics nomirror\n";
   script += fmt::format("set xlabel {}\nset ylabel {}\n", gnuplot_text(chart.x_label),
                         gnuplot_text(chart.left_label));
   if (!chart.right_label.empty())
     script += fmt::format("set y2label {}\nset y2tics\n", gnuplot_text(chart.right_label));
   if (chart.from_zero) script += "set yrange [0:*]\n";
   if (chart.log_x) script += "set logscale x\n";
-  if (chart.equal_scale) script += "set size ratio -1\nset xtics rotate by 45 right\n";
+  if (chart.equal_scale) script += equal_axes(chart);
   if (!chart.categories.empty()) return script + stacked(chart);
   add_data(chart, script);
   script += "plot ";
@@ -193,24 +238,29 @@ Result<void> draw_figure(const std::string& script, const std::filesystem::path&
 
 std::string panels_script(const std::vector<Panel>& panels, std::size_t columns,
                           const Eigen::Vector2i& size_px, const std::string& file, FigureFormat format) {
-  constexpr int kTitle_px = 22;
+  // Over both columns of a paper, with letters of 8 points there.
+  constexpr double kWidth_cm = 17.8;
+  constexpr double kLetter_cm = 8 * 2.54 / 72;
   const auto rows = static_cast<int>((panels.size() + columns - 1) / columns);
   const int width_px = static_cast<int>(columns) * (size_px.x() + 6);
-  const int height_px = rows * (size_px.y() + kTitle_px);
+  const double cm_per_px = kWidth_cm / width_px;
+  const double letter_px = kLetter_cm / cm_per_px;
+  const int title_px = static_cast<int>(std::lround(2.2 * letter_px));
+  const int height_px = rows * (size_px.y() + title_px);
   std::string script =
       format == FigureFormat::pdf
-          ? fmt::format("set terminal pdfcairo noenhanced size {:.1f}cm,{:.1f}cm font \"Helvetica,9\"\n",
-                        0.0265 * width_px, 0.0265 * height_px)
+          ? fmt::format("set terminal pdfcairo noenhanced size {:.1f}cm,{:.2f}cm font \"Helvetica,8\"\n",
+                        kWidth_cm, cm_per_px * height_px)
           : fmt::format(
-                "set terminal svg noenhanced size {},{} dynamic font \"Helvetica,12\" background "
+                "set terminal svg noenhanced size {},{} dynamic font \"Helvetica,{:.0f}\" background "
                 "'#ffffff'\n",
-                width_px, height_px);
+                width_px, height_px, letter_px);
   script += "set output " + gnuplot_text(file) + "\nunset tics\nunset border\nunset key\n";
   script += fmt::format("set multiplot layout {},{} margins 0.005,0.995,0.01,{:.3f} spacing 0.01,{:.3f}\n",
-                        rows, columns, 1.0 - static_cast<double>(kTitle_px) / height_px,
-                        static_cast<double>(kTitle_px) / height_px);
+                        rows, columns, 1.0 - static_cast<double>(title_px) / height_px,
+                        static_cast<double>(title_px) / height_px);
   for (const Panel& panel : panels)
-    script += fmt::format("set title {} offset 0,-0.7\nplot {} binary filetype=png with rgbimage notitle\n",
+    script += fmt::format("set title {} offset 0,-0.4\nplot {} binary filetype=png with rgbimage notitle\n",
                           gnuplot_text(panel.title), gnuplot_text(panel.file));
   return script + "unset multiplot\n";
 }

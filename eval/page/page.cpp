@@ -152,8 +152,10 @@ std::string html_of(const std::vector<Chart>& charts, Json& all) {
   return html + "</div>\n";
 }
 
-std::string html_of(const std::vector<PageImage>& images) {
-  std::string html = "<div class=\"images\">\n";
+std::string html_of(const std::vector<PageImage>& images, std::size_t columns) {
+  std::string html = columns > 0
+                         ? fmt::format("<div class=\"images rows\" style=\"--columns: {}\">\n", columns)
+                         : "<div class=\"images\">\n";
   for (const PageImage& image : images) {
     html += fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
                         escaped(image.caption), image.data_uri);
@@ -194,7 +196,7 @@ std::string html_of(const PageSection& section, std::size_t place, Drawn& drawn)
     return html + html_of(*scene, drawn.scenes);
   if (const auto* details = std::get_if<std::vector<PageDetails>>(&section.content))
     return html + html_of(*details);
-  return html + html_of(std::get<std::vector<PageImage>>(section.content));
+  return html + html_of(std::get<std::vector<PageImage>>(section.content), section.image_columns);
 }
 
 /// Links to the main sections, where there are many.

@@ -96,7 +96,8 @@ struct PageSection {
   std::string text;
   std::variant<PageTable, std::vector<Chart>, std::vector<PageImage>, PageScene, std::vector<PageDetails>>
       content;
-  int level = 2;  ///< of the heading; level 2 stands in the page's list of contents
+  int level = 2;                  ///< of the heading; level 2 stands in the page's list of contents
+  std::size_t image_columns = 0;  ///< of images where there is room; 0: as many as fit
 };
 
 struct Page {

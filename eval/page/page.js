@@ -20,6 +20,15 @@ function axis(title, extra) {
   }, extra);
 }
 
+/// Dashes of each line, so that lines can be told apart where they cover each other, and in print.
+const dashes = [[], [8, 4], [2, 3], [9, 3, 2, 3]];
+
+function withDashes(list) {
+  let lines = 0;
+  return list.map((series, place) => Object.assign({ place: place,
+    dashes: series.style === "line" ? dashes[lines++ % dashes.length] : [] }, series));
+}
+
 function dataset(series) {
   const stroke = strokeOf(series);
   const boxes = series.style === "boxes";
@@ -33,7 +42,10 @@ function dataset(series) {
     borderColor: series.style === "backdrop" ? stroke + "66" : stroke,
     backgroundColor: series.style === "bars" ? stroke + "66" : stroke,
     borderWidth: series.style === "dots" || boxes ? 0 : series.style === "backdrop" ? 4 : 1.3,
-    order: series.style === "backdrop" ? 1 : 0,
+    borderDash: series.dashes,
+    pointStyle: series.style === "dots" ? "circle" : series.style === "line" || series.style === "backdrop" ? "line" : "rect",
+    // Later lines are dashed: they lie on the earlier ones.
+    order: series.style === "backdrop" ? 1 : -series.place,
     pointRadius: series.style === "dots" ? 2.5 : 0,
     pointHitRadius: 6,
     showLine: series.style !== "dots" && !boxes,
@@ -103,10 +115,17 @@ function equalise(chart) {
   chart.update("none");
 }
 
-/// Three digits are enough: ends of an equalised axis are no round numbers.
 function shortTicks(scale) {
   scale.ticks.callback = (value) => Number(value.toPrecision(3));
   return scale;
+}
+
+/// Round numbers only: the ends of an equalised axis are none.
+function roundTicks(scale) {
+  const step = [1, 2, 5, 10].map((digit) => digit * 10 ** Math.floor(Math.log10((scale.max - scale.min) / 7)))
+    .find((candidate) => candidate * 7 >= scale.max - scale.min);
+  scale.ticks = [];
+  for (let k = Math.ceil(scale.min / step); k * step <= scale.max; ++k) scale.ticks.push({ value: k * step });
 }
 
 /// Ticks at 1, 2 and 5 of each decade, or at each decade where there are many.
@@ -129,7 +148,7 @@ function scalesOf(chart) {
   if (chart.right !== "") {
     scales.right = axis(chart.right, { axis: "y", position: "right", beginAtZero: chart.zero, grid: { drawOnChartArea: false } });
   }
-  if (chart.equal) Object.values(scales).forEach(shortTicks);
+  if (chart.equal) Object.values(scales).forEach((scale) => { shortTicks(scale).afterBuildTicks = roundTicks; });
   if (chart.log) {
     scales.x.afterBuildTicks = logTicks;
     shortTicks(scales.x).ticks.autoSkip = false;
@@ -154,7 +173,7 @@ function draw() {
       type: bars ? "bar" : "line",
       data: {
         labels: bars ? chart.categories : undefined,
-        datasets: chart.series.map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series)),
+        datasets: withDashes(chart.series).map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series)),
       },
       options: {
         animation: false,
@@ -165,7 +184,7 @@ function draw() {
         interaction: { mode: "nearest", axis: chart.equal ? "xy" : "x", intersect: false },
         onResize: chart.equal ? (resized) => setTimeout(() => { if (resized.ctx) equalise(resized); }) : undefined,
         plugins: {
-          legend: { labels: { color: colour("--text"), boxWidth: 14, boxHeight: 3 } },
+          legend: { labels: { color: colour("--text"), sort: (a, b) => a.datasetIndex - b.datasetIndex, usePointStyle: true, pointStyleWidth: 26, boxHeight: 5 } },
           tooltip: { callbacks: bars ? {} : { title: (items) => chart.x + ": " + items[0].parsed.x } },
         },
         scales: scalesOf(chart),

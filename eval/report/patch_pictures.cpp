@@ -14,6 +14,7 @@ namespace fusebench::report {
 namespace {
 
 constexpr std::size_t kPatches = 4;
+constexpr std::size_t kFewPatches = 10;
 constexpr int kTile_px = 120;
 constexpr int kGap_px = 8;
 constexpr double kBrightestDifference_grey = 64;
@@ -49,62 +50,79 @@ struct Window {
   int side = 0;
 };
 
-template <class Place>
-Window window_of(const Pixels& pixels, const Place& place, int margin) {
+Eigen::Vector2f before_px(const run_files::PatchTablePixel& pixel) {
+  return pixel.reference_px.cast<float>();
+}
+Eigen::Vector2f here_px(const run_files::PatchTablePixel& pixel) { return pixel.warped_px; }
+using Place = Eigen::Vector2f (*)(const run_files::PatchTablePixel&);
+
+Eigen::AlignedBox2f box_of(const Pixels& pixels, Place place) {
   Eigen::AlignedBox2f box;
   for (const run_files::PatchTablePixel& p : pixels) box.extend(Eigen::Vector2f(place(p)));
-  const int side = static_cast<int>(std::ceil(box.sizes().maxCoeff())) + 1 + 2 * margin;
-  const Eigen::Vector2f center = box.center();
+  return box;
+}
+
+/// Of a window that holds the patch in either frame: all tiles have one scale, so that a patch that shrinks
+/// is smaller in the picture as well.
+int side_of(const Pixels& pixels) {
+  constexpr int kMargin_px = 3;
+  const float largest =
+      std::max(box_of(pixels, before_px).sizes().maxCoeff(), box_of(pixels, here_px).sizes().maxCoeff());
+  return static_cast<int>(std::ceil(largest)) + 1 + 2 * kMargin_px;
+}
+
+Window window_of(const Pixels& pixels, Place place, int side) {
+  const Eigen::Vector2f center = box_of(pixels, place).center();
   return {static_cast<int>(std::lround(center.x())) - side / 2,
           static_cast<int>(std::lround(center.y())) - side / 2, side};
 }
 
-/// Grey levels at their nearest pixels; the rest keeps the paper's colour.
-template <class Place, class Value>
-cv::Mat splatted(const Pixels& pixels, const Window& window, const Place& place, const Value& value) {
-  constexpr double kPaper = 238;
-  cv::Mat tile(window.side, window.side, CV_8UC1, cv::Scalar(kPaper));
+/// Where there is nothing: no grey.
+const cv::Vec3b kNothing = {196, 217, 240};  // red, green, blue
+
+cv::Vec3b grey(double value) { return cv::Vec3b::all(cv::saturate_cast<std::uint8_t>(value)); }
+
+/// Grey levels at their nearest pixels.
+template <class Value>
+cv::Mat splatted(const Pixels& pixels, const Window& window, Place place, const Value& value) {
+  cv::Mat tile(window.side, window.side, CV_8UC3, cv::Scalar(kNothing));
   for (const run_files::PatchTablePixel& p : pixels) {
     const Eigen::Vector2f at = place(p);
     const int x = static_cast<int>(std::lround(at.x())) - window.left;
     const int y = static_cast<int>(std::lround(at.y())) - window.top;
     if (x < 0 || y < 0 || x >= window.side || y >= window.side) continue;
-    tile.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(value(p));
+    tile.at<cv::Vec3b>(y, x) = grey(value(p));
   }
   return tile;
 }
 
 cv::Mat cut(const GreyImage& image, const Window& window) {
-  cv::Mat tile(window.side, window.side, CV_8UC1, cv::Scalar(0));
+  cv::Mat tile(window.side, window.side, CV_8UC3, cv::Scalar(kNothing));
   for (int y = 0; y < window.side; ++y) {
     for (int x = 0; x < window.side; ++x) {
       if (image.contains(window.left + x, window.top + y))
-        tile.at<std::uint8_t>(y, x) = image(window.left + x, window.top + y);
+        tile.at<cv::Vec3b>(y, x) = grey(image(window.left + x, window.top + y));
     }
   }
   return tile;
 }
 
-ColorImage picture(const Pixels& pixels, const GreyImage& image) {
-  const auto before = [](const run_files::PatchTablePixel& p) {
-    return Eigen::Vector2f(p.reference_px.cast<float>());
-  };
-  const auto here = [](const run_files::PatchTablePixel& p) { return p.warped_px; };
-  const Window there = window_of(pixels, before, 1);
-  const Window window = window_of(pixels, here, 3);
+ColorImage picture(const Pixels& pixels, const GreyImage& image, int side) {
+  const Window there = window_of(pixels, before_px, side);
+  const Window window = window_of(pixels, here_px, side);
+  const auto reference = [](const run_files::PatchTablePixel& p) { return p.reference_grey; };
   const std::vector<cv::Mat> tiles = {
-      splatted(pixels, there, before, [](const run_files::PatchTablePixel& p) { return p.reference_grey; }),
-      splatted(pixels, window, here, [](const run_files::PatchTablePixel& p) { return p.reference_grey; }),
-      cut(image, window), splatted(pixels, window, here, [](const run_files::PatchTablePixel& p) {
+      splatted(pixels, there, before_px, reference), splatted(pixels, window, here_px, reference),
+      cut(image, window), splatted(pixels, window, here_px, [](const run_files::PatchTablePixel& p) {
         return 255 * std::abs(p.reference_grey - p.observed_grey) / kBrightestDifference_grey;
       })};
   const int columns = static_cast<int>(tiles.size());
   ColorImage strip(columns * kTile_px + (columns - 1) * kGap_px, kTile_px, Rgb{255, 255, 255});
   cv::Mat view(strip.height, strip.width, CV_8UC3, strip.data.data());
   for (int i = 0; i < columns; ++i) {
-    cv::Mat large;
-    cv::resize(tiles[static_cast<std::size_t>(i)], large, {kTile_px, kTile_px}, 0, 0, cv::INTER_NEAREST);
-    cv::cvtColor(large, view(cv::Rect(i * (kTile_px + kGap_px), 0, kTile_px, kTile_px)), cv::COLOR_GRAY2RGB);
+    cv::resize(tiles[static_cast<std::size_t>(i)],
+               view(cv::Rect(i * (kTile_px + kGap_px), 0, kTile_px, kTile_px)), {kTile_px, kTile_px}, 0, 0,
+               cv::INTER_NEAREST);
   }
   return strip;
 }
@@ -128,7 +146,7 @@ std::optional<std::size_t> common_frame(std::span<const LabelledPatches> runs) {
 }  // namespace
 
 std::string PatchPicture::caption() const {
-  return fmt::format("{}: patch at ({}, {}), difference {:.1f} grey levels{}", run, corner_px.x(),
+  return fmt::format("{}: patch at ({}, {}) px, mean difference {:.1f} grey levels{}", run, corner_px.x(),
                      corner_px.y(), difference_grey, accepted ? "" : " (rejected by the gate)");
 }
 
@@ -150,9 +168,11 @@ PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
   }
   if (common.empty()) return result;
   result.text = fmt::format(
-      "Frame {}, whose patches moved by {:.1f} px (median). Mean difference over the {} patches that "
-      "all of these runs track:",
-      *number, frames.front()->motion_px, common.size());
+      "Frame {}, the one of those kept whose patches moved most ({:.1f} px, median). Mean difference over "
+      "the "
+      "{} patches that all of these runs track{}:",
+      *number, frames.front()->motion_px, common.size(),
+      common.size() < kFewPatches ? " (few: no more than an example)" : "");
   for (std::size_t i = 0; i < runs.size(); ++i) {
     double sum = 0;
     for (const Corner& corner : common) sum += mean_difference(patches[i].at(corner));
@@ -160,19 +180,21 @@ PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
                                sum / static_cast<double>(common.size()));
   }
   result.text += fmt::format(
-      " grey levels. From left to right: the patch in the frame before; its grey levels where they are "
-      "expected in "
-      "this frame; what the image has there; the absolute difference (black 0, white {:.0f} grey levels and "
-      "more). "
-      "Gaps are where a patch is stretched, or hidden. Patches are spread over the image, not chosen.",
+      " grey levels. From left to right, all at one scale: the patch in the frame before; its grey levels "
+      "where they are expected in this frame; what the image has there; the absolute difference (black 0, "
+      "white {:.0f} grey levels and more). Light blue is where there is nothing: beside a patch, where it is "
+      "stretched or hidden, and outside of the image. The patches shown are evenly spaced in the list of "
+      "those, from left to right in the image.",
       kBrightestDifference_grey);
   for (std::size_t k = 0; k < std::min(kPatches, common.size()); ++k) {
     const Corner& corner = common[(2 * k + 1) * common.size() / (2 * std::min(kPatches, common.size()))];
+    int side = 0;
+    for (const auto& of_run : patches) side = std::max(side, side_of(of_run.at(corner)));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const Pixels& pixels = patches[i].at(corner);
       result.pictures.push_back({runs[i].label, Eigen::Vector2i(corner.first, corner.second),
                                  mean_difference(pixels), pixels.front().accepted,
-                                 picture(pixels, frames[i]->grey)});
+                                 picture(pixels, frames[i]->grey, side)});
     }
   }
   return result;

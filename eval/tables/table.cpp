@@ -188,8 +188,8 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
 
 std::span<const TableColumn> table_columns() {
   static constexpr std::array<TableColumn, 6> kColumns = {
-      {{"aie_grey", "grey", "AIE", 1, 3, &TableValues::aie_grey},
-       {"aie_common_grey", "grey", "AIE common", 1, 3, &TableValues::aie_common_grey},
+      {{"aie_grey", "grey", "AIE [grey]", 1, 3, &TableValues::aie_grey},
+       {"aie_common_grey", "grey", "AIE common [grey]", 1, 3, &TableValues::aie_common_grey},
        {"ate_rmse_m", "m", "ATE [cm]", 100, 2, &TableValues::ate_rmse_m},
        {"ate_fitted_m", "m", "ATE fitted [cm]", 100, 2, &TableValues::ate_fitted_m},
        {"rpe_1s_m", "m", "RPE [cm/s]", 100, 2, &TableValues::rpe_second_m},
