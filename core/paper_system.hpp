@@ -17,6 +17,11 @@ class PaperSystem final : public systems::System {
 
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   [[nodiscard]] const health::FrameReport* filter_report() const override { return &report_; }
+  [[nodiscard]] Result<std::optional<Trajectory>> revise() override { return pipeline_.revise(); }
+  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame) override {
+    return pipeline_.fuse_again(frame);
+  }
+  [[nodiscard]] std::string loop_table() const override { return pipeline_.loop_table(); }
   [[nodiscard]] systems::Surface take_surface() override { return std::move(pipeline_).take_model(); }
 
  private:

@@ -265,9 +265,9 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
   now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor},
                                              now.color_drift.noise(config.color_drift),
                                              preparation.undone_readout(now.estimate->mean));
-  now.relocalisation.add_keyframe(
-      frame, T_world_camera(), now.timestamp_ns,
-      preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s));
+  const double blur_px = preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s);
+  now.relocalisation.add_keyframe(frame, T_world_camera(), now.timestamp_ns, blur_px);
+  now.loops.add_fused(frame, *now.estimate, blur_px);
 }
 
 Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
@@ -276,8 +276,33 @@ Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span
 Pipeline::~Pipeline() = default;
 
 Result<health::FrameReport> Pipeline::process(const RgbdFrame& frame) {
-  return state_->start.process(frame, *state_);
+  auto report = state_->start.process(frame, *state_);
+  if (report && report->status != health::FrameStatus::lost)
+    state_->tracking->loops.add_pose(report->timestamp_ns, report->T_world_camera);
+  return report;
 }
+
+Result<std::optional<Trajectory>> Pipeline::revise() {
+  Tracking& last = *state_->tracking;
+  const Result<bool> changed = last.loops.close();
+  if (!changed) return tl::unexpected(changed.error());
+  if (!*changed) return std::nullopt;
+  last.model = tsdf::TsdfVolume(state_->config.tsdf);
+  return last.loops.corrected_trajectory();
+}
+
+/// Sec. 2.3 once more, at the revised pose and for the motion that the frame turned out to have.
+Result<void> Pipeline::fuse_again(const RgbdFrame& frame) {
+  const std::optional<filter::FilterState> state =
+      state_->tracking->loops.corrected_state(frame.timestamp_ns);
+  if (!state) return {};
+  health::StageTimes stages;
+  state_->tracking->estimate->mean = *state;
+  state_->preparation.prepare(frame, *state, stages);
+  return state_->fuse(stages);
+}
+
+std::string Pipeline::loop_table() const { return state_->tracking->loops.table(); }
 
 const tsdf::TsdfVolume& Pipeline::model() const { return state_->tracking->model; }
 

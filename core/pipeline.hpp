@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
@@ -26,6 +28,13 @@ class Pipeline {
   /// those before are lost ("waiting for a usable first frame"). A lost frame is a report, not an error;
   /// errors are IMU samples that do not cover the frame (data_corrupt) and a full model (run_failed).
   [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame);
+
+  /// After the last frame: all poses, if loops change them (loops.mode = final); nothing if not. Then the
+  /// model is empty, and is fused again from all frames, in order. Errors: those of LoopClosure::close(), and
+  /// of the model (run_failed).
+  [[nodiscard]] Result<std::optional<Trajectory>> revise();
+  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame);
+  [[nodiscard]] std::string loop_table() const;
 
   [[nodiscard]] const tsdf::TsdfVolume& model() const;
   /// The model, and the end of everything else that the pipeline keeps.

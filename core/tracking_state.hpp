@@ -11,6 +11,7 @@
 #include "core/filter/color_drift.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/health/update_acceptance.hpp"
+#include "core/loops/loop_closure.hpp"
 #include "core/measurement/residual_scale.hpp"
 #include "core/patches/patches.hpp"
 #include "core/relocalisation/relocalisation.hpp"
@@ -23,10 +24,11 @@ namespace fusebench::core {
 /// workspaces) are elsewhere.
 struct Tracking {
   Tracking(const config::Config& config, const SensorRig& rig)
-      : model(config.tsdf), relocalisation(config, rig) {}
+      : model(config.tsdf), relocalisation(config, rig), loops(config, rig) {}
 
   tsdf::TsdfVolume model;
   relocalisation::Relocalisation relocalisation;
+  loops::LoopClosure loops;
   std::optional<filter::GaussianState> estimate;  ///< after the last frame
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
   int frames = 0;                                 ///< since the start

@@ -37,6 +37,7 @@ struct Config {
   RelocalisationConfig relocalisation;
   PlaceFeaturesConfig place_features;
   PlacePoseConfig place_pose;
+  LoopsConfig loops;
   TsdfConfig tsdf;
   InfinitamConfig infinitam;
   OpencvOdometryConfig opencv_odometry;
@@ -60,6 +61,7 @@ struct Config {
     v.group("relocalisation", self.relocalisation);
     v.group("place_features", self.place_features);
     v.group("place_pose", self.place_pose);
+    v.group("loops", self.loops);
     v.group("tsdf", self.tsdf);
     v.group("infinitam", self.infinitam);
     v.group("opencv_odometry", self.opencv_odometry);
@@ -71,8 +73,8 @@ static_assert(
     options_cover_all_fields<SystemConfig, TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
                              InitialisationConfig, SelfCalibrationConfig, PatchConfig, PhotometricConfig,
                              GeometricConfig, AlignmentConfig, IekfConfig, ColorDriftConfig, HealthConfig,
-                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, TsdfConfig,
-                             InfinitamConfig, OpencvOdometryConfig, EvaluationConfig, Config>(),
+                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, LoopsConfig,
+                             TsdfConfig, InfinitamConfig, OpencvOdometryConfig, EvaluationConfig, Config>(),
     "each field of a configuration struct needs its option in visit()");
 
 }  // namespace fusebench::config

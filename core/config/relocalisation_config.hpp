@@ -1,4 +1,4 @@
-// Options: how a lost tracker finds its place again.
+// Options: places that are found again, by a camera that is lost or one that has come back.
 #pragma once
 
 #include "core/config/options.hpp"
@@ -170,6 +170,82 @@ struct PlacePoseConfig {
     v.number("huber_px", self.huber_px, 0.01, 1e6,
              "residuals beyond this lose weight (Huber 1964; pixels of the level): one standard deviation of "
              "a corner, as matches have outliers");
+  }
+};
+
+/// What is made of a place that is seen again.
+enum class LoopMode { off, detect, final };
+constexpr auto option_choices(LoopMode) {
+  return choices<LoopMode>(
+      {{"off", LoopMode::off}, {"detect", LoopMode::detect}, {"final", LoopMode::final}});
+}
+
+/// Loops: the pose graph of places (keyframes of the whole path), and its edges.
+struct LoopsConfig {
+  LoopMode mode = LoopMode::off;
+  double place_distance_m = 0.25;
+  double place_angle_deg = 15.0;
+  int query_every = 10;
+  double least_age_s = 10.0;
+  int max_candidates = 8;
+  double max_dissimilarity = 0.7;
+  double min_consistent_share = 0.25;
+  double max_violating_share = 0.05;
+  double depth_sigmas = 3.0;
+  double drift_factor = 3.0;
+  double path_rotation_sigma_rad = 0.003;
+  double path_position_sigma_m = 0.004;
+  double loop_rotation_sigma_rad = 0.001;
+  double loop_position_sigma_m = 0.002;
+  double gravity_sigma_deg = 0.5;
+  double max_chi2 = 22.5;
+  double agreeing_chi2 = 16.8;
+  double agreeing_within_s = 2.0;
+  double worst_edge_sigmas = 3.0;
+  int max_dropped_edges = 5;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.choice("mode", self.mode,
+             "off; detect: places that are seen again are logged, with why each was taken or refused, and "
+             "change nothing; final: at the end all poses are optimised once, and the model is fused again");
+    v.number("place_distance_m", self.place_distance_m, 0.02, 5.0,
+             "a fused frame becomes a place if the last place is farther away than this, or");
+    v.number("place_angle_deg", self.place_angle_deg, 1.0, 90.0, "turned by more than this");
+    v.number("query_every", self.query_every, 1, 1000,
+             "every so many fused frames, and each place, are compared with the older places");
+    v.number("least_age_s", self.least_age_s, 0.5, 1000.0,
+             "with those that were left at least so long ago (the model itself holds what is younger)");
+    v.number("max_candidates", self.max_candidates, 1, 100, "the most similar so many of them are verified");
+    v.number("max_dissimilarity", self.max_dissimilarity, 0.05, 1.0,
+             "share of the ferns that may differ (Glocker et al. 2015)");
+    v.number("min_consistent_share", self.min_consistent_share, 0.01, 1.0,
+             "of the depth of either frame at least this share lies on the surface that the other one sees");
+    v.number("max_violating_share", self.max_violating_share, 0.0, 1.0,
+             "and at most this share before it, where the other one saw free space");
+    v.number("depth_sigmas", self.depth_sigmas, 1.0, 20.0,
+             "on the surface: within so many standard deviations of the depth noise, and 1 cm more");
+    v.number("drift_factor", self.drift_factor, 0.1, 100.0,
+             "drift between places is this much larger than the filter claims (standard deviations): its "
+             "claims on realistic recordings have an NEES of 10 to 30");
+    v.number("path_rotation_sigma_rad", self.path_rotation_sigma_rad, 1e-5, 0.1,
+             "and the motion from a place to the next one is at least so uncertain, by axis: rotation (rad)");
+    v.number("path_position_sigma_m", self.path_position_sigma_m, 1e-5, 0.1, "and position (metres)");
+    v.number("loop_rotation_sigma_rad", self.loop_rotation_sigma_rad, 1e-5, 0.1,
+             "what a loop's features do not say of its error, by axis: rotation (rad)");
+    v.number("loop_position_sigma_m", self.loop_position_sigma_m, 1e-5, 0.1, "and position (metres)");
+    v.number("gravity_sigma_deg", self.gravity_sigma_deg, 0.01, 45.0,
+             "error of the direction of gravity in each place, with an IMU");
+    v.number(
+        "max_chi2", self.max_chi2, 1.0, 1000.0,
+        "an edge whose squared distance to the poses so far, by their drift and its own error, is larger "
+        "(six degrees of freedom; 0.1 %) is not taken alone");
+    v.number("agreeing_chi2", self.agreeing_chi2, 1.0, 1000.0,
+             "but it is with another one that it agrees with as well as this (1 %)");
+    v.number("agreeing_within_s", self.agreeing_within_s, 0.1, 100.0, "and that is so near in time");
+    v.number("worst_edge_sigmas", self.worst_edge_sigmas, 1.0, 100.0,
+             "after the optimisation the worst edge is dropped if its residual is larger (root mean square "
+             "over six degrees of freedom), and all is optimised again");
+    v.number("max_dropped_edges", self.max_dropped_edges, 0, 1000, "at most so many times");
   }
 };
 

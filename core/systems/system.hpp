@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "core/base/error.hpp"
@@ -31,8 +32,15 @@ class System {
   /// What a filter says of the last frame beyond its outcome; nothing of a system that has none.
   [[nodiscard]] virtual const health::FrameReport* filter_report() const { return nullptr; }
 
-  /// The poses as the system revised them at the end; nothing if those of process() are its last word.
-  [[nodiscard]] virtual std::optional<Trajectory> final_trajectory() { return std::nullopt; }
+  /// The poses as the system revises them at the end, of the frames that have one; nothing if those of
+  /// process() are its last word. If there are some, all frames come once more, in order, to fuse_again().
+  /// Errors end the run.
+  [[nodiscard]] virtual Result<std::optional<Trajectory>> revise() { return std::nullopt; }
+  [[nodiscard]] virtual Result<void> fuse_again(const RgbdFrame& /*frame*/) { return {}; }
+
+  /// Places that were seen again, accepted or not, one a line with its reason: CSV without a header; empty
+  /// for a system that does not look for any.
+  [[nodiscard]] virtual std::string loop_table() const { return {}; }
 
   /// The surface, and the end of everything else that the system keeps.
   [[nodiscard]] virtual Surface take_surface() = 0;

@@ -169,6 +169,8 @@ RunRecord record_of(const Json& json) {
   record.config = config_of(json.at("config"));
   record.config_hash = json.at("config_hash");
   read_metrics(json.at("metrics"), record.metrics);
+  if (const auto final = json.find("final_metrics"); final != json.end())
+    read_metrics(*final, record.final_metrics.emplace());
   const Json& frames = json.at("frames");
   record.frames = {frames.at("total"), frames.at("tracked"), frames.at("lost")};
   const Json& model = json.at("model");
@@ -230,7 +232,7 @@ std::string to_json(const RunRecord& record) {
       {"variant", record.variant},
       {"poses", to_string(record.poses)},
       {"config_hash", record.config_hash},
-      {"metrics", json_of_metrics(record)},
+      {"metrics", json_of_metrics(record.metrics, record.frames)},
       {"frames",
        {{"total", record.frames.total}, {"tracked", record.frames.tracked}, {"lost", record.frames.lost}}},
       {"model",
@@ -242,6 +244,7 @@ std::string to_json(const RunRecord& record) {
       {"config", json_of(record.config)},
       {"timing", json_of(record.timing)},
       {"provenance", json_of(record.provenance)}};
+  if (record.final_metrics) json["final_metrics"] = json_of_metrics(*record.final_metrics, record.frames);
   if (record.program) {
     json["program"] = {{"definition", record.program->definition},
                        {"version", record.program->version},

@@ -200,6 +200,8 @@ struct RunRecord {
   std::vector<RecordedOption> config;  ///< every option, in declaration order; of a program the evaluation's
   std::string config_hash;             ///< of the configuration; the identity of a program
   RecordedMetrics metrics;
+  /// Of the poses as the system revised them at the end, which the model is fused at; nothing if it did not.
+  std::optional<RecordedMetrics> final_metrics;
   RecordedFrames frames;
   RecordedModel model;
   std::vector<filter::SensorConstant> sensors;  ///< after the last tracked frame; those that were estimated

@@ -337,26 +337,24 @@ RecordedNees nees_of(const Json& metrics) {
 
 }  // namespace
 
-Json json_of_metrics(const RunRecord& record) {
-  const double share = record.frames.total == 0 ? 0.0
-                                                : static_cast<double>(record.frames.tracked) /
-                                                      static_cast<double>(record.frames.total);
-  return {
-      {"ate", json_of(record.metrics.ate)},
-      {"ate_fitted_offset", json_of(record.metrics.ate_fitted)},
-      {"rpe", {{"frame", json_of(record.metrics.rpe_frame)}, {"second", json_of(record.metrics.rpe_second)}}},
-      {"aie", json_of(record.metrics.aie)},
-      {"intensity_readings", json_of(record.metrics.intensity_readings)},
-      {"mesh", json_of(record.metrics.mesh)},
-      {"nees", json_of_nees(record.metrics.nees)},
-      {"residuals", json_of(record.metrics.residuals)},
-      {"silent_failures", json_of(record.metrics.silent)},
-      {"pose_intensity", json_of(record.metrics.pose_intensity)},
-      {"coverage",
-       {{"protocol", "tracked frames / frames of the recording"},
-        {"tracked", record.frames.tracked},
-        {"total", record.frames.total},
-        {"share", share}}}};
+Json json_of_metrics(const RecordedMetrics& metrics, const RecordedFrames& frames) {
+  const double share =
+      frames.total == 0 ? 0.0 : static_cast<double>(frames.tracked) / static_cast<double>(frames.total);
+  return {{"ate", json_of(metrics.ate)},
+          {"ate_fitted_offset", json_of(metrics.ate_fitted)},
+          {"rpe", {{"frame", json_of(metrics.rpe_frame)}, {"second", json_of(metrics.rpe_second)}}},
+          {"aie", json_of(metrics.aie)},
+          {"intensity_readings", json_of(metrics.intensity_readings)},
+          {"mesh", json_of(metrics.mesh)},
+          {"nees", json_of_nees(metrics.nees)},
+          {"residuals", json_of(metrics.residuals)},
+          {"silent_failures", json_of(metrics.silent)},
+          {"pose_intensity", json_of(metrics.pose_intensity)},
+          {"coverage",
+           {{"protocol", "tracked frames / frames of the recording"},
+            {"tracked", frames.tracked},
+            {"total", frames.total},
+            {"share", share}}}};
 }
 
 void read_metrics(const Json& json, RecordedMetrics& metrics) {

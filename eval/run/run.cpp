@@ -18,6 +18,7 @@
 #include "eval/record/process_meter.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/program_run.hpp"
+#include "eval/run/revised_poses.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
 #include "eval/run/run_frames.hpp"
@@ -96,6 +97,9 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   auto system = core::make_system(config, run.recording.rig, run.recording.imu, workers);
   auto progress = process_frames(run, *system, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
+  auto revised = revised_poses(run, *system, *progress, control);
+  if (!revised) return tl::unexpected(revised.error());
+  const std::string loop_table = system->loop_table();
   systems::Surface surface = system->take_surface();
   system.reset();
   record.model = make_mesh(std::move(surface), config, workers, *progress);
@@ -109,6 +113,11 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
     progress->log +=
         fmt::format("sensor {} = {:.6g} +- {:.2g}\n", constant.name, constant.value, constant.sigma);
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
+  if (*revised) {
+    const RunOutput output = final_output(**revised, progress->output);
+    record.final_metrics = metrics_of(output, run.recording, config, workers);
+    record.metrics.mesh = record.final_metrics->mesh;  // the model is of these poses
+  }
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
   const bool has_filter = progress->output.has_filter;
@@ -125,10 +134,12 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
-  const std::array<NamedText, 7> texts = {
+  const std::array<NamedText, 9> texts = {
       {{"trajectory.tum", trajectory::tum_text(progress->output.trajectory)},
        {"truth.tum",
         trajectory::tum_text(record::true_trajectory(run.recording, record::frame_stamps(run.recording)))},
+       {"final.tum", *revised ? trajectory::tum_text(**revised) : ""},
+       {"loops.csv", loop_table.empty() ? "" : kLoopTableHeader + loop_table},
        {"frames.csv", progress->frame_table},
        {"states.csv", all && has_filter ? progress->state_table : ""},
        {"nees.csv", has_filter ? run_files::nees_table(record.metrics.nees) : ""},

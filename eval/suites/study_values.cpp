@@ -42,6 +42,12 @@ std::optional<double> ate(const record::RunRecord& record) {
   return ate ? finite(ate->stats.rmse) : std::nullopt;
 }
 
+/// Of the poses as they were known at the end: the run's own, unless the system revised them.
+std::optional<double> ate_final(const record::RunRecord& record) {
+  const auto& ate = record.final_metrics ? record.final_metrics->ate.value : record.metrics.ate.value;
+  return ate ? std::optional(ate->stats.rmse) : std::nullopt;
+}
+
 std::optional<double> ate_fitted(const record::RunRecord& record) {
   const auto& fit = record.metrics.ate_fitted.value;
   return fit ? finite(fit->stats.rmse) : std::nullopt;
@@ -95,6 +101,7 @@ constexpr auto kValues = std::to_array<StudyValue>({
      .of_every_run = true,
      .of = silent_share},
     {.name = "ate_rmse_m", .label = "ATE [cm]", .shown_factor = 100, .of = ate},
+    {.name = "ate_final_m", .label = "ATE, final poses [cm]", .shown_factor = 100, .of = ate_final},
     {.name = "ate_fitted_m", .label = "ATE, offset fitted [cm]", .shown_factor = 100, .of = ate_fitted},
     {.name = "rpe_second_m",
      .label = "RPE 1 s [cm]",

@@ -91,7 +91,21 @@ bool same_frames(const record::RunRecord& a, const record::RunRecord& b) {
 }
 /// As far as a row names it.
 bool same_name(const record::RunRecord& a, const record::RunRecord& b) {
-  return a.recording.name == b.recording.name && a.variant == b.variant && a.recording.imu == b.recording.imu;
+  return a.recording.name == b.recording.name && a.variant == b.variant &&
+         a.recording.imu == b.recording.imu && a.poses == b.poses;
+}
+
+/// After each run that revised its poses the same run with the metrics of these.
+std::vector<run_files::FoundRun> with_final_poses(const std::vector<run_files::FoundRun>& found) {
+  std::vector<run_files::FoundRun> runs;
+  for (const run_files::FoundRun& run : found) {
+    runs.push_back(run);
+    if (!run.record.final_metrics) continue;
+    runs.push_back(run);
+    runs.back().record.metrics = *run.record.final_metrics;
+    runs.back().record.poses = record::PoseKind::final;
+  }
+  return runs;
 }
 
 std::vector<RunGroup> groups_of(const std::vector<run_files::FoundRun>& runs) {
@@ -259,8 +273,9 @@ std::string markdown(const SystemsTable& table) {
 
 }  // namespace
 
-SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& runs) {
+SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   SystemsTable table;
+  const std::vector<run_files::FoundRun> runs = with_final_poses(found);
   const std::vector<RunGroup> groups = groups_of(runs);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     table.rows.push_back(row_of(groups[i]));

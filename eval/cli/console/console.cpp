@@ -100,8 +100,12 @@ void ProgressBar::clear() {
 std::string summary_line(const record::RunRecord& record) {
   std::string line;
   if (const auto& aie = record.metrics.aie.value) line += fmt::format("AIE {:.3f}, ", aie->all.aie_grey);
-  if (const auto& ate = record.metrics.ate.value)
-    line += fmt::format("ATE {:.2f} cm, ", 100 * ate->stats.rmse);
+  if (const auto& ate = record.metrics.ate.value) {
+    line += fmt::format("ATE {:.2f} cm", 100 * ate->stats.rmse);
+    if (record.final_metrics && record.final_metrics->ate.value)
+      line += fmt::format(" (final {:.2f} cm)", 100 * record.final_metrics->ate.value->stats.rmse);
+    line += ", ";
+  }
   line +=
       fmt::format("{}/{} frames, {:.1f} fps", record.frames.tracked, record.frames.total, record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)

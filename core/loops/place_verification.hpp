@@ -1,0 +1,30 @@
+// Whether two frames show the same place, and from where: by features, and by the depth of both.
+#pragma once
+
+#include <string>
+
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/loops/place.hpp"
+
+namespace fusebench::loops {
+
+/// What was found of a pair of places.
+struct VerifiedPair {
+  bool same = false;
+  std::string reason;  ///< why not; empty if it is
+  int matches = 0;
+  int inliers = 0;
+  double consistent_share = 0;             ///< of depth, the smaller one of both directions
+  double violating_share = 0;              ///< the larger one
+  SE3 T_known_query;                       ///< of the cameras
+  Matrix6d covariance = Matrix6d::Zero();  ///< rotation on the right, position in the frame of `known`
+};
+
+/// The landmarks of `query` against those of `known` (P3P in RANSAC, as for relocalisation), and then the
+/// depth of either against that of the other: what the other one sees there, or free space where there should
+/// be a surface.
+[[nodiscard]] VerifiedPair verify_pair(const Place& known, const Place& query, const PinholeCamera& camera,
+                                       const config::Config& config);
+
+}  // namespace fusebench::loops

@@ -1,0 +1,31 @@
+// The end of a run of a system that revises its poses: all frames once more, for the model.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/systems/system.hpp"
+#include "eval/run/run_control.hpp"
+#include "eval/run/run_evaluation.hpp"
+#include "eval/run/run_frames.hpp"
+#include "eval/run/run_placement.hpp"
+
+namespace fusebench::run {
+
+/// Of loops.csv, whose rows are System::loop_table().
+inline const std::string kLoopTableHeader =
+    "query_s,place_s,tx_m,ty_m,tz_m,qx,qy,qz,qw,sigma_rotation_rad,sigma_position_m,dissimilarity,matches,"
+    "inliers,consistent_share,violating_share,chi2,decision,why\n";
+
+/// Asks the system for its revised poses, and has it fuse the frames again if there are any; nothing if there
+/// are none, or the run did not come to its end. What goes wrong ends the run and is in the progress. Errors:
+/// run_failed (a stop).
+[[nodiscard]] Result<std::optional<Trajectory>> revised_poses(const PreparedRun& run, systems::System& system,
+                                                              RunProgress& progress,
+                                                              const RunControl& control);
+
+/// What metrics need of the revised poses, with the mesh of the online output.
+[[nodiscard]] RunOutput final_output(const Trajectory& revised, const RunOutput& online);
+
+}  // namespace fusebench::run

@@ -1,0 +1,182 @@
+#include "core/loops/loop_closure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/filter/pose_clones.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace loops;
+using testing::small_camera;
+using testing::TexturedRoom;
+
+namespace {
+
+constexpr int kFrames = 60;
+constexpr double kPeriod_s = 0.5;
+
+/// Once around in the middle of the room: 12 places, and the last one is the first one again.
+SE3 T_room_camera(int frame) {
+  const double angle = 2 * std::numbers::pi * frame / (kFrames - 1);
+  return {so3_exp({0, angle, 0}), {0.3 * std::sin(angle), 0, 0.3 * (1 - std::cos(angle))}};
+}
+
+/// The estimate turns by another degree and moves by another 4 cm until the end.
+SE3 T_drift(int frame) {
+  const double share = static_cast<double>(frame) / (kFrames - 1);
+  return {so3_exp({0, share * radians(1.0), 0}), share * Vector3d(0.04, 0.01, 0)};
+}
+
+config::Config configuration(config::LoopMode mode) {
+  config::Config config;
+  config.loops.mode = mode;
+  config.loops.query_every = 5;
+  config.terms.prior = config::Prior::constant_velocity;
+  return config;
+}
+
+std::int64_t stamp_ns(int frame) { return std::llround(1e9 * (100 + kPeriod_s * frame)); }
+
+SensorRig rig() {
+  SensorRig rig;
+  rig.camera = small_camera();
+  return rig;
+}
+
+/// The camera is the IMU; the filter claims the drift.
+filter::GaussianState estimate_of(int frame, bool drifts) {
+  filter::GaussianState estimate;
+  const SE3 T_world_camera = (drifts ? T_drift(frame) : SE3{}) * T_room_camera(frame);
+  estimate.mean.T_world_imu = estimate.mean.T_world_imu_reference = T_world_camera;
+  const double share = (frame + 1.0) / kFrames;
+  Vector6d variances;
+  variances << Vector3d::Constant(share * 1e-4), Vector3d::Constant(share * 4e-4);
+  estimate.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() = variances.asDiagonal();
+  return estimate;
+}
+
+void run(LoopClosure& loops, bool drifts, const std::vector<RgbdFrame>& frames) {
+  for (int k = 0; k < kFrames; ++k) {
+    const filter::GaussianState estimate = estimate_of(k, drifts);
+    loops.add_fused(frames[static_cast<std::size_t>(k)], estimate, 0);
+    loops.add_pose(stamp_ns(k), estimate.mean.T_world_imu);
+  }
+}
+
+std::vector<RgbdFrame> rendered() {
+  std::vector<RgbdFrame> frames;
+  for (int k = 0; k < kFrames; ++k)
+    frames.push_back(TexturedRoom{}.render(small_camera(), T_room_camera(k), stamp_ns(k)));
+  return frames;
+}
+
+double error_m(const Trajectory& poses) {
+  double sum = 0;
+  for (int k = 0; k < kFrames; ++k) {
+    const Vector3d& at = poses[static_cast<std::size_t>(k)].T_world_camera.translation;
+    sum += (at - T_room_camera(k).translation).squaredNorm();
+  }
+  return std::sqrt(sum / kFrames);
+}
+
+class Loops : public ::testing::Test {
+ protected:
+  static const std::vector<RgbdFrame>& frames() {
+    static const std::vector<RgbdFrame> once = rendered();
+    return once;
+  }
+  SensorRig rig_ = rig();
+};
+
+TEST_F(Loops, ComeTogetherWhereTheCameraComesBack) {
+  const config::Config config = configuration(config::LoopMode::final);
+  LoopClosure loops(config, rig_);
+  run(loops, true, frames());
+  const auto changed = loops.close();
+  ASSERT_TRUE(changed) << changed.error().message;
+  ASSERT_TRUE(*changed) << loops.table();
+  Trajectory online;
+  for (int k = 0; k < kFrames; ++k) online.push_back({stamp_ns(k), estimate_of(k, true).mean.T_world_imu});
+  const Trajectory final = loops.corrected_trajectory();
+  ASSERT_EQ(final.size(), online.size());
+  EXPECT_LT((final.back().T_world_camera.translation - T_room_camera(kFrames - 1).translation).norm(), 0.01);
+  EXPECT_LT(error_m(final), 0.6 * error_m(online));
+  for (const LoopCandidate& candidate : loops.candidates()) {
+    if (!candidate.accepted) continue;
+    const auto room = [&](std::size_t place) {
+      const auto frame = static_cast<int>(
+          std::lround((1e-9 * static_cast<double>(loops.places()[place].timestamp_ns) - 100) / kPeriod_s));
+      return T_room_camera(frame);
+    };
+    const SE3 T_true = room(candidate.known).inverse() * room(candidate.query);
+    EXPECT_LT((candidate.pair.T_known_query.translation - T_true.translation).norm(), 0.03);
+  }
+}
+
+TEST_F(Loops, AStateIsCorrectedAsItsPoseIs) {
+  const config::Config config = configuration(config::LoopMode::final);
+  LoopClosure loops(config, rig_);
+  run(loops, true, frames());
+  ASSERT_TRUE(loops.close().value());
+  const Trajectory final = loops.corrected_trajectory();
+  const auto state = loops.corrected_state(stamp_ns(kFrames - 1));
+  ASSERT_TRUE(state);
+  EXPECT_LT((state->T_world_imu.translation - final.back().T_world_camera.translation).norm(), 1e-12);
+  EXPECT_FALSE(loops.corrected_state(stamp_ns(3) + 1)) << "no frame of that stamp was fused";
+}
+
+TEST_F(Loops, DetectionChangesNothing) {
+  const config::Config config = configuration(config::LoopMode::detect);
+  LoopClosure loops(config, rig_);
+  run(loops, true, frames());
+  EXPECT_FALSE(loops.close().value());
+  EXPECT_NE(loops.table().find("accepted"), std::string::npos);
+  EXPECT_EQ(loops.corrected_trajectory().back().T_world_camera.translation,
+            estimate_of(kFrames - 1, true).mean.T_world_imu.translation);
+}
+
+TEST_F(Loops, OffKeepsNothing) {
+  const config::Config config = configuration(config::LoopMode::off);
+  LoopClosure loops(config, rig_);
+  run(loops, true, frames());
+  EXPECT_FALSE(loops.close().value());
+  EXPECT_TRUE(loops.places().empty());
+  EXPECT_TRUE(loops.table().empty());
+}
+
+/// Two rooms that look alike: all features and all depth agree, and the place is another one.
+TEST_F(Loops, AppearanceAloneMovesNothing) {
+  const config::Config config = configuration(config::LoopMode::final);
+  LoopClosure loops(config, rig_);
+  // One frame of the first room is seen again 6 m away, and nothing around it supports that.
+  std::vector<RgbdFrame> seen = frames();
+  for (int k = 0; k < kFrames; ++k) {
+    filter::GaussianState estimate = estimate_of(k, false);
+    const int twin = kFrames - 3;
+    if (k > kFrames / 2) estimate.mean.T_world_imu.translation += Vector3d(6, 0, 0);
+    if (k > kFrames / 2 && k != twin) continue;
+    const std::size_t shown = k == twin ? 2 : static_cast<std::size_t>(k);
+    RgbdFrame frame = seen[shown];
+    frame.timestamp_ns = stamp_ns(k);
+    loops.add_fused(frame, estimate, 0);
+    loops.add_pose(stamp_ns(k), estimate.mean.T_world_imu);
+  }
+  ASSERT_FALSE(loops.close().value()) << loops.table();
+  EXPECT_NE(loops.table().find("neither agrees"), std::string::npos) << loops.table();
+}
+
+TEST_F(Loops, WithoutDriftPosesStay) {
+  const config::Config config = configuration(config::LoopMode::final);
+  LoopClosure loops(config, rig_);
+  run(loops, false, frames());
+  ASSERT_TRUE(loops.close().value());
+  EXPECT_LT(error_m(loops.corrected_trajectory()), 0.01);
+}
+
+}  // namespace
+}  // namespace fusebench
