@@ -46,6 +46,7 @@ struct Pipeline::State final : RestartableEstimator {
   }
 
   Result<health::FrameReport> process_frame(const RgbdFrame& frame) override;
+  Result<health::FrameReport> estimate_frame(const RgbdFrame& frame);
   const std::optional<filter::GaussianState>& estimate() const override { return tracking->estimate; }
   void restart(const std::optional<filter::FilterState>& motion) override;
 
@@ -75,7 +76,7 @@ struct Pipeline::State final : RestartableEstimator {
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
 /// (fusion and new patches).
-Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
+Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& frame) {
   Tracking& now = *tracking;
   health::FrameReport report = health::report_of(frame);
   check(!now.estimate || frame.capture_ns() > now.timestamp_ns, "frames come in the order of time");
@@ -121,6 +122,13 @@ Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& fram
     report.health = health::judge_start(preparation.observed(novelty), now.reference.patches.size(), config);
   health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
+  return report;
+}
+
+Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
+  auto report = estimate_frame(frame);
+  if (report && report->status != health::FrameStatus::lost)
+    tracking->loops.add_pose(report->timestamp_ns, report->T_world_camera);
   return report;
 }
 
@@ -276,10 +284,7 @@ Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span
 Pipeline::~Pipeline() = default;
 
 Result<health::FrameReport> Pipeline::process(const RgbdFrame& frame) {
-  auto report = state_->start.process(frame, *state_);
-  if (report && report->status != health::FrameStatus::lost)
-    state_->tracking->loops.add_pose(report->timestamp_ns, report->T_world_camera);
-  return report;
+  return state_->start.process(frame, *state_);
 }
 
 Result<std::optional<Trajectory>> Pipeline::revise() {

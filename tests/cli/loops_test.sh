@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Loops as a user meets them: what each mode writes, and that the number of threads does not show.
+set -uo pipefail
+
+if (($# != 1)); then
+  printf 'Usage: tests/cli/loops_test.sh BINARY\n' >&2
+  exit 2
+fi
+binary=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+checks=0
+failures=0
+
+check() {
+  local what=$1
+  shift
+  checks=$((checks + 1))
+  if ! "$@" >check_output 2>&1; then
+    failures=$((failures + 1))
+    printf 'FAILED: %s\n' "$what" >&2
+    sed 's/^/    /' check_output >&2
+  fi
+}
+
+# run MODE THREADS: its folder on standard output.
+run() {
+  "$binary" run room --imu auto --set "loops.mode=$1" --set loops.least_age_s=1 --threads "$2" --out "runs_$1_$2" 2>"$1_$2.log"
+}
+
+"$binary" simulate --format tum --preset slow --duration 4 --seed 3 --size 320x240 --out room >/dev/null 2>&1 || exit 1
+off=$(run off 2)
+detect=$(run detect 2)
+one=$(run final 1)
+two=$(run final 2)
+if [[ -z $off || -z $detect || -z $one || -z $two ]]; then
+  cat ./*.log >&2
+  exit 1
+fi
+
+check 'off writes no loops' test ! -e "$off/loops.csv"
+check 'off has no final poses' test ! -e "$off/final.tum"
+check 'detect changes no pose' cmp "$off/trajectory.tum" "$detect/trajectory.tum"
+check 'detect changes no model' cmp "$off/mesh.ply" "$detect/mesh.ply"
+check 'detect has no final poses' test ! -e "$detect/final.tum"
+check 'detect says what it found' grep -q ',accepted,' "$detect/loops.csv"
+check 'final changes no pose online' cmp "$off/trajectory.tum" "$one/trajectory.tum"
+check 'final finds what detect found' cmp "$detect/loops.csv" "$one/loops.csv"
+check 'as many final poses as online ones' test "$(wc -l <"$one/final.tum")" = "$(wc -l <"$one/trajectory.tum")"
+check 'the record has metrics of both' grep -q '"final_metrics"' "$one/record.json"
+check 'the summary says both' grep -q 'ATE .* (final .* cm)' final_1.log
+for file in trajectory.tum final.tum loops.csv mesh.ply; do
+  check "$file does not depend on threads" cmp "$one/$file" "$two/$file"
+done
+"$binary" table runs_final_1 --systems >table 2>&1
+check 'the table has a row for the poses of the end' grep -qE 'full.*final' table
+
+printf '%d checks, %d failures\n' "$checks" "$failures"
+((failures == 0))
