@@ -148,6 +148,10 @@ Result<Programs> programs_of(const suites::Suite& suite, const std::vector<std::
   std::vector<std::string> names;
   for (const std::string& file : suite.systems) {
     auto program = external::read_external_program(file);
+    if (!program && program.error().code == ErrorCode::data_missing)
+      return fail(ErrorCode::data_missing,
+                  fmt::format("suite '{}', systems: {}", suite.name, program.error().message),
+                  "paths of systems count from the folder that fusebench is started in");
     if (!program) return tl::unexpected(program.error());
     names.push_back(program->name);
     if (!variant_may_be_wanted(only, program->name)) continue;
