@@ -89,10 +89,11 @@ using RunGroup = std::vector<const run_files::FoundRun*>;
 bool same_frames(const record::RunRecord& a, const record::RunRecord& b) {
   return a.recording.first_frame == b.recording.first_frame && a.recording.frames == b.recording.frames;
 }
-/// As far as a row names it.
+/// As far as a row names it. A run that failed may not say of which kind its poses would have been.
 bool same_name(const record::RunRecord& a, const record::RunRecord& b) {
+  const bool both_ok = a.status == record::RunStatus::ok && b.status == record::RunStatus::ok;
   return a.recording.name == b.recording.name && a.variant == b.variant &&
-         a.recording.imu == b.recording.imu && a.poses == b.poses;
+         a.recording.imu == b.recording.imu && (a.poses == b.poses || !both_ok);
 }
 
 /// After each run that revised its poses the same run with the metrics of these.

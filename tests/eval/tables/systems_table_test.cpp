@@ -56,6 +56,33 @@ TEST(SystemsTable, HasTheMedianAndTheRangeOfRepetitionsAndTheirFailures) {
   testing::expect_contains(render_systems_table(table, TableFormat::csv), ",0.03,0.02,0.05,");
 }
 
+TEST(SystemsTable, VersionsAndFramesOfOneSystemAreRowsApart) {
+  std::vector<FoundRun> runs = {run_of("mine", 0.01), run_of("mine", 0.02), run_of("mine", 0.04)};
+  runs[0].record.config_hash = "0123456789abcdef";
+  runs[1].record.config_hash = runs[2].record.config_hash = "fedcba9876543210";
+  runs[1].record.recording.frames = runs[0].record.recording.frames = 100;
+  runs[2].record.recording.first_frame = 20;
+  runs[2].record.recording.frames = 30;
+  const SystemsTable table = systems_table_of(runs);
+  ASSERT_GE(table.rows.size(), 3U);
+  EXPECT_EQ(table.rows[0].system, "mine #01234567 [0:100]");
+  EXPECT_EQ(table.rows[1].system, "mine #fedcba98 [0:100]");
+  EXPECT_EQ(table.rows[2].system, "mine #fedcba98 [20:50]");
+}
+
+TEST(SystemsTable, PosesOfTheEndAreARowOfTheirOwn) {
+  FoundRun run = run_of("full", 0.03);
+  run.record.final_metrics = run.record.metrics;
+  run.record.final_metrics->ate.value->stats = metrics::statistics(std::vector<double>{0.01});
+  const SystemsTable table = systems_table_of({run});
+  ASSERT_GE(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0].poses, "online");
+  EXPECT_DOUBLE_EQ(table.rows[0].ate_m->median, 0.03);
+  EXPECT_EQ(table.rows[1].poses, "final");
+  EXPECT_EQ(table.rows[1].system, "full");
+  EXPECT_DOUBLE_EQ(table.rows[1].ate_m->median, 0.01);
+}
+
 TEST(SystemsTable, LabelsPublishedNumbersAndKeepsThemApart) {
   const SystemsTable table = systems_table_of({run_of("full", 0.01)});
   const auto elastic = std::ranges::find(table.rows, "ElasticFusion", &SystemRow::system);
