@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/filter/pose_clones.hpp"
@@ -173,7 +174,10 @@ void LoopClosure::decide() {
 /// Edges that do not fit go, the worst one first.
 Result<void> LoopClosure::optimise() {
   PoseGraph graph;
-  graph.gravity_sigma_rad = radians(config_.loops.gravity_sigma_deg);
+  // The errors of gravity (bias and scale of the accelerometer, its rotation against the camera) are common
+  // to all places: together they tell as much as one.
+  graph.gravity_sigma_rad =
+      radians(config_.loops.gravity_sigma_deg) * std::sqrt(static_cast<double>(places_.size()));
   for (std::size_t i = 0; i < places_.size(); ++i) {
     graph.T_world_camera.push_back(places_[i].T_world_camera);
     graph.gravity_camera.push_back(places_[i].gravity_camera);
