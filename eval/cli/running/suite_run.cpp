@@ -83,14 +83,12 @@ Result<int> run_suite(BenchOptions options) {
   const auto plan = engine::plan_batch(*suite, batch);
   if (!plan) return tl::unexpected(plan.error());
   for (const std::string& warning : plan->warnings) console::print_progress("warning: " + warning);
-  // The preview lists what is excluded by itself. What cannot run here is no choice of the suite's.
-  if (!options.controls.dry_run) {
-    for (const std::string& absent : plan->absent) console::print_progress("warning: left out: " + absent);
-  }
   if (options.controls.dry_run) {
     print_preview(*plan, options.controls);
     return 0;
   }
+  // The preview lists what is excluded; what cannot run here is no choice of the suite's.
+  for (const std::string& absent : plan->absent) console::print_progress("warning: left out: " + absent);
   if (plan->jobs.empty()) {
     return fail(ErrorCode::usage,
                 fmt::format("all {} runs of suite '{}' are excluded, the first one because: {}",
