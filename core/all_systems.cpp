@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/paper_system.hpp"
+#include "core/systems/bundlefusion/bundlefusion_system.hpp"
 #include "core/systems/infinitam/infinitam_system.hpp"
 #include "core/systems/opencv_odometry/opencv_odometry_system.hpp"
 
@@ -38,6 +39,11 @@ constexpr std::array kSystems = {
               "OpenCV's odometries (module rgbd) from frame to frame, fused by this program's TSDF",
               "opencv_odometry depth tsdf", kAnyThreads,
               &make_without_imu<systems::opencv_odometry::OpencvOdometrySystem>},
+    SystemRow{
+        config::SystemMethod::bundlefusion, "bundlefusion",
+        "BundleFusion's chunks of matched keypoints and depth, adjusted all together (Dai et al. 2017), "
+        "fused at the end by this program's TSDF",
+        "bundlefusion depth tsdf", kAnyThreads, &make_without_imu<systems::bundlefusion::BundlefusionSystem>},
 };
 
 }  // namespace

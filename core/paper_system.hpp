@@ -17,11 +17,13 @@ class PaperSystem final : public systems::System {
 
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   [[nodiscard]] const health::FrameReport* filter_report() const override { return &report_; }
+  [[nodiscard]] bool wants_frames_again() const override { return pipeline_.wants_frames_again(); }
+  void resume() override { pipeline_.resume(); }
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override { return pipeline_.revise(); }
   [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame) override {
     return pipeline_.fuse_again(frame);
   }
-  [[nodiscard]] std::string loop_table() const override { return pipeline_.loop_table(); }
+  [[nodiscard]] const loops::LoopClosure* loops() const override { return pipeline_.loops(); }
   [[nodiscard]] systems::Surface take_surface() override { return std::move(pipeline_).take_model(); }
 
  private:

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/filter/iekf.hpp"
+#include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
 #include "core/frame_preparation.hpp"
@@ -59,6 +60,12 @@ struct Pipeline::State final : RestartableEstimator {
   bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
   Result<void> fuse(health::StageTimes& stages);
   void refresh(health::StageTimes& stages);
+  void cut_patches();
+  void begin_again(const SE3& T_corrected_current);
+  /// What patches are cut from.
+  [[nodiscard]] patches::ReferenceFrame reference_frame() const {
+    return {preparation.pyramid(), preparation.patch_depth_m(), rig.camera, T_world_camera()};
+  }
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
   config::Config config;
@@ -72,6 +79,7 @@ struct Pipeline::State final : RestartableEstimator {
   std::optional<Tracking> tracking;                   ///< always there
   std::optional<filter::FilterState> initial_motion;  ///< after a restart
   RecordingStart start{config.initialisation};
+  std::optional<filter::GaussianState> corrected;  ///< by a loop, to go on with once the model is there again
 };
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
@@ -127,9 +135,21 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
 
 Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
   auto report = estimate_frame(frame);
-  if (report && report->status != health::FrameStatus::lost)
-    tracking->loops.add_pose(report->timestamp_ns, report->T_world_camera);
+  if (!report || report->status == health::FrameStatus::lost) return report;
+  tracking->loops.add_pose(report->timestamp_ns, report->T_world_camera);
+  const auto moved = tracking->loops.correct_online();
+  if (!moved) return tl::unexpected(moved.error());
+  if (*moved) begin_again(**moved);
   return report;
+}
+
+/// The world moves, and the model has to be made again.
+void Pipeline::State::begin_again(const SE3& T_corrected_current) {
+  Tracking& now = *tracking;
+  corrected = filter::moved(*now.estimate, T_corrected_current);
+  now.model = tsdf::TsdfVolume(config.tsdf);
+  now.relocalisation.move(
+      [&](std::int64_t timestamp_ns) { return now.loops.corrected_pose_near(timestamp_ns); });
 }
 
 void Pipeline::State::restart(const std::optional<filter::FilterState>& motion) {
@@ -262,20 +282,25 @@ Result<void> Pipeline::State::fuse(health::StageTimes& stages) {
 void Pipeline::State::refresh(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::refresh);
   Tracking& now = *tracking;
-  const RgbdFrame& frame = preparation.frame();
-  const patches::ReferenceFrame reference{preparation.pyramid(), preparation.patch_depth_m(), rig.camera,
-                                          T_world_camera()};
-  patches::refresh_patches(reference, now.model, now.survivors, config, workers, patch_workspace,
-                           now.reference.patches);
-  now.reference.points.take(preparation.whole_pyramid(), frame.depth_m, rig.camera, config.alignment);
+  cut_patches();
   now.reference.timestamp_ns = now.timestamp_ns;
-  const double share = patches::fused_share(now.model, now.reference.patches, reference, config.depth);
+  const double share =
+      patches::fused_share(now.model, now.reference.patches, reference_frame(), config.depth);
   now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor},
                                              now.color_drift.noise(config.color_drift),
                                              preparation.undone_readout(now.estimate->mean));
+  const RgbdFrame& frame = preparation.frame();
   const double blur_px = preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s);
   now.relocalisation.add_keyframe(frame, T_world_camera(), now.timestamp_ns, blur_px);
   now.loops.add_fused(frame, *now.estimate, blur_px);
+}
+
+void Pipeline::State::cut_patches() {
+  Tracking& now = *tracking;
+  patches::refresh_patches(reference_frame(), now.model, now.survivors, config, workers, patch_workspace,
+                           now.reference.patches);
+  now.reference.points.take(preparation.whole_pyramid(), preparation.frame().depth_m, rig.camera,
+                            config.alignment);
 }
 
 Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
@@ -307,7 +332,21 @@ Result<void> Pipeline::fuse_again(const RgbdFrame& frame) {
   return state_->fuse(stages);
 }
 
-std::string Pipeline::loop_table() const { return state_->tracking->loops.table(); }
+bool Pipeline::wants_frames_again() const { return state_->corrected.has_value(); }
+
+/// The last frame that came again is the one that patches were cut from: they are cut again, from the new
+/// model.
+void Pipeline::resume() {
+  Tracking& now = *state_->tracking;
+  now.estimate = std::exchange(state_->corrected, std::nullopt);
+  for (patches::TrackedCentre& centre : now.survivors) centre.kept.reset();
+  state_->cut_patches();
+}
+
+const loops::LoopClosure* Pipeline::loops() const {
+  const loops::LoopClosure& loops = state_->tracking->loops;
+  return loops.enabled() ? &loops : nullptr;
+}
 
 const tsdf::TsdfVolume& Pipeline::model() const { return state_->tracking->model; }
 

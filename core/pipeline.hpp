@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/health/frame_report.hpp"
+#include "core/loops/loop_closure.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::core {
@@ -29,12 +29,19 @@ class Pipeline {
   /// errors are IMU samples that do not cover the frame (data_corrupt) and a full model (run_failed).
   [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame);
 
-  /// After the last frame: all poses, if loops change them (loops.mode = final); nothing if not. Then the
-  /// model is empty, and is fused again from all frames, in order. Errors: those of LoopClosure::close(), and
-  /// of the model (run_failed).
-  [[nodiscard]] Result<std::optional<Trajectory>> revise();
+  /// After process(): true if a loop has corrected all poses so far (loops.mode = online). Then the model is
+  /// empty, and is fused again from all frames so far, in order, by fuse_again(), before resume().
+  [[nodiscard]] bool wants_frames_again() const;
+  /// Error run_failed: a full model.
   [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame);
-  [[nodiscard]] std::string loop_table() const;
+  void resume();
+
+  /// After the last frame: all poses, if loops change them (loops.mode = final or online); nothing if not.
+  /// Then the model is empty, and is fused again from all frames, in order. Errors: those of
+  /// LoopClosure::close().
+  [[nodiscard]] Result<std::optional<Trajectory>> revise();
+  /// Nothing if loops.mode = off.
+  [[nodiscard]] const loops::LoopClosure* loops() const;
 
   [[nodiscard]] const tsdf::TsdfVolume& model() const;
   /// The model, and the end of everything else that the pipeline keeps.

@@ -174,10 +174,12 @@ struct PlacePoseConfig {
 };
 
 /// What is made of a place that is seen again.
-enum class LoopMode { off, detect, final };
+enum class LoopMode { off, detect, final, online };
 constexpr auto option_choices(LoopMode) {
-  return choices<LoopMode>(
-      {{"off", LoopMode::off}, {"detect", LoopMode::detect}, {"final", LoopMode::final}});
+  return choices<LoopMode>({{"off", LoopMode::off},
+                            {"detect", LoopMode::detect},
+                            {"final", LoopMode::final},
+                            {"online", LoopMode::online}});
 }
 
 /// Loops: the pose graph of places (keyframes of the whole path), and its edges.
@@ -192,22 +194,35 @@ struct LoopsConfig {
   double min_consistent_share = 0.25;
   double max_violating_share = 0.05;
   double depth_sigmas = 3.0;
+  double dense_gate_m = 0.12;
+  int dense_min_pairs = 500;
+  double dense_pixels_per_measurement = 50.0;
+  double min_grey_correlation = 0.6;
+  double max_rotation_sigma_deg = 0.5;
+  double max_position_sigma_m = 0.02;
   double drift_factor = 3.0;
   double path_rotation_sigma_rad = 0.003;
   double path_position_sigma_m = 0.004;
   double loop_rotation_sigma_rad = 0.001;
   double loop_position_sigma_m = 0.002;
+  double timing_sigma_s = 0.003;
   double gravity_sigma_deg = 0.5;
   double max_chi2 = 22.5;
+  double max_supported_chi2 = 225.0;
   double agreeing_chi2 = 16.8;
   double agreeing_within_s = 2.0;
   double worst_edge_sigmas = 3.0;
-  int max_dropped_edges = 5;
+  double online_translation_m = 0.01;
+  double online_rotation_deg = 0.5;
+  int online_every = 100;
+  int max_online_corrections = 5;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.choice("mode", self.mode,
-             "off; detect: places that are seen again are logged, with why each was taken or refused, and "
-             "change nothing; final: at the end all poses are optimised once, and the model is fused again");
+    v.choice(
+        "mode", self.mode,
+        "off; detect: places that are seen again are logged, with why each was taken or refused, and "
+        "change nothing; final: at the end all poses are optimised once, and the model is fused again; "
+        "online: the same while the recording runs as well, whenever a loop says that the poses are wrong");
     v.number("place_distance_m", self.place_distance_m, 0.02, 5.0,
              "a fused frame becomes a place if the last place is farther away than this, or");
     v.number("place_angle_deg", self.place_angle_deg, 1.0, 90.0, "turned by more than this");
@@ -224,6 +239,18 @@ struct LoopsConfig {
              "and at most this share before it, where the other one saw free space");
     v.number("depth_sigmas", self.depth_sigmas, 1.0, 20.0,
              "on the surface: within so many standard deviations of the depth noise, and 1 cm more");
+    v.number("dense_gate_m", self.dense_gate_m, 0.01, 1.0,
+             "the pose of a pair is refined by points of one on planes of the other, at a quarter of the "
+             "size: those that are nearer than this (metres) at first, and than a quarter of it at the end");
+    v.number("dense_min_pairs", self.dense_min_pairs, 50, 19200, "by no fewer of the 4800 points than this");
+    v.number("dense_pixels_per_measurement", self.dense_pixels_per_measurement, 1.0, 10000.0,
+             "so many of them tell as much as one: errors of neighbouring depths are common");
+    v.number("min_grey_correlation", self.min_grey_correlation, -1.0, 1.0,
+             "a pair that features do not verify is verified by depth, starting where the path leads: where "
+             "the depth fits, the intensities of both have to correlate at least so well, and");
+    v.number("max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 10.0,
+             "the pose has to be known to this along every axis: rotation (degrees)");
+    v.number("max_position_sigma_m", self.max_position_sigma_m, 0.001, 1.0, "and position (metres)");
     v.number("drift_factor", self.drift_factor, 0.1, 100.0,
              "drift between places is this much larger than the filter claims (standard deviations): its "
              "claims on realistic recordings have an NEES of 10 to 30");
@@ -233,19 +260,34 @@ struct LoopsConfig {
     v.number("loop_rotation_sigma_rad", self.loop_rotation_sigma_rad, 1e-5, 0.1,
              "what a loop's features do not say of its error, by axis: rotation (rad)");
     v.number("loop_position_sigma_m", self.loop_position_sigma_m, 1e-5, 0.1, "and position (metres)");
+    v.number(
+        "timing_sigma_s", self.timing_sigma_s, 0.0, 0.1,
+        "and what the camera moved within this time (seconds): instants of colour and depth, and of rows, "
+        "are known no better");
     v.number("gravity_sigma_deg", self.gravity_sigma_deg, 0.01, 45.0,
-             "error of the direction of gravity in each place, with an IMU");
+             "error of the direction of gravity of all places together, with an IMU: its errors (bias and "
+             "scale of the accelerometer) are common to them");
     v.number(
         "max_chi2", self.max_chi2, 1.0, 1000.0,
         "an edge whose squared distance to the poses so far, by their drift and its own error, is larger "
         "(six degrees of freedom; 0.1 %) is not taken alone");
-    v.number("agreeing_chi2", self.agreeing_chi2, 1.0, 1000.0,
-             "but it is with another one that it agrees with as well as this (1 %)");
+    v.number(
+        "max_supported_chi2", self.max_supported_chi2, 1.0, 1e6,
+        "up to this, ten times as much, it is taken with another one that it agrees with; beyond, nothing "
+        "supports it: rooms that are alike support each other");
+    v.number("agreeing_chi2", self.agreeing_chi2, 1.0, 1000.0, "agrees: as well as this (1 %)");
     v.number("agreeing_within_s", self.agreeing_within_s, 0.1, 100.0, "and that is so near in time");
     v.number("worst_edge_sigmas", self.worst_edge_sigmas, 1.0, 100.0,
-             "after the optimisation the worst edge is dropped if its residual is larger (root mean square "
-             "over six degrees of freedom), and all is optimised again");
-    v.number("max_dropped_edges", self.max_dropped_edges, 0, 1000, "at most so many times");
+             "after the optimisation edges with a larger residual (root mean square over six degrees of "
+             "freedom) are dropped, and all is optimised again until none is left");
+    v.number("online_translation_m", self.online_translation_m, 0.0, 1.0,
+             "with mode online poses are corrected if the current one moves by more than this (metres) or");
+    v.number("online_rotation_deg", self.online_rotation_deg, 0.0, 90.0, "turns by more than this,");
+    v.number("online_every", self.online_every, 1, 100000,
+             "no sooner than so many fused frames after the last attempt, since all frames so far are fused "
+             "again each time, and");
+    v.number("max_online_corrections", self.max_online_corrections, 0, 1000,
+             "at most so often in a recording");
   }
 };
 

@@ -6,11 +6,12 @@
 namespace fusebench::config {
 
 /// The method as a whole.
-enum class SystemMethod { filter, infinitam, opencv_odometry };
+enum class SystemMethod { filter, infinitam, opencv_odometry, bundlefusion };
 constexpr auto option_choices(SystemMethod) {
   return choices<SystemMethod>({{"filter", SystemMethod::filter},
                                 {"infinitam", SystemMethod::infinitam},
-                                {"opencv_odometry", SystemMethod::opencv_odometry}});
+                                {"opencv_odometry", SystemMethod::opencv_odometry},
+                                {"bundlefusion", SystemMethod::bundlefusion}});
 }
 
 /// Which system runs.
@@ -20,8 +21,9 @@ struct SystemConfig {
   static constexpr void visit(auto& self, auto&& v) {
     v.choice("method", self.method,
              "the system that runs: the paper's filter, which all groups of options belong to that are not "
-             "named after a system; InfiniTAM's method (Kaehler et al. 2015), or OpenCV's odometries from "
-             "frame to frame, both with the depth and tsdf options as well");
+             "named after a system; InfiniTAM's method (Kaehler et al. 2015), OpenCV's odometries from frame "
+             "to frame, or BundleFusion's method (Dai et al. 2017), all with the depth and tsdf options as "
+             "well");
   }
 };
 
@@ -127,6 +129,43 @@ struct OpencvOdometryConfig {
   static constexpr void visit(auto& self, auto&& v) {
     v.choice("method", self.method,
              "colour (Steinbruecker et al. 2011), depth, both, or depth as KinectFusion has it");
+  }
+};
+
+/// BundleFusion: weights of its adjustments, and what its keypoints are chosen by. Defaults are the
+/// program's, but for dense_far_m.
+struct BundlefusionConfig {
+  int max_keypoints = 1024;
+  double min_keypoint_scale_px = 3.0;
+  double keypoint_min_depth_m = 0.1;
+  double keypoint_max_depth_m = 4.0;
+  double sparse_weight = 1.0;
+  double dense_weight = 2.0;
+  double final_dense_weight = 15.0;
+  double dense_far_m = 4.0;
+  double max_residual_m = 0.08;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("max_keypoints", self.max_keypoints, 8, 20000, "keypoints of a frame, the strongest first");
+    v.number("min_keypoint_scale_px", self.min_keypoint_scale_px, 0.0, 100.0,
+             "standard deviation of the Gaussian at which a keypoint is found (pixels); finer ones are not "
+             "used");
+    v.number("keypoint_min_depth_m", self.keypoint_min_depth_m, 0.0, 100.0,
+             "depth below this is not used to find poses (metres); depth.min_m is the model's");
+    v.number("keypoint_max_depth_m", self.keypoint_max_depth_m, 0.01, 100.0,
+             "depth above this is not used to find poses (metres); depth.max_m is the model's");
+    v.number("sparse_weight", self.sparse_weight, 1e-6, 1e6,
+             "weight of squared distances of matched keypoints");
+    v.number("dense_weight", self.dense_weight, 0.0, 1e6,
+             "weight of squared distances of points from planes within a chunk of frames; 0: not compared");
+    v.number("final_dense_weight", self.final_dense_weight, 0.0, 1e6,
+             "the same among all chunks, at the end");
+    v.number("dense_far_m", self.dense_far_m, 0.1, 100.0,
+             "the weight of depth falls to 0 here (metres), as (1 - z / dense_far_m)^2.5. The authors edited "
+             "this function in the source for each sequence that they published; this is one setting for all "
+             "recordings");
+    v.number("max_residual_m", self.max_residual_m, 0.001, 10.0,
+             "the worst pair of chunks is dropped if its keypoints are further apart along an axis (metres)");
   }
 };
 

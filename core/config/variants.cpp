@@ -82,6 +82,13 @@ constexpr std::array kVariants = {
             "system.method=opencv_odometry opencv_odometry.method=icp"},
     Variant{"opencv-rgbdicp", "", "OpenCV's RgbdICPOdometry from frame to frame: colour and depth",
             "system.method=opencv_odometry opencv_odometry.method=rgbd_icp"},
+    Variant{
+        "bundlefusion", "BundleFusion",
+        "BundleFusion's method with one setting for all recordings: SIFT and depth in chunks of ten frames, "
+        "every chunk matched with all others; the model is fused once, at the final poses",
+        "system.method=bundlefusion depth.min_m=0.1 depth.max_m=3 depth.noise_floor_m=1e-5 "
+        "depth.noise_quadratic_per_m=0 tsdf.voxel_m=0.01 tsdf.truncation_m=0.08 tsdf.truncation_sigmas=0 "
+        "tsdf.max_weight=2048"},
 };
 }  // namespace
 

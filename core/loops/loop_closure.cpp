@@ -1,29 +1,19 @@
 #include "core/loops/loop_closure.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 
 namespace fusebench::loops {
 
 namespace {
 
-DepthImage every_fourth(const DepthImage& depth_m) {
-  DepthImage small(depth_m.width / kDepthStep, depth_m.height / kDepthStep);
-  for (int y = 0; y < small.height; ++y) {
-    for (int x = 0; x < small.width; ++x) small(x, y) = depth_m(kDepthStep * x, kDepthStep * y);
-  }
-  return small;
-}
-
-double seconds_between(const Place& earlier, const Place& later) {
-  constexpr double kSeconds = 1e-9;
-  return kSeconds * static_cast<double>(later.timestamp_ns - earlier.timestamp_ns);
+double seconds_apart(const Place& earlier, const Place& later) {
+  return seconds_between(earlier.timestamp_ns, later.timestamp_ns);
 }
 
 /// Position errors of the tangent of pose_minus(), from the world to frame a.
@@ -40,7 +30,7 @@ Matrix6d not_negative(const Matrix6d& covariance) {
          eigen.eigenvectors().transpose();
 }
 
-Matrix6d covariance_of(double rotation_sigma_rad, double position_sigma_m) {
+Matrix6d covariance_by_axis(double rotation_sigma_rad, double position_sigma_m) {
   Vector6d sigmas;
   sigmas << Vector3d::Constant(rotation_sigma_rad), Vector3d::Constant(position_sigma_m);
   return sigmas.cwiseAbs2().asDiagonal();
@@ -49,14 +39,16 @@ Matrix6d covariance_of(double rotation_sigma_rad, double position_sigma_m) {
 }  // namespace
 
 void LoopClosure::add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera) {
-  if (enabled()) poses_.push_back({timestamp_ns, T_world_camera});
+  if (enabled()) poses_.push_back({timestamp_ns, T_current_odometry_.inverse() * T_world_camera});
 }
 
 void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState& estimate, double blur_px) {
   if (!enabled()) return;
   const config::LoopsConfig& config = config_.loops;
-  fused_.push_back({frame.timestamp_ns, estimate.mean});
-  const SE3 T_world_camera = estimate.mean.T_world_imu * rig_.T_imu_camera;
+  const filter::GaussianState in_odometry = filter::moved(estimate, T_current_odometry_.inverse());
+  poses_are_wrong_ = false;
+  fused_.push_back({frame.timestamp_ns, in_odometry.mean});
+  const SE3 T_world_camera = in_odometry.mean.T_world_imu * rig_.T_imu_camera;
   ++fused_since_place_;
   if (!places_.empty()) {
     const SE3 moved = places_.back().T_world_camera.inverse() * T_world_camera;
@@ -66,19 +58,17 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
     if (near && fused_since_place_ < config.query_every) return;
   }
   fused_since_place_ = 0;
-  Place place;
-  place.timestamp_ns = frame.timestamp_ns;
+  Place place = place_of(frame, rig_.camera, config_);
   place.T_world_camera = T_world_camera;
-  const Matrix6d to_camera = filter::pose_transport(T_world_camera, estimate.mean.T_world_imu);
-  const filter::GaussianState in_first = filter::in_first_camera_world(estimate);
+  const Matrix6d to_camera = filter::pose_transport(T_world_camera, in_odometry.mean.T_world_imu);
+  const filter::GaussianState in_first = filter::in_first_camera_world(in_odometry);
   place.covariance = to_camera * in_first.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() *
                      to_camera.transpose();
   if (config_.terms.prior == config::Prior::imu)
-    place.gravity_camera = T_world_camera.rotation.conjugate() * estimate.mean.gravity_direction_world;
+    place.gravity_camera = T_world_camera.rotation.conjugate() * in_odometry.mean.gravity_direction_world;
   place.blur_px = blur_px;
-  place.code = fern_code(frame.color, frame.depth_m);
-  place.landmarks = relocalisation::landmarks_of(frame.grey, frame.depth_m, rig_.camera, config_);
-  place.small_depth_m = every_fourth(frame.depth_m);
+  place.angular_speed_radps = estimate.mean.angular_velocity_imu_radps.norm();
+  place.speed_mps = estimate.mean.velocity_world_mps.norm();
   places_.push_back(std::move(place));
   look_for_loops(places_.size() - 1);
 }
@@ -88,17 +78,23 @@ void LoopClosure::look_for_loops(std::size_t query) {
   const config::LoopsConfig& config = config_.loops;
   std::vector<std::pair<double, std::size_t>> similar;
   for (std::size_t known = 0; known < query; ++known) {
-    if (seconds_between(places_[known], places_[query]) < config.least_age_s) break;
-    const double different = dissimilarity(places_[known].code, places_[query].code);
+    if (seconds_apart(places_[known], places_[query]) < config.least_age_s) break;
+    const double different = ferns::dissimilarity(places_[known].code, places_[query].code);
     if (different <= config.max_dissimilarity) similar.emplace_back(different, known);
   }
   std::ranges::sort(similar);
   similar.resize(std::min(similar.size(), static_cast<std::size_t>(config.max_candidates)));
   for (const auto& [different, known] : similar) {
     LoopCandidate candidate{known, query, different, {}, 0, false, {}};
-    candidate.pair = verify_pair(places_[known], places_[query], rig_.camera, config_);
+    candidate.pair = verify_pair(places_[known], places_[query],
+                                 places_[known].T_world_camera.inverse() * places_[query].T_world_camera,
+                                 rig_.camera, config_);
     const bool same = candidate.pair.same;
     if (!same) candidate.verdict = candidate.pair.reason;
+    if (same) {
+      const SE3 T_known_query = T_current_camera(known).inverse() * T_current_camera(query);
+      poses_are_wrong_ = is_large(T_known_query.inverse() * candidate.pair.T_known_query);
+    }
     candidates_.push_back(std::move(candidate));
     if (same) break;
   }
@@ -112,16 +108,22 @@ GraphEdge LoopClosure::path_edge(std::size_t a, std::size_t b) const {
   const Matrix6d drift = not_negative(to.covariance - carried * from.covariance * carried.transpose());
   const double factor = config_.loops.drift_factor * config_.loops.drift_factor;
   GraphEdge edge{a, b, from.T_world_camera.inverse() * to.T_world_camera, Matrix6d::Zero(), false};
-  edge.covariance = factor * position_in(drift, from.T_world_camera) +
-                    covariance_of(config_.loops.path_rotation_sigma_rad, config_.loops.path_position_sigma_m);
+  edge.covariance =
+      factor * position_in(drift, from.T_world_camera) +
+      covariance_by_axis(config_.loops.path_rotation_sigma_rad, config_.loops.path_position_sigma_m);
   return edge;
 }
 
+/// The images of a place are of instants that are known only so well.
 GraphEdge LoopClosure::loop_edge(const LoopCandidate& candidate) const {
-  return {candidate.known, candidate.query, candidate.pair.T_known_query,
-          candidate.pair.covariance +
-              covariance_of(config_.loops.loop_rotation_sigma_rad, config_.loops.loop_position_sigma_m),
-          true};
+  const config::LoopsConfig& loops = config_.loops;
+  GraphEdge edge{candidate.known, candidate.query, candidate.pair.T_known_query, candidate.pair.covariance,
+                 true};
+  edge.covariance += covariance_by_axis(loops.loop_rotation_sigma_rad, loops.loop_position_sigma_m);
+  for (const std::size_t place : {candidate.known, candidate.query})
+    edge.covariance += covariance_by_axis(loops.timing_sigma_s * places_[place].angular_speed_radps,
+                                          loops.timing_sigma_s * places_[place].speed_mps);
+  return edge;
 }
 
 double LoopClosure::chi2_of(const LoopCandidate& candidate) const {
@@ -135,7 +137,7 @@ double LoopClosure::chi2_of(const LoopCandidate& candidate) const {
 /// By way of the motion between their places, which are near in time.
 bool LoopClosure::agree(const LoopCandidate& a, const LoopCandidate& b) const {
   const auto apart_s = [&](std::size_t i, std::size_t j) {
-    return std::abs(seconds_between(places_[i], places_[j]));
+    return std::abs(seconds_apart(places_[i], places_[j]));
   };
   if (apart_s(a.query, b.query) > config_.loops.agreeing_within_s || a.query == b.query) return false;
   const SE3 T_known = places_[a.known].T_world_camera.inverse() * places_[b.known].T_world_camera;
@@ -157,13 +159,16 @@ void LoopClosure::decide() {
     candidate.accepted = candidate.chi2 <= config_.loops.max_chi2;
     if (candidate.accepted) {
       candidate.verdict = "agrees with the poses within their drift";
-    } else {
+    } else if (candidate.chi2 <= config_.loops.max_supported_chi2) {
       pending.push_back(&candidate);
+    } else {
+      candidate.verdict = "contradicts the poses, whatever supports it";
     }
   }
   for (LoopCandidate* const candidate : pending) {
     const bool supported = std::ranges::any_of(candidates_, [&](const LoopCandidate& other) {
-      return &other != candidate && other.pair.same && agree(*candidate, other);
+      return &other != candidate && other.pair.same && other.chi2 <= config_.loops.max_supported_chi2 &&
+             agree(*candidate, other);
     });
     candidate->accepted = supported;
     candidate->verdict = supported ? "agrees with another loop near to it"
@@ -171,8 +176,9 @@ void LoopClosure::decide() {
   }
 }
 
-/// Edges that do not fit go, the worst one first.
+/// Edges that do not fit the others go.
 Result<void> LoopClosure::optimise() {
+  optimised_.clear();
   PoseGraph graph;
   // The errors of gravity (bias and scale of the accelerometer, its rotation against the camera) are common
   // to all places: together they tell as much as one.
@@ -183,47 +189,78 @@ Result<void> LoopClosure::optimise() {
     graph.gravity_camera.push_back(places_[i].gravity_camera);
     if (i > 0) graph.edges.push_back(path_edge(i - 1, i));
   }
-  const std::size_t first_loop = graph.edges.size();
-  std::vector<LoopCandidate*> of_edges;
-  for (LoopCandidate& candidate : candidates_) {
-    if (!candidate.accepted) continue;
-    graph.edges.push_back(loop_edge(candidate));
-    of_edges.push_back(&candidate);
-  }
+  const std::vector<GraphEdge> path = graph.edges;
   const double worst_allowed =
       filter::kPoseSize * config_.loops.worst_edge_sigmas * config_.loops.worst_edge_sigmas;
-  for (int dropped = 0; !of_edges.empty(); ++dropped) {
+  for (bool fit = false; !fit;) {
+    graph.edges = path;
+    for (const LoopCandidate& candidate : candidates_) {
+      if (candidate.accepted) graph.edges.push_back(loop_edge(candidate));
+    }
+    if (graph.edges.size() == path.size()) return {};
     auto poses = optimised_poses(graph);
     if (!poses) return tl::unexpected(poses.error());
-    const auto residual = [&](const GraphEdge& edge) { return squared_residual(edge, *poses); };
-    const auto loops = std::span(graph.edges).subspan(first_loop);
-    const auto worst = std::ranges::max_element(loops, {}, residual);
-    if (residual(*worst) <= worst_allowed || dropped == config_.loops.max_dropped_edges) {
-      optimised_ = std::move(*poses);
-      return {};
+    fit = true;
+    for (LoopCandidate& candidate : candidates_) {
+      if (!candidate.accepted || squared_residual(loop_edge(candidate), *poses) <= worst_allowed) continue;
+      candidate.accepted = fit = false;
+      candidate.verdict = "does not fit the other edges after the optimisation";
     }
-    const std::ptrdiff_t place = worst - loops.begin();
-    of_edges[static_cast<std::size_t>(place)]->accepted = false;
-    of_edges[static_cast<std::size_t>(place)]->verdict =
-        "does not fit the other edges after the optimisation";
-    of_edges.erase(of_edges.begin() + place);
-    graph.edges.erase(graph.edges.begin() + static_cast<std::ptrdiff_t>(first_loop) + place);
+    if (fit) optimised_ = std::move(*poses);
   }
   return {};
+}
+
+/// In the world of the estimate.
+SE3 LoopClosure::T_current_camera(std::size_t place) const {
+  if (place < optimised_.size()) return optimised_[place];
+  return T_current_odometry_ * places_[place].T_world_camera;
+}
+
+bool LoopClosure::is_large(const SE3& motion) const {
+  return motion.translation.norm() > config_.loops.online_translation_m ||
+         rotation_angle_rad(motion.rotation, Quaterniond::Identity()) >
+             radians(config_.loops.online_rotation_deg);
+}
+
+Result<std::optional<SE3>> LoopClosure::correct_online() {
+  const config::LoopsConfig& config = config_.loops;
+  if (config.mode != config::LoopMode::online || !poses_are_wrong_ ||
+      corrections_ >= config.max_online_corrections ||
+      fused_.size() - fused_at_attempt_ < static_cast<std::size_t>(config.online_every))
+    return std::nullopt;
+  poses_are_wrong_ = false;
+  fused_at_attempt_ = fused_.size();
+  decide();
+  std::vector<SE3> before = optimised_;
+  if (auto done = optimise(); !done) return tl::unexpected(done.error());
+  const SE3& T_odometry_last = places_.back().T_world_camera;
+  const SE3 T_corrected_odometry =
+      optimised_.empty() ? T_current_odometry_ : optimised_.back() * T_odometry_last.inverse();
+  const SE3 motion =
+      (T_current_odometry_ * T_odometry_last).inverse() * T_corrected_odometry * T_odometry_last;
+  if (!is_large(motion)) {
+    optimised_ = std::move(before);
+    return std::nullopt;
+  }
+  ++corrections_;
+  const SE3 T_corrected_current = T_corrected_odometry * T_current_odometry_.inverse();
+  T_current_odometry_ = T_corrected_odometry;
+  return T_corrected_current;
 }
 
 Result<bool> LoopClosure::close() {
   if (!enabled()) return false;
   decide();
-  if (config_.loops.mode != config::LoopMode::final) return false;
+  if (config_.loops.mode == config::LoopMode::detect) return false;
   if (auto done = optimise(); !done) return tl::unexpected(done.error());
-  return !optimised_.empty();
+  return !optimised_.empty() || corrections_ > 0;
 }
 
 /// Moved with the places before and after it.
-SE3 LoopClosure::corrected(std::int64_t timestamp_ns, const SE3& T_world_camera) const {
+SE3 LoopClosure::corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const {
   const auto moved_with = [&](std::size_t place) {
-    return optimised_[place] * (places_[place].T_world_camera.inverse() * T_world_camera);
+    return optimised_[place] * (places_[place].T_world_camera.inverse() * T_odometry_camera);
   };
   const auto after = std::ranges::lower_bound(places_, timestamp_ns, {}, &Place::timestamp_ns);
   if (after == places_.begin()) return moved_with(0);
@@ -245,35 +282,27 @@ Trajectory LoopClosure::corrected_trajectory() const {
 std::optional<filter::FilterState> LoopClosure::corrected_state(std::int64_t timestamp_ns) const {
   const auto found = std::ranges::lower_bound(fused_, timestamp_ns, {}, &FusedFrame::timestamp_ns);
   if (found == fused_.end() || found->timestamp_ns != timestamp_ns) return std::nullopt;
-  filter::FilterState state = found->state;
-  if (optimised_.empty()) return state;
-  const SE3 before = state.T_world_imu;
-  state.T_world_imu = corrected(timestamp_ns, before * rig_.T_imu_camera) * rig_.T_imu_camera.inverse();
-  const Quaterniond turn = state.T_world_imu.rotation * before.rotation.conjugate();
-  state.velocity_world_mps = turn * state.velocity_world_mps;
-  state.gravity_direction_world = (turn * state.gravity_direction_world).normalized();
-  return state;
+  if (optimised_.empty()) return found->state;
+  const SE3 T_odometry_camera = found->state.T_world_imu * rig_.T_imu_camera;
+  return filter::moved(found->state,
+                       corrected(timestamp_ns, T_odometry_camera) * T_odometry_camera.inverse());
 }
 
-std::string LoopClosure::table() const {
-  constexpr double kSeconds = 1e-9;
-  std::string text;
-  for (const LoopCandidate& c : candidates_) {
-    const SE3& pose = c.pair.T_known_query;
-    const Vector3d& t = pose.translation;
-    const Quaterniond& q = pose.rotation;
-    const auto sigma = [&](int first) {
-      return c.pair.same ? std::sqrt(loop_edge(c).covariance.diagonal().segment<3>(first).mean()) : 0.0;
-    };
-    text += fmt::format("{:.6f},{:.6f},{:.6g},{:.6g},{:.6g},{:.8g},{:.8g},{:.8g},{:.8g},{:.3g},{:.3g},",
-                        kSeconds * static_cast<double>(places_[c.query].timestamp_ns),
-                        kSeconds * static_cast<double>(places_[c.known].timestamp_ns), t.x(), t.y(), t.z(),
-                        q.x(), q.y(), q.z(), q.w(), sigma(0), sigma(3));
-    text += fmt::format("{:.3f},{},{},{:.3f},{:.3f},{:.4g},{},\"{}\"\n", c.dissimilarity, c.pair.matches,
-                        c.pair.inliers, c.pair.consistent_share, c.pair.violating_share, c.chi2,
-                        c.accepted ? "accepted" : "refused", c.verdict);
-  }
-  return text;
+SE3 LoopClosure::corrected_pose_near(std::int64_t timestamp_ns) const {
+  check(!fused_.empty(), "a frame was fused");
+  auto nearest = std::ranges::lower_bound(fused_, timestamp_ns, {}, &FusedFrame::timestamp_ns);
+  if (nearest == fused_.end() || (nearest != fused_.begin() && timestamp_ns - (nearest - 1)->timestamp_ns <
+                                                                   nearest->timestamp_ns - timestamp_ns))
+    --nearest;
+  return corrected_state(nearest->timestamp_ns)->T_world_imu * rig_.T_imu_camera;
+}
+
+Result<Trajectory> LoopClosure::poses_with(std::vector<LoopCandidate> loops) const {
+  LoopClosure other = *this;
+  other.candidates_ = std::move(loops);
+  for (LoopCandidate& candidate : other.candidates_) candidate.accepted = true;
+  if (auto done = other.optimise(); !done) return tl::unexpected(done.error());
+  return other.corrected_trajectory();
 }
 
 }  // namespace fusebench::loops

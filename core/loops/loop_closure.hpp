@@ -2,10 +2,14 @@
 // paper leaves this open ("has not achieved loop closure with fast camera motion").
 //
 // Fused frames become places every few frames. Each is compared with the older ones by what it looks like
-// (fern_code.hpp); the most similar are verified by features and by depth in both directions
+// (color_fern_code.hpp); the most similar are verified by features and by depth in both directions
 // (place_verification.hpp). An edge is accepted if it agrees with the poses so far within their drift, or
 // with another edge near to it in time: appearance alone never moves anything. The graph of places is
-// optimised once (pose_graph.hpp); between places, poses move with their neighbours.
+// optimised at the end, or online as well when a loop shows that the poses are wrong (pose_graph.hpp);
+// between places, poses move with their neighbours.
+//
+// Two worlds: that of the odometry is as if nothing was ever corrected, and is what all of this works in; the
+// estimate is in the current one, which is the same until a correction.
 //
 // The same frames give the same bytes, whatever the number of threads.
 #pragma once
@@ -37,7 +41,7 @@ struct LoopCandidate {
   std::string verdict;  ///< why it was taken or refused
 };
 
-/// What is needed to fuse a frame again.
+/// What is needed to fuse a frame again; in the world of the odometry.
 struct FusedFrame {
   std::int64_t timestamp_ns = 0;
   filter::FilterState state;
@@ -55,22 +59,33 @@ class LoopClosure {
   /// The pose of a frame that has one, fused or not.
   void add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera);
 
-  /// Decides which loops are accepted, after the last frame, and with mode final optimises. True if poses
-  /// change. Errors: those of optimised_poses().
+  /// With mode online, after the last calls of these two: how the world of the estimate moves
+  /// (T_corrected_current), if the frame showed that the poses are wrong. All that is in it, estimate, model
+  /// and keyframes, then has to move. Errors: those of optimised_poses().
+  [[nodiscard]] Result<std::optional<SE3>> correct_online();
+
+  /// Decides which loops are accepted, after the last frame, and with mode final or online optimises. True if
+  /// poses change. Errors: those of optimised_poses().
   [[nodiscard]] Result<bool> close();
 
-  /// Of the frames given to add_pose(), after close().
+  // After close() or a correction:
+  /// Of the frames given to add_pose().
   [[nodiscard]] Trajectory corrected_trajectory() const;
   /// The state that the frame of that stamp was fused at, corrected; nothing if it was not fused.
   [[nodiscard]] std::optional<filter::FilterState> corrected_state(std::int64_t timestamp_ns) const;
+  /// Of the camera, at the fused frame that is nearest in time; there has to be one.
+  [[nodiscard]] SE3 corrected_pose_near(std::int64_t timestamp_ns) const;
+
+  /// The poses at the end with these loops (pair.same, all accepted) in place of those that were found: with
+  /// true ones it tells how much is left to be found. Errors: those of optimised_poses().
+  [[nodiscard]] Result<Trajectory> poses_with(std::vector<LoopCandidate> loops) const;
 
   [[nodiscard]] std::span<const Place> places() const { return places_; }
   [[nodiscard]] std::span<const LoopCandidate> candidates() const { return candidates_; }
-  /// A candidate a line: stamps of both frames [s]; pose of the query's camera in that of the place (tx ty tz
-  /// [m], qx qy qz qw) and its standard deviations by axis (rotation [rad], position [m]), identity and 0
-  /// where there is none; dissimilarity, matches, inliers, shares of depth that is consistent and in free
-  /// space, chi2, "accepted" or "refused", and why.
-  [[nodiscard]] std::string table() const;
+  /// Of a verified pair's pose: rotation on the right (rad), position in the frame of the known place (m).
+  [[nodiscard]] Matrix6d covariance_of(const LoopCandidate& candidate) const {
+    return loop_edge(candidate).covariance;
+  }
 
  private:
   void look_for_loops(std::size_t query);
@@ -80,7 +95,9 @@ class LoopClosure {
   [[nodiscard]] bool agree(const LoopCandidate& a, const LoopCandidate& b) const;
   void decide();
   [[nodiscard]] Result<void> optimise();
-  [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_world_camera) const;
+  [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const;
+  [[nodiscard]] SE3 T_current_camera(std::size_t place) const;
+  [[nodiscard]] bool is_large(const SE3& motion) const;
 
   const config::Config& config_;
   const SensorRig& rig_;
@@ -90,6 +107,10 @@ class LoopClosure {
   std::vector<FusedFrame> fused_;
   Trajectory poses_;
   int fused_since_place_ = 0;
+  SE3 T_current_odometry_;
+  bool poses_are_wrong_ = false;  ///< a loop of the last place says so
+  std::size_t fused_at_attempt_ = 0;
+  int corrections_ = 0;
 };
 
 }  // namespace fusebench::loops

@@ -3,53 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/loops/dense_alignment.hpp"
+#include "core/loops/depth_agreement.hpp"
 #include "core/relocalisation/place_certainty.hpp"
 #include "core/relocalisation/pose_from_points.hpp"
 
 namespace fusebench::loops {
 
 namespace {
-
-/// Shares of the measured pixels of one frame.
-struct DepthAgreement {
-  double consistent = 0;
-  double violating = 0;  ///< of those that the other frame has depth for
-};
-
-DepthAgreement depth_agreement(const Place& from, const Place& to, const SE3& T_to_from,
-                               const PinholeCamera& camera, const config::Config& config) {
-  constexpr double kAllowance_m = 0.01;  // what interpolation and calibration leave
-  std::size_t measured = 0, seen = 0, consistent = 0, violating = 0;
-  for (int y = 0; y < from.small_depth_m.height; ++y) {
-    for (int x = 0; x < from.small_depth_m.width; ++x) {
-      const auto z = static_cast<double>(from.small_depth_m(x, y));
-      if (!(z > 0)) continue;
-      ++measured;
-      const Vector3d point = T_to_from * camera.back_project(kDepthStep * x, kDepthStep * y, z);
-      if (point.z() <= 0) continue;
-      const Vector2d pixel = camera.project(point) / kDepthStep;
-      const auto u = static_cast<int>(std::lround(pixel.x()));
-      const auto v = static_cast<int>(std::lround(pixel.y()));
-      if (!to.small_depth_m.contains(u, v) || !(to.small_depth_m(u, v) > 0)) continue;
-      ++seen;
-      const auto there = static_cast<double>(to.small_depth_m(u, v));
-      const double allowed =
-          config.loops.depth_sigmas * preprocessing::depth_sigma_m(point.z(), config.depth) + kAllowance_m;
-      if (std::abs(point.z() - there) <= allowed) {
-        ++consistent;
-      } else if (point.z() < there) {
-        ++violating;
-      }
-    }
-  }
-  const auto share = [](std::size_t part, std::size_t whole) {
-    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
-  };
-  return {share(consistent, measured), share(violating, seen)};
-}
 
 std::vector<relocalisation::SeenPoint> seen_points(const Place& known, const Place& query,
                                                    const config::Config& config) {
@@ -63,38 +27,89 @@ std::vector<relocalisation::SeenPoint> seen_points(const Place& known, const Pla
   return seen;
 }
 
-}  // namespace
-
-VerifiedPair verify_pair(const Place& known, const Place& query, const PinholeCamera& camera,
-                         const config::Config& config) {
-  VerifiedPair pair;
+/// By features; pair.reason says why not.
+std::optional<RelativePose> pose_by_features(const Place& known, const Place& query,
+                                             const PinholeCamera& camera, const config::Config& config,
+                                             VerifiedPair& pair) {
   const std::vector<relocalisation::SeenPoint> seen = seen_points(known, query, config);
   pair.matches = static_cast<int>(seen.size());
   if (pair.matches < config.relocalisation.min_inliers) {
     pair.reason =
         fmt::format("{} matches of features (at least {})", pair.matches, config.relocalisation.min_inliers);
-    return pair;
+    return std::nullopt;
   }
   const auto pose = relocalisation::pose_from_points(seen, camera, config.place_pose);
   if (pose) pair.inliers = static_cast<int>(pose->inliers.size());
   if (!pose || !relocalisation::is_certain_place(seen, *pose, camera, config.relocalisation)) {
     pair.reason = fmt::format("{} of {} matches agree, which is not certain", pair.inliers, pair.matches);
-    return pair;
+    return std::nullopt;
   }
-  pair.T_known_query = pose->T_a_camera;
-  pair.covariance = config.relocalisation.shared_error_factor * pose->covariance;
-  const SE3 T_query_known = pair.T_known_query.inverse();
+  return RelativePose{pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance};
+}
+
+/// By depth alone, from where the path leads; adds to pair.reason why not.
+std::optional<RelativePose> pose_by_depth(const Place& known, const Place& query, const SE3& T_known_query,
+                                          const PinholeCamera& camera, const config::Config& config,
+                                          VerifiedPair& pair) {
+  const config::LoopsConfig& loops = config.loops;
+  const auto aligned =
+      aligned_by_depth(known, query, {T_known_query, Matrix6d::Identity()}, false, camera, config);
+  if (!aligned) {
+    pair.reason += "; their depth cannot be aligned";
+    return std::nullopt;
+  }
+  const double rotation_sigma_rad = largest_sigma(aligned->covariance.topLeftCorner<3, 3>());
+  const double position_sigma_m = largest_sigma(aligned->covariance.bottomRightCorner<3, 3>());
+  if (rotation_sigma_rad > radians(loops.max_rotation_sigma_deg) ||
+      position_sigma_m > loops.max_position_sigma_m) {
+    pair.reason += fmt::format("; depth tells the pose to {:.2f} degrees and {:.1f} cm only",
+                               degrees(rotation_sigma_rad), 100 * position_sigma_m);
+    return std::nullopt;
+  }
+  const auto correlation = grey_correlation(query, known, aligned->T_known_query, camera, config);
+  if (correlation && *correlation < loops.min_grey_correlation) {
+    pair.reason += fmt::format("; intensities correlate by {:.2f} where depth fits (at least {})",
+                               *correlation, loops.min_grey_correlation);
+    return std::nullopt;
+  }
+  pair.by_depth_alone = true;
+  pair.reason.clear();
+  return aligned;
+}
+
+/// What the depth of either says against the pose; empty if nothing.
+std::string contradiction_of_depth(const Place& known, const Place& query, const PinholeCamera& camera,
+                                   const config::Config& config, VerifiedPair& pair) {
+  const config::LoopsConfig& loops = config.loops;
   const DepthAgreement forth = depth_agreement(query, known, pair.T_known_query, camera, config);
-  const DepthAgreement back = depth_agreement(known, query, T_query_known, camera, config);
+  const DepthAgreement back = depth_agreement(known, query, pair.T_known_query.inverse(), camera, config);
   pair.consistent_share = std::min(forth.consistent, back.consistent);
   pair.violating_share = std::max(forth.violating, back.violating);
-  if (pair.consistent_share < config.loops.min_consistent_share) {
-    pair.reason = fmt::format("{:.0f} % of the depth fits (at least {:.0f} %)", 100 * pair.consistent_share,
-                              100 * config.loops.min_consistent_share);
-  } else if (pair.violating_share > config.loops.max_violating_share) {
-    pair.reason = fmt::format("{:.0f} % of the depth lies in free space (at most {:.0f} %)",
-                              100 * pair.violating_share, 100 * config.loops.max_violating_share);
+  if (pair.consistent_share < loops.min_consistent_share)
+    return fmt::format("{:.0f} % of the depth fits (at least {:.0f} %)", 100 * pair.consistent_share,
+                       100 * loops.min_consistent_share);
+  if (pair.violating_share > loops.max_violating_share)
+    return fmt::format("{:.0f} % of the depth lies in free space (at most {:.0f} %)",
+                       100 * pair.violating_share, 100 * loops.max_violating_share);
+  return {};
+}
+
+}  // namespace
+
+VerifiedPair verify_pair(const Place& known, const Place& query, const SE3& T_known_query_by_path,
+                         const PinholeCamera& camera, const config::Config& config) {
+  VerifiedPair pair;
+  std::optional<RelativePose> pose = pose_by_features(known, query, camera, config, pair);
+  if (pose) {
+    if (const auto refined = aligned_by_depth(known, query, *pose, true, camera, config)) pose = refined;
+  } else if (depth_agreement(query, known, T_known_query_by_path, camera, config).overlap >=
+             config.loops.min_consistent_share) {
+    pose = pose_by_depth(known, query, T_known_query_by_path, camera, config, pair);
   }
+  if (!pose) return pair;
+  pair.T_known_query = pose->T_known_query;
+  pair.covariance = pose->covariance;
+  pair.reason = contradiction_of_depth(known, query, camera, config, pair);
   pair.same = pair.reason.empty();
   return pair;
 }

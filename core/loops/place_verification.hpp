@@ -1,4 +1,5 @@
-// Whether two frames show the same place, and from where: by features, and by the depth of both.
+// Whether two frames show the same place, and from where: by features or, where blur or a bare wall leaves
+// none, by depth; and by the depth of both against each other.
 #pragma once
 
 #include <string>
@@ -15,16 +16,19 @@ struct VerifiedPair {
   std::string reason;  ///< why not; empty if it is
   int matches = 0;
   int inliers = 0;
+  bool by_depth_alone = false;
   double consistent_share = 0;             ///< of depth, the smaller one of both directions
   double violating_share = 0;              ///< the larger one
   SE3 T_known_query;                       ///< of the cameras
   Matrix6d covariance = Matrix6d::Zero();  ///< rotation on the right, position in the frame of `known`
 };
 
-/// The landmarks of `query` against those of `known` (P3P in RANSAC, as for relocalisation), and then the
-/// depth of either against that of the other: what the other one sees there, or free space where there should
-/// be a surface.
-[[nodiscard]] VerifiedPair verify_pair(const Place& known, const Place& query, const PinholeCamera& camera,
+/// The landmarks of `query` against those of `known` (P3P in RANSAC, as for relocalisation), refined by depth
+/// (dense_alignment.hpp). If that is not certain: depth alone, starting where the path leads, if both see the
+/// same by it; then intensities have to fit as well. At last the depth of either against that of the other:
+/// what the other one sees there, or free space where there should be a surface.
+[[nodiscard]] VerifiedPair verify_pair(const Place& known, const Place& query,
+                                       const SE3& T_known_query_by_path, const PinholeCamera& camera,
                                        const config::Config& config);
 
 }  // namespace fusebench::loops

@@ -74,30 +74,15 @@ Vector3d gravity_world_of(const PoseGraph& graph) {
 /// The unknowns, with their residuals.
 class GraphProblem {
  public:
-  /// robust_sigmas: of the Cauchy loss of loops. Errors as optimised_poses().
-  static Result<void> solve(const PoseGraph& graph, double robust_sigmas, std::vector<SE3>& poses,
-                            Vector3d& gravity_world) {
-    GraphProblem problem(graph, poses, gravity_world);
-    problem.add_poses();
-    if (auto added = problem.add_edges(robust_sigmas); !added) return added;
-    problem.add_gravity();
-    return problem.search();
-  }
-
- private:
+  /// Poses and gravity are searched from what they are, and changed by search(). Both must outlive it.
   GraphProblem(const PoseGraph& graph, std::vector<SE3>& poses, Vector3d& gravity_world)
-      : graph_(graph), poses_(poses), gravity_world_(gravity_world) {}
-
-  void add_poses() {
-    for (SE3& pose : poses_) {
-      problem_.AddParameterBlock(pose.rotation.coeffs().data(), 4, new smoother::RotationManifold);
-      problem_.AddParameterBlock(pose.translation.data(), 3);
-    }
-    problem_.SetParameterBlockConstant(poses_.front().rotation.coeffs().data());
-    problem_.SetParameterBlockConstant(poses_.front().translation.data());
+      : graph_(graph), poses_(poses), gravity_world_(gravity_world), problem_(borrowing_losses()) {
+    add_poses();
+    add_gravity();
   }
 
-  Result<void> add_edges(double robust_sigmas) {
+  /// Errors: a covariance is singular.
+  Result<void> add_edges() {
     for (const GraphEdge& edge : graph_.edges) {
       const auto whitening = whitening_of(edge.covariance);
       if (!whitening)
@@ -108,24 +93,15 @@ class GraphProblem {
       SE3& b = poses_[edge.b];
       problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<EdgeResidual, 6, 4, 3, 4, 3>(
                                     new EdgeResidual{edge.T_a_b, *whitening}),
-                                edge.robust ? new ceres::CauchyLoss(robust_sigmas) : nullptr,
-                                a.rotation.coeffs().data(), a.translation.data(), b.rotation.coeffs().data(),
-                                b.translation.data());
+                                edge.robust ? &loop_loss_ : nullptr, a.rotation.coeffs().data(),
+                                a.translation.data(), b.rotation.coeffs().data(), b.translation.data());
     }
     return {};
   }
 
-  void add_gravity() {
-    problem_.AddParameterBlock(gravity_world_.data(), 3, new smoother::DirectionManifold);
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      if (!graph_.gravity_camera[i]) continue;
-      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<GravityResidual, 3, 4, 3>(
-                                    new GravityResidual{*graph_.gravity_camera[i], graph_.gravity_sigma_rad}),
-                                nullptr, poses_[i].rotation.coeffs().data(), gravity_world_.data());
-    }
-  }
-
-  Result<void> search() {
+  /// robust_sigmas: of the Cauchy loss of loops. Errors: the search failed.
+  Result<void> search(double robust_sigmas) {
+    loop_loss_.Reset(new ceres::CauchyLoss(robust_sigmas), ceres::TAKE_OWNERSHIP);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
     options.num_threads = 1;
@@ -139,9 +115,36 @@ class GraphProblem {
     return {};
   }
 
+ private:
+  static ceres::Problem::Options borrowing_losses() {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }
+
+  void add_poses() {
+    for (SE3& pose : poses_) {
+      problem_.AddParameterBlock(pose.rotation.coeffs().data(), 4, new smoother::RotationManifold);
+      problem_.AddParameterBlock(pose.translation.data(), 3);
+    }
+    problem_.SetParameterBlockConstant(poses_.front().rotation.coeffs().data());
+    problem_.SetParameterBlockConstant(poses_.front().translation.data());
+  }
+
+  void add_gravity() {
+    problem_.AddParameterBlock(gravity_world_.data(), 3, new smoother::DirectionManifold);
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      if (!graph_.gravity_camera[i]) continue;
+      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<GravityResidual, 3, 4, 3>(
+                                    new GravityResidual{*graph_.gravity_camera[i], graph_.gravity_sigma_rad}),
+                                nullptr, poses_[i].rotation.coeffs().data(), gravity_world_.data());
+    }
+  }
+
   const PoseGraph& graph_;
   std::vector<SE3>& poses_;
   Vector3d& gravity_world_;
+  ceres::LossFunctionWrapper loop_loss_{nullptr, ceres::TAKE_OWNERSHIP};  ///< of all loops
   ceres::Problem problem_;
 };
 
@@ -161,9 +164,10 @@ Result<std::vector<SE3>> optimised_poses(const PoseGraph& graph) {
   std::vector<SE3> poses = graph.T_world_camera;
   if (poses.size() < 2) return poses;
   Vector3d gravity_world = gravity_world_of(graph);
+  GraphProblem problem(graph, poses, gravity_world);
+  if (auto added = problem.add_edges(); !added) return tl::unexpected(added.error());
   for (const double sigmas : kRobustSigmas) {
-    if (auto solved = GraphProblem::solve(graph, sigmas, poses, gravity_world); !solved)
-      return tl::unexpected(solved.error());
+    if (auto solved = problem.search(sigmas); !solved) return tl::unexpected(solved.error());
   }
   return poses;
 }

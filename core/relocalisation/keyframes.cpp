@@ -129,6 +129,11 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
   return true;
 }
 
+void Keyframes::move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
+  for (Keyframe& keyframe : kept_) keyframe.T_world_camera = T_world_camera_at(keyframe.timestamp_ns);
+  T_world_featureless_.reset();  // at worst the same bare wall is looked at once more
+}
+
 void Keyframes::drop_most_crowded() {
   // Of the nearest two the earlier one goes: the later one shows the place as it is now.
   std::size_t crowded = 0;

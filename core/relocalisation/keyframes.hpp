@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -71,6 +72,9 @@ class Keyframes {
   /// first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long as
   /// offering them would have taken, but all in one frame.
   [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
+
+  /// The pose of each kept frame becomes that of the function, by its stamp.
+  void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at);
 
   [[nodiscard]] std::size_t size() const { return kept_.size(); }
   [[nodiscard]] const Keyframe& operator[](std::size_t index) const { return kept_[index]; }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "core/alignment/tracking_reference.hpp"
@@ -32,6 +33,11 @@ class Relocalisation {
   /// Offers a fused frame (motion compensated, depth gated) as one to be found again by.
   void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,
                     double blur_px);
+
+  /// All poses were corrected: those of the keyframes become these, by their stamps.
+  void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
+    keyframes_.move(T_world_camera_at);
+  }
 
   /// Looks for the image among the keyframes; nothing if none shows its place for certain, or if the
   /// prediction rules the place out.

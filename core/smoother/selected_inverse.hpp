@@ -3,19 +3,12 @@
 #pragma once
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-#include <cstddef>
 #include <memory>
 #include <optional>
 
-namespace fusebench::smoother {
+#include "core/base/sparse_matrix.hpp"
 
-/// Indices of 64 bits, unlike those in Ceres: Debian builds that library (a static one) without AVX, the
-/// linker keeps one copy of every function that both use, and memory of one alignment must not be freed as
-/// another.
-using SparseIndex = std::ptrdiff_t;
-using SparseMatrixd = Eigen::SparseMatrix<double, Eigen::ColMajor, SparseIndex>;
-using SparseRowsd = Eigen::SparseMatrix<double, Eigen::RowMajor, SparseIndex>;
+namespace fusebench::smoother {
 
 /// The inverse of a symmetric positive definite matrix, at all entries where its Cholesky factor is not zero
 /// by structure (Takahashi's recursion; Erisman & Tinney 1975). That includes the pattern of the matrix, so

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <variant>
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
 #include "core/health/frame_outcome.hpp"
 #include "core/health/frame_report.hpp"
+#include "core/loops/loop_closure.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::systems {
@@ -32,15 +32,20 @@ class System {
   /// What a filter says of the last frame beyond its outcome; nothing of a system that has none.
   [[nodiscard]] virtual const health::FrameReport* filter_report() const { return nullptr; }
 
+  /// After process(): true if the system has corrected all its poses so far. Then the frames up to that one
+  /// come once more, in order, to fuse_again(), and resume() follows.
+  [[nodiscard]] virtual bool wants_frames_again() const { return false; }
+  virtual void resume() {}
+
   /// The poses as the system revises them at the end, of the frames that have one; nothing if those of
   /// process() are its last word. If there are some, all frames come once more, in order, to fuse_again().
   /// Errors end the run.
   [[nodiscard]] virtual Result<std::optional<Trajectory>> revise() { return std::nullopt; }
   [[nodiscard]] virtual Result<void> fuse_again(const RgbdFrame& /*frame*/) { return {}; }
 
-  /// Places that were seen again, accepted or not, one a line with its reason: CSV without a header; empty
-  /// for a system that does not look for any.
-  [[nodiscard]] virtual std::string loop_table() const { return {}; }
+  /// The places that the system knows, and the loops that it found; nothing of one that does not look for
+  /// any. Until take_surface().
+  [[nodiscard]] virtual const loops::LoopClosure* loops() const { return nullptr; }
 
   /// The surface, and the end of everything else that the system keeps.
   [[nodiscard]] virtual Surface take_surface() = 0;

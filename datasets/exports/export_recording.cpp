@@ -12,9 +12,9 @@
 #include "datasets/exports/euroc_export.hpp"
 #include "datasets/exports/export_place.hpp"
 #include "datasets/exports/infinitam_export.hpp"
-#include "datasets/exports/klg_file.hpp"
+#include "datasets/exports/klg_export.hpp"
 #include "datasets/exports/open3d_export.hpp"
-#include "datasets/exports/sens_file.hpp"
+#include "datasets/exports/sens_export.hpp"
 #include "datasets/exports/tum_export.hpp"
 
 namespace fusebench::exports {

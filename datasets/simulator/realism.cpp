@@ -86,6 +86,7 @@ void make_realistic(SimulationOptions& options) {
   options.untold_shutters = true;
   options.stamps = {kJitter_s, kDroppedShare};
   options.auto_exposure.on = true;
+  options.samples_by_motion = true;
   options.gain_drift = 0;  // the controller's, instead
   options.color_processing = kinect_color();
   if (options.depth_noise == sensors::DepthNoise::handa) options.depth_noise = sensors::DepthNoise::kinect;
@@ -97,7 +98,8 @@ void make_realistic(SimulationOptions& options) {
   options.imu.gyroscope_range_radps = kGyroscopeRange_radps;
   options.untold_time_offset_s = kUntoldOffset_s;
   options.calibration_error = kExtrinsicError;
-  if (options.room == RoomKind::furnished) options.room = RoomKind::office;
+  if (options.room == RoomKind::furnished && !motion::follows_route(options.preset))
+    options.room = RoomKind::office;
 }
 
 std::string realism_text(const SimulationOptions& o) {
@@ -119,6 +121,9 @@ std::string realism_text(const SimulationOptions& o) {
         "target_grey = {}\nleast_s = {}\nmost_s = {}\nmost_gain = {}\nlag_frames = {}\n",
         e.unit_exposure_s, e.target_grey, e.least_s, e.most_s, e.most_gain, e.lag_frames);
   }
+  // With automatic exposure both are said above, or nothing is.
+  if (o.samples_by_motion != o.auto_exposure.on)
+    text += fmt::format("\n[exposure]\nsamples_by_motion = {}\n", o.samples_by_motion);
   if (const sensors::ColorProcessing& c = o.color_processing; c.mosaic) {
     text += fmt::format(
         "\n[color_processing]  # noise in light, instead of read_noise_grey and shot_noise\n"

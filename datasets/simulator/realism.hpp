@@ -10,8 +10,9 @@ namespace fusebench::simulator {
 [[nodiscard]] bool is_realistic(motion::MotionPreset preset);
 
 /// Gives the options the sensors of a cheap camera and IMU that nobody has calibrated well, in the office
-/// room; the seed of the options chooses the device. To be called once the seed is set. Constants and what
-/// they were measured on: realism.cpp.
+/// instead of the furnished room, unless the preset follows a route through that; the seed of the options
+/// chooses the device. To be called once the seed is set. Constants and what they were measured on:
+/// realism.cpp.
 void make_realistic(SimulationOptions& options);
 
 /// The lines of simulation.toml about what make_realistic() switches on; nothing for what is off.

@@ -14,9 +14,7 @@
 #include "core/io/staged_folder.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/layouts/write_lists.hpp"
-#include "datasets/simulator/scene/office.hpp"
-#include "datasets/simulator/scene/room.hpp"
-#include "datasets/simulator/scene/storage_room.hpp"
+#include "datasets/simulator/routes/route_motion.hpp"
 #include "datasets/simulator/write_images.hpp"
 
 namespace fusebench::simulator {
@@ -66,6 +64,11 @@ Result<void> check_options(const SimulationOptions& o) {
                   fmt::format("{} = {} (allowed {} .. {})", name, value, low, high));
     }
   }
+  if (motion::follows_route(o.preset) && o.trajectory_file.empty() && !o.scene_file.empty()) {
+    return fail(ErrorCode::configuration,
+                fmt::format("preset = {} follows a route through a scene of its own", to_string(o.preset)),
+                "leave out the scene, or take another preset");
+  }
   if (!o.rig.imu)
     return fail(ErrorCode::configuration, "the calibration has no IMU", "start from the defaults");
   if (auto valid = check_rate(o); !valid) return valid;
@@ -82,9 +85,7 @@ struct Drive {
 
 Result<scene::SimulatedScene> make_scene(const SimulationOptions& options) {
   if (!options.scene_file.empty()) return scene::read_scene(options.scene_file, options.scene);
-  if (options.room == RoomKind::storage) return scene::make_storage_room(options.seed);
-  if (options.room == RoomKind::office) return scene::make_office(options.seed);
-  return scene::make_room(options.seed);
+  return make_room_of_kind(options.room, options.seed);
 }
 
 Result<std::optional<motion::FilePath>> read_path(const SimulationOptions& options) {
@@ -146,6 +147,8 @@ Result<Drive> choose_motion(const SimulationOptions& options, const std::optiona
     if (!motion) return tl::unexpected(motion.error());
     return Drive{std::move(motion->camera), motion->shrunk, motion->heading_rad};
   }
+  if (motion::follows_route(options.preset))
+    return Drive{routes::route_motion(options.preset, options.motion, span, box, options.seed)};
   auto camera = motion::hand_held_motion(options.motion, span, box, options.seed, texture);
   if (!camera) return tl::unexpected(camera.error());
   return Drive{std::move(*camera)};
@@ -236,8 +239,7 @@ Result<SimulationOptions> simulation_defaults(layouts::RecordingLayout layout, m
   options.layout = layout;
   options.preset = preset;
   options.motion = motion::motion_preset(preset);
-  // Surfaces near enough for a sweep, with free space before them.
-  if (preset == motion::MotionPreset::sweep) options.room = RoomKind::storage;
+  options.room = room_of(preset);
   options.rig = std::move(*rig);
   options.depth_noise = layouts::describe(layout).depth_noise;
   options.imu.sensor.noise = options.rig.imu->noise;

@@ -16,6 +16,7 @@
 #include "datasets/simulator/layouts/layout.hpp"
 #include "datasets/simulator/motion/motion.hpp"
 #include "datasets/simulator/motion/motion_file.hpp"
+#include "datasets/simulator/room_kind.hpp"
 #include "datasets/simulator/scene/scene_file.hpp"
 #include "datasets/simulator/sensors/auto_exposure.hpp"
 #include "datasets/simulator/sensors/frame_timing.hpp"
@@ -23,12 +24,6 @@
 #include "datasets/simulator/sensors/imu_sensor.hpp"
 
 namespace fusebench::simulator {
-
-enum class RoomKind {
-  furnished,  ///< room.hpp
-  storage,    ///< storage_room.hpp
-  office,     ///< office.hpp
-};
 
 /// All options that a recording depends on; simulation_defaults() fills it in.
 struct SimulationOptions {
@@ -65,7 +60,8 @@ struct SimulationOptions {
   // What realistic sensors have besides (realism.hpp); all off by default.
   bool untold_shutters = false;  ///< calibration.toml says nothing of read-outs and of the delay of depth
   sensors::StampErrors stamps;
-  sensors::ExposureControl auto_exposure;  ///< instead of exposure_s, blur_samples and gain_drift
+  sensors::ExposureControl auto_exposure;  ///< instead of exposure_s and gain_drift
+  bool samples_by_motion = false;          ///< instead of blur_samples: one for each 2 px of turning, 4 to 32
   sensors::ColorProcessing color_processing;
   sensors::DepthErrors depth_errors;
 };

@@ -88,10 +88,7 @@ std::string sensors_text(const SimulationOptions& o) {
 
 std::string scene_text(const SimulationOptions& o) {
   if (o.scene_file.empty()) {
-    const std::string_view kind = o.room == RoomKind::storage  ? "storage room"
-                                  : o.room == RoomKind::office ? "office"
-                                                               : "furnished room";
-    return fmt::format("[scene]\nkind = \"{} of the seed\"\n", kind);
+    return fmt::format("[scene]\nkind = \"{} of the seed\"\n", to_string(o.room));
   }
   return fmt::format("[scene]\nkind = \"file\"\nfile = {}\ny_up = {}\nmetres_per_unit = {}\n",
                      toml_text(o.scene_file.filename().string()), o.scene.y_up, o.scene.metres_per_unit);

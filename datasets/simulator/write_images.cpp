@@ -118,7 +118,7 @@ struct ImageContext {
   [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
     const auto before = object_before(options, scenery, setup, faults, SE3{});
     sensors::ColorSensor sensor = color_sensor(options, faults, exposures.empty() ? nullptr : &exposures[k]);
-    if (!exposures.empty())
+    if (options.samples_by_motion)
       sensor.blur_samples = samples_of_motion(options, setup, setup.frame_ns[k], sensor.exposure_s);
     return sensors::expose_color(scene(faults), sensor, setup.body, setup.T_body_color, setup.frame_ns[k],
                                  options.seed, k, alone, before ? &*before : nullptr);

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "datasets/exports/sens_file.hpp"
+#include "datasets/image_logs/sens_log.hpp"
 
 namespace fusebench::external {
 
@@ -16,7 +16,7 @@ Result<trajectory_files::LoadedTrajectory> load(const SystemTrajectory& trajecto
   if (trajectory.format || trajectory.file.extension() != ".sens")
     return trajectory_files::load_trajectory(trajectory.file, trajectory.format,
                                              trajectory::Duplicates::rare_last, warnings);
-  auto poses = exports::read_sens_trajectory(trajectory.file);
+  auto poses = image_logs::read_sens_trajectory(trajectory.file);
   if (!poses) return tl::unexpected(poses.error());
   return trajectory_files::LoadedTrajectory{trajectory_files::TrajectoryFormat::tum, std::move(*poses), {}};
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "eval/record/histogram_json.hpp"
+#include "eval/record/record_loops.hpp"
 #include "eval/record/record_metrics.hpp"
 #include "eval/text/json_text.hpp"
 
@@ -171,6 +172,7 @@ RunRecord record_of(const Json& json) {
   read_metrics(json.at("metrics"), record.metrics);
   if (const auto final = json.find("final_metrics"); final != json.end())
     read_metrics(*final, record.final_metrics.emplace());
+  if (const auto loops = json.find("loops"); loops != json.end()) record.loops = loops_of(*loops);
   const Json& frames = json.at("frames");
   record.frames = {frames.at("total"), frames.at("tracked"), frames.at("lost")};
   const Json& model = json.at("model");
@@ -245,6 +247,7 @@ std::string to_json(const RunRecord& record) {
       {"timing", json_of(record.timing)},
       {"provenance", json_of(record.provenance)}};
   if (record.final_metrics) json["final_metrics"] = json_of_metrics(*record.final_metrics, record.frames);
+  if (record.loops) json["loops"] = json_of_loops(*record.loops);
   if (record.program) {
     json["program"] = {{"definition", record.program->definition},
                        {"version", record.program->version},

@@ -14,6 +14,7 @@
 #include "core/base/error.hpp"
 #include "core/config/options.hpp"
 #include "core/filter/sensor_constants.hpp"
+#include "eval/loop_error/loop_error.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/metrics/intensity_readings.hpp"
@@ -202,6 +203,8 @@ struct RunRecord {
   RecordedMetrics metrics;
   /// Of the poses as the system revised them at the end, which the model is fused at; nothing if it did not.
   std::optional<RecordedMetrics> final_metrics;
+  /// Of a system that looks for loops, where there is truth.
+  std::optional<Outcome<loop_error::LoopError>> loops;
   RecordedFrames frames;
   RecordedModel model;
   std::vector<filter::SensorConstant> sensors;  ///< after the last tracked frame; those that were estimated

@@ -4,28 +4,9 @@
 
 #include <utility>
 
-#include "eval/run/frame_source.hpp"
+#include "eval/run/frames_again.hpp"
 
 namespace fusebench::run {
-
-namespace {
-
-/// Errors end the run.
-Result<void> fuse_all_again(const PreparedRun& run, systems::System& system, const RunControl& control) {
-  const recording::Recording& recording = run.recording;
-  FrameSource source(recording, run.spec.threads > 1);
-  for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
-    if (control.stop != nullptr && control.stop->load())
-      return fail(ErrorCode::run_failed, "stopped by the user");
-    const auto loaded = source.next();
-    if (!loaded) return tl::unexpected(loaded.error());
-    if (auto fused = system.fuse_again(loaded->frame); !fused) return fused;
-    if (control.progress) control.progress(frame + 1, recording.frames.size());
-  }
-  return {};
-}
-
-}  // namespace
 
 Result<std::optional<Trajectory>> revised_poses(const PreparedRun& run, systems::System& system,
                                                 RunProgress& progress, const RunControl& control) {
@@ -36,7 +17,7 @@ Result<std::optional<Trajectory>> revised_poses(const PreparedRun& run, systems:
   if (!revised) {
     done = tl::unexpected(revised.error());
   } else {
-    done = fuse_all_again(run, system, control);
+    done = fuse_again(run, run.recording.frames.size(), system, control);
   }
   if (!done) {
     if (control.stop != nullptr && control.stop->load()) return tl::unexpected(done.error());

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "core/base/error.hpp"
 #include "core/systems/system.hpp"
@@ -12,11 +11,6 @@
 #include "eval/run/run_placement.hpp"
 
 namespace fusebench::run {
-
-/// Of loops.csv, whose rows are System::loop_table().
-inline const std::string kLoopTableHeader =
-    "query_s,place_s,tx_m,ty_m,tz_m,qx,qy,qz,qw,sigma_rotation_rad,sigma_position_m,dissimilarity,matches,"
-    "inliers,consistent_share,violating_share,chi2,decision,why\n";
 
 /// Asks the system for its revised poses, and has it fuse the frames again if there are any; nothing if there
 /// are none, or the run did not come to its end. What goes wrong ends the run and is in the progress. Errors:

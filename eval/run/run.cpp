@@ -17,6 +17,7 @@
 #include "eval/profile/trace_file.hpp"
 #include "eval/record/process_meter.hpp"
 #include "eval/record/record_origin.hpp"
+#include "eval/run/loop_results.hpp"
 #include "eval/run/program_run.hpp"
 #include "eval/run/revised_poses.hpp"
 #include "eval/run/run_evaluation.hpp"
@@ -99,7 +100,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   if (!progress) return tl::unexpected(progress.error());
   auto revised = revised_poses(run, *system, *progress, control);
   if (!revised) return tl::unexpected(revised.error());
-  const std::string loop_table = system->loop_table();
+  const LoopResults loops = loop_results(run, system->loops());
   systems::Surface surface = system->take_surface();
   system.reset();
   record.model = make_mesh(std::move(surface), config, workers, *progress);
@@ -118,6 +119,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
     record.final_metrics = metrics_of(output, run.recording, config, workers);
     record.metrics.mesh = record.final_metrics->mesh;  // the model is of these poses
   }
+  record.loops = loops.error;
   record.timing = timing_of(*progress, cost);
   const bool all = run.spec.kept == KeptFiles::all;
   const bool has_filter = progress->output.has_filter;
@@ -134,12 +136,13 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
-  const std::array<NamedText, 9> texts = {
+  const std::array<NamedText, 10> texts = {
       {{"trajectory.tum", trajectory::tum_text(progress->output.trajectory)},
        {"truth.tum",
         trajectory::tum_text(record::true_trajectory(run.recording, record::frame_stamps(run.recording)))},
        {"final.tum", *revised ? trajectory::tum_text(**revised) : ""},
-       {"loops.csv", loop_table.empty() ? "" : kLoopTableHeader + loop_table},
+       {"loops.csv", loops.candidates},
+       {"places.csv", loops.places},
        {"frames.csv", progress->frame_table},
        {"states.csv", all && has_filter ? progress->state_table : ""},
        {"nees.csv", has_filter ? run_files::nees_table(record.metrics.nees) : ""},

@@ -9,6 +9,7 @@
 #include "eval/metrics/intensity_file.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/frame_source.hpp"
+#include "eval/run/frames_again.hpp"
 
 namespace fusebench::run {
 
@@ -86,6 +87,8 @@ void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOut
   }
 }
 
+bool is_stopped(const RunControl& control) { return control.stop != nullptr && control.stop->load(); }
+
 bool is_bad_data(const Error& error) {
   return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
 }
@@ -106,6 +109,32 @@ void RunProgress::end(record::RunStatus how, std::string why) {
   log += fmt::format("{}: {}\n", record::to_string(status), reason);
 }
 
+namespace {
+
+/// intensity.bin, if it is kept.
+Result<std::optional<metrics::IntensityWriter>> intensity_writer(const PreparedRun& run,
+                                                                 const io::StagedFolder& folder) {
+  if (run.spec.kept != KeptFiles::all || run.spec.config.values.system.method != config::SystemMethod::filter)
+    return std::nullopt;
+  const PinholeCamera& camera = run.recording.rig.camera;
+  auto writer =
+      metrics::IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
+  if (!writer) return tl::unexpected(writer.error());
+  return std::move(*writer);
+}
+
+/// After a frame by which the system has corrected its poses: all frames so far once more, for its model.
+Result<void> make_model_again(const PreparedRun& run, std::size_t frame, systems::System& system,
+                              RunProgress& progress, const RunControl& control) {
+  if (auto again = fuse_again(run, frame + 1, system, control); !again) return again;
+  system.resume();
+  progress.log +=
+      fmt::format("frame {}: a loop corrected the poses: {} frames fused again\n", frame, frame + 1);
+  return {};
+}
+
+}  // namespace
+
 Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
                                    const io::StagedFolder& folder, const RunControl& control) {
   RunProgress progress;
@@ -113,59 +142,58 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
   progress.frames.total = recording.frames.size();
   for (const std::string& note : record::reading_notes(recording, run.spec.recording))
     progress.log += note + "\n";
-
-  const PinholeCamera& camera = recording.rig.camera;
-  std::optional<metrics::IntensityWriter> intensity;
   progress.output.has_filter = run.spec.config.values.system.method == config::SystemMethod::filter;
-  if (run.spec.kept == KeptFiles::all && progress.output.has_filter) {
-    auto writer =
-        metrics::IntensityWriter::create(folder.file("intensity.bin"), camera.width_px, camera.height_px);
-    if (!writer) return tl::unexpected(writer.error());
-    intensity.emplace(std::move(*writer));
-  }
+  auto intensity = intensity_writer(run, folder);
+  if (!intensity) return tl::unexpected(intensity.error());
   progress.profile.decodes_ahead = run.spec.threads > 1;
   if (run.spec.profile) progress.profile.frames.reserve(recording.frames.size());
   FrameSource source(recording, progress.profile.decodes_ahead);
+  const auto ends = [&](std::size_t frame, Error error) {
+    return end_at_frame(progress, frame, std::move(error), control);
+  };
   for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == record::RunStatus::ok;
        ++frame) {
-    if (control.stop != nullptr && control.stop->load())
-      return fail(ErrorCode::run_failed, "stopped by the user");
+    if (is_stopped(control)) return fail(ErrorCode::run_failed, "stopped by the user");
     const auto begin = Clock::now();
     const auto loaded = source.next();
     const auto ready = Clock::now();
     if (!loaded) {
-      const auto ended = end_at_frame(progress, frame, loaded.error(), control);
-      if (!ended) return tl::unexpected(ended.error());
+      if (const auto ended = ends(frame, loaded.error()); !ended) return tl::unexpected(ended.error());
       break;
     }
     const auto outcome = system.process(loaded->frame);
     if (!outcome) {
-      const auto ended = end_at_frame(progress, frame, outcome.error(), control);
-      if (!ended) return tl::unexpected(ended.error());
+      if (const auto ended = ends(frame, outcome.error()); !ended) return tl::unexpected(ended.error());
       break;
     }
     const auto processed = Clock::now();
     const health::FrameReport* const report = system.filter_report();
     take_frame(progress, frame, *outcome, report, run, loaded->decode.milliseconds());
-    if (intensity && report != nullptr) {
+    if (*intensity && report != nullptr) {
       progress.fastest.offer(frame, *report, loaded->frame.grey);
-      if (auto written = intensity->write_frame(report->timestamp_ns, report->pixels.intensity); !written)
+      if (auto written = (*intensity)->write_frame(report->timestamp_ns, report->pixels.intensity); !written)
         return tl::unexpected(written.error());
     }
-    if (run.spec.profile) {
+    if (run.spec.profile)
       progress.profile.frames.push_back({frame,
                                          outcome->status,
                                          loaded->decode,
                                          {begin, ready},
                                          outcome->stages,
                                          {processed, Clock::now()}});
+    if (system.wants_frames_again()) {
+      if (const auto again = make_model_again(run, frame, system, progress, control); !again) {
+        if (is_stopped(control)) return tl::unexpected(again.error());
+        if (const auto ended = ends(frame, again.error()); !ended) return tl::unexpected(ended.error());
+        break;
+      }
     }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }
   if (progress.status == record::RunStatus::ok && progress.frames.tracked == 0)
     progress.end(record::RunStatus::lost, "no frame could be used as the first one (see log.txt)");
-  if (intensity) {
-    if (auto finished = intensity->finish(); !finished) return tl::unexpected(finished.error());
+  if (*intensity) {
+    if (auto finished = (*intensity)->finish(); !finished) return tl::unexpected(finished.error());
   }
   return progress;
 }

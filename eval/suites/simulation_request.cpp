@@ -1,6 +1,7 @@
 #include "eval/suites/simulation_request.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 
@@ -13,7 +14,9 @@ Result<simulator::SimulationOptions> simulation_options(const SimulationRequest&
   if (!options) return options;
   options->seed = request.seed;
   const bool realistic_motion = request.trajectory.empty() && simulator::is_realistic(request.preset);
-  options->duration_s = request.duration_s.value_or(realistic_motion ? 60 : 10);
+  constexpr double kOfTrajectory_s = 10;
+  options->duration_s = request.duration_s.value_or(
+      request.trajectory.empty() ? simulator::motion::usual_duration_s(request.preset) : kOfTrajectory_s);
   options->rate_hz = request.rate_hz;
   options->scene_file = request.scene;
   options->scene = request.scene_options;
@@ -24,13 +27,16 @@ Result<simulator::SimulationOptions> simulation_options(const SimulationRequest&
   options->file_motion.from_rest = request.from_rest.value_or(false);
   // In a scene of the user's own, the poses say where the camera is; in the furnished room they cannot.
   options->file_motion.in_place = !request.scene.empty();
-  options->exposure_s = request.exposure_s;
-  options->blur_samples = request.blur_samples;
   if (request.realistic || realistic_motion) simulator::make_realistic(*options);
   // What is asked for goes before what is realistic.
-  const SimulationRequest usual;
-  if (request.exposure_s != usual.exposure_s || request.blur_samples != usual.blur_samples)
+  if (request.exposure_s) {
     options->auto_exposure.on = false;
+    options->exposure_s = *request.exposure_s;
+  }
+  if (request.blur_samples) {
+    options->samples_by_motion = false;
+    options->blur_samples = *request.blur_samples;
+  }
   if (request.rolling_shutter_s > 0) options->rig.color.timing.color_readout_s = request.rolling_shutter_s;
   options->imu.time_offset_s = request.time_offset_s;
   if (request.no_noise) simulator::remove_noise(*options);
@@ -50,15 +56,13 @@ Result<simulator::SimulationOptions> simulation_options(const SimulationRequest&
 
 Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text) {
   using simulator::motion::MotionPreset;
-  for (const MotionPreset preset :
-       {MotionPreset::slow, MotionPreset::fast, MotionPreset::shake, MotionPreset::sweep,
-        MotionPreset::realistic_scan, MotionPreset::realistic_turns, MotionPreset::realistic_revisit}) {
-    if (text == simulator::motion::to_string(preset)) return preset;
+  std::vector<std::string_view> names;
+  for (const MotionPreset preset : simulator::motion::motion_presets()) {
+    names.push_back(simulator::motion::to_string(preset));
+    if (text == names.back()) return preset;
   }
   return fail(ErrorCode::configuration,
-              fmt::format("preset = {} (allowed: slow | fast | shake | sweep | realistic_scan | "
-                          "realistic_turns | realistic_revisit)",
-                          text));
+              fmt::format("preset = {} (allowed: {})", text, fmt::join(names, " | ")));
 }
 
 Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text) {

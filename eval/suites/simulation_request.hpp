@@ -18,7 +18,7 @@ struct SimulationRequest {
   simulator::layouts::RecordingLayout layout = simulator::layouts::RecordingLayout::zr300;
   simulator::motion::MotionPreset preset = simulator::motion::MotionPreset::slow;
   std::uint64_t seed = 1;
-  std::optional<double> duration_s;  ///< default: 60 of a realistic preset, 10 otherwise
+  std::optional<double> duration_s;  ///< default: motion::usual_duration_s() of a preset, 10 of a trajectory
   double rate_hz = 30;
   images::ImageSize size{640, 480};
   std::optional<bool> from_rest;     ///< default: a preset starts from rest, a trajectory as it begins
@@ -28,8 +28,8 @@ struct SimulationRequest {
   bool realistic = false;            ///< realistic sensors, whatever the motion
   std::filesystem::path scene;       ///< instead of the furnished room; empty: none
   simulator::scene::SceneFileOptions scene_options;
-  double exposure_s = 0.008;
-  int blur_samples = 8;
+  std::optional<double> exposure_s;  ///< instead of automatic exposure, or of 8 ms
+  std::optional<int> blur_samples;   ///< instead of as many as a realistic exposure needs, or of 8
   double rolling_shutter_s = 0;
   double time_offset_s = 0;
   bool no_noise = false;
@@ -42,8 +42,7 @@ struct SimulationRequest {
 /// simulate().
 [[nodiscard]] Result<simulator::SimulationOptions> simulation_options(const SimulationRequest& request);
 
-/// "slow", "fast", "shake", "sweep", "realistic_scan", "realistic_turns", "realistic_revisit". Error
-/// configuration.
+/// The name of a preset: motion::motion_presets(). Error configuration.
 [[nodiscard]] Result<simulator::motion::MotionPreset> parse_motion_preset(std::string_view text);
 /// "zr300", "tum", "icl". Error configuration.
 [[nodiscard]] Result<simulator::layouts::RecordingLayout> parse_recording_layout(std::string_view text);

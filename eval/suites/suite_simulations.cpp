@@ -182,11 +182,11 @@ Result<void> read_value(const config::TomlEntry& entry, SimulationRequest& reque
     if (count && *count > 10000) return wrong_entry(entry, "an integer up to 10000");
     return store(count, request.blur_samples);
   }
-  const std::array<std::pair<std::string_view, double*>, 7> numbers = {
+  if (key == "exposure_s") return store(number_entry(entry), request.exposure_s);
+  const std::array<std::pair<std::string_view, double*>, 6> numbers = {
       {{"speed", &request.speed},
        {"skip_s", &request.skip_s},
        {"rate_hz", &request.rate_hz},
-       {"exposure_s", &request.exposure_s},
        {"time_offset_s", &request.time_offset_s},
        {"rolling_shutter_s", &request.rolling_shutter_s},
        {"untold_time_offset_s", &request.untold_time_offset_s}}};

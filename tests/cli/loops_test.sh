@@ -44,13 +44,15 @@ check 'off has no final poses' test ! -e "$off/final.tum"
 check 'detect changes no pose' cmp "$off/trajectory.tum" "$detect/trajectory.tum"
 check 'detect changes no model' cmp "$off/mesh.ply" "$detect/mesh.ply"
 check 'detect has no final poses' test ! -e "$detect/final.tum"
+check 'detect lists its places' grep -qE '^[0-9.]+,[0-9.]+,[0-9]+,[1-9]' "$detect/places.csv"
+check 'detect says what its loops are worth' grep -q '"oracle_ate_m"' "$detect/record.json"
 check 'detect says what it found' grep -q ',accepted,' "$detect/loops.csv"
 check 'final changes no pose online' cmp "$off/trajectory.tum" "$one/trajectory.tum"
 check 'final finds what detect found' cmp "$detect/loops.csv" "$one/loops.csv"
 check 'as many final poses as online ones' test "$(wc -l <"$one/final.tum")" = "$(wc -l <"$one/trajectory.tum")"
 check 'the record has metrics of both' grep -q '"final_metrics"' "$one/record.json"
 check 'the summary says both' grep -q 'ATE .* (final .* cm)' final_1.log
-for file in trajectory.tum final.tum loops.csv mesh.ply; do
+for file in trajectory.tum final.tum loops.csv places.csv mesh.ply; do
   check "$file does not depend on threads" cmp "$one/$file" "$two/$file"
 done
 "$binary" table runs_final_1 --systems >table 2>&1

@@ -19,6 +19,8 @@ void png(std::string_view bytes);
 void zr300(std::string_view bytes);
 void infinitam(std::string_view bytes);
 void icl(std::string_view bytes);
+void klg(std::string_view bytes);
+void sens(std::string_view bytes);
 
 struct Target {
   std::string_view name;  ///< also its folder below tests/fuzz/corpus
@@ -37,6 +39,8 @@ inline constexpr std::array kTargets = {
     Target{"zr300", zr300},
     Target{"infinitam", infinitam},
     Target{"icl", icl},
+    Target{"klg", klg},
+    Target{"sens", sens},
 };
 
 }  // namespace fusebench::fuzz

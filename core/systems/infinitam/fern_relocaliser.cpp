@@ -36,16 +36,7 @@ DepthImage smoothed(const DepthImage& image) {
   return result;
 }
 
-/// From 0 to 1, the same on every machine.
-double uniform(std::mt19937_64& generator) { return std::ldexp(static_cast<double>(generator() >> 11), -53); }
-
 }  // namespace
-
-double dissimilarity(const FernCode& a, const FernCode& b) {
-  std::size_t different = 0;
-  for (std::size_t fern = 0; fern < kFerns; ++fern) different += a[fern] != b[fern] ? 1U : 0U;
-  return static_cast<double>(different) / static_cast<double>(kFerns);
-}
 
 FernRelocaliser::FernRelocaliser(const PinholeCamera& camera, const config::DepthConfig& depth,
                                  config::PeerDefects defects) {
@@ -54,37 +45,36 @@ FernRelocaliser::FernRelocaliser(const PinholeCamera& camera, const config::Dept
   const PinholeCamera small = camera_of_level(camera, level);
   std::mt19937_64 generator(kSeed);
   for (Test& test : tests_) {
-    test.x = static_cast<int>(uniform(generator) * small.width_px);
-    test.y = static_cast<int>(uniform(generator) * small.height_px);
-    test.depth_m = static_cast<float>(depth.min_m + uniform(generator) * (depth.max_m - depth.min_m));
+    test.x = static_cast<int>(ferns::uniform(generator) * small.width_px);
+    test.y = static_cast<int>(ferns::uniform(generator) * small.height_px);
+    test.depth_m = static_cast<float>(depth.min_m + ferns::uniform(generator) * (depth.max_m - depth.min_m));
   }
 }
 
-FernCode FernRelocaliser::code_of(const DepthImage& depth_m) const {
+ferns::FernCode FernRelocaliser::code_of(const DepthImage& depth_m) const {
   const DepthImage small = smoothed(depth_pyramid(depth_m, kLevel + 1).back());
-  FernCode code{};
+  ferns::FernCode code{};
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     const Test& test = tests_[i];
-    if (small(test.x, test.y) >= test.depth_m)
-      code[i / kTestsOfFern] = static_cast<std::uint8_t>(code[i / kTestsOfFern] | (1U << (i % kTestsOfFern)));
+    if (small(test.x, test.y) >= test.depth_m) ferns::pass(code, i);
   }
   return code;
 }
 
-const FernRelocaliser::StoredFrame* FernRelocaliser::nearest(const FernCode& code) const {
+const FernRelocaliser::StoredFrame* FernRelocaliser::nearest(const ferns::FernCode& code) const {
   const auto found = std::ranges::min_element(
-      frames_, {}, [&](const StoredFrame& frame) { return dissimilarity(frame.code, code); });
+      frames_, {}, [&](const StoredFrame& frame) { return ferns::dissimilarity(frame.code, code); });
   return found == frames_.end() ? nullptr : &*found;
 }
 
-bool FernRelocaliser::offer(const FernCode& code, const SE3& T_world_camera) {
+bool FernRelocaliser::offer(const ferns::FernCode& code, const SE3& T_world_camera) {
   const StoredFrame* const like = nearest(code);
-  if (like != nullptr && dissimilarity(like->code, code) <= kKeptDissimilarity) return false;
+  if (like != nullptr && ferns::dissimilarity(like->code, code) <= kKeptDissimilarity) return false;
   frames_.push_back({code, T_world_camera});
   return true;
 }
 
-const SE3* FernRelocaliser::most_similar(const FernCode& code) const {
+const SE3* FernRelocaliser::most_similar(const ferns::FernCode& code) const {
   const StoredFrame* const found = nearest(code);
   return found == nullptr ? nullptr : &found->T_world_camera;
 }

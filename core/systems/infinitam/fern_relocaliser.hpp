@@ -3,20 +3,13 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/ferns/fern_code.hpp"
 
 namespace fusebench::systems::infinitam {
-
-/// Of every fern one number: which of its tests the image passes.
-inline constexpr std::size_t kFerns = 500;
-using FernCode = std::array<std::uint8_t, kFerns>;
-
-/// Share of the ferns that differ, 0 to 1.
-[[nodiscard]] double dissimilarity(const FernCode& a, const FernCode& b);
 
 class FernRelocaliser {
  public:
@@ -24,13 +17,13 @@ class FernRelocaliser {
   /// same size of images.
   FernRelocaliser(const PinholeCamera& camera, const config::DepthConfig& depth, config::PeerDefects defects);
 
-  [[nodiscard]] FernCode code_of(const DepthImage& depth_m) const;
+  [[nodiscard]] ferns::FernCode code_of(const DepthImage& depth_m) const;
 
   /// Stores the frame unless one like it is there; returns whether it did.
-  bool offer(const FernCode& code, const SE3& T_world_camera);
+  bool offer(const ferns::FernCode& code, const SE3& T_world_camera);
 
   /// The pose of the most similar stored frame; nothing if there is none.
-  [[nodiscard]] const SE3* most_similar(const FernCode& code) const;
+  [[nodiscard]] const SE3* most_similar(const ferns::FernCode& code) const;
 
   [[nodiscard]] std::size_t size() const { return frames_.size(); }
 
@@ -41,13 +34,12 @@ class FernRelocaliser {
     float depth_m = 0;
   };
   struct StoredFrame {
-    FernCode code;
+    ferns::FernCode code;
     SE3 T_world_camera;
   };
-  [[nodiscard]] const StoredFrame* nearest(const FernCode& code) const;
+  [[nodiscard]] const StoredFrame* nearest(const ferns::FernCode& code) const;
 
-  static constexpr std::size_t kTestsOfFern = 4;
-  std::array<Test, kFerns * kTestsOfFern> tests_;
+  std::array<Test, ferns::kFerns * ferns::kTestsOfFern> tests_;
   std::vector<StoredFrame> frames_;
 };
 

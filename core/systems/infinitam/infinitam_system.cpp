@@ -88,7 +88,7 @@ InfinitamSystem::Quality InfinitamSystem::relocalise(const FrameLevels& levels, 
                                                      health::FrameOutcome& outcome) {
   if (config_.infinitam.on_failure != config::InfinitamFailure::relocalise) return quality;
   if (quality == Quality::good && unfused_good_frames_ > 0) --unfused_good_frames_;
-  const FernCode code = relocaliser_.code_of(levels.depth_m.front());
+  const ferns::FernCode code = relocaliser_.code_of(levels.depth_m.front());
   if (quality == Quality::good && unfused_good_frames_ == 0) relocaliser_.offer(code, T_world_camera_);
   if (quality != Quality::failed) return quality;
   const SE3* const place = relocaliser_.most_similar(code);

@@ -196,64 +196,6 @@ Vector3d middle_of_path(const synthetic_imu::PoseSpline& spline, const Eigen::Al
 
 }  // namespace
 
-std::string_view to_string(MotionPreset preset) {
-  switch (preset) {
-    case MotionPreset::slow:
-      return "slow";
-    case MotionPreset::fast:
-      return "fast";
-    case MotionPreset::shake:
-      return "shake";
-    case MotionPreset::sweep:
-      return "sweep";
-    case MotionPreset::realistic_scan:
-      return "realistic_scan";
-    case MotionPreset::realistic_turns:
-      return "realistic_turns";
-    case MotionPreset::realistic_revisit:
-      break;
-  }
-  return "realistic_revisit";
-}
-
-MotionOptions motion_preset(MotionPreset preset) {
-  MotionOptions options;
-  if (preset == MotionPreset::fast) {
-    options.peak_speed_mps = 2.0;
-    options.peak_rate_radps = 3.0;
-    options.position_hz = {0.3, 0.8};
-    options.rotation_hz = {0.2, 0.7};
-    options.pan_share = 0.6;
-  } else if (preset == MotionPreset::shake) {
-    options.peak_speed_mps = 1.2;
-    options.peak_rate_radps = 2.5;
-    options.shake_share = 0.75;
-  } else if (preset == MotionPreset::sweep) {
-    options.peak_speed_mps = 2.0;
-    options.peak_rate_radps = 1.0;
-    options.position_hz = {0.25, 0.6};
-    options.rotation_hz = {0.3, 0.8};
-    options.sideways = true;
-  } else if (preset != MotionPreset::slow) {
-    // Tremor of a hand that holds something: 5 to 10 Hz, some tenths of a millimetre and of a degree.
-    options.peak_speed_mps = preset == MotionPreset::realistic_scan ? 0.5 : 0.8;
-    options.peak_rate_radps = 0.8;
-    options.mean_pitch_rad = radians(preset == MotionPreset::realistic_revisit ? -15.0 : -28.0);
-    options.tremor_m = 3e-4;
-    options.tremor_rad = 1.2e-3;
-    options.tremor_hz = {5, 10};
-    if (preset == MotionPreset::realistic_turns) {
-      options.peak_rate_radps = 7;
-      options.pan_share = 0.92;
-      options.pans = {{2.0, 5.0}, {0.3, 0.55}, {1.0, 2.0}};
-    } else if (preset == MotionPreset::realistic_revisit) {
-      options.peak_rate_radps = 1.2;
-      options.revisit_s = 20;
-    }
-  }
-  return options;
-}
-
 double PathClock::path_s(double since_begin_s) const {
   const double moving_s = since_begin_s - still_until_s;
   if (start_s <= 0) return offset_s + rate * moving_s;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string_view>
 
 #include "core/base/error.hpp"
@@ -23,8 +24,21 @@ enum class MotionPreset {
   realistic_scan,     ///< a hand that scans, with its tremor: up to 0.5 m/s and 0.8 rad/s
   realistic_turns,    ///< the same, with quick turns between: up to 0.8 m/s and 7 rad/s (400 deg/s)
   realistic_revisit,  ///< goes round and comes back to where it began every 20 s: up to 0.8 m/s, 1.2 rad/s
+  // These follow routes through scenes of their own (routes/preset_routes.hpp).
+  loop_room,      ///< two laps along the walls of a furnished room: up to 0.8 m/s, 1.2 rad/s, as all but one
+  loop_flat,      ///< through three rooms along a corridor, and back
+  corridor,       ///< along a corridor with sparse texture, and back
+  shake_revisit,  ///< quiet views of one place, between them 2 s of shaking at 200 to 400 deg/s
+  twin_rooms,     ///< through one of two equal rooms, then through the other one
+  no_loop,        ///< along a hall, no place of which is seen twice
 };
 [[nodiscard]] std::string_view to_string(MotionPreset preset);
+/// All of them, in the order of the enumeration.
+[[nodiscard]] std::span<const MotionPreset> motion_presets();
+/// How long a recording with the preset is unless it is asked for otherwise.
+[[nodiscard]] double usual_duration_s(MotionPreset preset);
+/// Whether the camera follows a route, rather than moving about within a box.
+[[nodiscard]] bool follows_route(MotionPreset preset);
 
 struct FrequencyBand {
   double low_hz = 0;
@@ -40,7 +54,7 @@ struct Pans {
 
 /// Parameters of a hand-held motion. Speeds are those of the colour camera.
 struct MotionOptions {
-  double peak_speed_mps = 0.4;   ///< reached, and not exceeded, within the recording
+  double peak_speed_mps = 0.4;   ///< not exceeded, and but for routes reached, within the recording
   double peak_rate_radps = 0.6;  ///< the same for the angular speed
   FrequencyBand position_hz{0.08, 0.30};
   FrequencyBand rotation_hz{0.06, 0.25};

@@ -100,15 +100,25 @@ Result<int> simulate_recording(const SimulateOptions& chosen) {
   return 0;
 }
 
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const simulator::motion::MotionPreset preset : simulator::motion::motion_presets())
+    names.emplace_back(simulator::motion::to_string(preset));
+  return names;
+}
+
 void add_motion_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option(
           "--preset", options.preset,
           "Hand-held motion: slow (up to 0.4 m/s, 0.6 rad/s), fast (2 m/s, 3 rad/s), shake (1.2 m/s, "
           "2.5 rad/s, at 2 to 4 Hz), sweep (sideways before a cluttered shelf: 2 m/s, 1 rad/s); with "
           "--realistic and 60 s: realistic_scan (0.5 m/s, 0.8 rad/s), realistic_turns (0.8 m/s, quick "
-          "turns of up to 7 rad/s), realistic_revisit (0.8 m/s, 1.2 rad/s, back every 20 s)")
-      ->check(CLI::IsMember(
-          {"slow", "fast", "shake", "sweep", "realistic_scan", "realistic_turns", "realistic_revisit"}))
+          "turns of up to 7 rad/s), realistic_revisit (0.8 m/s, 1.2 rad/s, back every 20 s); along a "
+          "route, up to 0.8 m/s and 1.2 rad/s, with or without --realistic: loop_room (two laps, 33 s), "
+          "loop_flat (three rooms and back, 120 s), corridor (25 m out and back, 90 s), shake_revisit "
+          "(one place, between views 2 s of 200 to 400 deg/s, 60 s), twin_rooms (two equal rooms, 70 s), "
+          "no_loop (nothing twice, 58 s)")
+      ->check(CLI::IsMember(preset_names()))
       ->capture_default_str();
   auto* in_motion = verb.add_flag("--in-motion", options.in_motion,
                                   "The first frame is in full motion; default for --trajectory");
@@ -127,7 +137,7 @@ void add_motion_options(CLI::App& verb, SimulateOptions& options) {
       ->needs(trajectory)
       ->capture_default_str();
   verb.add_option("--duration", options.request.duration_s,
-                  "Length; 0: all of --trajectory; default 10, of realistic presets 60")
+                  "Length; 0: all of --trajectory; default 10, of realistic presets 60, of routes as above")
       ->type_name("S");
 }
 
@@ -135,17 +145,19 @@ void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_flag(
       "--realistic", options.request.realistic,
       "Sensors as they are: untold rolling shutters and delay of depth, stamps that jitter, dropped "
-      "frames, automatic exposure, a mosaic of filters, errors of depth and IMU; in an office");
+      "frames, automatic exposure, a mosaic of filters, errors of depth and IMU; in an office, if the "
+      "preset brings no scene of its own");
   verb.add_option("--rate", options.request.rate_hz, "Images a second (icl: 30, zr300: 4 to 200)")
       ->type_name("HZ")
       ->capture_default_str();
   verb.add_option("--size", options.size, "Pixels of the images")->type_name("WxH")->capture_default_str();
-  verb.add_option("--exposure", options.request.exposure_s, "Exposure time, which blurs motion")
-      ->type_name("S")
-      ->capture_default_str();
-  verb.add_option("--blur-samples", options.request.blur_samples, "Renderings that an exposure averages")
-      ->type_name("N")
-      ->capture_default_str();
+  verb.add_option("--exposure", options.request.exposure_s,
+                  "Exposure time, which blurs motion; default 0.008, with --realistic automatic")
+      ->type_name("S");
+  verb.add_option(
+          "--blur-samples", options.request.blur_samples,
+          "Renderings that an exposure averages; default 8, with --realistic one for each 2 px of turning")
+      ->type_name("N");
   verb.add_option("--rolling-shutter", options.request.rolling_shutter_s,
                   "Time between the first and the last row of colour images")
       ->type_name("S")

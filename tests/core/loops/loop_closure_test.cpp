@@ -6,7 +6,9 @@
 #include <numbers>
 #include <vector>
 
+#include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
+#include "core/loops/loop_tables.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -91,6 +93,7 @@ class Loops : public ::testing::Test {
     return once;
   }
   SensorRig rig_ = rig();
+  config::Config config_final_ = configuration(config::LoopMode::final);
 };
 
 TEST_F(Loops, ComeTogetherWhereTheCameraComesBack) {
@@ -99,7 +102,7 @@ TEST_F(Loops, ComeTogetherWhereTheCameraComesBack) {
   run(loops, true, frames());
   const auto changed = loops.close();
   ASSERT_TRUE(changed) << changed.error().message;
-  ASSERT_TRUE(*changed) << loops.table();
+  ASSERT_TRUE(*changed) << candidate_table(loops);
   Trajectory online;
   for (int k = 0; k < kFrames; ++k) online.push_back({stamp_ns(k), estimate_of(k, true).mean.T_world_imu});
   const Trajectory final = loops.corrected_trajectory();
@@ -130,12 +133,52 @@ TEST_F(Loops, AStateIsCorrectedAsItsPoseIs) {
   EXPECT_FALSE(loops.corrected_state(stamp_ns(3) + 1)) << "no frame of that stamp was fused";
 }
 
+/// The estimate moves along as a caller's does.
+TEST_F(Loops, OnlineCorrectsTheWorldOfTheEstimate) {
+  config::Config config = configuration(config::LoopMode::online);
+  config.loops.online_every = 20;
+  LoopClosure loops(config, rig_);
+  SE3 T_current_drifted;
+  int corrections = 0;
+  Trajectory online;
+  for (int k = 0; k < kFrames; ++k) {
+    filter::GaussianState estimate = estimate_of(k, true);
+    estimate = filter::moved(estimate, T_current_drifted);
+    loops.add_fused(frames()[static_cast<std::size_t>(k)], estimate, 0);
+    loops.add_pose(stamp_ns(k), estimate.mean.T_world_imu);
+    online.push_back({stamp_ns(k), estimate.mean.T_world_imu});
+    const auto moved = loops.correct_online();
+    ASSERT_TRUE(moved) << moved.error().message;
+    if (!*moved) continue;
+    ++corrections;
+    T_current_drifted = **moved * T_current_drifted;
+    const SE3 T_now = T_current_drifted * estimate_of(k, true).mean.T_world_imu;
+    const auto error_of = [&](const SE3& pose) {
+      return (pose.translation - T_room_camera(k).translation).norm();
+    };
+    EXPECT_LT(error_of(T_now), 0.6 * error_of(estimate.mean.T_world_imu));
+    EXPECT_LT((loops.corrected_pose_near(stamp_ns(k)).translation - T_now.translation).norm(), 1e-9);
+  }
+  EXPECT_GE(corrections, 1);
+  ASSERT_TRUE(loops.close().value());
+  EXPECT_LT(error_m(loops.corrected_trajectory()), 0.6 * error_m(online));
+  // What is known between places does not depend on what was corrected on the way.
+  LoopClosure at_the_end(config_final_, rig_);
+  run(at_the_end, true, frames());
+  ASSERT_TRUE(at_the_end.close().value());
+  for (std::size_t k = 0; k < online.size(); ++k)
+    EXPECT_LT((loops.corrected_trajectory()[k].T_world_camera.translation -
+               at_the_end.corrected_trajectory()[k].T_world_camera.translation)
+                  .norm(),
+              1e-4);
+}
+
 TEST_F(Loops, DetectionChangesNothing) {
   const config::Config config = configuration(config::LoopMode::detect);
   LoopClosure loops(config, rig_);
   run(loops, true, frames());
   EXPECT_FALSE(loops.close().value());
-  EXPECT_NE(loops.table().find("accepted"), std::string::npos);
+  EXPECT_NE(candidate_table(loops).find("accepted"), std::string::npos);
   EXPECT_EQ(loops.corrected_trajectory().back().T_world_camera.translation,
             estimate_of(kFrames - 1, true).mean.T_world_imu.translation);
 }
@@ -146,7 +189,7 @@ TEST_F(Loops, OffKeepsNothing) {
   run(loops, true, frames());
   EXPECT_FALSE(loops.close().value());
   EXPECT_TRUE(loops.places().empty());
-  EXPECT_TRUE(loops.table().empty());
+  EXPECT_TRUE(candidate_table(loops).empty());
 }
 
 /// Two rooms that look alike: all features and all depth agree, and the place is another one.
@@ -166,8 +209,9 @@ TEST_F(Loops, AppearanceAloneMovesNothing) {
     loops.add_fused(frame, estimate, 0);
     loops.add_pose(stamp_ns(k), estimate.mean.T_world_imu);
   }
-  ASSERT_FALSE(loops.close().value()) << loops.table();
-  EXPECT_NE(loops.table().find("neither agrees"), std::string::npos) << loops.table();
+  ASSERT_FALSE(loops.close().value()) << candidate_table(loops);
+  EXPECT_NE(candidate_table(loops).find("contradicts the poses"), std::string::npos)
+      << candidate_table(loops);
 }
 
 TEST_F(Loops, WithoutDriftPosesStay) {

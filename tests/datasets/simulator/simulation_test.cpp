@@ -70,6 +70,22 @@ TEST_F(Simulation, SameOptionsSameBytesWithAnyThreads) {
   }
 }
 
+TEST_F(Simulation, RoutesGoThroughTheirOwnScenesWithTheSameBytes) {
+  SimulationOptions options = small_options(RecordingLayout::tum);
+  options.preset = MotionPreset::corridor;
+  options.motion = motion_preset(options.preset);
+  options.room = room_of(options.preset);
+  const auto refused = simulate(options, folder_ / "box", one_, {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("preset = corridor"), std::string::npos);
+  options.scene_file.clear();
+  ASSERT_TRUE(simulate(options, folder_ / "a", one_, {}));
+  ASSERT_TRUE(simulate(options, folder_ / "b", Workers(3), {}));
+  const auto files_a = files_in(folder_ / "a");
+  EXPECT_EQ(files_a, files_in(folder_ / "b"));
+  EXPECT_NE(files_a.at("simulation.toml").find("corridor of the seed"), std::string::npos);
+}
+
 TEST_F(Simulation, SeedsMakeDifferentRecordings) {
   SimulationOptions options = small_options();
   options.scene_file.clear();  // the room is the seed's, too

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "datasets/exports/sens_file.hpp"
+#include "datasets/image_logs/sens_log.hpp"
 #include "tests/support/expect_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -47,14 +47,14 @@ std::string along_x(double step) {
 }
 
 std::string sens_with_a_pose() {
-  exports::SensHeader header{"made", {2, 1, 500, 500, 0.5, 0}, {2, 1, 500, 500, 0.5, 0}};
+  image_logs::SensHeader header{"made", {2, 1, 500, 500, 0.5, 0}, {2, 1, 500, 500, 0.5, 0}};
   header.frames = 1;
-  exports::SensFrame frame;
+  image_logs::SensFrame frame;
   frame.T_world_camera = SE3{Quaterniond::Identity(), {0.25, 1, -2}};
   frame.color_timestamp_us = 2'000'000;
   frame.color = "a JPEG";
   frame.depth = Image<std::uint16_t>(2, 1, 1234);
-  return exports::sens_bytes(header) + exports::sens_bytes(frame) + std::string(8, '\0');
+  return image_logs::sens_bytes(header) + image_logs::sens_bytes(frame) + std::string(8, '\0');
 }
 
 TEST_F(SystemTrajectoryFile, PosesOfASensFileAreKnownByItsName) {

@@ -90,6 +90,30 @@ TEST_F(SuiteSimulationsTest, RealisticSensorsForPresetsAndTrajectories) {
   EXPECT_EQ(twin->exposure_s, 0.01);
 }
 
+TEST_F(SuiteSimulationsTest, RoutesBringTheirScenesAndDurations) {
+  const auto suite = read(
+      "[[simulations]]\nname = \"{preset}\"\npreset = [\"loop_room\", \"loop_flat\"]\nrealistic = true\n"
+      "[[simulations]]\nname = \"{preset}_{exposure_s}s\"\npreset = \"shake_revisit\"\nrealistic = true\n"
+      "exposure_s = [0.008, 0.030]\n");
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  const auto room = simulation_options(suite->simulations[0].request);
+  const auto flat = simulation_options(suite->simulations[1].request);
+  ASSERT_TRUE(room && flat);
+  EXPECT_EQ(room->room, simulator::RoomKind::furnished);
+  EXPECT_EQ(room->duration_s, usual_duration_s(MotionPreset::loop_room));
+  EXPECT_TRUE(room->auto_exposure.on && room->samples_by_motion);
+  EXPECT_EQ(flat->room, simulator::RoomKind::flat);
+  EXPECT_EQ(flat->duration_s, 120);
+  EXPECT_EQ(suite->simulations[3].name, "shake_revisit_0.03s");
+  for (const std::size_t i : {2, 3}) {  // 8 ms as well, which is usual without realistic sensors
+    const auto shaken = simulation_options(suite->simulations[i].request);
+    ASSERT_TRUE(shaken);
+    EXPECT_FALSE(shaken->auto_exposure.on);
+    EXPECT_EQ(shaken->exposure_s, i == 2 ? 0.008 : 0.03);
+    EXPECT_TRUE(shaken->samples_by_motion && shaken->untold_shutters);
+  }
+}
+
 TEST_F(SuiteSimulationsTest, WhatMakesNoSenseIsRefusedWithItsLine) {
   const std::string head = "[[simulations]]\nname = \"a_{seed}\"\n";
   expect_refused(head + "preset = \"quick\"\nseed = 1\n", ":6", "slow | fast | shake");

@@ -30,8 +30,8 @@ TEST(FernRelocaliser, KnowsAFrameAgainAndStoresNoneTwice) {
   const SE3* const found = relocaliser.most_similar(code_at(1.03));
   ASSERT_NE(found, nullptr);
   EXPECT_LT(rotation_angle_rad(found->rotation, turned(1.0).rotation), 1e-9);
-  EXPECT_EQ(dissimilarity(code_at(1.0), code_at(1.0)), 0);
-  EXPECT_GT(dissimilarity(code_at(0), code_at(1.0)), 0.2);
+  EXPECT_EQ(ferns::dissimilarity(code_at(1.0), code_at(1.0)), 0);
+  EXPECT_GT(ferns::dissimilarity(code_at(0), code_at(1.0)), 0.2);
 }
 
 TEST(FernRelocaliser, AsPublishedSeesTheTopLeftQuarterAlone) {
@@ -45,8 +45,8 @@ TEST(FernRelocaliser, AsPublishedSeesTheTopLeftQuarterAlone) {
   }
   const FernRelocaliser published(camera, {}, config::PeerDefects::as_published);
   const FernRelocaliser fixed(camera, {}, config::PeerDefects::fixed);
-  EXPECT_EQ(dissimilarity(published.code_of(image), published.code_of(changed)), 0);
-  EXPECT_GT(dissimilarity(fixed.code_of(image), fixed.code_of(changed)), 0.1);
+  EXPECT_EQ(ferns::dissimilarity(published.code_of(image), published.code_of(changed)), 0);
+  EXPECT_GT(ferns::dissimilarity(fixed.code_of(image), fixed.code_of(changed)), 0.1);
 }
 
 TEST(FernRelocaliser, FindsThePlaceAgainAfterAJump) {

@@ -1,0 +1,156 @@
+#include "core/loops/dense_alignment.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/preprocessing/depth_gates.hpp"
+
+namespace fusebench::loops {
+
+namespace {
+
+constexpr int kNormalReach = 3;        // small pixels to either side that a normal is made of
+constexpr double kMostBend_m = 0.003;  // of a plane, beside its noise
+constexpr double kBendSigmas = 2.0;
+constexpr int kPointStep = 2;         // every other pixel of the query in either direction
+constexpr double kHuberSigmas = 1.5;  // residuals beyond lose weight (Huber 1964)
+
+/// The depth of a place as planes, by pixel of the small image.
+class Surface {
+ public:
+  struct Plane {
+    Vector3d point = Vector3d::Zero();
+    Vector3d normal = Vector3d::Zero();  ///< unit; zero: none
+  };
+
+  Surface(const DepthImage& small_depth_m, const PinholeCamera& camera, const config::DepthConfig& config)
+      : camera_(camera), planes_(small_depth_m.width, small_depth_m.height) {
+    for (int y = kNormalReach; y + kNormalReach < small_depth_m.height; ++y) {
+      for (int x = kNormalReach; x + kNormalReach < small_depth_m.width; ++x) {
+        if (bends(small_depth_m, x, y, kNormalReach, 0, config) ||
+            bends(small_depth_m, x, y, 0, kNormalReach, config))
+          continue;
+        const auto point = [&](int u, int v) {
+          return camera.back_project(kDepthStep * u, kDepthStep * v,
+                                     static_cast<double>(small_depth_m(u, v)));
+        };
+        const Vector3d across = point(x + kNormalReach, y) - point(x - kNormalReach, y);
+        const Vector3d down = point(x, y + kNormalReach) - point(x, y - kNormalReach);
+        planes_(x, y) = {point(x, y), across.cross(down).normalized()};
+      }
+    }
+  }
+
+  /// Where the point is seen; nothing if there is no plane.
+  [[nodiscard]] const Plane* at(const Vector3d& point_camera) const {
+    if (point_camera.z() <= 0) return nullptr;
+    const Vector2d pixel = camera_.project(point_camera) / kDepthStep;
+    if (!(pixel.cwiseAbs().maxCoeff() < 1e6)) return nullptr;
+    const auto x = static_cast<int>(std::lround(pixel.x()));
+    const auto y = static_cast<int>(std::lround(pixel.y()));
+    if (!planes_.contains(x, y) || planes_(x, y).normal.isZero()) return nullptr;
+    return &planes_(x, y);
+  }
+
+ private:
+  /// True as well where depth is missing. On a plane the inverse depth is linear in the image: it is not
+  /// across an edge, or the corner of a room.
+  static bool bends(const DepthImage& small_depth_m, int x, int y, int dx, int dy,
+                    const config::DepthConfig& config) {
+    const auto before_m = static_cast<double>(small_depth_m(x - dx, y - dy));
+    const auto here_m = static_cast<double>(small_depth_m(x, y));
+    const auto after_m = static_cast<double>(small_depth_m(x + dx, y + dy));
+    if (!(before_m > 0 && here_m > 0 && after_m > 0)) return true;
+    const double expected_m = 2.0 / (1.0 / before_m + 1.0 / after_m);
+    return std::abs(here_m - expected_m) >
+           kMostBend_m + kBendSigmas * preprocessing::depth_sigma_m(here_m, config);
+  }
+
+  const PinholeCamera& camera_;
+  Image<Plane> planes_;
+};
+
+std::vector<Vector3d> points_of(const DepthImage& small_depth_m, const PinholeCamera& camera) {
+  std::vector<Vector3d> points;
+  for (int y = 0; y < small_depth_m.height; y += kPointStep) {
+    for (int x = 0; x < small_depth_m.width; x += kPointStep) {
+      const auto z = static_cast<double>(small_depth_m(x, y));
+      if (z > 0) points.push_back(camera.back_project(kDepthStep * x, kDepthStep * y, z));
+    }
+  }
+  return points;
+}
+
+/// Normal equations of the distances to planes, each divided by its standard deviation.
+struct DepthSums {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double squared = 0;  ///< weighted
+  double weights = 0;
+  int pairs = 0;
+
+  /// At least one, and more where the residuals are larger than their noise.
+  [[nodiscard]] double variance() const { return weights > 0 ? std::max(1.0, squared / weights) : 1.0; }
+};
+
+DepthSums sums_at(const SE3& T_known_query, const std::vector<Vector3d>& points_query, const Surface& surface,
+                  double gate_m, const config::DepthConfig& config) {
+  DepthSums sums;
+  const Matrix3d R = T_known_query.rotation_matrix();
+  for (const Vector3d& point_query : points_query) {
+    const Vector3d point = R * point_query + T_known_query.translation;
+    const Surface::Plane* const plane = surface.at(point);
+    if (plane == nullptr || (point - plane->point).squaredNorm() > gate_m * gate_m) continue;
+    const double sigma_m = std::hypot(preprocessing::depth_sigma_m(point_query.z(), config),
+                                      preprocessing::depth_sigma_m(plane->point.z(), config));
+    const double residual = plane->normal.dot(point - plane->point) / sigma_m;
+    const double weight = std::min(1.0, kHuberSigmas / std::max(std::abs(residual), 1e-12));
+    Vector6d jacobian;
+    jacobian << point_query.cross(R.transpose() * plane->normal), plane->normal;
+    jacobian /= sigma_m;
+    sums.information += weight * jacobian * jacobian.transpose();
+    sums.gradient += weight * residual * jacobian;
+    sums.squared += weight * residual * residual;
+    sums.weights += weight;
+    ++sums.pairs;
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::optional<RelativePose> aligned_by_depth(const Place& known, const Place& query,
+                                             const RelativePose& start, bool from_features,
+                                             const PinholeCamera& camera, const config::Config& config) {
+  constexpr std::array<double, 4> kGates = {1.0, 0.5, 0.25, 0.25};  // of loops.dense_gate_m
+  constexpr int kStepsOfGate = 6;
+  constexpr double kSmallStep = 1e-5;  // rad and m
+  const config::LoopsConfig& loops = config.loops;
+  const Surface surface(known.small_depth_m, camera, config.depth);
+  const std::vector<Vector3d> points_query = points_of(query.small_depth_m, camera);
+  const Matrix6d prior =
+      from_features ? Matrix6d(start.covariance.ldlt().solve(Matrix6d::Identity())) : Matrix6d::Zero();
+  SE3 pose = start.T_known_query;
+  Matrix6d information = Matrix6d::Zero();
+  for (const double gate : kGates) {
+    for (int step = 0; step < kStepsOfGate; ++step) {
+      const DepthSums sums = sums_at(pose, points_query, surface, gate * loops.dense_gate_m, config.depth);
+      if (sums.pairs < loops.dense_min_pairs) return std::nullopt;
+      const double share = 1.0 / (sums.variance() * loops.dense_pixels_per_measurement);
+      information = share * sums.information + prior;
+      const Vector6d gradient = share * sums.gradient + prior * pose_minus(pose, start.T_known_query);
+      const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
+      if (!(eigen.eigenvalues().minCoeff() > 1e-12 * eigen.eigenvalues().maxCoeff())) return std::nullopt;
+      const Vector6d move = -information.ldlt().solve(gradient);
+      pose = pose_plus(pose, move);
+      if (move.cwiseAbs().maxCoeff() < kSmallStep) break;
+    }
+  }
+  const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
+  return RelativePose{pose, 0.5 * (covariance + covariance.transpose())};
+}
+
+}  // namespace fusebench::loops

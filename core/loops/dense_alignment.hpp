@@ -1,0 +1,29 @@
+// The relative pose of two places by their depth alone or together with what features say of it: points of
+// one on planes of the other (Chen & Medioni 1992), at a quarter of the images' size, where motion blur and
+// missing texture hardly matter.
+#pragma once
+
+#include <optional>
+
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/loops/place.hpp"
+
+namespace fusebench::loops {
+
+/// A pose with its covariance: rotation on the right (rad), position in the frame of `known` (metres).
+struct RelativePose {
+  SE3 T_known_query;
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/// Searches from that pose. With `from_features`, its covariance counts: directions that depth does not tell,
+/// such as sideways along a wall, stay as they were; without, the pose is no more than the start. Nothing if
+/// too little of the depth lies near the other surface, or it leaves a direction open. The covariance is that
+/// of the scatter, as loops.dense_pixels_per_measurement counts it.
+[[nodiscard]] std::optional<RelativePose> aligned_by_depth(const Place& known, const Place& query,
+                                                           const RelativePose& start, bool from_features,
+                                                           const PinholeCamera& camera,
+                                                           const config::Config& config);
+
+}  // namespace fusebench::loops

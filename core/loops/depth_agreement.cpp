@@ -1,0 +1,99 @@
+#include "core/loops/depth_agreement.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include "core/preprocessing/depth_gates.hpp"
+
+namespace fusebench::loops {
+
+namespace {
+
+/// A pixel of one place in the small images of the other.
+struct SeenPixel {
+  int x = 0, y = 0;   ///< of the one
+  int u = 0, v = 0;   ///< of the other
+  double here_m = 0;  ///< the depth that it has in the other camera
+  double there_m = 0;
+};
+
+/// Calls back for every pixel of `from` that falls on a pixel with depth of `to`; returns how many pixels of
+/// `from` have depth.
+template <class Callback>
+std::size_t for_each_seen(const Place& from, const Place& to, const SE3& T_to_from,
+                          const PinholeCamera& camera, const Callback& callback) {
+  std::size_t measured = 0;
+  for (int y = 0; y < from.small_depth_m.height; ++y) {
+    for (int x = 0; x < from.small_depth_m.width; ++x) {
+      const auto z = static_cast<double>(from.small_depth_m(x, y));
+      if (!(z > 0)) continue;
+      ++measured;
+      const Vector3d point = T_to_from * camera.back_project(kDepthStep * x, kDepthStep * y, z);
+      if (point.z() <= 0) continue;
+      const Vector2d pixel = camera.project(point) / kDepthStep;
+      if (!(pixel.cwiseAbs().maxCoeff() < to.small_depth_m.width + to.small_depth_m.height)) continue;
+      const auto u = static_cast<int>(std::lround(pixel.x()));
+      const auto v = static_cast<int>(std::lround(pixel.y()));
+      if (!to.small_depth_m.contains(u, v) || !(to.small_depth_m(u, v) > 0)) continue;
+      callback(SeenPixel{x, y, u, v, point.z(), static_cast<double>(to.small_depth_m(u, v))});
+    }
+  }
+  return measured;
+}
+
+bool on_surface(const SeenPixel& seen, const config::Config& config) {
+  constexpr double kAllowance_m = 0.01;  // what interpolation and calibration leave
+  const double sigma_m = preprocessing::depth_sigma_m(seen.here_m, config.depth);
+  return std::abs(seen.here_m - seen.there_m) <= config.loops.depth_sigmas * sigma_m + kAllowance_m;
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+/// Running sums of pairs of numbers.
+struct PairSums {
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+
+  void add(double first, double second) {
+    n += 1;
+    a += first;
+    b += second;
+    aa += first * first;
+    bb += second * second;
+    ab += first * second;
+  }
+  [[nodiscard]] double variance_a() const { return aa / n - (a / n) * (a / n); }
+  [[nodiscard]] double variance_b() const { return bb / n - (b / n) * (b / n); }
+  [[nodiscard]] double covariance() const { return ab / n - (a / n) * (b / n); }
+};
+
+}  // namespace
+
+DepthAgreement depth_agreement(const Place& from, const Place& to, const SE3& T_to_from,
+                               const PinholeCamera& camera, const config::Config& config) {
+  std::size_t seen = 0, consistent = 0, violating = 0;
+  const std::size_t measured = for_each_seen(from, to, T_to_from, camera, [&](const SeenPixel& pixel) {
+    ++seen;
+    if (on_surface(pixel, config)) {
+      ++consistent;
+    } else if (pixel.here_m < pixel.there_m) {
+      ++violating;
+    }
+  });
+  return {share(seen, measured), share(consistent, measured), share(violating, seen)};
+}
+
+std::optional<double> grey_correlation(const Place& from, const Place& to, const SE3& T_to_from,
+                                       const PinholeCamera& camera, const config::Config& config) {
+  PairSums sums;
+  for_each_seen(from, to, T_to_from, camera, [&](const SeenPixel& seen) {
+    if (on_surface(seen, config)) sums.add(from.small_grey(seen.x, seen.y), to.small_grey(seen.u, seen.v));
+  });
+  if (sums.n < 1) return std::nullopt;
+  const double least = config.health.min_contrast_grey * config.health.min_contrast_grey;
+  if (sums.variance_a() < least || sums.variance_b() < least) return std::nullopt;
+  return sums.covariance() / std::sqrt(sums.variance_a() * sums.variance_b());
+}
+
+}  // namespace fusebench::loops

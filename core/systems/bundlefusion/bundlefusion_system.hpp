@@ -1,0 +1,75 @@
+// BundleFusion's method on the processor (Dai et al., "BundleFusion: Real-Time Globally Consistent 3D
+// Reconstruction Using On-the-Fly Surface Reintegration", 2017): keypoints and depth of ten frames make a
+// chunk, chunks are matched with all others, and all poses are adjusted together.
+//
+// There is no motion model and no tracking against the model: a frame that matches nothing is lost. Instead
+// of reintegrating the surface whenever poses change, frames are fused once, at their final poses.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/systems/bundlefusion/chunk.hpp"
+#include "core/systems/bundlefusion/keyframe_graph.hpp"
+#include "core/systems/system.hpp"
+
+namespace fusebench::systems::bundlefusion {
+
+class BundlefusionSystem final : public System {
+ public:
+  /// workers must outlive it. The threads of OpenCV are limited to as many.
+  BundlefusionSystem(const config::Config& config, const SensorRig& rig, const Workers& workers);
+
+  /// The world is the camera of the first frame that has keypoints. The pose is that of the chunk's first
+  /// frame by all chunks before, times that within the chunk by the frames so far.
+  [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
+  /// Poses after the last adjustment, of the frames whose chunk has a place; nothing if there are none.
+  [[nodiscard]] Result<std::optional<Trajectory>> revise() override;
+  /// Fuses the frame if it has a final pose. Error run_failed: a full model.
+  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame) override;
+  /// What fuse_again() has made.
+  [[nodiscard]] Surface take_surface() override;
+
+ private:
+  /// A frame's place in a chunk; a frame that two chunks share has two.
+  struct Membership {
+    std::size_t chunk = 0;
+    std::size_t place = 0;
+  };
+  struct KnownFrame {
+    std::int64_t timestamp_ns = 0;
+    std::vector<Membership> memberships;  ///< empty before the first frame with keypoints
+  };
+  struct ClosedChunk {
+    Poses T_first_camera;
+    std::optional<std::size_t> keyframe;  ///< in the graph; nothing if the chunk contradicts itself
+  };
+
+  [[nodiscard]] View view_of(const RgbdFrame& frame);
+  std::optional<SE3> begin(View view);
+  std::optional<SE3> follow(View view);
+  void start_chunk(View first, std::size_t frame);
+  void close_chunk();
+  void start_next_chunk();
+  [[nodiscard]] std::optional<SE3> T_world_chunk(std::size_t chunk) const;
+  [[nodiscard]] std::optional<SE3> final_pose(const KnownFrame& frame) const;
+
+  config::Config config_;
+  config::DepthConfig keypoint_depth_;
+  PinholeCamera camera_;
+  const Workers& workers_;
+  KeyframeGraph graph_;
+  tsdf::TsdfVolume model_;
+  std::vector<KnownFrame> frames_;
+  std::vector<ClosedChunk> chunks_;
+  std::optional<Chunk> chunk_;                ///< the one that frames are added to
+  std::vector<std::size_t> frames_of_chunk_;  ///< indices of its frames
+  std::optional<SE3> T_world_first_;          ///< of its first frame; nothing if that is not known
+  SE3 T_world_camera_;                        ///< of the last frame that was not lost
+  bool was_lost_ = false;
+  Trajectory final_trajectory_;
+  DepthImage gated_m_;
+};
+
+}  // namespace fusebench::systems::bundlefusion

@@ -1,0 +1,31 @@
+// Keypoints of a frame with their points in space: SIFT (Lowe 2004) by OpenCV, with the depth behind each.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.hpp"
+
+namespace fusebench::systems::bundlefusion {
+
+/// Integers from 0 to 255, so that products of descriptors are exact in any order of summation.
+struct SiftDescriptor {
+  std::array<std::int16_t, 128> values{};
+  double inverse_norm = 0;
+};
+
+struct Keypoint {
+  Vector2d pixel_px = Vector2d::Zero();
+  Vector3d point_camera = Vector3d::Zero();  ///< metres
+  SiftDescriptor descriptor;
+};
+using Keypoints = std::vector<Keypoint>;
+
+/// The strongest keypoints, at most max_count, of a scale (standard deviation of the Gaussian) of at least
+/// min_scale_px, at pixels with depth (> 0; the size of the grey image). In order of their strength.
+/// Dai et al. 2017, Sec. 4.1. Errors: none; an image with nothing to see has no keypoints.
+[[nodiscard]] Keypoints find_keypoints(const GreyImage& grey, const DepthImage& depth_m,
+                                       const PinholeCamera& camera, int max_count, double min_scale_px);
+
+}  // namespace fusebench::systems::bundlefusion

@@ -1,0 +1,23 @@
+// What a run says of loops.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/loops/loop_closure.hpp"
+#include "eval/loop_error/loop_error.hpp"
+#include "eval/record/record.hpp"
+#include "eval/run/run_placement.hpp"
+
+namespace fusebench::run {
+
+struct LoopResults {
+  std::string candidates;                                       ///< loops.csv
+  std::string places;                                           ///< places.csv
+  std::optional<record::Outcome<loop_error::LoopError>> error;  ///< where there is truth
+};
+
+/// closure: of a system after its last frame; nothing of one that does not look for loops.
+[[nodiscard]] LoopResults loop_results(const PreparedRun& run, const loops::LoopClosure* closure);
+
+}  // namespace fusebench::run
