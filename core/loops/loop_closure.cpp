@@ -91,10 +91,7 @@ void LoopClosure::look_for_loops(std::size_t query) {
                                  rig_.camera, config_);
     const bool same = candidate.pair.same;
     if (!same) candidate.verdict = candidate.pair.reason;
-    if (same) {
-      const SE3 T_known_query = T_current_camera(known).inverse() * T_current_camera(query);
-      poses_are_wrong_ = is_large(T_known_query.inverse() * candidate.pair.T_known_query);
-    }
+    if (same) poses_are_wrong_ = contradicts_current_poses(candidate);
     candidates_.push_back(std::move(candidate));
     if (same) break;
   }
@@ -215,6 +212,15 @@ Result<void> LoopClosure::optimise() {
 SE3 LoopClosure::T_current_camera(std::size_t place) const {
   if (place < optimised_.size()) return optimised_[place];
   return T_current_odometry_ * places_[place].T_world_camera;
+}
+
+/// By more than it may be off itself.
+bool LoopClosure::contradicts_current_poses(const LoopCandidate& candidate) const {
+  const GraphEdge edge = loop_edge(candidate);
+  const SE3 T_known_query = T_current_camera(candidate.known).inverse() * T_current_camera(candidate.query);
+  const Vector6d error = pose_minus(T_known_query, edge.T_a_b);
+  return is_large(edge.T_a_b.inverse() * T_known_query) &&
+         error.dot(edge.covariance.ldlt().solve(error)) > config_.loops.max_chi2;
 }
 
 bool LoopClosure::is_large(const SE3& motion) const {

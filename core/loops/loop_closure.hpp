@@ -97,6 +97,7 @@ class LoopClosure {
   [[nodiscard]] Result<void> optimise();
   [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const;
   [[nodiscard]] SE3 T_current_camera(std::size_t place) const;
+  [[nodiscard]] bool contradicts_current_poses(const LoopCandidate& candidate) const;
   [[nodiscard]] bool is_large(const SE3& motion) const;
 
   const config::Config& config_;
