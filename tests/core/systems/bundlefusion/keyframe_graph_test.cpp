@@ -58,12 +58,17 @@ TEST(BundlefusionKeyframeGraph, PlacesKeyframesAndDropsAFalsePair) {
   const Workers workers(2);
   const Wall wall;
   KeyframeGraph graph({}, workers);
+  config::BundlefusionConfig tolerant;
+  tolerant.max_residual_m = 10;
+  KeyframeGraph keeps_all(tolerant, workers);
   for (int k = 0; k < 5; ++k) {
     View view = wall.view(kStep_m * k);
     // The first and the last keyframe show the same stickers, and nothing else that is the same.
     if (k == 0 || k == 4) add_sticker(view, -0.2);
+    keeps_all.add(view, std::nullopt);
     graph.add(std::move(view), std::nullopt);
   }
+  EXPECT_TRUE(are_connected(keeps_all, 0, 4)) << "the false pair passes the filters of pairs";
   EXPECT_TRUE(are_connected(graph, 0, 1));
   EXPECT_TRUE(are_connected(graph, 3, 4));
   EXPECT_FALSE(are_connected(graph, 0, 4));
