@@ -84,6 +84,14 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
   return timing;
 }
 
+void log_silent_failures(const record::RunRecord& record, RunProgress& progress) {
+  if (record.metrics.silent_frames().value_or(0) == 0) return;
+  const record::RecordedSilentFailures& silent = *record.metrics.silent.value;
+  progress.log += fmt::format("{} of {} claimed poses are wrong (silent failures), from frame {} on\n",
+                              silent.failures.silent, silent.failures.judged,
+                              record.recording.first_frame + silent.first_frame.value_or(0));
+}
+
 }  // namespace
 
 Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
@@ -127,12 +135,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
     if (auto written = run_files::write_patch_table(folder->path(), progress->fastest.frames()); !written)
       return tl::unexpected(written.error());
   }
-  if (record.metrics.silent_frames().value_or(0) > 0) {
-    const record::RecordedSilentFailures& silent = *record.metrics.silent.value;
-    progress->log += fmt::format("{} of {} claimed poses are wrong (silent failures), from frame {} on\n",
-                                 silent.failures.silent, silent.failures.judged,
-                                 record.recording.first_frame + silent.first_frame.value_or(0));
-  }
+  log_silent_failures(record, *progress);
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
