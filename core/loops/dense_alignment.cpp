@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/loops/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::loops {
@@ -33,10 +34,7 @@ class Surface {
         if (bends(small_depth_m, x, y, kNormalReach, 0, config) ||
             bends(small_depth_m, x, y, 0, kNormalReach, config))
           continue;
-        const auto point = [&](int u, int v) {
-          return camera.back_project(kDepthStep * u, kDepthStep * v,
-                                     static_cast<double>(small_depth_m(u, v)));
-        };
+        const auto point = [&](int u, int v) { return point_at(small_depth_m, u, v, camera); };
         const Vector3d across = point(x + kNormalReach, y) - point(x - kNormalReach, y);
         const Vector3d down = point(x, y + kNormalReach) - point(x, y - kNormalReach);
         planes_(x, y) = {point(x, y), across.cross(down).normalized()};
@@ -46,13 +44,9 @@ class Surface {
 
   /// Where the point is seen; nothing if there is no plane.
   [[nodiscard]] const Plane* at(const Vector3d& point_camera) const {
-    if (point_camera.z() <= 0) return nullptr;
-    const Vector2d pixel = camera_.project(point_camera) / kDepthStep;
-    if (!(pixel.cwiseAbs().maxCoeff() < 1e6)) return nullptr;
-    const auto x = static_cast<int>(std::lround(pixel.x()));
-    const auto y = static_cast<int>(std::lround(pixel.y()));
-    if (!planes_.contains(x, y) || planes_(x, y).normal.isZero()) return nullptr;
-    return &planes_(x, y);
+    const auto pixel = pixel_of(point_camera, camera_, planes_);
+    if (!pixel || planes_(pixel->x, pixel->y).normal.isZero()) return nullptr;
+    return &planes_(pixel->x, pixel->y);
   }
 
  private:
@@ -77,8 +71,7 @@ std::vector<Vector3d> points_of(const DepthImage& small_depth_m, const PinholeCa
   std::vector<Vector3d> points;
   for (int y = 0; y < small_depth_m.height; y += kPointStep) {
     for (int x = 0; x < small_depth_m.width; x += kPointStep) {
-      const auto z = static_cast<double>(small_depth_m(x, y));
-      if (z > 0) points.push_back(camera.back_project(kDepthStep * x, kDepthStep * y, z));
+      if (small_depth_m(x, y) > 0) points.push_back(point_at(small_depth_m, x, y, camera));
     }
   }
   return points;

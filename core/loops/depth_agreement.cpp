@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/loops/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::loops {
@@ -25,17 +26,13 @@ std::size_t for_each_seen(const Place& from, const Place& to, const SE3& T_to_fr
   std::size_t measured = 0;
   for (int y = 0; y < from.small_depth_m.height; ++y) {
     for (int x = 0; x < from.small_depth_m.width; ++x) {
-      const auto z = static_cast<double>(from.small_depth_m(x, y));
-      if (!(z > 0)) continue;
+      if (!(from.small_depth_m(x, y) > 0)) continue;
       ++measured;
-      const Vector3d point = T_to_from * camera.back_project(kDepthStep * x, kDepthStep * y, z);
-      if (point.z() <= 0) continue;
-      const Vector2d pixel = camera.project(point) / kDepthStep;
-      if (!(pixel.cwiseAbs().maxCoeff() < to.small_depth_m.width + to.small_depth_m.height)) continue;
-      const auto u = static_cast<int>(std::lround(pixel.x()));
-      const auto v = static_cast<int>(std::lround(pixel.y()));
-      if (!to.small_depth_m.contains(u, v) || !(to.small_depth_m(u, v) > 0)) continue;
-      callback(SeenPixel{x, y, u, v, point.z(), static_cast<double>(to.small_depth_m(u, v))});
+      const Vector3d point = T_to_from * point_at(from.small_depth_m, x, y, camera);
+      const auto there = pixel_of(point, camera, to.small_depth_m);
+      if (!there || !(to.small_depth_m(there->x, there->y) > 0)) continue;
+      callback(SeenPixel{x, y, there->x, there->y, point.z(),
+                         static_cast<double>(to.small_depth_m(there->x, there->y))});
     }
   }
   return measured;
