@@ -32,26 +32,21 @@ Vector6d plane_direction(const Vector3d& point, const Vector3d& normal) {
 }
 
 PlaneSums plane_sums(const DepthCloud& a, const DepthCloud& b, const SE3& T_a_b, double far_m) {
-  const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
-  const Eigen::Vector3f t = T_a_b.translation.cast<float>();
   PlaneSums sums;
-  for (std::size_t i = 0; i < b.points.data.size(); ++i) {
-    if (b.normals.data[i].isZero(0)) continue;
-    const Eigen::Vector3f point = R * b.points.data[i] + t;
-    const auto cell = a.cell_at(point);
-    if (!cell) continue;
-    const Eigen::Vector3f& surface = a.points.data[*cell];
-    const Eigen::Vector3f& normal = a.normals.data[*cell];
-    if (!are_of_one_surface(surface, normal, point, R * b.normals.data[i])) continue;
-    ++sums.matches;
-    const double nearness = 1.0 - static_cast<double>(surface.z()) / far_m;
-    if (nearness <= 0) continue;
-    const double weight = std::pow(nearness, 2.5);
-    const auto residual_m = static_cast<double>(normal.dot(surface - point));
-    const Vector6d direction = plane_direction(point.cast<double>(), normal.cast<double>());
-    sums.information.noalias() += (weight * direction) * direction.transpose();
-    sums.descent += (weight * residual_m) * direction;
-  }
+  for_each_overlap(a, b, T_a_b,
+                   [&](std::size_t cell, const Eigen::Vector3f& point, const Eigen::Vector3f& normal_b) {
+                     const Eigen::Vector3f& surface = a.points.data[cell];
+                     const Eigen::Vector3f& normal = a.normals.data[cell];
+                     if (!are_of_one_surface(surface, normal, point, normal_b)) return;
+                     ++sums.matches;
+                     const double nearness = 1.0 - static_cast<double>(surface.z()) / far_m;
+                     if (nearness <= 0) return;
+                     const double weight = std::pow(nearness, 2.5);
+                     const auto residual_m = static_cast<double>(normal.dot(surface - point));
+                     const Vector6d direction = plane_direction(point.cast<double>(), normal.cast<double>());
+                     sums.information.noalias() += (weight * direction) * direction.transpose();
+                     sums.descent += (weight * residual_m) * direction;
+                   });
   return sums;
 }
 

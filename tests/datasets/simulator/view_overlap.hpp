@@ -23,11 +23,11 @@ inline double share_seen_again(const simulator::render::Renderer& renderer, cons
     for (int u = 0; u < camera.width_px; ++u) {
       const double depth_m = static_cast<double>(of_a(u, v).depth_m);
       if (depth_m <= 0) continue;
-      const Vector3d in_b = T_b_a * Vector3d(depth_m * (u - camera.cx_px) / camera.fx_px,
-                                             depth_m * (v - camera.cy_px) / camera.fy_px, depth_m);
+      const Vector3d in_b = T_b_a * camera.back_project(u, v, depth_m);
       if (in_b.z() <= 0) continue;
-      const long column = std::lround(camera.fx_px * in_b.x() / in_b.z() + camera.cx_px);
-      const long row = std::lround(camera.fy_px * in_b.y() / in_b.z() + camera.cy_px);
+      const Vector2d pixel = camera.project(in_b);
+      const long column = std::lround(pixel.x());
+      const long row = std::lround(pixel.y());
       if (column < 0 || row < 0 || column >= camera.width_px || row >= camera.height_px) continue;
       const auto there_m = static_cast<double>(of_b(static_cast<int>(column), static_cast<int>(row)).depth_m);
       if (std::abs(there_m - in_b.z()) < 0.05 * in_b.z()) ++seen;
