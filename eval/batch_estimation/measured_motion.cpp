@@ -71,8 +71,7 @@ Result<MeasuredMotion> measure_motion(const recording::Recording& recording, con
   run::FrameSource source(recording, workers.threads() > 1);
   int lost_in_a_row = 0;
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
-    if (control.stop != nullptr && control.stop->load())
-      return fail(ErrorCode::run_failed, "stopped by the user");
+    if (control.is_stopped()) return fail(ErrorCode::run_failed, "stopped by the user");
     const auto loaded = source.next();
     if (!loaded) return tl::unexpected(loaded.error());
     const auto report = pipeline.process(loaded->frame);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/loops/depth_agreement.hpp"
+#include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::loop_error {
@@ -65,13 +66,6 @@ std::optional<LoopCandidate> true_loop(std::span<const Place> places, const True
   return best;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopError& result) {
   std::vector<double> translations_m, rotations_rad;
   Vector3d rotation_nees = Vector3d::Zero(), position_nees = Vector3d::Zero();
@@ -98,9 +92,10 @@ void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopEr
     rotation_nees += error.head<3>().cwiseAbs2().cwiseQuotient(variances.head<3>());
     position_nees += error.tail<3>().cwiseAbs2().cwiseQuotient(variances.tail<3>());
   }
-  result.median_translation_m = median(std::move(translations_m));
-  result.median_rotation_rad = median(std::move(rotations_rad));
-  const double accepted = std::max(1.0, static_cast<double>(result.accepted));
+  if (result.accepted == 0) return;
+  result.median_translation_m = metrics::statistics(translations_m).median;
+  result.median_rotation_rad = metrics::statistics(rotations_rad).median;
+  const auto accepted = static_cast<double>(result.accepted);
   result.nees_rotation = rotation_nees.mean() / accepted;
   result.nees_position = position_nees.mean() / accepted;
 }

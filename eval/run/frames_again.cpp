@@ -8,8 +8,7 @@ Result<void> fuse_again(const PreparedRun& run, std::size_t count, systems::Syst
                         const RunControl& control) {
   FrameSource source(run.recording, run.spec.threads > 1);
   for (std::size_t frame = 0; frame < count; ++frame) {
-    if (control.stop != nullptr && control.stop->load())
-      return fail(ErrorCode::run_failed, "stopped by the user");
+    if (control.is_stopped()) return fail(ErrorCode::run_failed, "stopped by the user");
     const auto loaded = source.next();
     if (!loaded) return tl::unexpected(loaded.error());
     if (auto fused = system.fuse_again(loaded->frame); !fused) return fused;

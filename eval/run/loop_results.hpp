@@ -17,7 +17,9 @@ struct LoopResults {
   std::optional<record::Outcome<loop_error::LoopError>> error;  ///< where there is truth
 };
 
-/// closure: of a system after its last frame; nothing of one that does not look for loops.
-[[nodiscard]] LoopResults loop_results(const PreparedRun& run, const loops::LoopClosure* closure);
+/// truth: of the camera, at the stamps of the frames; empty if there is none. closure: of a system after its
+/// last frame; nothing of one that does not look for loops.
+[[nodiscard]] LoopResults loop_results(const PreparedRun& run, const loops::LoopClosure* closure,
+                                       const Trajectory& truth);
 
 }  // namespace fusebench::run

@@ -54,7 +54,7 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   const std::size_t total = recording.frames.size();
   const auto go_on = [&] {
     if (control.progress) control.progress(0, total);  // alive; how far it is, only the program knows
-    return control.stop == nullptr || !control.stop->load();
+    return !control.is_stopped();
   };
   auto results = external::run_external_program(
       program, recording, {run.spec.recording, work, run.spec.threads, run.spec.repetition}, go_on);

@@ -20,7 +20,7 @@ Result<std::optional<Trajectory>> revised_poses(const PreparedRun& run, systems:
     done = fuse_again(run, run.recording.frames.size(), system, control);
   }
   if (!done) {
-    if (control.stop != nullptr && control.stop->load()) return tl::unexpected(done.error());
+    if (control.is_stopped()) return tl::unexpected(done.error());
     progress.end(record::RunStatus::failed, "revising the poses: " + done.error().message);
     return std::nullopt;
   }

@@ -108,7 +108,8 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   if (!progress) return tl::unexpected(progress.error());
   auto revised = revised_poses(run, *system, *progress, control);
   if (!revised) return tl::unexpected(revised.error());
-  const LoopResults loops = loop_results(run, system->loops());
+  const Trajectory truth = record::true_trajectory(run.recording, record::frame_stamps(run.recording));
+  const LoopResults loops = loop_results(run, system->loops(), truth);
   systems::Surface surface = system->take_surface();
   system.reset();
   record.model = make_mesh(std::move(surface), config, workers, *progress);
@@ -141,8 +142,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
   const std::array<NamedText, 10> texts = {
       {{"trajectory.tum", trajectory::tum_text(progress->output.trajectory)},
-       {"truth.tum",
-        trajectory::tum_text(record::true_trajectory(run.recording, record::frame_stamps(run.recording)))},
+       {"truth.tum", trajectory::tum_text(truth)},
        {"final.tum", *revised ? trajectory::tum_text(**revised) : ""},
        {"loops.csv", loops.candidates},
        {"places.csv", loops.places},

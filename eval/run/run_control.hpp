@@ -15,6 +15,8 @@ struct RunControl {
   /// goes on. Otherwise it is an error of the run like any bad data met on opening, and nothing is left
   /// behind.
   bool bad_data_is_recorded = true;
+
+  [[nodiscard]] bool is_stopped() const { return stop != nullptr && stop->load(); }
 };
 
 }  // namespace fusebench::run

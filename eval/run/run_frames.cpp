@@ -87,8 +87,6 @@ void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOut
   }
 }
 
-bool is_stopped(const RunControl& control) { return control.stop != nullptr && control.stop->load(); }
-
 bool is_bad_data(const Error& error) {
   return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
 }
@@ -100,16 +98,6 @@ Result<void> end_at_frame(RunProgress& progress, std::size_t frame, Error error,
   progress.end(record::RunStatus::failed, std::move(error.message));
   return {};
 }
-
-}  // namespace
-
-void RunProgress::end(record::RunStatus how, std::string why) {
-  status = how;
-  reason = std::move(why);
-  log += fmt::format("{}: {}\n", record::to_string(status), reason);
-}
-
-namespace {
 
 /// intensity.bin, if it is kept.
 Result<std::optional<metrics::IntensityWriter>> intensity_writer(const PreparedRun& run,
@@ -135,6 +123,12 @@ Result<void> make_model_again(const PreparedRun& run, std::size_t frame, systems
 
 }  // namespace
 
+void RunProgress::end(record::RunStatus how, std::string why) {
+  status = how;
+  reason = std::move(why);
+  log += fmt::format("{}: {}\n", record::to_string(status), reason);
+}
+
 Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
                                    const io::StagedFolder& folder, const RunControl& control) {
   RunProgress progress;
@@ -153,7 +147,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
   };
   for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == record::RunStatus::ok;
        ++frame) {
-    if (is_stopped(control)) return fail(ErrorCode::run_failed, "stopped by the user");
+    if (control.is_stopped()) return fail(ErrorCode::run_failed, "stopped by the user");
     const auto begin = Clock::now();
     const auto loaded = source.next();
     const auto ready = Clock::now();
@@ -183,7 +177,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
                                          {processed, Clock::now()}});
     if (system.wants_frames_again()) {
       if (const auto again = make_model_again(run, frame, system, progress, control); !again) {
-        if (is_stopped(control)) return tl::unexpected(again.error());
+        if (control.is_stopped()) return tl::unexpected(again.error());
         if (const auto ended = ends(frame, again.error()); !ended) return tl::unexpected(ended.error());
         break;
       }
