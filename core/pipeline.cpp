@@ -251,24 +251,32 @@ bool Pipeline::State::track_again(const filter::GaussianState& prior, bool after
   return tracked;
 }
 
-/// Looks for the frame among the keyframes, and tracks it from there with their patches.
+/// Looks for the frame among the keyframes, and tracks it from there with their patches; where these cannot
+/// be seen, a pose that depth has verified is taken as it is.
 bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health::FrameReport& report) {
-  if (!config.terms.relocalisation || report.health == health::FrameHealth::dark || !novelty.color)
-    return false;
+  if (!config.terms.relocalisation || !novelty.color) return false;
   Tracking& now = *tracking;
+  const bool dark = report.health == health::FrameHealth::dark;
   std::optional<relocalisation::RelocalisedReference> found;
   {
     const health::StageClock clock(report.stages, health::Stage::update);
-    found = now.relocalisation.find(preparation.frame().grey, prediction, now.model, workers);
+    found =
+        now.relocalisation.find(preparation.frame(), {!dark, novelty.depth}, prediction, now.model, workers);
   }
   if (!found) return false;
   std::swap(now.reference, found->reference);
-  if (!track_again(found->prior, true, false, report)) {
-    std::swap(now.reference, found->reference);
-    return false;
+  if (!dark && track_again(found->prior, true, false, report)) {
+    report.pixels = {};  // the intensity error is one against the frame before
+    return true;
   }
-  report.pixels = {};  // the intensity error is one against the frame before
-  return true;
+  if (found->by_depth) {
+    now.estimate = found->prior;
+    report.placed_by_depth = true;
+    report.reason += "; placed by depth alone, not fused";
+    return true;
+  }
+  std::swap(now.reference, found->reference);
+  return false;
 }
 
 /// Sec. 2.3: the depth image goes into the model at the updated pose.

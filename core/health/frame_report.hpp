@@ -54,6 +54,8 @@ struct FrameReport : FrameOutcome {
   /// Median ZNCC of the tracked patches with their reference, of those with contrast; nothing if there are
   /// too few of these, or the colour is a repeated one.
   std::optional<double> correlation;
+  /// Relocalised by depth alone, with images in which no patch can be tracked: the frame is not fused.
+  bool placed_by_depth = false;
   double blur_px = 0;    ///< predicted length of motion blur at the image centre
   TrackedPixels pixels;  ///< of all tracked patches, by patch, then pixel
 };

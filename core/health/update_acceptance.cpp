@@ -57,7 +57,7 @@ void find_survivors(std::span<const patches::Patch> patches,
 bool OcclusionGate::admits(const FrameReport& report, const config::HealthConfig& config) {
   occluded_frames_ = report.health == FrameHealth::occluded ? occluded_frames_ + 1 : 0;
   const bool clear = occluded_frames_ == 0 || occluded_frames_ > config.max_occluded_frames;
-  return clear && report.status != FrameStatus::lost;
+  return clear && report.status != FrameStatus::lost && !report.placed_by_depth;
 }
 
 }  // namespace fusebench::health

@@ -58,7 +58,9 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
     if (near && fused_since_place_ < config.query_every) return;
   }
   fused_since_place_ = 0;
-  Place place = place_of(frame, rig_.camera, config_);
+  Place place;
+  place.timestamp_ns = frame.timestamp_ns;
+  place.appearance = places::appearance_of(frame, rig_.camera, config_);
   place.T_world_camera = T_world_camera;
   const Matrix6d to_camera = filter::pose_transport(T_world_camera, in_odometry.mean.T_world_imu);
   const filter::GaussianState in_first = filter::in_first_camera_world(in_odometry);
@@ -79,16 +81,17 @@ void LoopClosure::look_for_loops(std::size_t query) {
   std::vector<std::pair<double, std::size_t>> similar;
   for (std::size_t known = 0; known < query; ++known) {
     if (seconds_apart(places_[known], places_[query]) < config.least_age_s) break;
-    const double different = ferns::dissimilarity(places_[known].code, places_[query].code);
+    const double different =
+        ferns::dissimilarity(places_[known].appearance.code, places_[query].appearance.code);
     if (different <= config.max_dissimilarity) similar.emplace_back(different, known);
   }
   std::ranges::sort(similar);
   similar.resize(std::min(similar.size(), static_cast<std::size_t>(config.max_candidates)));
   for (const auto& [different, known] : similar) {
     LoopCandidate candidate{known, query, different, {}, 0, false, {}};
-    candidate.pair = verify_pair(places_[known], places_[query],
-                                 places_[known].T_world_camera.inverse() * places_[query].T_world_camera,
-                                 rig_.camera, config_);
+    candidate.pair = places::verify_pair(
+        places_[known].appearance, places_[query].appearance,
+        places_[known].T_world_camera.inverse() * places_[query].T_world_camera, rig_.camera, config_);
     const bool same = candidate.pair.same;
     if (!same) candidate.verdict = candidate.pair.reason;
     if (same) poses_are_wrong_ = contradicts_current_poses(candidate);

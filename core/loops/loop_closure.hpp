@@ -3,7 +3,7 @@
 //
 // Fused frames become places every few frames. Each is compared with the older ones by what it looks like
 // (color_fern_code.hpp); the most similar are verified by features and by depth in both directions
-// (place_verification.hpp). An edge is accepted if it agrees with the poses so far within their drift, or
+// (core/places). An edge is accepted if it agrees with the poses so far within their drift, or
 // with another edge near to it in time: appearance alone never moves anything. The graph of places is
 // optimised at the end, or online as well when a loop shows that the poses are wrong (pose_graph.hpp);
 // between places, poses move with their neighbours.
@@ -24,18 +24,30 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
-#include "core/loops/place.hpp"
-#include "core/loops/place_verification.hpp"
 #include "core/loops/pose_graph.hpp"
+#include "core/places/place_verification.hpp"
 
 namespace fusebench::loops {
+
+/// A fused frame that can be recognised when the camera comes back to it.
+struct Place {
+  std::int64_t timestamp_ns = 0;  ///< of the frame
+  SE3 T_world_camera;             ///< when it was fused, in the world of the odometry
+  /// Of that pose in the world of the first camera, in its tangent (rotation on the right, world position).
+  Matrix6d covariance = Matrix6d::Zero();
+  std::optional<Vector3d> gravity_camera;  ///< unit; with an IMU
+  double blur_px = 0;
+  double angular_speed_radps = 0;
+  double speed_mps = 0;
+  places::Appearance appearance;
+};
 
 /// A pair of places that was looked at.
 struct LoopCandidate {
   std::size_t known = 0;  ///< places, by index
   std::size_t query = 0;
   double dissimilarity = 0;
-  VerifiedPair pair;
+  places::VerifiedPair pair;
   double chi2 = 0;  ///< squared distance to the poses so far, by drift and the edge's own error
   bool accepted = false;
   std::string verdict;  ///< why it was taken or refused

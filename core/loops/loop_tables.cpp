@@ -17,13 +17,13 @@ constexpr std::string_view kPlaceHeader = "timestamp_s,blur_px,candidates,accept
 
 double seconds_of(const Place& place) { return 1e-9 * static_cast<double>(place.timestamp_ns); }
 
-std::string_view verified_by(const VerifiedPair& pair) {
+std::string_view verified_by(const places::VerifiedPair& pair) {
   if (!pair.same) return "nothing";
   return pair.by_depth_alone ? "depth" : "features";
 }
 
 std::string candidate_row(const LoopClosure& closure, const LoopCandidate& candidate) {
-  const VerifiedPair& pair = candidate.pair;
+  const places::VerifiedPair& pair = candidate.pair;
   const Vector3d& t = pair.T_known_query.translation;
   const Quaterniond& q = pair.T_known_query.rotation;
   Vector6d variances = Vector6d::Zero();

@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "core/base/error.hpp"
-#include "core/relocalisation/place_certainty.hpp"
-#include "core/relocalisation/pose_from_points.hpp"
+#include "core/places/depth_agreement.hpp"
+#include "core/places/place_certainty.hpp"
+#include "core/places/place_verification.hpp"
+#include "core/places/pose_from_points.hpp"
 
 namespace fusebench::relocalisation {
 
@@ -21,75 +23,52 @@ double angle_between_axes_rad(const SE3& a, const SE3& b) {
   return std::atan2(axis_a.cross(axis_b).norm(), axis_a.dot(axis_b));
 }
 
-/// The depth of a feature; 0 if it is at an edge of depth, where it may be that of the thing behind.
-double feature_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px,
-                       const config::RelocalisationConfig& config) {
-  const auto edge_jump = static_cast<float>(config.landmark_edge_jump);
-  const auto x = static_cast<int>(std::lround(pixel_px.x()));
-  const auto y = static_cast<int>(std::lround(pixel_px.y()));
-  if (!depth_m.contains(x - 1, y - 1) || !depth_m.contains(x + 1, y + 1)) return 0;
-  const float centre_m = depth_m(x, y);
-  if (!(centre_m > 0)) return 0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const float m = depth_m(x + dx, y + dy);
-      if (m > 0 && std::abs(m - centre_m) > edge_jump * centre_m) return 0;
-    }
-  }
-  return static_cast<double>(centre_m);
-}
-
 /// A frame with so many corners of full resolution has enough features but in odd cases (all depth in one
 /// corner of a richly textured image), so that they need not be looked for.
 bool has_plenty_of_corners(const GreyImage& grey, const DepthImage& depth_m, const config::Config& config) {
-  const std::vector<Vector2d> corners_px = find_corners(grey, config.place_features);
+  const std::vector<Vector2d> corners_px = places::find_corners(grey, config.place_features);
   const auto with_depth = std::count_if(corners_px.begin(), corners_px.end(), [&](const Vector2d& px) {
-    return feature_depth_m(depth_m, px, config.relocalisation) > 0;
+    return places::landmark_depth_m(depth_m, px, config.relocalisation) > 0;
   });
   return with_depth >= config.relocalisation.plenty_of_corners;
 }
 
-std::vector<SeenPoint> seen_points(std::span<const PlaceFeature> query, const Landmarks& known,
-                                   std::span<const FeatureMatch> matches) {
-  std::vector<SeenPoint> seen;
+std::vector<places::SeenPoint> seen_points(std::span<const places::PlaceFeature> query,
+                                           const places::Landmarks& known,
+                                           std::span<const places::FeatureMatch> matches) {
+  std::vector<places::SeenPoint> seen;
   seen.reserve(matches.size());
-  for (const FeatureMatch& m : matches)
+  for (const places::FeatureMatch& m : matches)
     seen.push_back({known.points_camera[m.known], query[m.query].pixel_px, query[m.query].scale});
   return seen;
 }
 
-/// The pose by one keyframe, if it is certain.
-std::optional<FoundPlace> place_by(std::span<const PlaceFeature> query, const Keyframe& keyframe,
-                                   std::span<const FeatureMatch> matches, const PinholeCamera& camera,
-                                   const config::Config& config) {
-  const std::vector<SeenPoint> seen = seen_points(query, *keyframe.landmarks, matches);
-  const auto pose = pose_from_points(seen, camera, config.place_pose);
-  if (!pose || !is_certain_place(seen, *pose, camera, config.relocalisation)) return std::nullopt;
+/// With the covariance of a pose in the camera of the keyframe.
+FoundPlace found_from(const Keyframe& keyframe, const SE3& T_keyframe_camera, const Matrix6d& covariance) {
   FoundPlace found;
-  found.T_world_camera = keyframe.T_world_camera * pose->T_a_camera;
+  found.T_world_camera = keyframe.T_world_camera * T_keyframe_camera;
+  Matrix6d to_world = Matrix6d::Identity();
+  to_world.bottomRightCorner<3, 3>() = keyframe.T_world_camera.rotation_matrix();
+  found.covariance = to_world * covariance * to_world.transpose();
+  return found;
+}
+
+/// The pose by one keyframe, if it is certain.
+std::optional<FoundPlace> place_by(std::span<const places::PlaceFeature> query, const Keyframe& keyframe,
+                                   std::span<const places::FeatureMatch> matches, const PinholeCamera& camera,
+                                   const config::Config& config) {
+  const std::vector<places::SeenPoint> seen = seen_points(query, *keyframe.landmarks, matches);
+  const auto pose = places::pose_from_points(seen, camera, config.place_pose);
+  if (!pose || !places::is_certain_place(seen, *pose, camera, config.relocalisation)) return std::nullopt;
+  FoundPlace found =
+      found_from(keyframe, pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance);
   found.inliers = static_cast<int>(pose->inliers.size());
   found.matches = static_cast<int>(seen.size());
   found.rms_px = pose->rms_px;
-  Matrix6d to_world = Matrix6d::Identity();
-  to_world.bottomRightCorner<3, 3>() = keyframe.T_world_camera.rotation_matrix();
-  found.covariance =
-      config.relocalisation.shared_error_factor * to_world * pose->covariance * to_world.transpose();
   return found;
 }
 
 }  // namespace
-
-Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera,
-                       const config::Config& config) {
-  Landmarks landmarks;
-  for (const PlaceFeature& feature : find_place_features(grey, config.place_features)) {
-    const double z_m = feature_depth_m(depth_m, feature.pixel_px, config.relocalisation);
-    if (z_m <= 0) continue;
-    landmarks.features.push_back(feature);
-    landmarks.points_camera.push_back(camera.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
-  }
-  return landmarks;
-}
 
 /// 1 where the spacing ends.
 double Keyframes::separation(const SE3& a, const SE3& b) const {
@@ -115,16 +94,17 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
   if (T_world_featureless_ && separation(*T_world_featureless_, T_world_camera) < config.featureless_reach)
     return false;
 
-  std::optional<Landmarks> landmarks;
+  std::optional<places::Landmarks> landmarks;
   if (!has_plenty_of_corners(grey, depth_m, config_)) {
-    landmarks = landmarks_of(grey, depth_m, camera_, config_);
+    landmarks = places::landmarks_of(grey, depth_m, camera_, config_);
     if (landmarks->features.size() < static_cast<std::size_t>(config.min_landmarks)) {
       T_world_featureless_ = T_world_camera;
       return false;
     }
   }
   if (replaces_nearest) kept_.erase(nearest);
-  kept_.push_back({timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), std::move(landmarks)});
+  kept_.push_back(
+      {timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), std::move(landmarks), {}});
   if (kept_.size() > static_cast<std::size_t>(config.max_keyframes)) drop_most_crowded();
   return true;
 }
@@ -153,16 +133,16 @@ std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
   check(grey.width == camera_.width_px && grey.height == camera_.height_px,
         "the image has the size of the camera's");
   if (kept_.empty()) return std::nullopt;
-  const std::vector<PlaceFeature> query = find_place_features(grey, config_.place_features);
+  const std::vector<places::PlaceFeature> query = places::find_place_features(grey, config_.place_features);
   const auto min_inliers = static_cast<std::size_t>(config_.relocalisation.min_inliers);
   if (query.size() < min_inliers) return std::nullopt;
 
-  std::vector<std::vector<FeatureMatch>> matches;
+  std::vector<std::vector<places::FeatureMatch>> matches;
   matches.reserve(kept_.size());
   for (Keyframe& keyframe : kept_) {
     if (!keyframe.landmarks)
-      keyframe.landmarks = landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_, config_);
-    matches.push_back(match_features(query, keyframe.landmarks->features, config_.place_features));
+      keyframe.landmarks = places::landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_, config_);
+    matches.push_back(places::match_features(query, keyframe.landmarks->features, config_.place_features));
   }
   std::vector<std::size_t> order(kept_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -180,6 +160,36 @@ std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
     if (!found || (best && found->inliers <= best->inliers)) continue;
     found->keyframe = k;
     best = found;
+  }
+  return best;
+}
+
+std::optional<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& query,
+                                                   const SE3& T_world_camera_predicted) {
+  constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less than these add nothing
+  std::vector<std::pair<double, std::size_t>> overlaps;
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    Keyframe& keyframe = kept_[k];
+    if (!keyframe.small) keyframe.small = places::small_images_of(keyframe.grey, keyframe.depth.unpacked_m());
+    const SE3 T_keyframe_camera = keyframe.T_world_camera.inverse() * T_world_camera_predicted;
+    const double overlap =
+        places::depth_agreement(query, *keyframe.small, T_keyframe_camera, camera_, config_).overlap;
+    if (overlap >= config_.loops.min_consistent_share) overlaps.emplace_back(-overlap, k);
+  }
+  std::ranges::sort(overlaps);
+  overlaps.resize(std::min(overlaps.size(), kMostAligned));
+
+  std::optional<FoundPlace> best;
+  double best_share = 0;
+  for (const auto& [negative_overlap, k] : overlaps) {
+    const Keyframe& keyframe = kept_[k];
+    const places::VerifiedPair pair = places::verify_by_depth(
+        *keyframe.small, query, keyframe.T_world_camera.inverse() * T_world_camera_predicted, camera_,
+        config_);
+    if (!pair.same || pair.consistent_share <= best_share) continue;
+    best_share = pair.consistent_share;
+    best = found_from(keyframe, pair.T_known_query, pair.covariance);
+    best->keyframe = k;
   }
   return best;
 }

@@ -1,6 +1,6 @@
 // Places seen before: a small store of fused frames by which a tracker that is lost finds its pose again.
 //
-// A kept frame has landmarks: ORB features (place_features.hpp) with the depth of each, found when a place is
+// A kept frame has landmarks: ORB features (core/places) with the depth of each, found when a place is
 // first looked for. The features of a later image are matched against those of every kept frame; three points
 // give the pose in RANSAC, all inliers refine it (as the relocalisation of ORB-SLAM2, Mur-Artal and Tardos,
 // T-RO 2017, but without a vocabulary: for some tens of frames comparing all descriptors is fast enough).
@@ -17,32 +17,25 @@
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/places/landmarks.hpp"
+#include "core/places/small_images.hpp"
 #include "core/relocalisation/packed_depth.hpp"
-#include "core/relocalisation/place_features.hpp"
 
 namespace fusebench::relocalisation {
-
-/// What a place is recognised by.
-struct Landmarks {
-  std::vector<PlaceFeature> features;   ///< those with depth
-  std::vector<Vector3d> points_camera;  ///< one a feature, in the camera's axes, metres
-};
-
-/// The landmarks in a frame; depth in metres, 0 = none.
-[[nodiscard]] Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m,
-                                     const PinholeCamera& camera, const config::Config& config);
 
 /// A fused frame that can be found again.
 struct Keyframe {
   std::int64_t timestamp_ns = 0;
   SE3 T_world_camera;
   GreyImage grey;
-  double blur_px = 0;                  ///< as it was offered
-  PackedDepth depth;                   ///< as it was offered, to cut patches again
-  std::optional<Landmarks> landmarks;  ///< when they were first asked for: most trackers are never lost
+  double blur_px = 0;  ///< as it was offered
+  PackedDepth depth;   ///< as it was offered, to cut patches again
+  // When they were first asked for: most trackers are never lost.
+  std::optional<places::Landmarks> landmarks;
+  std::optional<places::SmallImages> small;
 };
 
-/// A pose found by matching.
+/// A pose found by matching, or by depth: then without inliers, matches and rms.
 struct FoundPlace {
   SE3 T_world_camera;
   std::size_t keyframe = 0;  ///< index of the one that it was found by; valid until the next offer
@@ -72,6 +65,12 @@ class Keyframes {
   /// first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long as
   /// offering them would have taken, but all in one frame.
   [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
+
+  /// The pose of an image by its depth alone, where blur, darkness or a bare wall leave no features: aligned
+  /// with the kept frames that see the most of it by the prediction, starting there, and verified as loops
+  /// are (core/places/place_verification.hpp). Nothing if it is not certain.
+  [[nodiscard]] std::optional<FoundPlace> find_by_depth(const places::SmallImages& query,
+                                                        const SE3& T_world_camera_predicted);
 
   /// The pose of each kept frame becomes that of the function, by its stamp.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at);

@@ -5,7 +5,6 @@
 
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
-#include "core/relocalisation/relocalisation_update.hpp"
 
 namespace fusebench::relocalisation {
 
@@ -40,22 +39,37 @@ void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_cam
   keyframes_.offer(frame.grey, frame.depth_m, T_world_camera, timestamp_ns, blur_px);
 }
 
-std::optional<RelocalisedReference> Relocalisation::find(const GreyImage& grey,
-                                                         const filter::GaussianState& prediction,
-                                                         const tsdf::TsdfVolume& model,
-                                                         const Workers& workers) {
-  if (!config_.terms.relocalisation) return std::nullopt;
-  const std::optional<FoundPlace> found = keyframes_.find(grey);
+/// The pose of the IMU there, if the prediction does not rule it out.
+std::optional<RelocalisedPose> Relocalisation::likely_pose(const std::optional<FoundPlace>& found,
+                                                           const filter::GaussianState& prediction) const {
   if (!found) return std::nullopt;
-  const Keyframe& keyframe = keyframes_[found->keyframe];
-  const RelocalisedPose pose = relocalised_pose(*found, keyframe, rig_.T_imu_camera, config_.relocalisation);
+  const RelocalisedPose pose =
+      relocalised_pose(*found, keyframes_[found->keyframe], rig_.T_imu_camera, config_.relocalisation);
   // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
   // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
   if (!(normalised_innovation(prediction, pose) <= config_.relocalisation.max_innovation))
     return std::nullopt;
+  return pose;
+}
 
+std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame, const UsableImages& usable,
+                                                         const filter::GaussianState& prediction,
+                                                         const tsdf::TsdfVolume& model,
+                                                         const Workers& workers) {
+  if (!config_.terms.relocalisation) return std::nullopt;
   RelocalisedReference result;
-  result.prior = relocalisation_update(prediction, pose, unknown_motion(config_));
+  std::optional<FoundPlace> found;
+  if (usable.grey) found = keyframes_.find(frame.grey);
+  std::optional<RelocalisedPose> pose = likely_pose(found, prediction);
+  if (!pose && usable.depth) {
+    found = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m),
+                                     prediction.mean.T_world_imu * rig_.T_imu_camera);
+    pose = likely_pose(found, prediction);
+    result.by_depth = true;
+  }
+  if (!pose) return std::nullopt;
+  const Keyframe& keyframe = keyframes_[found->keyframe];
+  result.prior = relocalisation_update(prediction, *pose, unknown_motion(config_));
   if (!filter::is_valid(result.prior)) return std::nullopt;
   const int patch_levels = config_.patches.levels;
   const std::vector<GreyImage> pyramid =

@@ -1,7 +1,8 @@
 // Where a lost camera is, by the frames that were fused before. The paper leaves this open.
 //
-// A pose found by features (keyframes.hpp) is held against the prediction, updates the filter
-// (relocalisation_update.hpp), and is tracked from with patches of the keyframe that showed it.
+// A pose found by features or, where there are none, by depth (keyframes.hpp) is held against the prediction,
+// updates the filter (relocalisation_update.hpp), and is tracked from with patches of the keyframe that
+// showed it.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/relocalisation/keyframes.hpp"
+#include "core/relocalisation/relocalisation_update.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::relocalisation {
@@ -22,6 +24,13 @@ namespace fusebench::relocalisation {
 struct RelocalisedReference {
   filter::GaussianState prior;             ///< after the relocalisation update
   alignment::TrackingReference reference;  ///< from the keyframe
+  bool by_depth = false;                   ///< no features were needed
+};
+
+/// What of a frame a place is looked for by.
+struct UsableImages {
+  bool grey = true;   ///< not dark
+  bool depth = true;  ///< not that of an earlier frame
 };
 
 class Relocalisation {
@@ -39,14 +48,17 @@ class Relocalisation {
     keyframes_.move(T_world_camera_at);
   }
 
-  /// Looks for the image among the keyframes; nothing if none shows its place for certain, or if the
+  /// Looks for the frame among the keyframes; nothing if none shows its place for certain, or if the
   /// prediction rules the place out.
-  [[nodiscard]] std::optional<RelocalisedReference> find(const GreyImage& grey,
+  [[nodiscard]] std::optional<RelocalisedReference> find(const RgbdFrame& frame, const UsableImages& usable,
                                                          const filter::GaussianState& prediction,
                                                          const tsdf::TsdfVolume& model,
                                                          const Workers& workers);
 
  private:
+  [[nodiscard]] std::optional<RelocalisedPose> likely_pose(const std::optional<FoundPlace>& found,
+                                                           const filter::GaussianState& prediction) const;
+
   const config::Config& config_;
   const SensorRig& rig_;
   Keyframes keyframes_;

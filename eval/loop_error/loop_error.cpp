@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/loops/depth_agreement.hpp"
+#include "core/places/depth_agreement.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
 
@@ -53,7 +53,8 @@ std::optional<LoopCandidate> true_loop(std::span<const Place> places, const True
     const SE3 T_known_query = truth[known]->inverse() * *truth[query];
     if (!may_overlap(T_known_query)) continue;
     const double share =
-        loops::depth_agreement(places[known], places[query], T_known_query.inverse(), camera, config)
+        places::depth_agreement(places[known].appearance.small, places[query].appearance.small,
+                                T_known_query.inverse(), camera, config)
             .consistent;
     if (share < best_share) continue;
     best_share = share;

@@ -28,6 +28,7 @@ Json json_of(const MeshErrorResult& mesh) {
           {"accuracy", json_of(mesh.accuracy)},
           {"completeness", json_of(mesh.completeness)},
           {"chamfer_m", mesh.chamfer_m},
+          {"ghost_share", mesh.ghost_share ? Json(*mesh.ghost_share) : Json(nullptr)},
           {"thresholds", std::move(thresholds)}};
 }
 

@@ -66,6 +66,8 @@ Result<MeshComparison> MeshComparison::create(const PreciseMesh& reconstruction,
   comparison.reconstruction_points_ = std::move(*reconstruction_points);
   comparison.truth_points_ = std::move(*truth_points);
   if (views) {
+    comparison.views_ = MeshViews{views->camera,         views->min_depth_m, views->max_depth_m,
+                                  views->T_truth_camera, Culling::occlusion, {}};
     for (const std::size_t i : observed_points(comparison.truth_points_, comparison.truth_, *views, workers))
       comparison.observed_points_.push_back(comparison.truth_points_[i]);
   } else {
@@ -78,6 +80,16 @@ Result<MeshComparison> MeshComparison::create(const PreciseMesh& reconstruction,
   return comparison;
 }
 
+double MeshComparison::ghost_share(std::span<const double> to_truth_m, const SE3& T_truth_reconstruction,
+                                   const Workers& workers) const {
+  std::vector<Vector3d> far;
+  for (std::size_t i = 0; i < to_truth_m.size(); ++i) {
+    if (to_truth_m[i] > kGhostDistance_m) far.push_back(T_truth_reconstruction * reconstruction_points_[i]);
+  }
+  const std::size_t ghosts = observed_points(far, truth_, *views_, workers).size();
+  return static_cast<double>(ghosts) / static_cast<double>(to_truth_m.size());
+}
+
 MeshErrorResult MeshComparison::evaluate(const trajectory_error::Alignment& alignment, const Workers& workers,
                                          TruthPart part) const {
   const SE3& T_truth_reconstruction = alignment.T_reference_estimate;
@@ -88,6 +100,7 @@ MeshErrorResult MeshComparison::evaluate(const trajectory_error::Alignment& alig
                   reconstruction_, workers);
   MeshErrorResult result;
   result.alignment = alignment;
+  if (views_) result.ghost_share = ghost_share(to_truth_m, T_truth_reconstruction, workers);
   result.accuracy = summary_of(to_truth_m);
   result.completeness = summary_of(to_reconstruction_m);
   result.chamfer_m = 0.5 * (result.accuracy.stats.mean + result.completeness.stats.mean);

@@ -51,7 +51,13 @@ struct MeshErrorResult {
   MeshDistances completeness;
   double chamfer_m = std::numeric_limits<double>::quiet_NaN();  ///< mean of both means
   std::vector<MeshThreshold> thresholds;
+  /// Share of the reconstruction that stands where nothing is: samples farther than kGhostDistance_m from the
+  /// truth that a true camera looks at through free space (a second wall before the wall, not one behind it).
+  /// Nothing without views.
+  std::optional<double> ghost_share;
 };
+
+inline constexpr double kGhostDistance_m = 0.03;
 
 /// Which samples of the truth count.
 enum class TruthPart { observed, all };
@@ -83,7 +89,11 @@ class MeshComparison {
   MeshComparison(const PreciseMesh& reconstruction, const PreciseMesh& truth, const Workers& workers)
       : reconstruction_(reconstruction, workers), truth_(truth, workers) {}
 
+  [[nodiscard]] double ghost_share(std::span<const double> to_truth_m, const SE3& T_truth_reconstruction,
+                                   const Workers& workers) const;
+
   MeshErrorOptions options_;
+  std::optional<MeshViews> views_;  ///< with occlusion
   TriangleTree reconstruction_;
   TriangleTree truth_;
   std::vector<Vector3d> reconstruction_points_;

@@ -150,9 +150,13 @@ std::string to_text(const mesh_error::MeshEvaluation& evaluation, const mesh_err
   heading.push_back({"culling", culling_text(evaluation, request, files)});
   std::string text = "mesh error: exact distances to triangles\n\n" + text::aligned_columns(heading) + "\n";
   text += statistics_text(evaluation) + "\n" + thresholds_text(evaluation) + "\n";
-  return text + text::aligned_columns(
-                    {{"Chamfer", text::seven_digits(evaluation.errors.chamfer_m) + " m, mean of both means"},
-                     {"SurfReg", surfreg_text(evaluation.surfreg)}});
+  Lines summary = {{"Chamfer", text::seven_digits(evaluation.errors.chamfer_m) + " m, mean of both means"},
+                   {"SurfReg", surfreg_text(evaluation.surfreg)}};
+  if (evaluation.errors.ghost_share)
+    summary.push_back(
+        {"ghosts", fmt::format("{:.2f} % stand more than {:g} cm before the truth, in free space",
+                               100 * *evaluation.errors.ghost_share, 100 * mesh_error::kGhostDistance_m)});
+  return text + text::aligned_columns(summary);
 }
 
 std::string to_json(const mesh_error::MeshEvaluation& evaluation, const mesh_error::MeshRequest& request,

@@ -236,6 +236,8 @@ mesh_error::MeshErrorResult mesh_error_of(const Json& json) {
   mesh.accuracy = distances_of(json.at("accuracy"));
   mesh.completeness = distances_of(json.at("completeness"));
   mesh.chamfer_m = number_at(json, "chamfer_m");
+  if (const auto ghosts = json.find("ghost_share"); ghosts != json.end() && ghosts->is_number())
+    mesh.ghost_share = ghosts->get<double>();
   for (const Json& at : json.at("thresholds")) {
     mesh.thresholds.push_back({at.at("tau_m"), at.at("precision"), at.at("recall"), at.at("fscore")});
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <opencv2/core.hpp>
@@ -13,6 +14,7 @@
 
 namespace fusebench {
 
+using namespace places;
 using namespace relocalisation;
 
 namespace {
@@ -93,6 +95,48 @@ TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
   const Matrix3d turned_position = R * cov_a.bottomRightCorner<3, 3>() * R.transpose();
   EXPECT_LT((cov_b.bottomRightCorner<3, 3>() - turned_position).norm(), 1e-9 * size);
   EXPECT_GT((cov_b - cov_a).norm(), 1e-3 * size) << "the axes make no difference: the test is empty";
+}
+
+/// The images are of half the size in either direction that the defaults are meant for.
+Config for_small_images() {
+  Config config;
+  config.loops.dense_pixels_per_measurement /= 4;
+  config.loops.dense_min_pairs /= 4;
+  return config;
+}
+
+/// Towards a corner of the room, so that surfaces face all directions.
+const SE3 kCorner{so3_exp({-0.45, 0.6, 0}), {0, 0, 0}};
+
+TEST(Keyframes, DepthFindsThePoseInTheDark) {
+  const Config config = for_small_images();
+  const SE3 T_world_room{so3_exp({0.4, -1.1, 0.7}), {3, -2, 5}};
+  const RgbdFrame key = seen_from(kCorner);
+  Keyframes keyframes(small_camera(), config);
+  ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, T_world_room * kCorner, 0));
+  const SE3 truth = T_world_room * kCorner * SE3{so3_exp({0.05, 0.1, -0.05}), {0.1, -0.05, 0.05}};
+  const SE3 predicted = pose_plus(truth, (Vector6d() << 0.03, -0.03, 0.02, 0.04, 0.02, -0.03).finished());
+  RgbdFrame query = seen_from(T_world_room.inverse() * truth);
+  std::fill(query.grey.data.begin(), query.grey.data.end(), std::uint8_t{2});
+  ASSERT_FALSE(keyframes.find(query.grey)) << "features alone would do: the test is empty";
+  const auto found = keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), predicted);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->T_world_camera.translation - truth.translation).norm(), 0.006);
+  EXPECT_LT(rotation_angle_rad(found->T_world_camera.rotation, truth.rotation), radians(0.3));
+  EXPECT_EQ(found->inliers, 0);
+}
+
+TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
+  const Config config = for_small_images();
+  const RgbdFrame key = seen_from(kCorner);
+  Keyframes keyframes(small_camera(), config);
+  ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
+  const auto of = [](const RgbdFrame& frame) { return places::small_images_of(frame.grey, frame.depth_m); };
+  const SE3 turned = kCorner * SE3{so3_exp({0, radians(150), 0}), Vector3d::Zero()};
+  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), turned))
+      << "it shares nothing with the keyframe";
+  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), kCorner))
+      << "the prediction is of another place";
 }
 
 TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {

@@ -95,6 +95,24 @@ TEST(MeshMetrics, AlignmentMovesTheReconstruction) {
   EXPECT_GT(comparison->evaluate({}, workers).accuracy.stats.mean, 1);  // and without, they are apart
 }
 
+/// From two sides a sphere around the true one hides nothing of itself behind it.
+TEST(MeshMetrics, GhostsStandInFreeSpaceBeforeTheTruth) {
+  const PreciseMesh truth = sphere(1.0, 40);
+  const Workers workers(1);
+  const MeshViews views{{640, 480, 400, 400, 319.5, 239.5},
+                        0.1,
+                        10,
+                        {{Quaterniond::Identity(), {0, 0, -3}}, {so3_exp({M_PI, 0, 0}), {0, 0, 3}}}};
+  const auto ghosts = [&](double radius_m, const std::optional<MeshViews>& seen_from) {
+    const auto comparison = MeshComparison::create(sphere(radius_m, 40), truth, seen_from, {}, workers);
+    return comparison->evaluate({}, workers).ghost_share;
+  };
+  EXPECT_NEAR(ghosts(1.1, views).value(), 1, 0.01);
+  EXPECT_EQ(ghosts(1.02, views).value(), 0) << "within three centimetres";
+  EXPECT_EQ(ghosts(0.9, views).value(), 0) << "behind the surface, where no camera looks";
+  EXPECT_FALSE(ghosts(1.1, std::nullopt)) << "nobody says from where the truth was seen";
+}
+
 TEST(MeshMetrics, SameNumbersWithAnyThreadCount) {
   const PreciseMesh a = triangle_soup(300);
   const PreciseMesh b = sphere(0.7, 12);

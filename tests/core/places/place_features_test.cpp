@@ -1,4 +1,4 @@
-#include "core/relocalisation/place_features.hpp"
+#include "core/places/place_features.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 namespace fusebench {
 
-using namespace relocalisation;
+using namespace places;
 
 namespace {
 

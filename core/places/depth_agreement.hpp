@@ -5,9 +5,9 @@
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
-#include "core/loops/place.hpp"
+#include "core/places/small_images.hpp"
 
-namespace fusebench::loops {
+namespace fusebench::places {
 
 /// Of the pixels with depth of one place, seen from another one.
 struct DepthAgreement {
@@ -17,13 +17,14 @@ struct DepthAgreement {
 };
 
 /// On the surface: within loops.depth_sigmas of the depth noise, and 1 cm more.
-[[nodiscard]] DepthAgreement depth_agreement(const Place& from, const Place& to, const SE3& T_to_from,
-                                             const PinholeCamera& camera, const config::Config& config);
+[[nodiscard]] DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to,
+                                             const SE3& T_to_from, const PinholeCamera& camera,
+                                             const config::Config& config);
 
 /// How well intensities correlate (ZNCC) where the depth of `from` lies on the surface of `to`; nothing if
 /// one of them has too little contrast there (health.min_contrast_grey).
-[[nodiscard]] std::optional<double> grey_correlation(const Place& from, const Place& to, const SE3& T_to_from,
-                                                     const PinholeCamera& camera,
+[[nodiscard]] std::optional<double> grey_correlation(const SmallImages& from, const SmallImages& to,
+                                                     const SE3& T_to_from, const PinholeCamera& camera,
                                                      const config::Config& config);
 
-}  // namespace fusebench::loops
+}  // namespace fusebench::places

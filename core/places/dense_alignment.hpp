@@ -1,4 +1,4 @@
-// The relative pose of two places by their depth alone or together with what features say of it: points of
+// The relative pose of two frames by their depth alone or together with what features say of it: points of
 // one on planes of the other (Chen & Medioni 1992), at a quarter of the images' size, where motion blur and
 // missing texture hardly matter.
 #pragma once
@@ -7,9 +7,9 @@
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
-#include "core/loops/place.hpp"
+#include "core/places/small_images.hpp"
 
-namespace fusebench::loops {
+namespace fusebench::places {
 
 /// A pose with its covariance: rotation on the right (rad), position in the frame of `known` (metres).
 struct RelativePose {
@@ -21,9 +21,9 @@ struct RelativePose {
 /// such as sideways along a wall, stay as they were; without, the pose is no more than the start. Nothing if
 /// too little of the depth lies near the other surface, or it leaves a direction open. The covariance is that
 /// of the scatter, as loops.dense_pixels_per_measurement counts it.
-[[nodiscard]] std::optional<RelativePose> aligned_by_depth(const Place& known, const Place& query,
+[[nodiscard]] std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                                            const RelativePose& start, bool from_features,
                                                            const PinholeCamera& camera,
                                                            const config::Config& config);
 
-}  // namespace fusebench::loops
+}  // namespace fusebench::places

@@ -1,4 +1,4 @@
-#include "core/loops/dense_alignment.hpp"
+#include "core/places/dense_alignment.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "core/loops/small_images.hpp"
+#include "core/places/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
-namespace fusebench::loops {
+namespace fusebench::places {
 
 namespace {
 
@@ -27,14 +27,13 @@ class Surface {
     Vector3d normal = Vector3d::Zero();  ///< unit; zero: none
   };
 
-  Surface(const DepthImage& small_depth_m, const PinholeCamera& camera, const config::DepthConfig& config)
-      : camera_(camera), planes_(small_depth_m.width, small_depth_m.height) {
-    for (int y = kNormalReach; y + kNormalReach < small_depth_m.height; ++y) {
-      for (int x = kNormalReach; x + kNormalReach < small_depth_m.width; ++x) {
-        if (bends(small_depth_m, x, y, kNormalReach, 0, config) ||
-            bends(small_depth_m, x, y, 0, kNormalReach, config))
+  Surface(const DepthImage& depth_m, const PinholeCamera& camera, const config::DepthConfig& config)
+      : camera_(camera), planes_(depth_m.width, depth_m.height) {
+    for (int y = kNormalReach; y + kNormalReach < depth_m.height; ++y) {
+      for (int x = kNormalReach; x + kNormalReach < depth_m.width; ++x) {
+        if (bends(depth_m, x, y, kNormalReach, 0, config) || bends(depth_m, x, y, 0, kNormalReach, config))
           continue;
-        const auto point = [&](int u, int v) { return point_at(small_depth_m, u, v, camera); };
+        const auto point = [&](int u, int v) { return point_at(depth_m, u, v, camera); };
         const Vector3d across = point(x + kNormalReach, y) - point(x - kNormalReach, y);
         const Vector3d down = point(x, y + kNormalReach) - point(x, y - kNormalReach);
         planes_(x, y) = {point(x, y), across.cross(down).normalized()};
@@ -52,11 +51,11 @@ class Surface {
  private:
   /// True as well where depth is missing. On a plane the inverse depth is linear in the image: it is not
   /// across an edge, or the corner of a room.
-  static bool bends(const DepthImage& small_depth_m, int x, int y, int dx, int dy,
+  static bool bends(const DepthImage& depth_m, int x, int y, int dx, int dy,
                     const config::DepthConfig& config) {
-    const auto before_m = static_cast<double>(small_depth_m(x - dx, y - dy));
-    const auto here_m = static_cast<double>(small_depth_m(x, y));
-    const auto after_m = static_cast<double>(small_depth_m(x + dx, y + dy));
+    const auto before_m = static_cast<double>(depth_m(x - dx, y - dy));
+    const auto here_m = static_cast<double>(depth_m(x, y));
+    const auto after_m = static_cast<double>(depth_m(x + dx, y + dy));
     if (!(before_m > 0 && here_m > 0 && after_m > 0)) return true;
     const double expected_m = 2.0 / (1.0 / before_m + 1.0 / after_m);
     return std::abs(here_m - expected_m) >
@@ -67,11 +66,11 @@ class Surface {
   Image<Plane> planes_;
 };
 
-std::vector<Vector3d> points_of(const DepthImage& small_depth_m, const PinholeCamera& camera) {
+std::vector<Vector3d> points_of(const DepthImage& depth_m, const PinholeCamera& camera) {
   std::vector<Vector3d> points;
-  for (int y = 0; y < small_depth_m.height; y += kPointStep) {
-    for (int x = 0; x < small_depth_m.width; x += kPointStep) {
-      if (small_depth_m(x, y) > 0) points.push_back(point_at(small_depth_m, x, y, camera));
+  for (int y = 0; y < depth_m.height; y += kPointStep) {
+    for (int x = 0; x < depth_m.width; x += kPointStep) {
+      if (depth_m(x, y) > 0) points.push_back(point_at(depth_m, x, y, camera));
     }
   }
   return points;
@@ -115,15 +114,15 @@ DepthSums sums_at(const SE3& T_known_query, const std::vector<Vector3d>& points_
 
 }  // namespace
 
-std::optional<RelativePose> aligned_by_depth(const Place& known, const Place& query,
+std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                              const RelativePose& start, bool from_features,
                                              const PinholeCamera& camera, const config::Config& config) {
   constexpr std::array<double, 4> kGates = {1.0, 0.5, 0.25, 0.25};  // of loops.dense_gate_m
   constexpr int kStepsOfGate = 6;
-  constexpr double kSmallStep = 1e-5;  // rad and m
+  constexpr double kLastStep = 1e-5;  // rad and m
   const config::LoopsConfig& loops = config.loops;
-  const Surface surface(known.small_depth_m, camera, config.depth);
-  const std::vector<Vector3d> points_query = points_of(query.small_depth_m, camera);
+  const Surface surface(known.depth_m, camera, config.depth);
+  const std::vector<Vector3d> points_query = points_of(query.depth_m, camera);
   const Matrix6d prior =
       from_features ? Matrix6d(start.covariance.ldlt().solve(Matrix6d::Identity())) : Matrix6d::Zero();
   SE3 pose = start.T_known_query;
@@ -139,11 +138,11 @@ std::optional<RelativePose> aligned_by_depth(const Place& known, const Place& qu
       if (!(eigen.eigenvalues().minCoeff() > 1e-12 * eigen.eigenvalues().maxCoeff())) return std::nullopt;
       const Vector6d move = -information.ldlt().solve(gradient);
       pose = pose_plus(pose, move);
-      if (move.cwiseAbs().maxCoeff() < kSmallStep) break;
+      if (move.cwiseAbs().maxCoeff() < kLastStep) break;
     }
   }
   const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
   return RelativePose{pose, 0.5 * (covariance + covariance.transpose())};
 }
 
-}  // namespace fusebench::loops
+}  // namespace fusebench::places

@@ -1,4 +1,4 @@
-#include "core/relocalisation/pose_from_points.hpp"
+#include "core/places/pose_from_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 namespace fusebench {
 
-using namespace relocalisation;
+using namespace places;
 
 namespace {
 

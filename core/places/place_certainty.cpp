@@ -1,10 +1,10 @@
-#include "core/relocalisation/place_certainty.hpp"
+#include "core/places/place_certainty.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace fusebench::relocalisation {
+namespace fusebench::places {
 
 namespace {
 
@@ -43,4 +43,4 @@ bool is_certain_place(std::span<const SeenPoint> seen, const PoseFromPoints& pos
          position_sigma_m <= config.max_relative_position_sigma * mean_distance_m(seen, pose);
 }
 
-}  // namespace fusebench::relocalisation
+}  // namespace fusebench::places

@@ -1,34 +1,43 @@
-// Pixels of the small images of a place, and points in its camera.
+// Depth and intensities of a frame at a quarter of its size, by which it is compared with others where motion
+// blur and missing texture hardly matter.
 #pragma once
 
 #include <cmath>
 #include <optional>
 
 #include "core/base/types.hpp"
-#include "core/loops/place.hpp"
 
-namespace fusebench::loops {
+namespace fusebench::places {
 
-/// The point at the depth of a pixel of small_depth_m, in the camera's axes (metres).
+inline constexpr int kSmallStep = 4;  ///< pixels of the frame to a small one, in either direction
+
+struct SmallImages {
+  DepthImage depth_m;  ///< every fourth pixel
+  GreyImage grey;      ///< means of 4x4 pixels
+};
+
+[[nodiscard]] SmallImages small_images_of(const GreyImage& grey, const DepthImage& depth_m);
+
+/// The point at the depth of a small pixel, in the camera's axes (metres).
 [[nodiscard]] inline Vector3d point_at(const DepthImage& small_depth_m, int x, int y,
                                        const PinholeCamera& camera) {
-  return camera.back_project(kDepthStep * x, kDepthStep * y, static_cast<double>(small_depth_m(x, y)));
+  return camera.back_project(kSmallStep * x, kSmallStep * y, static_cast<double>(small_depth_m(x, y)));
 }
 
 struct SmallPixel {
   int x = 0, y = 0;
 };
 
-/// Where a point in the camera's axes is seen in an image of the size of small_depth_m; nothing if it is not.
+/// Where a point in the camera's axes is seen in an image of the small size; nothing if it is not.
 template <class Pixel>
 [[nodiscard]] std::optional<SmallPixel> pixel_of(const Vector3d& point_camera, const PinholeCamera& camera,
                                                  const Image<Pixel>& image) {
   if (point_camera.z() <= 0) return std::nullopt;
-  const Vector2d pixel = camera.project(point_camera) / kDepthStep;
+  const Vector2d pixel = camera.project(point_camera) / kSmallStep;
   // A point near the plane of the camera projects beyond any integer.
   if (!(pixel.cwiseAbs().maxCoeff() < image.width + image.height)) return std::nullopt;
   const SmallPixel seen{static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))};
   return image.contains(seen.x, seen.y) ? std::optional(seen) : std::nullopt;
 }
 
-}  // namespace fusebench::loops
+}  // namespace fusebench::places

@@ -1,17 +1,17 @@
-#include "core/loops/dense_alignment.hpp"
+#include "core/places/dense_alignment.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/loops/depth_agreement.hpp"
-#include "core/loops/place_verification.hpp"
+#include "core/places/depth_agreement.hpp"
+#include "core/places/place_verification.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
 
-using namespace loops;
+using namespace places;
 using testing::small_camera;
 using testing::TexturedRoom;
 
@@ -22,8 +22,9 @@ const SE3 kCorner{so3_exp({-0.45, 0.6, 0}), {0, 0, 0}};
 const SE3 kTrue{so3_exp({0.02, 0.1, -0.03}), {0.08, -0.03, 0.05}};  // T_known_query
 const SE3 kStart = pose_plus(kTrue, (Vector6d() << 0.02, -0.03, 0.02, 0.03, 0.02, -0.03).finished());
 
-Place place_at(const SE3& T_world_camera, const config::Config& config, const TexturedRoom& room = {}) {
-  return place_of(room.render(small_camera(), T_world_camera, 1), small_camera(), config);
+Appearance appearance_at(const SE3& T_world_camera, const config::Config& config,
+                         const TexturedRoom& room = {}) {
+  return appearance_of(room.render(small_camera(), T_world_camera, 1), small_camera(), config);
 }
 
 /// A wall across the view, and nothing else.
@@ -51,8 +52,9 @@ config::Config configuration() {
 
 TEST(DenseAlignment, DepthAloneFindsThePose) {
   const config::Config config = configuration();
-  const auto found = aligned_by_depth(place_at(kCorner, config), place_at(kCorner * kTrue, config),
-                                      start_with(1, 1), false, small_camera(), config);
+  const auto found =
+      aligned_by_depth(appearance_at(kCorner, config).small, appearance_at(kCorner * kTrue, config).small,
+                       start_with(1, 1), false, small_camera(), config);
   ASSERT_TRUE(found);
   EXPECT_LT(rotation_angle_rad(found->T_known_query.rotation, kTrue.rotation), radians(0.3));
   EXPECT_LT((found->T_known_query.translation - kTrue.translation).norm(), 0.006);
@@ -61,10 +63,11 @@ TEST(DenseAlignment, DepthAloneFindsThePose) {
 
 TEST(DenseAlignment, AWallLeavesThePoseToTheFeatures) {
   const config::Config config = configuration();
-  const Place known = place_at({}, config, wall());
-  const Place query = place_at(kTrue, config, wall());
-  EXPECT_FALSE(aligned_by_depth(known, query, start_with(1, 1), false, small_camera(), config));
-  const auto found = aligned_by_depth(known, query, start_with(0.01, 0.01), true, small_camera(), config);
+  const Appearance known = appearance_at({}, config, wall());
+  const Appearance query = appearance_at(kTrue, config, wall());
+  EXPECT_FALSE(aligned_by_depth(known.small, query.small, start_with(1, 1), false, small_camera(), config));
+  const auto found =
+      aligned_by_depth(known.small, query.small, start_with(0.01, 0.01), true, small_camera(), config);
   ASSERT_TRUE(found);
   const Vector3d moved = found->T_known_query.translation - kTrue.translation;
   const Vector3d before = kStart.translation - kTrue.translation;
@@ -75,39 +78,39 @@ TEST(DenseAlignment, AWallLeavesThePoseToTheFeatures) {
 
 TEST(DenseAlignment, TooLittleDepthIsNoPose) {
   const config::Config config = configuration();
-  const Place known = place_at(kCorner, config);
-  Place query = place_at(kCorner * kTrue, config);
-  std::fill(query.small_depth_m.data.begin(), query.small_depth_m.data.end(), 0.0F);
-  EXPECT_FALSE(aligned_by_depth(known, query, start_with(1, 1), false, small_camera(), config));
+  const Appearance known = appearance_at(kCorner, config);
+  Appearance query = appearance_at(kCorner * kTrue, config);
+  std::fill(query.small.depth_m.data.begin(), query.small.depth_m.data.end(), 0.0F);
+  EXPECT_FALSE(aligned_by_depth(known.small, query.small, start_with(1, 1), false, small_camera(), config));
 }
 
 TEST(DepthAgreement, APlaceAgreesWithItselfAndNotWithOneElsewhere) {
   const config::Config config = configuration();
-  const Place here = place_at({}, config);
-  const DepthAgreement same = depth_agreement(here, here, SE3{}, small_camera(), config);
+  const Appearance here = appearance_at({}, config);
+  const DepthAgreement same = depth_agreement(here.small, here.small, SE3{}, small_camera(), config);
   EXPECT_GT(same.overlap, 0.99);
   EXPECT_GT(same.consistent, 0.99);
   EXPECT_EQ(same.violating, 0);
-  EXPECT_NEAR(grey_correlation(here, here, SE3{}, small_camera(), config).value(), 1, 1e-9);
-  const Place nearer = place_at({Quaterniond::Identity(), {0, 0, 0.4}}, config);
-  EXPECT_GT(depth_agreement(nearer, here, SE3{}, small_camera(), config).violating, 0.5)
+  EXPECT_NEAR(grey_correlation(here.small, here.small, SE3{}, small_camera(), config).value(), 1, 1e-9);
+  const Appearance nearer = appearance_at({Quaterniond::Identity(), {0, 0, 0.4}}, config);
+  EXPECT_GT(depth_agreement(nearer.small, here.small, SE3{}, small_camera(), config).violating, 0.5)
       << "surfaces stand where the other place saw free space";
-  EXPECT_LT(depth_agreement(here, nearer, SE3{}, small_camera(), config).violating, 0.1)
+  EXPECT_LT(depth_agreement(here.small, nearer.small, SE3{}, small_camera(), config).violating, 0.1)
       << "and behind what the other one saw: hidden";
 }
 
 /// Features are gone by blur: the pair is verified by depth, starting where the path leads.
 TEST(PlaceVerification, WithoutFeaturesDepthVerifiesAndIntensitiesHaveToFit) {
   const config::Config config = configuration();
-  const Place known = place_at(kCorner, config);
-  Place query = place_at(kCorner * kTrue, config);
+  const Appearance known = appearance_at(kCorner, config);
+  Appearance query = appearance_at(kCorner * kTrue, config);
   query.landmarks = {};
   const VerifiedPair pair = verify_pair(known, query, kStart, small_camera(), config);
   EXPECT_TRUE(pair.same) << pair.reason;
   EXPECT_TRUE(pair.by_depth_alone);
   EXPECT_LT((pair.T_known_query.translation - kTrue.translation).norm(), 0.006);
-  Place repainted = query;
-  for (std::uint8_t& grey : repainted.small_grey.data) grey = static_cast<std::uint8_t>(255 - grey);
+  Appearance repainted = query;
+  for (std::uint8_t& grey : repainted.small.grey.data) grey = static_cast<std::uint8_t>(255 - grey);
   const VerifiedPair other = verify_pair(known, repainted, kStart, small_camera(), config);
   EXPECT_FALSE(other.same);
   EXPECT_NE(other.reason.find("intensities correlate by -"), std::string::npos) << other.reason;
@@ -115,8 +118,8 @@ TEST(PlaceVerification, WithoutFeaturesDepthVerifiesAndIntensitiesHaveToFit) {
 
 TEST(PlaceVerification, DepthRefinesWhatFeaturesSay) {
   const config::Config config = configuration();
-  const Place known = place_at(kCorner, config);
-  const Place query = place_at(kCorner * kTrue, config);
+  const Appearance known = appearance_at(kCorner, config);
+  const Appearance query = appearance_at(kCorner * kTrue, config);
   const VerifiedPair pair = verify_pair(known, query, kStart, small_camera(), config);
   ASSERT_TRUE(pair.same) << pair.reason;
   EXPECT_FALSE(pair.by_depth_alone);

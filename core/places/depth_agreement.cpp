@@ -1,12 +1,12 @@
-#include "core/loops/depth_agreement.hpp"
+#include "core/places/depth_agreement.hpp"
 
 #include <cmath>
 #include <cstddef>
 
-#include "core/loops/small_images.hpp"
+#include "core/places/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
-namespace fusebench::loops {
+namespace fusebench::places {
 
 namespace {
 
@@ -21,18 +21,18 @@ struct SeenPixel {
 /// Calls back for every pixel of `from` that falls on a pixel with depth of `to`; returns how many pixels of
 /// `from` have depth.
 template <class Callback>
-std::size_t for_each_seen(const Place& from, const Place& to, const SE3& T_to_from,
+std::size_t for_each_seen(const SmallImages& from, const SmallImages& to, const SE3& T_to_from,
                           const PinholeCamera& camera, const Callback& callback) {
   std::size_t measured = 0;
-  for (int y = 0; y < from.small_depth_m.height; ++y) {
-    for (int x = 0; x < from.small_depth_m.width; ++x) {
-      if (!(from.small_depth_m(x, y) > 0)) continue;
+  for (int y = 0; y < from.depth_m.height; ++y) {
+    for (int x = 0; x < from.depth_m.width; ++x) {
+      if (!(from.depth_m(x, y) > 0)) continue;
       ++measured;
-      const Vector3d point = T_to_from * point_at(from.small_depth_m, x, y, camera);
-      const auto there = pixel_of(point, camera, to.small_depth_m);
-      if (!there || !(to.small_depth_m(there->x, there->y) > 0)) continue;
+      const Vector3d point = T_to_from * point_at(from.depth_m, x, y, camera);
+      const auto there = pixel_of(point, camera, to.depth_m);
+      if (!there || !(to.depth_m(there->x, there->y) > 0)) continue;
       callback(SeenPixel{x, y, there->x, there->y, point.z(),
-                         static_cast<double>(to.small_depth_m(there->x, there->y))});
+                         static_cast<double>(to.depth_m(there->x, there->y))});
     }
   }
   return measured;
@@ -67,7 +67,7 @@ struct PairSums {
 
 }  // namespace
 
-DepthAgreement depth_agreement(const Place& from, const Place& to, const SE3& T_to_from,
+DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to, const SE3& T_to_from,
                                const PinholeCamera& camera, const config::Config& config) {
   std::size_t seen = 0, consistent = 0, violating = 0;
   const std::size_t measured = for_each_seen(from, to, T_to_from, camera, [&](const SeenPixel& pixel) {
@@ -81,11 +81,11 @@ DepthAgreement depth_agreement(const Place& from, const Place& to, const SE3& T_
   return {share(seen, measured), share(consistent, measured), share(violating, seen)};
 }
 
-std::optional<double> grey_correlation(const Place& from, const Place& to, const SE3& T_to_from,
+std::optional<double> grey_correlation(const SmallImages& from, const SmallImages& to, const SE3& T_to_from,
                                        const PinholeCamera& camera, const config::Config& config) {
   PairSums sums;
   for_each_seen(from, to, T_to_from, camera, [&](const SeenPixel& seen) {
-    if (on_surface(seen, config)) sums.add(from.small_grey(seen.x, seen.y), to.small_grey(seen.u, seen.v));
+    if (on_surface(seen, config)) sums.add(from.grey(seen.x, seen.y), to.grey(seen.u, seen.v));
   });
   if (sums.n < 1) return std::nullopt;
   const double least = config.health.min_contrast_grey * config.health.min_contrast_grey;
@@ -93,4 +93,4 @@ std::optional<double> grey_correlation(const Place& from, const Place& to, const
   return sums.covariance() / std::sqrt(sums.variance_a() * sums.variance_b());
 }
 
-}  // namespace fusebench::loops
+}  // namespace fusebench::places

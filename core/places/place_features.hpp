@@ -16,7 +16,7 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 
-namespace fusebench::relocalisation {
+namespace fusebench::places {
 
 using OrbDescriptor = std::array<std::uint64_t, 4>;
 
@@ -50,4 +50,4 @@ struct FeatureMatch {
                                                        std::span<const PlaceFeature> known,
                                                        const config::PlaceFeaturesConfig& config);
 
-}  // namespace fusebench::relocalisation
+}  // namespace fusebench::places

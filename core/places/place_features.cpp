@@ -1,4 +1,4 @@
-#include "core/relocalisation/place_features.hpp"
+#include "core/places/place_features.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
-namespace fusebench::relocalisation {
+namespace fusebench::places {
 
 namespace {
 
@@ -152,4 +152,4 @@ std::vector<FeatureMatch> match_features(std::span<const PlaceFeature> query,
   return matches;
 }
 
-}  // namespace fusebench::relocalisation
+}  // namespace fusebench::places

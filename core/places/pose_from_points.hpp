@@ -13,7 +13,7 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 
-namespace fusebench::relocalisation {
+namespace fusebench::places {
 
 /// A point and where it is seen.
 struct SeenPoint {
@@ -36,4 +36,4 @@ struct PoseFromPoints {
                                                              const PinholeCamera& camera,
                                                              const config::PlacePoseConfig& config);
 
-}  // namespace fusebench::relocalisation
+}  // namespace fusebench::places

@@ -11,13 +11,13 @@
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
-#include "core/relocalisation/pose_from_points.hpp"
+#include "core/places/pose_from_points.hpp"
 
-namespace fusebench::relocalisation {
+namespace fusebench::places {
 
 /// True if there are enough inliers, a sufficient share of all matches, spread over the image, and the pose
 /// is well constrained by them.
 [[nodiscard]] bool is_certain_place(std::span<const SeenPoint> seen, const PoseFromPoints& pose,
                                     const PinholeCamera& camera, const config::RelocalisationConfig& config);
 
-}  // namespace fusebench::relocalisation
+}  // namespace fusebench::places

@@ -1,4 +1,4 @@
-#include "core/relocalisation/place_certainty.hpp"
+#include "core/places/place_certainty.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 namespace fusebench {
 
-using namespace relocalisation;
+using namespace places;
 
 namespace {
 

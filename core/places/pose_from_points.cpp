@@ -1,4 +1,4 @@
-#include "core/relocalisation/pose_from_points.hpp"
+#include "core/places/pose_from_points.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
-namespace fusebench::relocalisation {
+namespace fusebench::places {
 
 namespace {
 
@@ -192,4 +192,4 @@ std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen, 
   return result;
 }
 
-}  // namespace fusebench::relocalisation
+}  // namespace fusebench::places

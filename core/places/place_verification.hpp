@@ -6,11 +6,11 @@
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
-#include "core/loops/place.hpp"
+#include "core/places/appearance.hpp"
 
-namespace fusebench::loops {
+namespace fusebench::places {
 
-/// What was found of a pair of places.
+/// What was found of a pair of frames.
 struct VerifiedPair {
   bool same = false;
   std::string reason;  ///< why not; empty if it is
@@ -24,11 +24,17 @@ struct VerifiedPair {
 };
 
 /// The landmarks of `query` against those of `known` (P3P in RANSAC, as for relocalisation), refined by depth
-/// (dense_alignment.hpp). If that is not certain: depth alone, starting where the path leads, if both see the
-/// same by it; then intensities have to fit as well. At last the depth of either against that of the other:
-/// what the other one sees there, or free space where there should be a surface.
-[[nodiscard]] VerifiedPair verify_pair(const Place& known, const Place& query,
+/// (dense_alignment.hpp). If that is not certain: verify_by_depth() from where the path leads, if both see
+/// the same by it. At last the depth of either against that of the other: what the other one sees there, or
+/// free space where there should be a surface.
+[[nodiscard]] VerifiedPair verify_pair(const Appearance& known, const Appearance& query,
                                        const SE3& T_known_query_by_path, const PinholeCamera& camera,
                                        const config::Config& config);
 
-}  // namespace fusebench::loops
+/// Depth alone, aligned from that pose. It has to tell the pose along every axis, intensities have to fit
+/// where both images have contrast, and the depth of either that of the other.
+[[nodiscard]] VerifiedPair verify_by_depth(const SmallImages& known, const SmallImages& query,
+                                           const SE3& T_known_query_start, const PinholeCamera& camera,
+                                           const config::Config& config);
+
+}  // namespace fusebench::places

@@ -1,0 +1,21 @@
+// What a frame is recognised by when the camera comes back.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/ferns/fern_code.hpp"
+#include "core/places/landmarks.hpp"
+#include "core/places/small_images.hpp"
+
+namespace fusebench::places {
+
+struct Appearance {
+  ferns::FernCode code{};
+  Landmarks landmarks;
+  SmallImages small;
+};
+
+[[nodiscard]] Appearance appearance_of(const RgbdFrame& frame, const PinholeCamera& camera,
+                                       const config::Config& config);
+
+}  // namespace fusebench::places
