@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/places/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
@@ -112,28 +112,38 @@ DepthSums sums_at(const SE3& T_known_query, const std::vector<Vector3d>& points_
   return sums;
 }
 
+constexpr int kStepsOfGate = 6;
+
+/// Halved to a quarter of the narrow one, at which it ends with twice the steps.
+std::vector<double> narrowing_gates_m(double reach_m, double narrow_m) {
+  const double last_m = 0.25 * narrow_m;
+  std::vector<double> gates_m;
+  for (double gate_m = std::max(reach_m, narrow_m); gate_m > last_m; gate_m *= 0.5) gates_m.push_back(gate_m);
+  gates_m.insert(gates_m.end(), 2, last_m);
+  return gates_m;
+}
+
 }  // namespace
 
 std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
-                                             const RelativePose& start, bool from_features,
-                                             const PinholeCamera& camera, const config::Config& config) {
-  constexpr std::array<double, 4> kGates = {1.0, 0.5, 0.25, 0.25};  // of loops.dense_gate_m
-  constexpr int kStepsOfGate = 6;
+                                             const AlignmentStart& start, const PinholeCamera& camera,
+                                             const config::Config& config) {
   constexpr double kLastStep = 1e-5;  // rad and m
   const config::LoopsConfig& loops = config.loops;
   const Surface surface(known.depth_m, camera, config.depth);
   const std::vector<Vector3d> points_query = points_of(query.depth_m, camera);
-  const Matrix6d prior =
-      from_features ? Matrix6d(start.covariance.ldlt().solve(Matrix6d::Identity())) : Matrix6d::Zero();
-  SE3 pose = start.T_known_query;
+  const Matrix6d prior = start.from_features
+                             ? Matrix6d(start.pose.covariance.ldlt().solve(Matrix6d::Identity()))
+                             : Matrix6d::Zero();
+  SE3 pose = start.pose.T_known_query;
   Matrix6d information = Matrix6d::Zero();
-  for (const double gate : kGates) {
+  for (const double gate_m : narrowing_gates_m(start.reach_m, loops.dense_gate_m)) {
     for (int step = 0; step < kStepsOfGate; ++step) {
-      const DepthSums sums = sums_at(pose, points_query, surface, gate * loops.dense_gate_m, config.depth);
+      const DepthSums sums = sums_at(pose, points_query, surface, gate_m, config.depth);
       if (sums.pairs < loops.dense_min_pairs) return std::nullopt;
       const double share = 1.0 / (sums.variance() * loops.dense_pixels_per_measurement);
       information = share * sums.information + prior;
-      const Vector6d gradient = share * sums.gradient + prior * pose_minus(pose, start.T_known_query);
+      const Vector6d gradient = share * sums.gradient + prior * pose_minus(pose, start.pose.T_known_query);
       const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
       if (!(eigen.eigenvalues().minCoeff() > 1e-12 * eigen.eigenvalues().maxCoeff())) return std::nullopt;
       const Vector6d move = -information.ldlt().solve(gradient);

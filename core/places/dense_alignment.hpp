@@ -17,12 +17,19 @@ struct RelativePose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/// From where a pose is searched.
+struct AlignmentStart {
+  RelativePose pose;
+  bool from_features = false;
+  double reach_m = 0;  ///< points so far from their plane count at first; at least loops.dense_gate_m
+};
+
 /// Searches from that pose. With `from_features`, its covariance counts: directions that depth does not tell,
 /// such as sideways along a wall, stay as they were; without, the pose is no more than the start. Nothing if
 /// too little of the depth lies near the other surface, or it leaves a direction open. The covariance is that
 /// of the scatter, as loops.dense_pixels_per_measurement counts it.
 [[nodiscard]] std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
-                                                           const RelativePose& start, bool from_features,
+                                                           const AlignmentStart& start,
                                                            const PinholeCamera& camera,
                                                            const config::Config& config);
 

@@ -49,11 +49,12 @@ std::optional<RelativePose> pose_by_features(const Appearance& known, const Appe
 
 /// By depth alone; pair.reason says why not.
 std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallImages& query,
-                                          const SE3& T_known_query, const PinholeCamera& camera,
-                                          const config::Config& config, VerifiedPair& pair) {
+                                          const SE3& T_known_query, double reach_m,
+                                          const PinholeCamera& camera, const config::Config& config,
+                                          VerifiedPair& pair) {
   const config::LoopsConfig& loops = config.loops;
   const auto aligned =
-      aligned_by_depth(known, query, {T_known_query, Matrix6d::Identity()}, false, camera, config);
+      aligned_by_depth(known, query, {{T_known_query, Matrix6d::Identity()}, false, reach_m}, camera, config);
   if (!aligned) {
     pair.reason = "their depth cannot be aligned";
     return std::nullopt;
@@ -106,10 +107,10 @@ void conclude(const RelativePose& pose, const SmallImages& known, const SmallIma
 }  // namespace
 
 VerifiedPair verify_by_depth(const SmallImages& known, const SmallImages& query,
-                             const SE3& T_known_query_start, const PinholeCamera& camera,
+                             const SE3& T_known_query_start, double reach_m, const PinholeCamera& camera,
                              const config::Config& config) {
   VerifiedPair pair;
-  const auto pose = pose_by_depth(known, query, T_known_query_start, camera, config, pair);
+  const auto pose = pose_by_depth(known, query, T_known_query_start, reach_m, camera, config, pair);
   if (pose) conclude(*pose, known, query, camera, config, pair);
   return pair;
 }
@@ -119,7 +120,7 @@ VerifiedPair verify_pair(const Appearance& known, const Appearance& query, const
   VerifiedPair pair;
   std::optional<RelativePose> pose = pose_by_features(known, query, camera, config, pair);
   if (pose) {
-    if (const auto refined = aligned_by_depth(known.small, query.small, *pose, true, camera, config))
+    if (const auto refined = aligned_by_depth(known.small, query.small, {*pose, true, 0}, camera, config))
       pose = refined;
     conclude(*pose, known.small, query.small, camera, config, pair);
     return pair;
@@ -127,7 +128,7 @@ VerifiedPair verify_pair(const Appearance& known, const Appearance& query, const
   if (depth_agreement(query.small, known.small, T_known_query_by_path, camera, config).overlap <
       config.loops.min_consistent_share)
     return pair;
-  VerifiedPair by_depth = verify_by_depth(known.small, query.small, T_known_query_by_path, camera, config);
+  VerifiedPair by_depth = verify_by_depth(known.small, query.small, T_known_query_by_path, 0, camera, config);
   by_depth.matches = pair.matches;
   by_depth.inliers = pair.inliers;
   // Where depth was aligned, what it contradicts is the reason, and before, what features lacked as well.

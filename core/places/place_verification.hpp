@@ -31,10 +31,11 @@ struct VerifiedPair {
                                        const SE3& T_known_query_by_path, const PinholeCamera& camera,
                                        const config::Config& config);
 
-/// Depth alone, aligned from that pose. It has to tell the pose along every axis, intensities have to fit
-/// where both images have contrast, and the depth of either that of the other.
+/// Depth alone, aligned from that pose, which may be off by about reach_m (AlignmentStart). It has to tell
+/// the pose along every axis, intensities have to fit where both images have contrast, and the depth of
+/// either that of the other.
 [[nodiscard]] VerifiedPair verify_by_depth(const SmallImages& known, const SmallImages& query,
-                                           const SE3& T_known_query_start, const PinholeCamera& camera,
-                                           const config::Config& config);
+                                           const SE3& T_known_query_start, double reach_m,
+                                           const PinholeCamera& camera, const config::Config& config);
 
 }  // namespace fusebench::places

@@ -165,7 +165,7 @@ std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
 }
 
 std::optional<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& query,
-                                                   const SE3& T_world_camera_predicted) {
+                                                   const SE3& T_world_camera_predicted, double reach_m) {
   constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less than these add nothing
   std::vector<std::pair<double, std::size_t>> overlaps;
   for (std::size_t k = 0; k < kept_.size(); ++k) {
@@ -184,8 +184,8 @@ std::optional<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& qu
   for (const auto& [negative_overlap, k] : overlaps) {
     const Keyframe& keyframe = kept_[k];
     const places::VerifiedPair pair = places::verify_by_depth(
-        *keyframe.small, query, keyframe.T_world_camera.inverse() * T_world_camera_predicted, camera_,
-        config_);
+        *keyframe.small, query, keyframe.T_world_camera.inverse() * T_world_camera_predicted, reach_m,
+        camera_, config_);
     if (!pair.same || pair.consistent_share <= best_share) continue;
     best_share = pair.consistent_share;
     best = found_from(keyframe, pair.T_known_query, pair.covariance);

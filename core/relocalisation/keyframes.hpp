@@ -67,10 +67,10 @@ class Keyframes {
   [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
 
   /// The pose of an image by its depth alone, where blur, darkness or a bare wall leave no features: aligned
-  /// with the kept frames that see the most of it by the prediction, starting there, and verified as loops
-  /// are (core/places/place_verification.hpp). Nothing if it is not certain.
+  /// with the kept frames that see the most of it by the prediction, starting there (off by about reach_m),
+  /// and verified as loops are (core/places/place_verification.hpp). Nothing if it is not certain.
   [[nodiscard]] std::optional<FoundPlace> find_by_depth(const places::SmallImages& query,
-                                                        const SE3& T_world_camera_predicted);
+                                                        const SE3& T_world_camera_predicted, double reach_m);
 
   /// The pose of each kept frame becomes that of the function, by its stamp.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at);

@@ -25,6 +25,19 @@ RelocalisedPose relocalised_pose(const FoundPlace& found, const Keyframe& keyfra
   return pose;
 }
 
+/// How far off a predicted camera sees a surface at some distance.
+double reach_m(const filter::GaussianState& prediction) {
+  constexpr double kSigmas = 2;
+  constexpr double kDistance_m = 2;
+  constexpr double kLargest_m = 0.5;  // beyond, surfaces are taken for one another
+  const auto largest_sigma_of = [&](int offset) {
+    return largest_sigma(prediction.covariance.block<3, 3>(offset, offset));
+  };
+  const double reach_m =
+      kSigmas * (largest_sigma_of(filter::kPosition) + kDistance_m * largest_sigma_of(filter::kRotation));
+  return std::min(reach_m, kLargest_m);
+}
+
 UnknownMotion unknown_motion(const config::Config& config) {
   const config::InitialisationConfig& initial = config.initialisation;
   const bool gyroscope = config.terms.prior == config::Prior::imu;
@@ -63,7 +76,7 @@ std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame,
   std::optional<RelocalisedPose> pose = likely_pose(found, prediction);
   if (!pose && usable.depth) {
     found = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m),
-                                     prediction.mean.T_world_imu * rig_.T_imu_camera);
+                                     prediction.mean.T_world_imu * rig_.T_imu_camera, reach_m(prediction));
     pose = likely_pose(found, prediction);
     result.by_depth = true;
   }

@@ -54,20 +54,36 @@ TEST(DenseAlignment, DepthAloneFindsThePose) {
   const config::Config config = configuration();
   const auto found =
       aligned_by_depth(appearance_at(kCorner, config).small, appearance_at(kCorner * kTrue, config).small,
-                       start_with(1, 1), false, small_camera(), config);
+                       {start_with(1, 1), false, 0}, small_camera(), config);
   ASSERT_TRUE(found);
   EXPECT_LT(rotation_angle_rad(found->T_known_query.rotation, kTrue.rotation), radians(0.3));
   EXPECT_LT((found->T_known_query.translation - kTrue.translation).norm(), 0.006);
   EXPECT_LT(largest_sigma(found->covariance.bottomRightCorner<3, 3>()), 0.02);
 }
 
+/// As after a second without images: 30 cm and 7 degrees off.
+TEST(DenseAlignment, AWideReachFindsThePoseFromFarAway) {
+  const config::Config config = configuration();
+  const SmallImages known = appearance_at(kCorner, config).small;
+  const SmallImages query = appearance_at(kCorner * kTrue, config).small;
+  const RelativePose start{pose_plus(kTrue, (Vector6d() << 0.07, -0.08, 0.06, 0.2, -0.15, 0.17).finished()),
+                           Matrix6d::Identity()};
+  const auto error_m = [&](double reach_m) {
+    const auto found = aligned_by_depth(known, query, {start, false, reach_m}, small_camera(), config);
+    return found ? (found->T_known_query.translation - kTrue.translation).norm() : 1.0;
+  };
+  EXPECT_GT(error_m(0), 0.05) << "the start is too near: the test is empty";
+  EXPECT_LT(error_m(0.5), 0.006);
+}
+
 TEST(DenseAlignment, AWallLeavesThePoseToTheFeatures) {
   const config::Config config = configuration();
   const Appearance known = appearance_at({}, config, wall());
   const Appearance query = appearance_at(kTrue, config, wall());
-  EXPECT_FALSE(aligned_by_depth(known.small, query.small, start_with(1, 1), false, small_camera(), config));
+  EXPECT_FALSE(
+      aligned_by_depth(known.small, query.small, {start_with(1, 1), false, 0}, small_camera(), config));
   const auto found =
-      aligned_by_depth(known.small, query.small, start_with(0.01, 0.01), true, small_camera(), config);
+      aligned_by_depth(known.small, query.small, {start_with(0.01, 0.01), true, 0}, small_camera(), config);
   ASSERT_TRUE(found);
   const Vector3d moved = found->T_known_query.translation - kTrue.translation;
   const Vector3d before = kStart.translation - kTrue.translation;
@@ -81,7 +97,8 @@ TEST(DenseAlignment, TooLittleDepthIsNoPose) {
   const Appearance known = appearance_at(kCorner, config);
   Appearance query = appearance_at(kCorner * kTrue, config);
   std::fill(query.small.depth_m.data.begin(), query.small.depth_m.data.end(), 0.0F);
-  EXPECT_FALSE(aligned_by_depth(known.small, query.small, start_with(1, 1), false, small_camera(), config));
+  EXPECT_FALSE(
+      aligned_by_depth(known.small, query.small, {start_with(1, 1), false, 0}, small_camera(), config));
 }
 
 TEST(DepthAgreement, APlaceAgreesWithItselfAndNotWithOneElsewhere) {

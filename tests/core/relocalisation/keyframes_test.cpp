@@ -119,7 +119,8 @@ TEST(Keyframes, DepthFindsThePoseInTheDark) {
   RgbdFrame query = seen_from(T_world_room.inverse() * truth);
   std::fill(query.grey.data.begin(), query.grey.data.end(), std::uint8_t{2});
   ASSERT_FALSE(keyframes.find(query.grey)) << "features alone would do: the test is empty";
-  const auto found = keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), predicted);
+  const auto found =
+      keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), predicted, 0);
   ASSERT_TRUE(found);
   EXPECT_LT((found->T_world_camera.translation - truth.translation).norm(), 0.006);
   EXPECT_LT(rotation_angle_rad(found->T_world_camera.rotation, truth.rotation), radians(0.3));
@@ -133,9 +134,9 @@ TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
   const auto of = [](const RgbdFrame& frame) { return places::small_images_of(frame.grey, frame.depth_m); };
   const SE3 turned = kCorner * SE3{so3_exp({0, radians(150), 0}), Vector3d::Zero()};
-  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), turned))
+  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), turned, 0.5))
       << "it shares nothing with the keyframe";
-  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), kCorner))
+  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), kCorner, 0.5))
       << "the prediction is of another place";
 }
 
