@@ -53,6 +53,7 @@ void add_csv(const RunRow& row, const std::vector<std::string>& options, bool wi
              std::string& text) {
   std::string prefix;
   for (const std::string& cell : identity_of(row)) prefix += text::csv_cell(cell) + ",";
+  prefix += fmt::format("{},{},", row.first_frame, row.repetition);
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
     prefix += (value == kUnsetOption ? std::string() : text::csv_cell(std::string(value))) + ",";
@@ -73,6 +74,7 @@ void add_json_lines(const RunRow& row, const std::vector<std::string>& options, 
   const auto identity = identity_of(row);
   for (std::size_t i = 0; i < kIdentity.size(); ++i)
     prefix += fmt::format("\"{}\":{},", kIdentity[i], json_string(identity[i]));
+  prefix += fmt::format("\"first_frame\":{},\"repetition\":{},", row.first_frame, row.repetition);
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
     prefix += json_string(key) + ":" + (value == kUnsetOption ? "null" : json_string(value)) + ",";
@@ -101,6 +103,7 @@ std::string long_table(std::span<const RunRow> rows, const LongTableRequest& req
     return text;
   }
   for (const char* column : kIdentity) text += fmt::format("{},", column);
+  text += "first_frame,repetition,";
   for (const std::string& key : options) text += text::csv_cell(key) + ",";
   text += "metric,unit,value\n";
   for (const RunRow& row : rows) add_csv(row, options, request.without_timing, text);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "eval/run_files/record_files.hpp"
+#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::aggregate {
 
@@ -82,8 +83,10 @@ constexpr auto kFields = std::to_array<Field>({
     {"recording.data", text<&RunRow::data>},
     {"recording.imu", text<&RunRow::imu>},
     {"recording.truth", text<&RunRow::truth>},
+    {"recording.first_frame", count<&RunRow::first_frame>},
     {"variant", text<&RunRow::variant>, true},
     {"config_hash", text<&RunRow::config_hash>, true},
+    {"repetition", count<&RunRow::repetition>},
     {"metrics.ate.stats.rmse", number<&RunNumbers::ate_rmse_m>},
     {"metrics.rpe.frame.translation.stats.rmse", number<&RunNumbers::rpe_frame_m>},
     {"metrics.rpe.second.translation.stats.rmse", number<&RunNumbers::rpe_second_m>},
@@ -271,8 +274,7 @@ class RecordHandler {
   bool finish_option() {
     if (option_.origin.empty()) return wrong(option_key_);
     has_config_ = true;
-    if (option_.origin != "default" && !option_.origin.starts_with("variant "))
-      row_.options.emplace_back(option_key_, option_.value);
+    if (run_files::is_edit(option_.origin)) row_.options.emplace_back(option_key_, option_.value);
     return true;
   }
 
@@ -309,7 +311,8 @@ RunRow damaged_row(RunRow row, std::string reason) {
   row.readable = false;
   row.reason = std::move(reason);
   row.options.clear();
-  row.total = row.tracked = row.lost = 0;
+  row.total = row.tracked = row.lost = row.first_frame = 0;
+  row.repetition = 1;
   return row;
 }
 

@@ -32,7 +32,9 @@ struct RunRow : RunNumbers {
   std::string run;     ///< name of its folder
   std::string folder;  ///< relative to the root, with "/"
   record::RunStatus status = record::RunStatus::failed;
-  std::string reason;  ///< empty if ok
+  std::string reason;           ///< empty if ok
+  std::size_t first_frame = 0;  ///< of its window of the recording
+  std::size_t repetition = 1;
   std::size_t total = 0;
   std::size_t tracked = 0;
   std::size_t lost = 0;

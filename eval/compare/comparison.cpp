@@ -10,6 +10,7 @@
 
 #include "core/config/toml_document.hpp"
 #include "eval/run_files/record_files.hpp"
+#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::compare {
 
@@ -100,8 +101,7 @@ void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateR
 std::map<std::string, std::string> defaults_of(const record::RunRecord& record) {
   std::map<std::string, std::string> defaults;
   for (const record::RecordedOption& option : record.config) {
-    if (option.origin == "default" || option.origin.starts_with("variant "))
-      defaults[option.key] = config::to_toml(option.value);
+    if (!run_files::is_edit(option.origin)) defaults[option.key] = config::to_toml(option.value);
   }
   return defaults;
 }

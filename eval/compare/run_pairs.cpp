@@ -11,14 +11,11 @@
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
+#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::compare {
 
 namespace {
-
-bool was_set(const record::RecordedOption& option) {
-  return option.origin != "default" && !option.origin.starts_with("variant ");
-}
 
 /// Of a variant of this program; of another one the plain ones.
 config::Config defaults_of(const std::string& variant) {
@@ -127,7 +124,7 @@ RunKey key_of(const record::RunRecord& record) {
   const config::Config defaults = defaults_of(record.variant);
   for (const record::RecordedOption& option : record.config) {
     // Whoever sets an option to what it is anyway asks for the same run as who does not.
-    if (was_set(option) && !is_default(defaults, option))
+    if (run_files::is_edit(option.origin) && !is_default(defaults, option))
       options.push_back(fmt::format("{}={}", option.key, config::to_toml(option.value)));
   }
   std::ranges::sort(options);

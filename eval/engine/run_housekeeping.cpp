@@ -112,10 +112,11 @@ Result<std::vector<ListedRun>> list_runs(const fs::path& root, bool verify) {
   std::vector<ListedRun> runs;
   for (const fs::path& file : *files) {
     const fs::path folder = file.parent_path();
-    auto head = run::record_head(folder);
-    if (!head) continue;  // removed just now
-    if (verify) verify_files(folder, *head);
-    runs.push_back({folder.lexically_relative(root), std::move(*head)});
+    const auto run = run_files::found_run(folder);
+    if (!run) continue;  // removed just now
+    run::RecordHead head = run::head_of(*run);
+    if (verify) verify_files(folder, head);
+    runs.push_back({folder.lexically_relative(root), std::move(head), run_files::traits_of(*run)});
   }
   std::ranges::sort(runs, {}, &ListedRun::folder);
   return runs;

@@ -9,12 +9,14 @@
 
 #include "core/base/error.hpp"
 #include "eval/run/run.hpp"
+#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::engine {
 
 struct ListedRun {
   std::filesystem::path folder;  ///< relative to the root
   run::RecordHead head;
+  run_files::RunTraits traits;
 };
 
 /// Every run below a folder, by path. What is damaged, or no record that can be read, is a failed run with

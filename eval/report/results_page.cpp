@@ -21,6 +21,7 @@
 #include "eval/report/run_charts.hpp"
 #include "eval/report/run_series.hpp"
 #include "eval/run_files/record_files.hpp"
+#include "eval/run_files/run_labels.hpp"
 #include "eval/tables/table.hpp"
 
 namespace fusebench::report {
@@ -66,11 +67,24 @@ std::vector<Group> groups_of(const std::vector<run_files::FoundRun>& runs) {
   return groups;
 }
 
-std::string label_of(const run_files::FoundRun& run, Group group) {
-  const auto same = std::ranges::count(group, run.record.variant,
-                                       [](const run_files::FoundRun& other) { return other.record.variant; });
-  return same > 1 ? fmt::format("{} ({})", run.record.variant, run.folder.filename().string())
-                  : run.record.variant;
+using Labels = std::vector<std::string>;  // one a run of a group
+
+const std::string& label_of(const run_files::FoundRun& run, Group group, const Labels& labels) {
+  const auto found = std::ranges::find(group, run.folder, &run_files::FoundRun::folder);
+  return labels[static_cast<std::size_t>(found - group.begin())];
+}
+
+/// The recording's name, with the window where others of it have sections of their own.
+std::string title_of(const record::RecordedRecording& recording,
+                     const std::vector<run_files::FoundRun>& runs) {
+  const bool other_window = std::ranges::any_of(runs, [&](const run_files::FoundRun& run) {
+    const record::RecordedRecording& other = run.record.recording;
+    return other.name == recording.name && other.frames > 0 &&
+           (other.first_frame != recording.first_frame || other.frames != recording.frames);
+  });
+  if (!other_window || recording.frames == 0) return recording.name;
+  return fmt::format("{}, frames {}:{}", recording.name, recording.first_frame,
+                     recording.first_frame + recording.frames);
 }
 
 page::PageTable page_table(const tables::ResultTable& table) {
@@ -99,16 +113,16 @@ std::string facts_of(const record::RecordedRecording& recording) {
                      recording.duration_s, recording.truth.empty() ? "unknown" : recording.truth);
 }
 
-page::PageTable run_facts(Group group) {
+page::PageTable run_facts(Group group, const Labels& labels) {
   page::PageTable table;
   const bool reasons =
       std::ranges::any_of(group, [](const run_files::FoundRun& r) { return !r.record.reason.empty(); });
   table.header = {"run", "status", "tracked", "lost", "IMU"};
   if (reasons) table.header.emplace_back("reason");
-  for (const run_files::FoundRun& run : group) {
-    const record::RunRecord& r = run.record;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const record::RunRecord& r = group[i].record;
     table.rows.push_back(
-        {{label_of(run, group), record::status_text(r.status, r.metrics.silent_frames()),
+        {{labels[i], record::status_text(r.status, r.metrics.silent_frames()),
           fmt::format("{}/{}", r.frames.tracked, r.frames.total), fmt::format("{}", r.frames.lost),
           r.recording.imu},
          r.status == record::RunStatus::ok && r.metrics.silent_frames().value_or(0) == 0 ? "" : "warning"});
@@ -127,20 +141,23 @@ std::vector<page::PageImage> page_images(const PatchPictures& pictures) {
 }
 
 /// Of the first variants that kept their patches.
-PatchPictures pictures_of(Group group, std::vector<std::string>& warnings) {
+PatchPictures pictures_of(Group drawn, Group group, const Labels& labels,
+                          std::vector<std::string>& warnings) {
   std::vector<LabelledPatches> runs;
-  for (const run_files::FoundRun& run : group) {
+  std::vector<std::string> variants;
+  for (const run_files::FoundRun& run : drawn) {
     if (runs.size() == kMostPictured) break;
-    const std::string& variant = run.record.variant;
     if (run.state != run_files::RunState::whole) continue;
-    if (std::ranges::find(runs, variant, &LabelledPatches::label) != runs.end()) continue;
+    if (std::ranges::find(variants, run.record.variant) != variants.end()) continue;
     std::error_code ignored;
     const bool is_there = std::filesystem::exists(run.folder / "patches.csv", ignored);
     const auto checked =
         is_there ? run_files::check_file(run.folder, run.record, "patches.csv") : Result<void>();
     auto frames = checked ? run_files::read_patch_table(run.folder) : tl::unexpected(checked.error());
     if (!frames) warnings.push_back(frames.error().message);
-    if (frames && !frames->empty()) runs.push_back({variant, std::move(*frames)});
+    if (!frames || frames->empty()) continue;
+    runs.push_back({label_of(run, group, labels), std::move(*frames)});
+    variants.push_back(run.record.variant);
   }
   return patch_pictures(runs);
 }
@@ -193,10 +210,9 @@ std::string value_text(const config::OptionValue& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
 
-page::PageDetails configuration_of(const run_files::FoundRun& run, Group group) {
+page::PageDetails configuration_of(const run_files::FoundRun& run, const std::string& label) {
   const record::RunRecord& r = run.record;
-  page::PageDetails details{
-      fmt::format("{}: configuration {} and provenance", label_of(run, group), r.config_hash), {}};
+  page::PageDetails details{fmt::format("{}: configuration {} and provenance", label, r.config_hash), {}};
   details.table.header = {"key", "value", "from"};
   const record::RecordedProvenance& p = r.provenance;
   const bool imported = r.timing.stages_ms.empty() && !r.program;  // it ran elsewhere, and was evaluated here
@@ -242,14 +258,17 @@ std::vector<run_files::FoundRun> runs_to_draw(Group group) {
   return runs;
 }
 
-void add_recording(ResultsPage& result, Group group, const Detail& detail) {
+void add_recording(ResultsPage& result, Group group, const std::vector<run_files::FoundRun>& all,
+                   const Detail& detail) {
   page::Page& page = result.page;
   const auto started = std::ranges::find_if(
       group, [](const run_files::FoundRun& run) { return run.record.recording.frames > 0; });
   const record::RecordedRecording& recording =
       (started == group.end() ? group.begin() : started)->record.recording;
-  page.sections.push_back(
-      {recording.name, started == group.end() ? "No run began." : facts_of(recording), run_facts(group)});
+  const Labels labels = run_files::run_labels(run_files::traits_of(group));
+  page.sections.push_back({title_of(recording, all),
+                           started == group.end() ? "No run began." : facts_of(recording),
+                           run_facts(group, labels)});
   const std::vector<run_files::FoundRun> drawn = runs_to_draw(group);
   if (drawn.size() < group.size()) {
     page.sections.back().text +=
@@ -262,14 +281,15 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
       continue;
     }
     if (run.record.frames.total == 0) continue;  // failed before its first frame: there is nothing to draw
-    series.push_back(series_of(run, label_of(run, group)));
+    series.push_back(series_of(run, label_of(run, group, labels)));
     for (const std::string& warning : series.back().warnings) result.warnings.push_back(warning);
   }
   add_charts(page, "Trajectories", view_charts(series, detail.buckets));
   add_charts(page, "Position over time", position_charts(series, detail.buckets));
   add_charts(page, "Errors", error_charts(series, detail.buckets));
   add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
-  if (const PatchPictures pictures = pictures_of(drawn, result.warnings); !pictures.pictures.empty())
+  if (const PatchPictures pictures = pictures_of(drawn, group, labels, result.warnings);
+      !pictures.pictures.empty())
     page.sections.push_back({"Patches", pictures.text, page_images(pictures), 3});
   if (page::PageScene scene = scene_of(series, detail.triangles, result.warnings); !scene.meshes.empty()) {
     page.sections.push_back(
@@ -278,7 +298,8 @@ void add_recording(ResultsPage& result, Group group, const Detail& detail) {
   add_charts(page, "Health and time", tracking_charts(series, detail.buckets));
   add_charts(page, "Profiles", profile_charts(series));
   std::vector<page::PageDetails> details;
-  for (const run_files::FoundRun& run : drawn) details.push_back(configuration_of(run, group));
+  for (const run_files::FoundRun& run : drawn)
+    details.push_back(configuration_of(run, label_of(run, group, labels)));
   page.sections.push_back({"Configuration and provenance", "", std::move(details), 3});
 }
 
@@ -298,7 +319,7 @@ ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std
   std::size_t drawn = 0;
   for (const Group group : groups_of(runs)) drawn += std::min(group.size(), kMostDrawn);
   const Detail detail = detail_for(drawn);
-  for (const Group group : groups_of(runs)) add_recording(result, group, detail);
+  for (const Group group : groups_of(runs)) add_recording(result, group, runs, detail);
   return result;
 }
 

@@ -25,15 +25,18 @@ std::string run_identity(const RunSpec& spec, const recording::Recording& record
   return identity.hex();
 }
 
+RecordHead head_of(const run_files::FoundRun& run) {
+  return {run.record.status,
+          run.record.reason,
+          run.record.run_id,
+          run.state,
+          run_files::missing_files(run.folder, run.record),
+          run.record.model.vertices > 0};
+}
+
 std::optional<RecordHead> record_head(const std::filesystem::path& folder) {
   const auto run = run_files::found_run(folder);
-  if (!run) return std::nullopt;
-  return RecordHead{run->record.status,
-                    run->record.reason,
-                    run->record.run_id,
-                    run->state,
-                    run_files::missing_files(folder, run->record),
-                    run->record.model.vertices > 0};
+  return run ? std::optional(head_of(*run)) : std::nullopt;
 }
 
 PreparedRun place_run(RunSpec spec, recording::Recording recording, const TakenFolders& taken) {

@@ -36,6 +36,7 @@ struct RecordHead {
   std::vector<std::string> missing{};                      ///< recorded files that are not there
   bool has_model = false;                                  ///< the run reconstructed something
 };
+[[nodiscard]] RecordHead head_of(const run_files::FoundRun& run);
 /// Reads the whole record and looks at the sizes of the files. Nothing if there is no record in the folder.
 [[nodiscard]] std::optional<RecordHead> record_head(const std::filesystem::path& folder);
 

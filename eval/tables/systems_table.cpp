@@ -10,6 +10,7 @@
 
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "eval/record/data_labels.hpp"
+#include "eval/run_files/run_labels.hpp"
 #include "eval/tables/published_table.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
@@ -124,17 +125,21 @@ std::vector<RunGroup> groups_of(const std::vector<run_files::FoundRun>& runs) {
   return groups;
 }
 
-/// Rows of one name are of different frames, or of different versions or configurations.
-std::string what_tells_apart(const std::vector<RunGroup>& groups, std::size_t row) {
+/// Rows of one name are of different frames, options or versions. edits: those that rows differ in, one a
+/// row.
+std::string what_tells_apart(const std::vector<RunGroup>& groups, const std::vector<std::string>& edits,
+                             std::size_t row) {
   const record::RunRecord& here = groups[row].front()->record;
-  bool by_frames = false, by_version = false;
+  bool by_frames = false, by_edits = false, by_version = false;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const record::RunRecord& other = groups[i].front()->record;
     if (i == row || !same_name(here, other)) continue;
     by_frames |= !same_frames(here, other);
-    by_version |= here.config_hash != other.config_hash;
+    by_edits |= edits[row] != edits[i];
+    by_version |= here.config_hash != other.config_hash && edits[row] == edits[i];
   }
   std::string text;
+  if (by_edits && !edits[row].empty()) text += " " + edits[row];
   if (by_version) text += " #" + here.config_hash.substr(0, 8);
   if (by_frames)
     text += fmt::format(" [{}:{}]", here.recording.first_frame,
@@ -278,9 +283,12 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   SystemsTable table;
   const std::vector<run_files::FoundRun> runs = with_final_poses(found);
   const std::vector<RunGroup> groups = groups_of(runs);
+  std::vector<run_files::RunTraits> traits;
+  for (const RunGroup& group : groups) traits.push_back(run_files::traits_of(*group.front()));
+  const std::vector<std::string> edits = run_files::differing_edits(traits);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     table.rows.push_back(row_of(groups[i]));
-    table.rows.back().system += what_tells_apart(groups, i);
+    table.rows.back().system += what_tells_apart(groups, edits, i);
     const std::string& recording = table.rows.back().recording;
     const bool last = i + 1 == groups.size() || groups[i + 1].front()->record.recording.name != recording;
     if (!last) continue;
@@ -289,9 +297,10 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   table.footer = {
       "Medians over the runs of a system with their ranges; one number where all are the same. Poses: online "
       "as each was known when its frame came, final as all were known at the end; published: numbers from "
-      "elsewhere (see configs/paper), by protocols of their own, and not run here. #: version of a program "
-      "or "
-      "configuration of a variant; [A:B]: frames, where rows of one system differ in them.",
+      "elsewhere (see configs/paper), by protocols of their own, and not run here. KEY=VALUE: edited "
+      "options; "
+      "#: version of a program or configuration of a variant; [A:B]: frames, where rows of one system differ "
+      "in them.",
       "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
       "lost. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true surface. "
       "Silent: frames with a wrong pose. CPU: user and system time of all threads by the frames of the "

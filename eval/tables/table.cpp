@@ -16,6 +16,7 @@
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/record_files.hpp"
+#include "eval/run_files/run_labels.hpp"
 #include "eval/tables/common_pixels.hpp"
 
 namespace fusebench::tables {
@@ -28,7 +29,7 @@ std::optional<double> finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-TableRow row_of(const run_files::FoundRun& run) {
+TableRow row_of(const run_files::FoundRun& run, const run_files::RunTraits& traits, std::string label) {
   const record::RunRecord& record = run.record;
   TableRow row;
   row.recording = record.recording.name;
@@ -36,6 +37,10 @@ TableRow row_of(const run_files::FoundRun& run) {
   row.imu = record.recording.imu;
   row.truth = record.recording.truth;
   row.variant = record.variant;
+  row.label = std::move(label);
+  row.edits = traits.edits;
+  row.first_frame = traits.first_frame;
+  row.repetition = traits.repetition;
   row.run = run.folder.filename().string();
   row.status = record.status;
   row.reason = record.reason;
@@ -49,7 +54,7 @@ TableRow row_of(const run_files::FoundRun& run) {
   }
   row.tracked = record.frames.tracked;
   row.total = record.frames.total;
-  row.vertices = record.model.vertices;
+  if (record.model.vertices > 0) row.vertices = record.model.vertices;
   if (record.timing.fps > 0) row.fps = record.timing.fps;
   return row;
 }
@@ -96,18 +101,20 @@ void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable
   }
 }
 
-/// Synthetic or simulated data are never in one mean with others.
-std::vector<TableMean> means_of(const std::vector<TableRow>& rows) {
+/// Synthetic or simulated data are never in one mean with others, and neither are other options.
+/// labels: of the variant with its options, one a row.
+std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::vector<std::string>& labels) {
   std::vector<TableMean> means;
   std::vector<std::set<std::string>> recordings;
   std::vector<std::array<std::size_t, 6>> counts;
-  for (const TableRow& row : rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const TableRow& row = rows[i];
     const auto same = [&](const TableMean& m) {
-      return m.data == row.data && m.imu == row.imu && m.truth == row.truth && m.variant == row.variant;
+      return m.data == row.data && m.imu == row.imu && m.truth == row.truth && m.label == labels[i];
     };
     const auto at = static_cast<std::size_t>(std::ranges::find_if(means, same) - means.begin());
     if (at == means.size()) {
-      means.push_back({row.data, row.imu, row.truth, row.variant, 0, 0, 0, 0, {}});
+      means.push_back({row.data, row.imu, row.truth, row.variant, labels[i], 0, 0, 0, 0, {}});
       recordings.emplace_back();
       counts.emplace_back();
     }
@@ -174,14 +181,21 @@ std::vector<std::string> footer_of(const ResultTable& table) {
 
 ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   ResultTable table;
-  for (const run_files::FoundRun& run : runs) {
-    table.rows.push_back(row_of(run));
+  const std::vector<run_files::RunTraits> traits = run_files::traits_of(runs);
+  const std::vector<std::string> labels = run_files::run_labels(traits);
+  std::vector<std::string> configurations = run_files::differing_edits(traits);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const run_files::FoundRun& run = runs[i];
+    table.rows.push_back(row_of(run, traits[i], labels[i]));
+    configurations[i] = run.record.variant + (configurations[i].empty() ? "" : " ") + configurations[i];
     if (run.record.status == record::RunStatus::ok) continue;
-    table.notes.push_back(fmt::format("{}, {}: {}: {}", run.record.recording.name, run.record.variant,
+    table.notes.push_back(fmt::format("{}, {}: {}: {}", run.record.recording.name, labels[i],
                                       record::to_string(run.record.status), run.record.reason));
   }
+  if (const std::string shared = run_files::shared_edits(traits); !shared.empty())
+    table.notes.push_back(fmt::format("all runs with {}", shared));
   add_common_pixels(runs, table);
-  table.means = means_of(table.rows);
+  table.means = means_of(table.rows, configurations);
   table.footer = footer_of(table);
   return table;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -43,22 +44,27 @@ struct TableRow : TableValues {
   std::string imu;    ///< "none", "recorded", "synthetic IMU"
   std::string truth;  ///< "none", "given", kPseudoTruthWord
   std::string variant;
+  std::string label;  ///< the variant, with what tells the run from others (run_files::run_labels)
+  std::vector<std::pair<std::string, std::string>> edits;  ///< key and value text of edited options
+  std::size_t first_frame = 0;                             ///< of its window of the recording
+  int repetition = 1;
   std::string run;  ///< folder name, hash8
   record::RunStatus status = record::RunStatus::failed;
   std::string reason;
   std::optional<std::size_t> silent;  ///< silent failures; absent without truth
   std::size_t tracked = 0;
   std::size_t total = 0;
-  std::size_t vertices = 0;
+  std::optional<std::size_t> vertices;  ///< of the model, if there is one
   std::optional<double> fps;
 };
 
-/// Of the runs of a variant on data of one kind.
+/// Of the runs of a variant with the same options on data of one kind.
 struct TableMean {
   std::string data;
   std::string imu;
   std::string truth;
   std::string variant;
+  std::string label;           ///< the variant, with the edits that not all runs share
   std::size_t recordings = 0;  ///< different ones
   std::size_t ok = 0;
   std::size_t total = 0;

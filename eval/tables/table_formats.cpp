@@ -31,26 +31,19 @@ void add_values(const TableValues& values, Cells& cells) {
     cells.push_back(text::number_cell(values.*column.value, column.shown_factor, column.decimals));
 }
 
-/// The run's name is shown only where the same variant occurs twice.
-bool repeated(const ResultTable& table, const TableRow& row) {
-  return std::count_if(table.rows.begin(), table.rows.end(), [&](const TableRow& other) {
-           return other.recording == row.recording && other.variant == row.variant;
-         }) > 1;
-}
-
-Cells shown_cells(const ResultTable& table, const TableRow& row) {
-  Cells cells = {row.recording, record::data_cell({row.data, row.imu, row.truth}), row.imu,
-                 repeated(table, row) ? fmt::format("{} ({})", row.variant, row.run) : row.variant,
+Cells shown_cells(const TableRow& row) {
+  Cells cells = {row.recording, record::data_cell({row.data, row.imu, row.truth}), row.imu, row.label,
                  record::status_text(row.status, row.silent)};
   add_values(row, cells);
-  cells.insert(cells.end(), {fmt::format("{}/{}", row.tracked, row.total), fmt::format("{}", row.vertices),
-                             text::number_cell(row.fps, 1, 1)});
+  cells.insert(cells.end(),
+               {fmt::format("{}/{}", row.tracked, row.total),
+                row.vertices ? fmt::format("{}", *row.vertices) : "-", text::number_cell(row.fps, 1, 1)});
   return cells;
 }
 
 Cells shown_cells(const TableMean& mean) {
   Cells cells = {fmt::format("mean over {} recordings", mean.recordings),
-                 record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.variant,
+                 record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
                  mean.silent > 0 ? fmt::format("{}/{} ok ({} silent)", mean.ok, mean.total, mean.silent)
                                  : fmt::format("{}/{} ok", mean.ok, mean.total)};
   add_values(mean.values, cells);
@@ -76,7 +69,8 @@ std::string markdown(const ResultTable& table) {
   return text;
 }
 
-/// The cells in which a run is the best of its recording's ok runs, if there are others; ties are all best.
+/// The cells in which a run is the best of its recording's ok runs over the same frames, if there are others;
+/// ties are all best.
 std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row) {
   std::vector<std::size_t> best;
   for (std::size_t c = 0; c < table_columns().size(); ++c) {
@@ -85,6 +79,7 @@ std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& ro
     bool is_best = row.status == record::RunStatus::ok && (row.*column.value).has_value();
     for (const TableRow& other : table.rows) {
       if (!is_best || &other == &row || other.recording != row.recording) continue;
+      if (other.first_frame != row.first_frame || other.total != row.total) continue;
       if (other.status != record::RunStatus::ok || !(other.*column.value)) continue;
       ++others;
       is_best = *(row.*column.value) <= *(other.*column.value);
@@ -98,7 +93,7 @@ std::string latex(const ResultTable& table) {
   std::string text = text::latex_begin(header_cells(), kTextColumns);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (i > 0 && table.rows[i].recording != table.rows[i - 1].recording) text += "\\midrule\n";
-    text += text::latex_line(shown_cells(table, table.rows[i]), best_cells(table, table.rows[i]));
+    text += text::latex_line(shown_cells(table.rows[i]), best_cells(table, table.rows[i]));
   }
   if (!table.means.empty()) text += "\\midrule\n";
   for (const TableMean& mean : table.means) text += text::latex_line(shown_cells(mean));
@@ -110,13 +105,17 @@ std::string latex(const ResultTable& table) {
 }
 
 std::string csv_identity(const TableRow& row) {
-  return fmt::format("{},{},{},{},{},{},{}", text::csv_cell(row.recording), text::csv_cell(row.data),
+  std::string options;
+  for (const auto& [key, value] : row.edits)
+    options += fmt::format("{}{}={}", options.empty() ? "" : " ", key, value);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{}", text::csv_cell(row.recording), text::csv_cell(row.data),
                      text::csv_cell(row.imu), text::csv_cell(row.truth), text::csv_cell(row.variant),
-                     text::csv_cell(row.run), record::to_string(row.status));
+                     text::csv_cell(row.run), text::csv_cell(options), row.first_frame, row.repetition,
+                     record::to_string(row.status));
 }
 
 std::string csv(const ResultTable& table) {
-  std::string text = "recording,data,imu,truth,variant,run,status,reason";
+  std::string text = "recording,data,imu,truth,variant,run,options,first_frame,repetition,status,reason";
   for (const TableColumn& column : table_columns()) text += fmt::format(",{}", column.key);
   text += ",silent,tracked,total,vertices,fps\n";
   for (const TableRow& row : table.rows) {
@@ -124,13 +123,15 @@ std::string csv(const ResultTable& table) {
     for (const TableColumn& column : table_columns())
       text += row.*column.value ? fmt::format(",{}", *(row.*column.value)) : ",";
     text += fmt::format(",{},{},{},{},{}\n", row.silent ? fmt::format("{}", *row.silent) : "", row.tracked,
-                        row.total, row.vertices, row.fps ? fmt::format("{}", *row.fps) : "");
+                        row.total, row.vertices ? fmt::format("{}", *row.vertices) : "",
+                        row.fps ? fmt::format("{}", *row.fps) : "");
   }
   return text;
 }
 
 std::string csv_long(const ResultTable& table) {
-  std::string text = "recording,data,imu,truth,variant,run,status,metric,unit,value\n";
+  std::string text =
+      "recording,data,imu,truth,variant,run,options,first_frame,repetition,status,metric,unit,value\n";
   for (const TableRow& row : table.rows) {
     const auto add = [&](const char* metric, const char* unit, double value) {
       text += fmt::format("{},{},{},{}\n", csv_identity(row), metric, unit, value);
@@ -141,7 +142,7 @@ std::string csv_long(const ResultTable& table) {
     if (row.silent) add("silent", "frames", static_cast<double>(*row.silent));
     add("tracked", "frames", static_cast<double>(row.tracked));
     add("total", "frames", static_cast<double>(row.total));
-    add("vertices", "", static_cast<double>(row.vertices));
+    if (row.vertices) add("vertices", "", static_cast<double>(*row.vertices));
     if (row.fps) add("fps", "1/s", *row.fps);
   }
   return text;
@@ -157,11 +158,17 @@ Json json_of(const TableValues& values) {
 std::string json(const ResultTable& table) {
   Json rows = Json::array();
   for (const TableRow& row : table.rows) {
+    Json options = Json::object();
+    for (const auto& [key, value] : row.edits) options[key] = value;
     Json json = {{"recording", row.recording},
                  {"data", row.data},
                  {"imu", row.imu},
                  {"truth", row.truth},
                  {"variant", row.variant},
+                 {"label", row.label},
+                 {"options", std::move(options)},
+                 {"first_frame", row.first_frame},
+                 {"repetition", row.repetition},
                  {"run", row.run},
                  {"status", record::to_string(row.status)},
                  {"reason", row.reason}};
@@ -169,20 +176,15 @@ std::string json(const ResultTable& table) {
     json.update(Json{{"silent", row.silent ? Json(*row.silent) : Json(nullptr)},
                      {"tracked", row.tracked},
                      {"total", row.total},
-                     {"vertices", row.vertices},
+                     {"vertices", row.vertices ? Json(*row.vertices) : Json(nullptr)},
                      {"fps", row.fps ? Json(*row.fps) : Json(nullptr)}});
     rows.push_back(std::move(json));
   }
   Json means = Json::array();
   for (const TableMean& mean : table.means) {
-    Json json = {{"data", mean.data},
-                 {"imu", mean.imu},
-                 {"truth", mean.truth},
-                 {"variant", mean.variant},
-                 {"recordings", mean.recordings},
-                 {"n_ok", mean.ok},
-                 {"n_total", mean.total},
-                 {"n_silent", mean.silent}};
+    Json json = {{"data", mean.data},       {"imu", mean.imu},       {"truth", mean.truth},
+                 {"variant", mean.variant}, {"label", mean.label},   {"recordings", mean.recordings},
+                 {"n_ok", mean.ok},         {"n_total", mean.total}, {"n_silent", mean.silent}};
     json.update(json_of(mean.values));
     means.push_back(std::move(json));
   }
@@ -201,7 +203,7 @@ std::string json(const ResultTable& table) {
 
 std::vector<Cells> table_cells(const ResultTable& table) {
   std::vector<Cells> lines = {header_cells()};
-  for (const TableRow& row : table.rows) lines.push_back(shown_cells(table, row));
+  for (const TableRow& row : table.rows) lines.push_back(shown_cells(row));
   for (const TableMean& mean : table.means) lines.push_back(shown_cells(mean));
   return lines;
 }

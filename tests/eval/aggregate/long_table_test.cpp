@@ -22,6 +22,8 @@ std::vector<RunRow> two_runs() {
   std::vector<RunRow> rows = {sample_row("desk", {{"a.b", "1"}}, 0.0123, 7.5),
                               sample_bad_row("desk", {{"c", "x, \"y\""}}, RunStatus::failed)};
   rows[0].run = "01234567";
+  rows[0].first_frame = 100;
+  rows[0].repetition = 2;
   rows[1].run = "not-started";
   rows[1].reason = "no, \"never\"";
   rows[1].total = 0;
@@ -29,14 +31,15 @@ std::vector<RunRow> two_runs() {
 }
 
 TEST(LongTable, CsvHasALineForEachNumberAndOneForARunWithout) {
-  EXPECT_EQ(long_table(two_runs(), {}),
-            "recording,data,imu,truth,variant,run,status,reason,a.b,c,metric,unit,value\n"
-            "desk,recorded,none,given,full,01234567,ok,,1,,frames,frames,100\n"
-            "desk,recorded,none,given,full,01234567,ok,,1,,frames_tracked,frames,100\n"
-            "desk,recorded,none,given,full,01234567,ok,,1,,frames_lost,frames,0\n"
-            "desk,recorded,none,given,full,01234567,ok,,1,,ate_rmse_m,m,0.0123\n"
-            "desk,recorded,none,given,full,01234567,ok,,1,,cpu_ms_per_frame,ms,7.5\n"
-            "desk,recorded,none,given,full,not-started,failed,\"no, \"\"never\"\"\",,\"x, \"\"y\"\"\",,,\n");
+  EXPECT_EQ(
+      long_table(two_runs(), {}),
+      "recording,data,imu,truth,variant,run,status,reason,first_frame,repetition,a.b,c,metric,unit,value\n"
+      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,frames,frames,100\n"
+      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,frames_tracked,frames,100\n"
+      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,frames_lost,frames,0\n"
+      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,ate_rmse_m,m,0.0123\n"
+      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,cpu_ms_per_frame,ms,7.5\n"
+      "desk,recorded,none,given,full,not-started,failed,\"no, \"\"never\"\"\",0,1,,\"x, \"\"y\"\"\",,,\n");
 }
 
 TEST(LongTable, WithoutTimingOnlyTheInputsCount) {
@@ -58,6 +61,7 @@ TEST(LongTable, JsonLinesAreDocumentsWithTheSameNumbers) {
   EXPECT_EQ(documents[3].at("metric"), "ate_rmse_m");
   EXPECT_EQ(documents[3].at("value"), 0.0123);
   EXPECT_EQ(documents[3].at("a.b"), "1");
+  EXPECT_EQ(documents[3].at("first_frame"), 100);
   EXPECT_TRUE(documents[3].at("c").is_null());
   EXPECT_TRUE(documents[5].at("metric").is_null());
   EXPECT_EQ(documents[5].at("reason"), "no, \"never\"");

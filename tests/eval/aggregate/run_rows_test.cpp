@@ -50,6 +50,8 @@ RunRecord sample_record(const std::string& recording, const std::string& variant
   mesh.first_camera.accuracy.stats = statistics(std::vector<double>{9.0});
   record.metrics.mesh = {mesh, {}};
   record.frames = {100, 70, 10};
+  record.recording.first_frame = 20;
+  record.repetition = 3;
   record.timing = {20, 4, 1'000'000, 4, {{"update", 3.0}}};
   return record;
 }
@@ -72,6 +74,7 @@ TEST(RecordScan, KeepsWhatTheRecordHas) {
   EXPECT_EQ(row.cpu_ms_per_frame, 50);  // of 80 processed frames
   EXPECT_EQ(row.peak_rss_bytes, 1e6);
   EXPECT_EQ(std::tuple(row.total, row.tracked, row.lost), std::tuple(100U, 70U, 10U));
+  EXPECT_EQ(std::tuple(row.first_frame, row.repetition), std::tuple(20U, 3U));
 }
 
 TEST(RecordScan, OnlyEditedOptionsAreKeptByKey) {

@@ -172,7 +172,7 @@ TEST_F(TableTest, CsvAndJsonCarryTheSameNumbers) {
 TEST_F(TableTest, LongCsvHasALineForEachNumber) {
   add_three_runs();
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::csv_long);
-  EXPECT_NE(text.find("fr1_rpy,recorded,synthetic IMU,none,full,01234567,ok,ate_rmse_m,m,0.0123\n"),
+  EXPECT_NE(text.find("fr1_rpy,recorded,synthetic IMU,none,full,01234567,,0,1,ok,ate_rmse_m,m,0.0123\n"),
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("lost,ate_rmse_m"), std::string::npos) << text;  // does not exist
@@ -217,6 +217,34 @@ TEST_F(TableTest, TwoRunsOfOneVariantAreToldApart) {
   EXPECT_NE(text.find("full (bbbbbbbb)"), std::string::npos) << text;
 }
 
+TEST_F(TableTest, RowsOfASweepHaveTheirOptionsAndMeansAreOfOneConfiguration) {
+  for (const char* recording : {"fr1_rpy", "fr1_xyz"}) {
+    recording_ = recording;
+    add_run("full", RunStatus::ok, "", 0.01, {}, "aaaaaaaa");
+    add_run("full", RunStatus::ok, "", 0.03, {}, "bbbbbbbb");
+    const auto edited = std::filesystem::path("runs") / recording / "full/bbbbbbbb/record.json";
+    RunRecord record = *read_record(folder_ / edited);
+    record.config = {{"tsdf.voxel_m", 0.02, "sweep"}};
+    write(edited, to_json(record));
+    const auto plain = std::filesystem::path("runs") / recording / "full/aaaaaaaa/record.json";
+    record = *read_record(folder_ / plain);
+    record.config = {{"tsdf.voxel_m", 0.01, "default"}};
+    write(plain, to_json(record));
+  }
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value());
+  EXPECT_EQ(table->rows[0].label, "full");
+  EXPECT_EQ(table->rows[1].label, "full tsdf.voxel_m=0.02");
+  ASSERT_EQ(table->means.size(), 2U);
+  EXPECT_DOUBLE_EQ(*table->means[0].values.ate_rmse_m, 0.01);
+  EXPECT_DOUBLE_EQ(*table->means[1].values.ate_rmse_m, 0.03);
+  EXPECT_EQ(table->means[1].label, "full tsdf.voxel_m=0.02");
+  const auto json = nlohmann::json::parse(render_table(*table, TableFormat::json));
+  EXPECT_EQ(json["rows"][1]["options"]["tsdf.voxel_m"], "0.02");
+  EXPECT_NE(render_table(*table, TableFormat::csv).find("bbbbbbbb,tsdf.voxel_m=0.02,0,1,ok"),
+            std::string::npos);
+}
+
 TEST_F(TableTest, DamagedDifferencesCostOnlyTheCommonColumn) {
   add_three_runs();
   std::filesystem::resize_file(folder_ / "runs/fr1_rpy/dm/01234567/intensity.bin", 30);
@@ -239,6 +267,7 @@ TEST_F(TableTest, AnImportedRunLeavesTheCommonPixelsOfOursAlone) {
   EXPECT_EQ(table->rows[3].variant, "Other");
   EXPECT_DOUBLE_EQ(*table->rows[0].aie_common_grey, 2.0);
   EXPECT_FALSE(table->rows[3].fps.has_value());
+  EXPECT_FALSE(table->rows[3].vertices.has_value());
 }
 
 TEST_F(TableTest, UnfinishedRunsAreNotRead) {
