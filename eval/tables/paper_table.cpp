@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "eval/record/data_labels.hpp"
+#include "eval/run_files/run_labels.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -32,41 +34,76 @@ std::set<std::string> folder_names(const std::string& recording) {
   return names;
 }
 
-/// A run and its row of the table of results.
+/// A run with its row of the table of results, and the edited options that not all runs share.
 struct Place {
   const run_files::FoundRun* run = nullptr;
   const TableRow* row = nullptr;
+  const std::string* edits = nullptr;
 };
 
-Place place_of(const std::vector<run_files::FoundRun>& runs, const ResultTable& table,
-               const std::set<std::string>& names, const std::string& variant) {
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const record::RunRecord& record = runs[i].record;
-    if (record.status == record::RunStatus::ok && record.variant == variant &&
-        names.contains(record.recording.name))
-      return {&runs[i], &table.rows[i]};
+/// All that was run here.
+struct RunsHere {
+  const std::vector<run_files::FoundRun>& runs;
+  ResultTable table;
+  std::vector<std::string> edits;
+};
+
+bool has_synthetic_imu(const run_files::FoundRun& run) { return run.record.recording.imu == "synthetic IMU"; }
+
+/// Of the runs of a variant that are ok, the first without edited options of its own, else the first.
+Place place_of(const RunsHere& here, const std::set<std::string>& names, const std::string& variant,
+               bool synthetic_imu) {
+  Place best;
+  for (std::size_t i = 0; i < here.runs.size(); ++i) {
+    const record::RunRecord& record = here.runs[i].record;
+    if (record.status != record::RunStatus::ok || record.variant != variant ||
+        !names.contains(record.recording.name) || has_synthetic_imu(here.runs[i]) != synthetic_imu)
+      continue;
+    if (best.run == nullptr || (here.edits[i].empty() && !best.edits->empty()))
+      best = {&here.runs[i], &here.table.rows[i], &here.edits[i]};
   }
-  return {};
+  return best;
 }
 
-std::optional<double> ratio_of(const std::vector<std::optional<double>>& values) {
+/// The variants of the table, then the other ones of which an ok run has the value.
+std::vector<std::string> systems_here(const PublishedTable& published,
+                                      const std::vector<run_files::FoundRun>& runs) {
+  std::vector<std::string> systems = published.variants;
+  for (const run_files::FoundRun& run : runs) {
+    const record::RunRecord& record = run.record;
+    if (record.status == record::RunStatus::ok && published.value->of(record) &&
+        std::ranges::find(systems, record.variant) == systems.end())
+      systems.push_back(record.variant);
+  }
+  const auto others = systems.begin() + static_cast<std::ptrdiff_t>(published.variants.size());
+  std::sort(others, systems.end(), [](const std::string& a, const std::string& b) {
+    return std::pair(run_files::variant_rank(a), a) < std::pair(run_files::variant_rank(b), b);
+  });
+  return systems;
+}
+
+/// The first over the last.
+std::optional<double> ratio_of(std::span<const std::optional<double>> values) {
   if (values.size() < 2 || !values.front() || !values.back() || *values.back() == 0) return std::nullopt;
   return *values.front() / *values.back();
 }
 
-/// What was run here of recordings of these names.
-void add_here(const PublishedTable& published, const std::vector<run_files::FoundRun>& runs,
-              const ResultTable& table, const std::set<std::string>& names, PaperRow& row) {
+/// What was run here of recordings of these names, with an IMU that was made from the truth or without one.
+void add_here(PaperTable& paper, const RunsHere& here, const std::set<std::string>& names, bool synthetic_imu,
+              PaperRow& row) {
+  const PublishedTable& published = paper.of;
   std::vector<std::optional<double>> common;
   std::set<std::string> data;
   std::set<std::string> fingerprints;
-  for (const std::string& variant : published.variants) {
-    const Place place = place_of(runs, table, names, variant);
+  for (const std::string& variant : paper.systems_here) {
+    const Place place = place_of(here, names, variant, synthetic_imu);
     row.here.push_back(place.run ? published.value->of(place.run->record) : std::nullopt);
     common.push_back(place.row ? place.row->aie_common_grey : std::nullopt);
     if (!place.run) continue;
     const record::RecordedRecording& recording = place.run->record.recording;
-    fingerprints.insert(recording.fingerprint);
+    if (row.here.size() <= published.variants.size()) fingerprints.insert(recording.fingerprint);
+    if (!place.edits->empty())
+      paper.notes.push_back(fmt::format("{}, {} (here): with {}.", recording.name, variant, *place.edits));
     const std::string imu = recording.imu == "synthetic IMU" ? ", synthetic IMU" : "";
     data.insert(fmt::format("{}{}, {} frames", record::data_cell(record::words_of(recording)), imu,
                             recording.frames));
@@ -75,17 +112,19 @@ void add_here(const PublishedTable& published, const std::vector<run_files::Foun
   if (!published.ratio) return;
   row.published_ratio = ratio_of(row.published);
   if (fingerprints.size() > 1) return;  // of different data, there is no ratio
-  row.here_ratio = ratio_of(row.here);
-  row.common_ratio = ratio_of(common);
+  const std::size_t count = published.variants.size();
+  row.here_ratio = ratio_of(std::span(row.here).first(count));
+  row.common_ratio = ratio_of(std::span<const std::optional<double>>(common).first(count));
 }
 
 bool has_common_ratio(const PublishedTable& table) { return table.ratio && table.value->name == "aie_grey"; }
 
-text::TableCells heading_of(const PublishedTable& table) {
+text::TableCells heading_of(const PaperTable& paper) {
+  const PublishedTable& table = paper.of;
   text::TableCells cells = {"group", "recording", "run here on"};
   for (const std::string& system : table.systems) cells.push_back(system + " (published)");
   if (table.ratio) cells.emplace_back("ratio (published)");
-  for (const std::string& variant : table.variants) cells.push_back(variant + " (here)");
+  for (const std::string& system : paper.systems_here) cells.push_back(system + " (here)");
   if (table.ratio) cells.emplace_back("ratio (here)");
   if (has_common_ratio(table)) cells.emplace_back("ratio on common pixels (here)");
   return cells;
@@ -117,7 +156,7 @@ std::vector<std::string> notes_of(const PublishedTable& table) {
 }
 
 std::string markdown(const PaperTable& table) {
-  std::vector<text::TableCells> lines = {heading_of(table.of)};
+  std::vector<text::TableCells> lines = {heading_of(table)};
   for (const PaperRow& row : table.rows) lines.push_back(cells_of(table.of, row));
   std::string text = text::markdown_table(lines, kTextColumns) + "\n";
   for (const std::string& note : table.notes) text += note + "\n";
@@ -125,7 +164,7 @@ std::string markdown(const PaperTable& table) {
 }
 
 std::string latex(const PaperTable& table) {
-  std::string text = text::latex_begin(heading_of(table.of), kTextColumns);
+  std::string text = text::latex_begin(heading_of(table), kTextColumns);
   for (const PaperRow& row : table.rows) text += text::latex_line(cells_of(table.of, row));
   text += text::kLatexEnd;
   for (const std::string& note : table.notes) text += "% " + note + "\n";
@@ -144,7 +183,7 @@ std::string csv(const PaperTable& table) {
     };
     for (std::size_t i = 0; i < row.published.size(); ++i)
       add("published", table.of.verified, table.of.systems[i], row.published[i]);
-    for (std::size_t i = 0; i < row.here.size(); ++i) add("here", true, table.of.variants[i], row.here[i]);
+    for (std::size_t i = 0; i < row.here.size(); ++i) add("here", true, table.systems_here[i], row.here[i]);
   }
   return text;
 }
@@ -157,7 +196,7 @@ std::string json(const PaperTable& table) {
     for (std::size_t i = 0; i < row.published.size(); ++i)
       published[table.of.systems[i]] = number(row.published[i]);
     Json here = Json::object();
-    for (std::size_t i = 0; i < row.here.size(); ++i) here[table.of.variants[i]] = number(row.here[i]);
+    for (std::size_t i = 0; i < row.here.size(); ++i) here[table.systems_here[i]] = number(row.here[i]);
     rows.push_back({{"group", row.group},
                     {"recording", row.label},
                     {"published", std::move(published)},
@@ -177,28 +216,34 @@ std::string json(const PaperTable& table) {
 }  // namespace
 
 PaperTable paper_table(const PublishedTable& published, const std::vector<run_files::FoundRun>& runs) {
-  PaperTable table{published, {}, notes_of(published)};
-  const ResultTable results = table_of(runs);
+  PaperTable table{published, systems_here(published, runs), {}, notes_of(published)};
+  const std::vector<run_files::RunTraits> traits = run_files::traits_of(runs);
+  const RunsHere here{runs, table_of(runs), run_files::differing_edits(traits)};
+  if (const std::string shared = run_files::shared_edits(traits); !shared.empty())
+    table.notes.push_back(fmt::format("All runs here: with {}.", shared));
   std::set<std::string> left;
-  for (const run_files::FoundRun& run : runs) left.insert(run.record.recording.name);
+  std::set<std::string> synthetic;
+  for (const run_files::FoundRun& run : runs)
+    (has_synthetic_imu(run) ? synthetic : left).insert(run.record.recording.name);
   for (const PublishedRow& source : published.rows) {
     PaperRow row{source.group, source.label, {}, source.published, {}, {}, {}, {}};
     const std::set<std::string> names = folder_names(source.recording);
     for (const std::string& name : names) left.erase(name);
-    add_here(published, runs, results, names, row);
+    add_here(table, here, names, false, row);
     table.rows.push_back(std::move(row));
   }
-  for (const std::string& name : left) {
-    PaperRow row{"not published",
-                 name,
-                 {},
-                 std::vector<std::optional<double>>(published.systems.size()),
-                 {},
-                 {},
-                 {},
-                 {}};
-    add_here(published, runs, results, {name}, row);
+  const auto add_alone = [&](const char* group, const std::string& name, bool synthetic_imu) {
+    PaperRow row{group, name, {}, std::vector<std::optional<double>>(published.systems.size()),
+                 {},    {},   {}, {}};
+    add_here(table, here, {name}, synthetic_imu, row);
     if (!row.data.empty()) table.rows.push_back(std::move(row));
+  };
+  for (const std::string& name : left) add_alone("not published", name, false);
+  for (const std::string& name : synthetic) add_alone("IMU made from the truth", name, true);
+  if (!synthetic.empty()) {
+    table.notes.emplace_back(
+        "IMU made from the truth: such runs know the answer, and compare variants with each other only. They "
+        "stand in rows of their own, and beside no published number.");
   }
   return table;
 }

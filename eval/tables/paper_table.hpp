@@ -16,7 +16,7 @@ struct PaperRow {
   std::string label;
   std::string data;  ///< of what was run here: "recorded", "recorded, synthetic IMU"; empty: nothing was
   std::vector<std::optional<double>> published;
-  std::vector<std::optional<double>> here;  ///< one a variant
+  std::vector<std::optional<double>> here;  ///< one a system of PaperTable::systems_here
   std::optional<double> published_ratio;
   std::optional<double> here_ratio;
   std::optional<double> common_ratio;  ///< of AIE on common pixels
@@ -24,13 +24,16 @@ struct PaperRow {
 
 struct PaperTable {
   PublishedTable of;
-  std::vector<PaperRow>
-      rows;  ///< the published ones, then recordings that were run here and are not published
+  /// The variants that the table asks for, then whatever else was run or imported and has the value.
+  std::vector<std::string> systems_here;
+  /// The published ones, then recordings that were run here and are not published, then what ran here with an
+  /// IMU that was made from the ground truth: that stands beside no published number.
+  std::vector<PaperRow> rows;
   std::vector<std::string> notes;
 };
 
 /// Runs are found by the folders that the catalogue knows a recording by; of several runs of a variant the
-/// first ok one counts.
+/// first ok one counts that has no edited options which others do not share, else the first, with a note.
 [[nodiscard]] PaperTable paper_table(const PublishedTable& published,
                                      const std::vector<run_files::FoundRun>& runs);
 

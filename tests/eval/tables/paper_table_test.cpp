@@ -34,12 +34,12 @@ TEST(PaperTable, StandsBesideWhatWasRunHereAndIsNotMixed) {
   EXPECT_TRUE(published->verified);
   const PaperTable table =
       paper_table(*published, {run_of("elsewhere", "dm", 5), run_of("elsewhere", "full", 4),
-                               run_of("rgbd_dataset_freiburg1_desk", "dm", 12, "synthetic IMU"),
-                               run_of("rgbd_dataset_freiburg1_desk", "full", 8, "synthetic IMU")});
+                               run_of("rgbd_dataset_freiburg1_desk", "dm", 12),
+                               run_of("rgbd_dataset_freiburg1_desk", "full", 8)});
   ASSERT_EQ(table.rows.size(), 6U);  // five of the paper, and one that it does not have
   const PaperRow& desk = table.rows[0];
   EXPECT_EQ(desk.label, "TUM_freiburg1_desk");
-  EXPECT_EQ(desk.data, "recorded, synthetic IMU, 613 frames");
+  EXPECT_EQ(desk.data, "recorded, 613 frames");
   EXPECT_EQ(desk.published[0], 13.3756);
   EXPECT_EQ(desk.here[0], 12);
   EXPECT_NEAR(*desk.published_ratio, 13.3756 / 9.53, 1e-12);
@@ -61,6 +61,46 @@ TEST(PaperTable, StandsBesideWhatWasRunHereAndIsNotMixed) {
   EXPECT_NE(lines.find("table1,aie_grey,slow,TUM_freiburg1_desk,here,true,dm,12\n"), std::string::npos);
   const auto document = nlohmann::json::parse(render_paper_table(table, TableFormat::json));
   EXPECT_TRUE(document.at("rows").at(1).at("here").at("dm").is_null());
+}
+
+TEST(PaperTable, AnImuMadeFromTheTruthIsBesideNoPublishedNumber) {
+  const PaperTable table = paper_table(*published_table("table1"),
+                                       {run_of("rgbd_dataset_freiburg1_desk", "dm", 12, "synthetic IMU"),
+                                        run_of("rgbd_dataset_freiburg1_desk", "full", 8, "synthetic IMU"),
+                                        run_of("rgbd_dataset_freiburg1_desk", "no-imu", 9, "none")});
+  EXPECT_EQ(table.systems_here, (std::vector<std::string>{"dm", "full", "no-imu"}));
+  ASSERT_EQ(table.rows.size(), 6U);
+  EXPECT_EQ(table.rows[0].data, "recorded, 613 frames");
+  EXPECT_FALSE(table.rows[0].here[0] || table.rows[0].here[1]);
+  EXPECT_EQ(table.rows[0].here[2], 9);
+  const PaperRow& synthetic = table.rows[5];
+  EXPECT_EQ(synthetic.group, "IMU made from the truth");
+  EXPECT_EQ(synthetic.label, "rgbd_dataset_freiburg1_desk");
+  EXPECT_FALSE(synthetic.published[0] || synthetic.published[1]);
+  EXPECT_EQ(synthetic.here[0], 12);
+  EXPECT_EQ(synthetic.here_ratio, 1.5);
+}
+
+TEST(PaperTable, ImportsHaveColumnsAndThePlainRunCounts) {
+  FoundRun imported = run_of("rgbd_dataset_freiburg1_desk", "ORB-SLAM3", 1, "none");
+  FoundRun edited = run_of("rgbd_dataset_freiburg1_desk", "no-imu", 1, "none");
+  FoundRun plain = edited;
+  for (auto [run, ate_m] : {std::pair(&imported, 0.016), std::pair(&edited, 0.5), std::pair(&plain, 0.02)}) {
+    trajectory_error::AteResult ate;
+    ate.stats.rmse = ate_m;
+    run->record.metrics.ate = {ate, {}};
+  }
+  edited.record.config = {{"tsdf.voxel_m", 0.05, "--set"}};
+  plain.record.config = {{"tsdf.voxel_m", 0.01, "default"}};
+  const PaperTable table = paper_table(*published_table("ate_tum"), {edited, plain, imported});
+  EXPECT_EQ(table.systems_here, (std::vector<std::string>{"full", "no-imu", "ORB-SLAM3"}));
+  EXPECT_EQ(table.rows[0].label, "fr1/desk");
+  EXPECT_EQ(table.rows[0].here[1], 0.02);
+  EXPECT_EQ(table.rows[0].here[2], 0.016);
+  const PaperTable alone = paper_table(*published_table("ate_tum"), {edited, imported});
+  EXPECT_EQ(alone.rows[0].here[1], 0.5);
+  EXPECT_NE(render_paper_table(alone, TableFormat::markdown).find("with tsdf.voxel_m=0.05"),
+            std::string::npos);
 }
 
 TEST(PaperTable, WhatIsNotVerifiedIsMarked) {
