@@ -38,6 +38,23 @@ std::vector<Vector3d> fewer(std::span<const Vector3d> points) {
   return taken;
 }
 
+/// Of a wrong place that a registration has stuck in, numbers look like any others.
+Result<void> check_registered(const RegistrationResult& icp, const MeshErrorOptions& options, bool started) {
+  const double most_m = options.thresholds_m.empty() ? 0 : std::ranges::max(options.thresholds_m);
+  if (!(icp.kept_rms_m > most_m)) return {};
+  return fail(
+      ErrorCode::data_corrupt,
+      fmt::format(
+          "icp ended with the reconstruction {:.4g} m (rms) from the truth, beyond the largest of the "
+          "thresholds, {:g} m: it seems to have stuck in a wrong place",
+          icp.kept_rms_m, most_m),
+      fmt::format("it only finds a place near where it starts{}; if the reconstruction is that bad, a larger "
+                  "last threshold says so (--thresholds)",
+                  started ? ""
+                          : ": let it start from the poses, --trajectories TRUTH ESTIMATE (truth.tum and "
+                            "trajectory.tum of a run), or from --transform FILE"));
+}
+
 Result<void> check_observed(const MeshComparison& comparison, double least) {
   const double share =
       static_cast<double>(comparison.truth_observed()) / static_cast<double>(comparison.truth_samples());
@@ -80,6 +97,8 @@ Result<MeshEvaluation> evaluate_mesh(const PreciseMesh& reconstruction, const Pr
     const auto moved = register_points(fewer(comparison->reconstruction_points()), comparison->truth(),
                                        alignment.T_reference_estimate, *request.icp, workers);
     if (!moved) return tl::unexpected(moved.error());
+    if (auto near = check_registered(*moved, request.errors, request.start.mode != "none"); !near)
+      return tl::unexpected(near.error());
     result.icp = *moved;
     alignment = {"icp", moved->T_surface_points};
   }

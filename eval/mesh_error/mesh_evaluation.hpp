@@ -50,7 +50,8 @@ struct MeshEvaluation {
 inline constexpr double kOtherUnit = 20;
 
 /// Errors data_corrupt: those of MeshComparison::create and register_points; boxes that differ kOtherUnit
-/// times in size; or a truth of which less than least_observed is seen.
+/// times in size; a truth of which less than least_observed is seen; or a registration that leaves the points
+/// that count further from the truth (rms) than the largest threshold.
 [[nodiscard]] Result<MeshEvaluation> evaluate_mesh(const PreciseMesh& reconstruction,
                                                    const PreciseMesh& truth, const MeshRequest& request,
                                                    const Workers& workers);

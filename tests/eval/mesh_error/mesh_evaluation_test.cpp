@@ -58,6 +58,23 @@ TEST(MeshEvaluation, IcpBringsTheReconstructionBack) {
       1e-9);
 }
 
+TEST(MeshEvaluation, AnIcpThatSticksInAWrongPlaceIsRefused) {
+  const Workers workers(1);
+  const SE3 elsewhere{so3_exp({0, 0, 1.5}), {1.0, 0.3, 0}};
+  MeshRequest request;
+  request.icp = RegistrationOptions{.max_steps = 3};
+  const PreciseMesh reconstruction = moved(egg(1), elsewhere.inverse());
+  const auto refused = evaluate_mesh(reconstruction, egg(1), request, workers);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::data_corrupt);
+  EXPECT_NE(refused.error().hint.find("--trajectories"), std::string::npos) << refused.error().hint;
+  request.errors.thresholds_m = {0.05, 10};
+  EXPECT_TRUE(evaluate_mesh(reconstruction, egg(1), request, workers).has_value());
+  request.errors = {};
+  request.start = {"trajectory", elsewhere};
+  EXPECT_TRUE(evaluate_mesh(reconstruction, egg(1), request, workers).has_value());
+}
+
 TEST(MeshEvaluation, TellsBothWithAndWithoutCulling) {
   const Workers workers(1);
   PreciseMesh half = sphere(1, 30);
