@@ -57,6 +57,18 @@ RecordedProvenance provenance_here(int threads) {
           host_name()};
 }
 
+Trajectory evaluated_truth(const recording::Recording& recording) {
+  constexpr std::int64_t kMargin_ns = 1'000'000'000;
+  Trajectory truth;
+  if (recording.frames.empty()) return truth;
+  for (const StampedPose& pose : recording.ground_truth) {
+    if (pose.timestamp_ns >= recording.frames.front().timestamp_ns - kMargin_ns &&
+        pose.timestamp_ns <= recording.frames.back().timestamp_ns + kMargin_ns)
+      truth.push_back(pose);
+  }
+  return truth;
+}
+
 std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording) {
   std::vector<StampAndInstant> stamps;
   for (const recording::FrameEntry& frame : recording.frames)

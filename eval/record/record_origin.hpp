@@ -28,6 +28,10 @@ namespace fusebench::record {
 /// Of this build on this machine.
 [[nodiscard]] RecordedProvenance provenance_here(int threads);
 
+/// The ground truth as it was read, which errors of the trajectory are computed against: from a second before
+/// the first frame, which is further than any association looks, to a second after the last.
+[[nodiscard]] Trajectory evaluated_truth(const recording::Recording& recording);
+
 /// A stamp that outputs name a pose by, and the instant that it was taken at.
 using StampAndInstant = std::pair<std::int64_t, std::int64_t>;
 [[nodiscard]] std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording);

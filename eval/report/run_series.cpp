@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <system_error>
 #include <utility>
 
+#include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/run_files/record_files.hpp"
 
@@ -33,15 +33,12 @@ Trajectory trajectory_of(const run_files::FoundRun& run, const char* name,
 
 std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& truth,
                                    const SE3& T_truth_world) {
-  std::map<std::int64_t, const SE3*> known;
-  for (const StampedPose& pose : truth) known.emplace(pose.timestamp_ns, &pose.T_world_camera);
   std::vector<ComparedPose> poses;
   for (const StampedPose& pose : estimate) {
     ComparedPose both{pose.timestamp_ns, T_truth_world * pose.T_world_camera, {}, 0};
-    if (const auto found = known.find(pose.timestamp_ns); found != known.end()) {
-      both.T_truth_truth = *found->second;
-      both.error_m = (both.T_truth_camera.translation - found->second->translation).norm();
-    }
+    both.T_truth_truth = trajectory::interpolate_pose(truth, pose.timestamp_ns, trajectory::kMaxTruthGap_ns);
+    if (both.T_truth_truth)
+      both.error_m = (both.T_truth_camera.translation - both.T_truth_truth->translation).norm();
     poses.push_back(both);
   }
   return poses;

@@ -1,10 +1,6 @@
 #include "eval/run/foreign_output.hpp"
 
-#include <algorithm>
 #include <utility>
-#include <vector>
-
-#include "eval/record/record_origin.hpp"
 
 namespace fusebench::run {
 
@@ -23,14 +19,6 @@ void describe_foreign_output(const RunOutput& output, const recording::Recording
   record.frames.tracked = output.trajectory.size();
   record.frames.lost = record.frames.total - record.frames.tracked;
   record.model = {output.mesh.vertices.size(), output.mesh.triangles.size(), 0};
-}
-
-Trajectory truth_beside(const external::FramePoses& frames, const recording::Recording& recording) {
-  std::vector<record::StampAndInstant> stamps = record::frame_stamps(recording);
-  stamps.insert(stamps.end(), frames.stamps.begin(), frames.stamps.end());
-  std::ranges::sort(stamps);
-  stamps.erase(std::ranges::unique(stamps).begin(), stamps.end());
-  return record::true_trajectory(recording, stamps);
 }
 
 }  // namespace fusebench::run

@@ -16,8 +16,4 @@ namespace fusebench::run {
 void describe_foreign_output(const RunOutput& output, const recording::Recording& recording,
                              record::RunRecord& record);
 
-/// The true camera at the stamps of all frames and of all poses.
-[[nodiscard]] Trajectory truth_beside(const external::FramePoses& frames,
-                                      const recording::Recording& recording);
-
 }  // namespace fusebench::run

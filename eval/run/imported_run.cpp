@@ -40,8 +40,7 @@ Result<recording::Recording> open(const ImportSpec& spec) {
   auto recording = datasets::open_recording(spec.recording, spec.open);
   if (!recording) return recording;
   if (spec.frames) {
-    if (auto cut = recording::select_frames(*recording, spec.frames->begin, spec.frames->end); !cut)
-      return tl::unexpected(cut.error());
+    if (auto cut = select_window(*recording, *spec.frames); !cut) return tl::unexpected(cut.error());
   }
   if (recording->frames.empty())
     return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
@@ -109,7 +108,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));
   record.provenance = record::provenance_here(spec.threads);
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
-  if (auto written = write(run, output, truth_beside(*owned, *recording)); !written)
+  if (auto written = write(run, output, record::evaluated_truth(*recording)); !written)
     return tl::unexpected(written.error());
   return run;
 }

@@ -71,7 +71,7 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   const std::array<NamedText, 3> texts = {
       {{"trajectory.tum", trajectory::tum_text(output.trajectory)},
-       {"truth.tum", trajectory::tum_text(truth_beside(results->frames, recording))},
+       {"truth.tum", trajectory::tum_text(record::evaluated_truth(recording))},
        {"log.txt", log_of(program.version, *results, record)}}};
   Mesh* const mesh =
       run.spec.kept == KeptFiles::all && !output.mesh.vertices.empty() ? &output.mesh : nullptr;

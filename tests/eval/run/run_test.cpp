@@ -81,6 +81,12 @@ TEST_F(RunTest, WritesAWholeFolder) {
   // World is the first camera frame.
   EXPECT_EQ((*trajectory)[0].T_world_camera.translation, Vector3d(0, 0, 0));
   EXPECT_EQ((*trajectory)[0].timestamp_ns, prepared->recording.frames[0].timestamp_ns);
+  // The files give the table's number.
+  const auto truth = read_tum_trajectory(prepared->folder / "truth.tum", warnings);
+  ASSERT_TRUE(truth.has_value() && record->metrics.ate.value);
+  const auto ate = trajectory_error::absolute_trajectory_error(*truth, *trajectory, {});
+  ASSERT_TRUE(ate.has_value()) << ate.error().message;
+  EXPECT_NEAR(ate->stats.rmse, record->metrics.ate.value->stats.rmse, 1e-12);
 }
 
 TEST_F(RunTest, TheRecordSaysWhatTheTruthIs) {
