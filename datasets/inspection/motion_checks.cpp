@@ -138,10 +138,9 @@ void check_motion(const recording::Recording& recording, Inspection& out) {
   out.add(motion.fast ? "motion-fast" : "motion-slow", Severity::note,
           fmt::format("{} motion, by the {}: {:.0f} % of frames would be blurred by at least {:.0f} px in a "
                       "10 ms exposure "
-                      "(fast from {:.0f} %); {:.0f} deg/s in the mean, {:.0f} at most",
+                      "(fast from {:.0f} %)",
                       motion.fast ? "fast" : "slow", motion.source, 100 * motion.severe_share, kSevereBlur_px,
-                      100 * kFastShare, kDegreesPerRadian * motion.angular_mean_radps,
-                      kDegreesPerRadian * motion.angular_max_radps));
+                      100 * kFastShare));
   if (motion.linear_max_mps) report_jumps(motion, out);
 }
 

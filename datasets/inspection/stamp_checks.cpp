@@ -10,6 +10,7 @@
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/inspection/checks.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
+#include "datasets/recording/reader_words.hpp"
 
 namespace fusebench::inspection {
 
@@ -228,9 +229,8 @@ void check_truth_stamps(const recording::Recording& recording, Inspection& out) 
   if (covered + 2 < recording.frames.size() || covered == 0) {
     out.add(
         "truth-coverage", covered == 0 ? Severity::error : Severity::warning,
-        fmt::format("{} of {} frames have no ground truth around them within {:.2f} s",
-                    recording.frames.size() - covered, recording.frames.size(),
-                    1e-9 * static_cast<double>(gap_ns)),
+        fmt::format("{} of {} {} within {:.2f} s", recording.frames.size() - covered, recording.frames.size(),
+                    recording::kUncoveredByTruth, 1e-9 * static_cast<double>(gap_ns)),
         covered == 0 ? "check the clock and the unit of the ground truth" : "metrics leave these frames out");
   }
   if (measured.stamps.max_interval_s > 1e-9 * static_cast<double>(gap_ns)) {

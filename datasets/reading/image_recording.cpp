@@ -211,6 +211,9 @@ void divide(const std::vector<std::uint16_t>& values, Number divisor, std::vecto
   }
 }
 
+/// Some cameras write the largest value where they measured nothing, and no format has it as a depth.
+constexpr std::uint16_t kSaturated = 65535;
+
 /// The quotients in double precision, rounded. Where single precision holds the divisor, a division in it
 /// gives the same in a third of the time: double precision has more than twice its digits, so that the first
 /// of two roundings never decides the second.
@@ -222,6 +225,8 @@ DepthImage in_metres(const Image<std::uint16_t>& values, double units_per_metre)
   } else {
     divide(values.data, units_per_metre, depth_m.data);
   }
+  for (std::size_t i = 0; i < values.data.size(); ++i)
+    depth_m.data[i] = values.data[i] == kSaturated ? 0.0F : depth_m.data[i];
   return depth_m;
 }
 

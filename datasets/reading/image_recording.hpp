@@ -20,7 +20,7 @@ using DepthReader =
     std::function<Result<DepthImage>(const std::filesystem::path& file, const images::ImageSize& expected,
                                      const std::optional<io::ContentHash>& opened)>;
 
-/// 16-bit grey PNGs; units_per_metre: the value of one metre.
+/// 16-bit grey PNGs; units_per_metre: the value of one metre. 0 and 65535 are no measurement.
 [[nodiscard]] DepthReader png_depth(double units_per_metre);
 
 /// How the files of a recording become frames.

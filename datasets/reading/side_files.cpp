@@ -11,6 +11,7 @@
 #include "core/io/stamped_rows.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "datasets/recording/reader_words.hpp"
 #include "datasets/recording/sensor_columns.hpp"
 #include "datasets/recording/state_truth.hpp"
 
@@ -60,8 +61,8 @@ Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
   const bool as_published = uncovered <= published_without && is_uncovered(recording.frames.front());
   if (uncovered > 0) {
     (as_published ? recording.notes : recording.warnings)
-        .push_back(fmt::format("{}: {} of {} frames have no ground truth around them within {} s",
-                               source.string(), uncovered, recording.frames.size(),
+        .push_back(fmt::format("{}: {} of {} {} within {} s", source.string(), uncovered,
+                               recording.frames.size(), recording::kUncoveredByTruth,
                                seconds_between(0, trajectory::kMaxTruthGap_ns)));
   }
   recording.ground_truth = std::move(truth);

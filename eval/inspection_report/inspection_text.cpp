@@ -70,7 +70,6 @@ void motion_rows(const inspection::Inspection& i, std::vector<InspectionRow>& al
   const inspection::MotionMeasurement& m = i.motion;
   if (m.source.empty()) return;
   Rows rows("motion");
-  rows.add("class", fmt::format("{} (by the {})", m.fast ? "fast" : "slow", m.source));
   rows.add("angular speed",
            fmt::format("{:.1f} deg/s mean, {:.1f} p95, {:.1f} max", kDegreesPerRadian * m.angular_mean_radps,
                        kDegreesPerRadian * m.angular_p95_radps, kDegreesPerRadian * m.angular_max_radps));
@@ -79,8 +78,7 @@ void motion_rows(const inspection::Inspection& i, std::vector<InspectionRow>& al
                                          *m.linear_p95_mps, *m.linear_max_mps));
   }
   rows.add("predicted blur",
-           fmt::format("{:.1f} px median, {:.1f} p95 in 10 ms; {:.0f} % of frames at {:.0f} px or more",
-                       m.blur_median_px, m.blur_p95_px, 100 * m.severe_share, inspection::kSevereBlur_px));
+           fmt::format("{:.1f} px median, {:.1f} p95 in 10 ms", m.blur_median_px, m.blur_p95_px));
   rows.append_to(all);
 }
 

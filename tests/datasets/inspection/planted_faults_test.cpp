@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "datasets/inspection/checks.hpp"
 #include "tests/datasets/inspection/clean_recording.hpp"
 
@@ -43,6 +45,16 @@ TEST(PlantedFaults, ACleanRecordingWithoutTruthHasNone) {
   EXPECT_EQ(result.imu_alignment->source, "images");
   EXPECT_LT(std::abs(result.imu_alignment->time_offset_s), 0.002);
   EXPECT_LT(result.imu_alignment->rotation_error_rad, radians(1));
+}
+
+TEST(PlantedFaults, FramesWithoutTruthAreToldOnce) {
+  Recording recording = clean_recording();
+  recording.ground_truth.resize(recording.ground_truth.size() / 2);
+  recording.warnings = {"groundtruth.txt: 40 of 90 frames have no ground truth around them within 0.1 s",
+                        "rgb.txt: another thing"};
+  const Inspection result = inspected(recording);
+  EXPECT_THAT(faults(result), AllOf(Contains("truth-coverage"), Contains("reader-warning")));
+  EXPECT_THAT(std::ranges::count(result.findings, "reader-warning", &Finding::code), 1);
 }
 
 TEST(PlantedFaults, SwappedAxesAreNamed) {

@@ -29,8 +29,9 @@ TEST(PngDepth, IsTheQuotientInDoublePrecisionRounded) {
     const auto depth_m = png_depth(units_per_metre)(folder.path() / "depth.png", {256, 256}, {});
     ASSERT_TRUE(depth_m);
     ASSERT_EQ(depth_m->width, 256);
-    for (std::size_t i = 0; i < values.data.size(); ++i)
+    for (std::size_t i = 0; i + 1 < values.data.size(); ++i)
       ASSERT_EQ(depth_m->data[i], static_cast<float>(values.data[i] / units_per_metre)) << units_per_metre;
+    EXPECT_EQ(depth_m->data.back(), 0.0F);  // 65535 is no measurement
   }
 }
 
