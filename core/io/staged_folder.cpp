@@ -7,10 +7,11 @@
 
 #include <cerrno>
 #include <chrono>
-#include <fstream>
 #include <iterator>
 #include <system_error>
 #include <utility>
+
+#include "core/io/whole_file.hpp"
 
 namespace fusebench::io {
 
@@ -165,10 +166,7 @@ StagedFolder::~StagedFolder() {
 }
 
 Result<void> StagedFolder::write(std::string_view name, std::string_view text) const {
-  std::ofstream stream(file(name), std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (!stream) return fail(ErrorCode::io, fmt::format("{}: cannot be written", file(name).string()));
+  if (const std::error_code error = write_whole_file(file(name), text)) return io_error(file(name), error);
   return {};
 }
 

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 namespace fusebench::metrics {
 
@@ -27,8 +29,9 @@ void write(std::ostream& stream, const T& value) {
 }  // namespace
 
 Result<void> IntensityWriter::state() const {
-  if (!stream_) return fail(ErrorCode::io, fmt::format("{}: cannot be written", file_.string()));
-  return {};
+  if (stream_) return {};
+  const std::error_code error(errno == 0 ? EIO : errno, std::generic_category());
+  return fail(ErrorCode::io, fmt::format("{}: cannot be written: {}", file_.string(), error.message()));
 }
 
 Result<IntensityWriter> IntensityWriter::create(const std::filesystem::path& file, int width_px,

@@ -2,19 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
+#include <system_error>
 
 #include "core/filter/stamped_state.hpp"
+#include "core/io/whole_file.hpp"
 #include "datasets/exports/sensor_tables.hpp"
 
 namespace fusebench::simulator::layouts {
 
 Result<void> write_text(const std::filesystem::path& file, std::string_view text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (!stream) return fail(ErrorCode::io, fmt::format("{}: cannot be written", file.string()));
-  return {};
+  const std::error_code error = io::write_whole_file(file, text);
+  if (!error) return {};
+  return fail(ErrorCode::io, fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 }
 
 Result<void> write_imu_csv(const std::filesystem::path& file, const std::vector<ImuSample>& samples) {
