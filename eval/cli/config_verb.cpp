@@ -25,12 +25,14 @@ struct ConfigOptions {
 
 std::string group_of(const config::OptionRow& row) { return row.key.substr(0, row.key.find('.')); }
 
+/// A file for --config: what is no value is a comment.
 std::string text_of(const config::EffectiveConfig& config, const std::vector<config::OptionRow>& rows) {
-  std::vector<std::vector<std::string>> lines = {{"option", "value", "origin", "range", "meaning"}};
+  std::vector<std::vector<std::string>> lines = {{"# option = value", "# origin", "range", "meaning"}};
   for (const config::OptionRow& row : rows) {
-    lines.push_back({row.key, row.value, config.origin(row.key), row.range, row.sentence});
+    lines.push_back(
+        {fmt::format("{} = {}", row.key, row.value), "# " + config.origin(row.key), row.range, row.sentence});
   }
-  return text::aligned_columns(lines) + fmt::format("\nhash {}\n", config::config_hash(config.values));
+  return text::aligned_columns(lines) + fmt::format("\n# hash {}\n", config::config_hash(config.values));
 }
 
 std::string markdown_of(const std::vector<config::OptionRow>& rows) {
@@ -87,8 +89,9 @@ Result<int> show_config(const ConfigOptions& options) {
 
 console::Verb add_config_verb(CLI::App& app) {
   auto options = std::make_shared<ConfigOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "config", "Prints the effective configuration: each value with its origin, range and meaning");
+  CLI::App* verb = app.add_subcommand("config",
+                                      "Prints the effective configuration as a file for --config: each value "
+                                      "with its origin, range and meaning");
   console::add_variant_option(*verb, options->variant);
   console::add_config_option(*verb, options->file);
   console::add_set_option(*verb, options->sets);

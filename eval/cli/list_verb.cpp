@@ -3,10 +3,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/all_systems.hpp"
+#include "core/base/nearest_name.hpp"
 #include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/calibration/recording_catalogue.hpp"
@@ -16,6 +21,7 @@
 #include "eval/cli/verbs.hpp"
 #include "eval/engine/run_housekeeping.hpp"
 #include "eval/suites/suite_file.hpp"
+#include "eval/suites/suite_names.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"
 
@@ -23,19 +29,22 @@ namespace fusebench::cli {
 
 namespace {
 
+/// What is not known, or not there, is no text.
+using Cell = std::optional<std::string>;
+
 /// A list as rows under named columns; every way of printing it starts from here.
 struct Listing {
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<Cell>> rows;
 };
 
 struct ListOptions {
   std::string what;
-  std::filesystem::path runs = "results/runs";
+  std::string of;  ///< the folder of runs, or a text that rows contain
   std::string status;
   bool verify = false;
   std::filesystem::path data;
-  std::filesystem::path configs = "configs";
+  std::filesystem::path configs;
   bool markdown = false;
   bool json = false;
 };
@@ -96,13 +105,13 @@ Result<Listing> list_recordings(const std::filesystem::path& data) {
     const auto folder = calibration::catalogue_folder(entry, data);
     if (folder) std::erase(others, *folder);
     const auto frames = entry.frames ? entry.frames : entry.color_images;
-    listing.rows.push_back({entry.name, entry.format, frames ? std::to_string(*frames) : "?", entry.licence,
-                            folder ? folder->string() : "-", entry.title});
+    listing.rows.push_back({entry.name, entry.format, frames ? Cell(std::to_string(*frames)) : std::nullopt,
+                            entry.licence, folder ? Cell(folder->string()) : std::nullopt, entry.title});
   }
   for (const auto& folder : others) {
     listing.rows.push_back({folder.filename().string(),
-                            std::string(datasets::recognise_format(folder).value_or("")), "?", "?",
-                            folder.string(), ""});
+                            std::string(datasets::recognise_format(folder).value_or("")), std::nullopt,
+                            std::nullopt, folder.string(), std::nullopt});
   }
   return listing;
 }
@@ -124,21 +133,10 @@ std::string systems_of(const suites::Suite& suite) {
 }
 
 Result<Listing> list_suites(const std::filesystem::path& configs) {
-  std::error_code error;
-  std::vector<std::filesystem::path> files;
-  const std::filesystem::path folder = configs / "suites";
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (entry->path().extension() == ".toml") files.push_back(entry->path());
-  }
-  if (error) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("{}: cannot be listed: {}", folder.string(), error.message()),
-                "--configs names the folder that holds suites/");
-  }
-  std::sort(files.begin(), files.end());
+  const auto files = suites::suite_files(configs.empty() ? suites::shipped_configs() : configs);
+  if (!files) return tl::unexpected(files.error());
   Listing listing{{"suite", "file", "variants", "recordings"}, {}};
-  for (const auto& file : files) {
+  for (const auto& file : *files) {
     const auto suite = suites::read_suite(file);
     if (!suite) return tl::unexpected(suite.error());
     listing.rows.push_back({suite->name, file.string(), systems_of(*suite), recordings_of(*suite)});
@@ -147,25 +145,58 @@ Result<Listing> list_suites(const std::filesystem::path& configs) {
 }
 
 Result<Listing> list_runs_of(const ListOptions& options) {
-  const auto runs = engine::list_runs(options.runs, options.verify);
+  const std::filesystem::path folder = options.of.empty() ? "results/runs" : options.of;
+  const auto runs = engine::list_runs(folder, options.verify);
   if (!runs) return tl::unexpected(runs.error());
-  Listing listing{{"run", "status", "reason"}, {}};
-  for (const engine::ListedRun& run : *runs) {
+  std::vector<run_files::RunTraits> traits;
+  for (const engine::ListedRun& run : *runs) traits.push_back(run.traits);
+  const std::vector<std::string> labels = run_files::run_labels(traits);
+  Listing listing{{"run", "label", "status", "reason"}, {}};
+  for (std::size_t i = 0; i < runs->size(); ++i) {
+    const engine::ListedRun& run = (*runs)[i];
     const std::string_view status = record::to_string(run.head.status);
     if (!options.status.empty() && options.status != status) continue;
-    listing.rows.push_back({(options.runs / run.folder).string(), std::string(status), run.head.reason});
+    listing.rows.push_back({(folder / run.folder).string(), labels[i], std::string(status), run.head.reason});
   }
   return listing;
 }
 
-Result<Listing> listing_of(const ListOptions& options) {
-  if (options.what == "runs") return list_runs_of(options);
+std::string lower(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return small;
+}
+
+/// Leaves the rows of which a cell contains the text, whatever its case.
+Result<void> filter(Listing& listing, const std::string& what, const std::string& text) {
+  if (text.empty()) return {};
+  std::vector<std::string> names;
+  for (const auto& row : listing.rows) names.push_back(row.front().value_or(""));
+  std::erase_if(listing.rows, [&, wanted = lower(text)](const std::vector<Cell>& row) {
+    return std::ranges::none_of(
+        row, [&](const Cell& cell) { return lower(cell.value_or("")).find(wanted) != std::string::npos; });
+  });
+  if (!listing.rows.empty()) return {};
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return fail(ErrorCode::usage, fmt::format("none of the {} {} contains '{}' (nearest: {})", names.size(),
+                                            what, text, nearest_name(text, views)));
+}
+
+Result<Listing> whole_listing(const ListOptions& options) {
   if (options.what == "variants") return list_variants();
   if (options.what == "systems") return list_systems();
   if (options.what == "metrics") return list_metrics();
   if (options.what == "options") return list_options();
   if (options.what == "suites") return list_suites(options.configs);
   return list_recordings(options.data);
+}
+
+Result<Listing> listing_of(const ListOptions& options) {
+  if (options.what == "runs") return list_runs_of(options);
+  auto listing = whole_listing(options);
+  if (!listing) return listing;
+  if (auto left = filter(*listing, options.what, options.of); !left) return tl::unexpected(left.error());
+  return listing;
 }
 
 std::string markdown_of(const std::string& what, const Listing& listing) {
@@ -180,7 +211,7 @@ std::string markdown_of(const std::string& what, const Listing& listing) {
   text += "\n";
   for (const auto& row : listing.rows) {
     text += "|";
-    for (const std::string& cell : row) text += fmt::format(" {} |", text::markdown_cell(cell));
+    for (const Cell& cell : row) text += fmt::format(" {} |", text::markdown_cell(cell.value_or("-")));
     text += "\n";
   }
   return text;
@@ -191,7 +222,8 @@ std::string json_of(const std::string& what, const Listing& listing) {
   Json rows = Json::array();
   for (const auto& row : listing.rows) {
     Json entry = Json::object();
-    for (std::size_t i = 0; i < row.size(); ++i) entry[listing.columns[i]] = row[i];
+    for (std::size_t i = 0; i < row.size(); ++i)
+      entry[listing.columns[i]] = row[i] ? Json(*row[i]) : Json(nullptr);
     rows.push_back(entry);
   }
   return text::json_text(Json{{what, rows}}) + "\n";
@@ -206,8 +238,13 @@ Result<int> list(const ListOptions& options) {
     console::print_output(markdown_of(options.what, *listing));
   } else {
     std::vector<std::vector<std::string>> lines = {listing->columns};
-    lines.insert(lines.end(), listing->rows.begin(), listing->rows.end());
-    console::print_output(text::aligned_columns(lines));
+    for (const auto& row : listing->rows) {
+      lines.emplace_back();
+      for (const Cell& cell : row) lines.back().push_back(cell.value_or("-"));
+    }
+    // Elsewhere than on a terminal a row is a line.
+    const auto width = console::terminal_width();
+    console::print_output(width ? text::fitted_columns(lines, *width) : text::aligned_columns(lines));
   }
   return 0;
 }
@@ -221,16 +258,18 @@ console::Verb add_list_verb(CLI::App& app) {
   verb->add_option("WHAT", options->what, "variants, systems, metrics, recordings, suites, options or runs")
       ->required()
       ->check(CLI::IsMember({"variants", "systems", "metrics", "recordings", "suites", "options", "runs"}));
-  verb->add_option("RUNS", options->runs, "Of runs: their folder")->capture_default_str();
+  verb->add_option("OF", options->of,
+                   "Of runs: their folder [results/runs]; else a text: only rows that contain it")
+      ->type_name("FOLDER|TEXT");
   verb->add_option("-o,--only", options->status, "Of runs: those that ended so: ok, lost or failed")
       ->check(CLI::IsMember({"ok", "lost", "failed"}))
       ->type_name("STATUS");
   verb->add_flag("--verify", options->verify,
                  "Of runs: reads every file and compares it with what the run wrote; otherwise only sizes");
   console::add_data_option(*verb, options->data);
-  verb->add_option("--configs", options->configs, "Folder that holds suites/")
-      ->type_name("DIR")
-      ->capture_default_str();
+  verb->add_option("--configs", options->configs,
+                   "Folder that holds suites/; default: configs here, above here or above the program")
+      ->type_name("DIR");
   verb->add_flag("--markdown", options->markdown, "As a page of the documentation");
   console::add_json_flag(*verb, options->json);
   return {verb, [options] { return list(*options); }};

@@ -22,6 +22,15 @@ namespace fusebench::cli {
 
 namespace {
 
+/// `help eval ate` is `eval ate --help`.
+std::vector<const char*> words_of(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (argc < 2 || std::string_view(argv[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  words.push_back("--help");
+  return words;
+}
+
 /// The parser's own message for an unknown verb does not name the nearest one.
 Result<void> check_verb(const std::vector<console::Verb>& verbs, int argc, const char* const* argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
@@ -49,9 +58,14 @@ int run_verb(const std::vector<console::Verb>& verbs) {
   return finish({ErrorCode::usage, "no verb is given", "`fusebench --help` lists the verbs"});
 }
 
-int command_line(int argc, const char* const* argv) {
-  CLI::App app{"FuseBench: offline evaluation and benchmarking of RGB-D-inertial reconstruction",
-               "fusebench"};
+int command_line(int given, const char* const* arguments) {
+  const std::vector<const char*> words = words_of(given, arguments);
+  const int argc = static_cast<int>(words.size());
+  const char* const* const argv = words.data();
+  CLI::App app{
+      "FuseBench: offline evaluation and benchmarking of RGB-D-inertial reconstruction\n"
+      "(`fusebench help VERB` or `fusebench VERB --help`: what a verb does and takes)",
+      "fusebench"};
   const record::BuildInfo& build = record::build_info();
   app.set_version_flag("--version", fmt::format("fusebench {} ({}, {}, estimator {})", build.version,
                                                 build.git, build.compiler, build.estimator));

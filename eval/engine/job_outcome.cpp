@@ -21,7 +21,10 @@ namespace fs = std::filesystem;
 
 fs::path not_started_folder(const BatchJob& job) {
   std::string name = "not-started-" + config::config_hash(job.spec.config.values).substr(0, 8);
-  if (job.spec.frames) name += fmt::format("-{}-{}", job.spec.frames->begin, job.spec.frames->end);
+  if (job.spec.frames) {
+    name += fmt::format("-{}", job.spec.frames->begin);
+    if (job.spec.frames->end) name += fmt::format("-{}", *job.spec.frames->end);
+  }
   if (job.spec.repetition > 1) name += fmt::format("-r{}", job.spec.repetition);
   return job.spec.out / job.recording.filename() / job.variant / name;
 }
@@ -57,7 +60,7 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
   if (job.simulation) record.recording.data = "simulated";
   if (job.spec.frames) {
     record.recording.first_frame = job.spec.frames->begin;
-    record.recording.frames = job.spec.frames->end - job.spec.frames->begin;
+    if (job.spec.frames->end) record.recording.frames = *job.spec.frames->end - job.spec.frames->begin;
   }
   record.config_hash = config::config_hash(job.spec.config.values);
   outcome.folder = not_started_folder(job);

@@ -25,6 +25,30 @@ struct Planned {
   std::optional<suites::SimulationRequest> simulation = {};
 };
 
+/// Whether a value suits what --only says of a key: any of its values, or nothing.
+template <class Suits>
+bool suits_one(const std::vector<std::string>& only, std::string_view key, const Suits& suits) {
+  bool asked = false;
+  for (const std::string_view filter : only) {
+    if (!filter.starts_with(key)) continue;
+    asked = true;
+    if (suits(filter.substr(key.size()))) return true;
+  }
+  return !asked;
+}
+
+/// Whether --only can leave a run of that variant.
+bool variant_may_be_wanted(const std::vector<std::string>& only, std::string_view variant) {
+  return suits_one(only, "variant=", [&](std::string_view value) { return variant == value; });
+}
+
+/// Whether --only can leave something of a recording that the suite calls by that name ("begin*" as well).
+bool recording_may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
+  if (name.ends_with('*')) name.remove_suffix(1);
+  return suits_one(
+      only, "recording=", [&](std::string_view value) { return name.find(value) != std::string_view::npos; });
+}
+
 /// Whether a job is among those asked for.
 Result<bool> wanted(const std::vector<std::string>& only, const std::string& recording,
                     const std::string& split, const std::string& variant) {
@@ -38,27 +62,11 @@ Result<bool> wanted(const std::vector<std::string>& only, const std::string& rec
                                                 "split=tuning | split=held-out)",
                                                 filter));
     }
-    if (key == "recording" && recording.find(value) == std::string::npos) return false;
-    if (key == "variant" && variant != value) return false;
-    if (key == "split" && split != value) return false;
   }
-  return true;
-}
-
-/// Whether --only can leave a run of that variant.
-bool variant_may_be_wanted(const std::vector<std::string>& only, const std::string& variant) {
-  return std::ranges::all_of(only, [&](const std::string& filter) {
-    return !filter.starts_with("variant=") || filter == "variant=" + variant;
-  });
-}
-
-/// Whether --only can leave something of a recording that the suite calls by that name ("begin*" as well).
-bool recording_may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
-  if (name.ends_with('*')) name.remove_suffix(1);
-  return std::all_of(only.begin(), only.end(), [&](const std::string& filter) {
-    constexpr std::string_view key = "recording=";
-    return !filter.starts_with(key) || name.find(filter.substr(key.size())) != std::string_view::npos;
-  });
+  return suits_one(only, "recording=",
+                   [&](std::string_view value) { return recording.find(value) != std::string::npos; }) &&
+         suits_one(only, "split=", [&](std::string_view value) { return split == value; }) &&
+         variant_may_be_wanted(only, variant);
 }
 
 Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, const BatchOptions& options) {
@@ -318,7 +326,7 @@ void multiply(const Common& common, const std::vector<BatchJob>& jobs, BatchPlan
 std::string to_string(const BatchJob& job) {
   std::string text = fmt::format("{} {}", job.recording.filename().string(), job.variant);
   if (!job.edits.empty()) text += fmt::format(" {}", suites::to_string(job.edits));
-  if (job.spec.frames) text += fmt::format(" frames {}:{}", job.spec.frames->begin, job.spec.frames->end);
+  if (job.spec.frames) text += fmt::format(" frames {}", run::to_string(*job.spec.frames));
   if (job.spec.repetition > 1) text += fmt::format(" repetition {}", job.spec.repetition);
   return text;
 }

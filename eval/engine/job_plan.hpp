@@ -21,7 +21,8 @@ struct BatchOptions {
   bool profile = false;  ///< RunSpec::profile of each run
   /// key=value, after the suite's own edits; with several values (key=1,2,4) a sweep over them.
   std::vector<std::string> sets;
-  /// "recording=TEXT" (name contains it) or "variant=NAME" (exactly); all must hold.
+  /// "recording=TEXT" (name contains it), "variant=NAME" (exactly) or "split=NAME": one of each key that is
+  /// there must hold.
   std::vector<std::string> only;
 };
 

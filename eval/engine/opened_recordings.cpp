@@ -9,7 +9,7 @@ const Result<recording::Recording>& OpenedRecordings::of(const run::RunSpec& spe
     opened_.clear();
     recording_ = spec.recording;
   }
-  const std::string window = spec.frames ? fmt::format("{}:{}", spec.frames->begin, spec.frames->end) : "all";
+  const std::string window = spec.frames ? run::to_string(*spec.frames) : "all";
   const std::string key =
       fmt::format("{} {} {}", window, static_cast<int>(spec.imu), run::wants_imu(spec) ? "imu" : "no imu");
   const auto found = opened_.find(key);

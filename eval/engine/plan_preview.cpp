@@ -42,7 +42,7 @@ class KnownTimes {
 std::string kind_of(const BatchJob& job) {
   const auto& frames = job.spec.frames;
   return fmt::format("{} {} {}", job.recording.string(), job.variant,
-                     frames ? fmt::format("{}:{}", frames->begin, frames->end) : "all");
+                     frames ? run::to_string(*frames) : "all");
 }
 
 struct Seen {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 #include "eval/process/child_processes.hpp"
@@ -31,6 +32,16 @@ std::vector<std::vector<std::string>> rows_of(const std::string& text) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+tl::unexpected<Error> no_sbatch() {
+  return fail(ErrorCode::usage, "there is no sbatch here: --executor slurm is for hosts that submit to Slurm",
+              "Debian: apt install slurm-client; without Slurm, -j runs on this machine");
+}
+
+tl::unexpected<Error> no_controller(std::string_view command, const std::string& why) {
+  return fail(ErrorCode::run_failed, fmt::format("no Slurm controller answers ({}: {})", command, why),
+              "is slurmctld running, and does SLURM_CONF or /etc/slurm/slurm.conf name it? `sinfo` shows");
+}
+
 }  // namespace
 
 SlurmQueue::Answer SlurmQueue::ask(const std::vector<std::string>& command) const {
@@ -50,6 +61,13 @@ SlurmQueue::Answer SlurmQueue::ask(const std::vector<std::string>& command) cons
   return {};
 }
 
+Result<void> SlurmQueue::check() const {
+  if (!ask({"sbatch", "--version"}).found) return no_sbatch();
+  const Answer answer = ask({"sinfo", "-h", "-o", "%P"});
+  if (answer.came || !answer.found) return {};  // without sinfo, sbatch will say it
+  return no_controller("sinfo", answer.errors.empty() ? "no answer" : first_line(answer.errors));
+}
+
 Result<std::string> SlurmQueue::submit(const SlurmArray& array) const {
   std::vector<std::string> command = {"sbatch",
                                       "--parsable",
@@ -67,18 +85,13 @@ Result<std::string> SlurmQueue::submit(const SlurmArray& array) const {
     const std::string job = first_line(answer.output);
     return job.substr(0, job.find(';'));
   }
-  if (!answer.found)
-    return fail(ErrorCode::usage,
-                "there is no sbatch here: --executor slurm is for hosts that submit to Slurm",
-                "Debian: apt install slurm-client; without Slurm, -j runs on this machine");
+  if (!answer.found) return no_sbatch();
   const std::string why = answer.errors.empty() ? "no answer" : first_line(answer.errors);
   // What waits for a controller may succeed later; what it refuses will not.
   const bool silent = answer.errors.empty() || why.find("contact") != std::string::npos ||
                       why.find("imed out") != std::string::npos || why.find("onnect") != std::string::npos ||
                       why.find("resolve_ctls") != std::string::npos;
-  if (silent)
-    return fail(ErrorCode::run_failed, fmt::format("no Slurm controller answers (sbatch: {})", why),
-                "is slurmctld running, and does SLURM_CONF or /etc/slurm/slurm.conf name it? `sinfo` shows");
+  if (silent) return no_controller("sbatch", why);
   return fail(ErrorCode::usage, fmt::format("sbatch: {}", why),
               "--slurm-arg passes arguments (partition, account) to sbatch");
 }

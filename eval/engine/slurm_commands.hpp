@@ -34,6 +34,9 @@ class SlurmQueue {
  public:
   explicit SlurmQueue(double command_limit_s) : limit_s_(command_limit_s) {}
 
+  /// Whether arrays can be submitted from here. Errors: usage if there is no sbatch; run_failed if no
+  /// controller answers.
+  [[nodiscard]] Result<void> check() const;
   /// The job's number. Errors: usage if there is no sbatch, or it refuses the array; run_failed if nobody
   /// answered: the array may have been taken all the same.
   [[nodiscard]] Result<std::string> submit(const SlurmArray& array) const;

@@ -74,7 +74,12 @@ class SlurmEngine {
     auto missing = what_is_missing();
     if (!missing) return tl::unexpected(missing.error());
     if (missing->empty()) return ledger_.take_outcomes();
-    if (auto submitted = submit(chunks_of(*missing)); !submitted) return tl::unexpected(submitted.error());
+    if (auto submitted = submit(chunks_of(*missing)); !submitted) {
+      std::error_code ignored;
+      fs::remove_all(folder_, ignored);
+      fs::remove(folder_.parent_path(), ignored);  // if it holds nothing else
+      return tl::unexpected(submitted.error());
+    }
     if (slurm_.submit_only) return ledger_.take_outcomes();
     while (!chunks_.empty() || !to_submit_.empty()) {
       if (ledger_.is_stopped()) {
@@ -334,6 +339,8 @@ class SlurmEngine {
 };
 
 }  // namespace
+
+Result<void> check_slurm(const SlurmOptions& slurm) { return SlurmQueue(slurm.command_limit_s).check(); }
 
 Result<std::vector<BatchOutcome>> run_on_slurm(std::span<const BatchJob> jobs, const EngineOptions& options,
                                                const SlurmOptions& slurm, const SlurmSite& site,

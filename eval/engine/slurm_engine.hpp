@@ -24,11 +24,14 @@ struct SlurmOptions {
   bool submit_only = false;            ///< returns when everything is submitted
 };
 
+/// Before anything is written: errors usage where there is no Slurm, run_failed where no controller answers.
+[[nodiscard]] Result<void> check_slurm(const SlurmOptions& slurm);
+
 /// Submits what is not finished as arrays of tasks, follows the results, and submits again what a node that
 /// died or was cut off, or a controller that forgot, took with it (three times at most; then the run is a row
 /// with that reason). Outcomes as run_locally(); with submit_only, those of what is there already. A stop
 /// cancels what is in the queue. Errors: those of run_locally(); usage where there is no Slurm or it refuses
-/// the arrays.
+/// the arrays, of which then no files are left.
 [[nodiscard]] Result<std::vector<BatchOutcome>> run_on_slurm(std::span<const BatchJob> jobs,
                                                              const EngineOptions& options,
                                                              const SlurmOptions& slurm, const SlurmSite& site,

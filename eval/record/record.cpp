@@ -276,6 +276,9 @@ Result<RunRecord> parse_record(std::string_view json, const std::string& name) {
                 "another version of this program wrote it");
   } catch (const nlohmann::json::parse_error& error) {
     return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", name, no_json(json, error.byte)));
+  } catch (const nlohmann::json::type_error&) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: a value of it is of another kind than a record's", name));
   } catch (const nlohmann::json::exception& error) {
     // "[json.exception.out_of_range.403] key 'variant' not found"
     const std::string_view text = error.what();

@@ -47,19 +47,29 @@ Result<FrameWindow> parse_window(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, window.begin);
   const bool colon = first.ec == std::errc{} && first.ptr != end && *first.ptr == ':';
-  const auto second = colon ? std::from_chars(first.ptr + 1, end, window.end) : first;
-  if (!colon || second.ec != std::errc{} || second.ptr != end || window.begin >= window.end) {
-    return fail(ErrorCode::usage, fmt::format("frames {} (allowed: A:B with 0 <= A < B)", text),
-                "A:B takes frames A to B-1");
+  const bool open = colon && first.ptr + 1 == end;
+  const auto second = colon && !open ? std::from_chars(first.ptr + 1, end, window.end.emplace()) : first;
+  if (!colon || second.ec != std::errc{} || (!open && second.ptr != end) ||
+      (window.end && window.begin >= *window.end)) {
+    return fail(ErrorCode::usage, fmt::format("frames {} (allowed: A:B with 0 <= A < B, or A:)", text),
+                "A:B takes frames A to B-1, A: all from A on");
   }
   return window;
+}
+
+std::string to_string(const FrameWindow& window) {
+  return fmt::format("{}:{}", window.begin, window.end ? fmt::format("{}", *window.end) : "");
+}
+
+Result<void> select_window(recording::Recording& recording, const FrameWindow& window) {
+  return recording::select_frames(recording, window.begin, window.end.value_or(recording.frames.size()));
 }
 
 Result<recording::Recording> open_for_run(const RunSpec& spec) {
   auto recording = datasets::open_recording(spec.recording, spec.open);
   if (!recording) return recording;
   if (spec.frames) {
-    if (auto cut = recording::select_frames(*recording, spec.frames->begin, spec.frames->end); !cut) {
+    if (auto cut = select_window(*recording, *spec.frames); !cut) {
       return tl::unexpected(cut.error());
     }
   }

@@ -22,13 +22,17 @@ enum class ImuChoice {
   automatic,  ///< the recording's own, and where there is none, one made from the ground truth
 };
 
-/// Frames begin to end - 1.
+/// Frames begin to end - 1, or to the last.
 struct FrameWindow {
   std::size_t begin = 0;
-  std::size_t end = 0;
+  std::optional<std::size_t> end;
 };
-/// "A:B" to frames A to B-1. Error usage.
+/// "A:B" to frames A to B-1, "A:" to all from A on. Error usage.
 [[nodiscard]] Result<FrameWindow> parse_window(const std::string& text);
+[[nodiscard]] std::string to_string(const FrameWindow& window);  ///< "A:B" or "A:"
+
+/// Cuts the recording to the window. Errors: those of select_frames().
+[[nodiscard]] Result<void> select_window(recording::Recording& recording, const FrameWindow& window);
 
 /// Which files a run's folder keeps. In large sweeps the others would fill the disk.
 enum class KeptFiles {

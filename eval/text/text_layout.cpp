@@ -3,21 +3,104 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace fusebench::text {
 
-std::string aligned_columns(const std::vector<std::vector<std::string>>& lines) {
+namespace {
+
+constexpr std::size_t kGap = 2;
+constexpr std::size_t kNarrowest = 12;
+constexpr std::size_t kLongestWord = 48;  // what is longer is broken within
+
+std::vector<std::size_t> natural_widths(const std::vector<std::vector<std::string>>& lines) {
   std::vector<std::size_t> widths;
   for (const auto& line : lines) {
     widths.resize(std::max(widths.size(), line.size()), 0);
     for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
   }
+  return widths;
+}
+
+std::size_t longest_word(std::string_view cell) {
+  std::size_t longest = 0;
+  while (!cell.empty()) {
+    const std::size_t end = std::min(cell.find(' '), cell.size());
+    longest = std::max(longest, end);
+    cell.remove_prefix(std::min(end + 1, cell.size()));
+  }
+  return longest;
+}
+
+/// Below what a column's words need, it is not made narrower.
+std::vector<std::size_t> least_widths(const std::vector<std::vector<std::string>>& lines,
+                                      const std::vector<std::size_t>& natural) {
+  std::vector<std::size_t> least(natural.size(), kNarrowest);
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+      least[i] = std::max(least[i], std::min(longest_word(line[i]), kLongestWord));
+  }
+  return least;
+}
+
+/// The pieces of a cell, each of at most `width` characters.
+std::vector<std::string> broken(std::string_view cell, std::size_t width) {
+  std::vector<std::string> pieces;
+  while (cell.size() > width) {
+    const std::size_t blank = cell.rfind(' ', width);
+    const bool at_blank = blank != std::string_view::npos && blank > 0;
+    pieces.emplace_back(cell.substr(0, at_blank ? blank : width));
+    cell.remove_prefix(at_blank ? blank + 1 : width);
+  }
+  pieces.emplace_back(cell);
+  return pieces;
+}
+
+}  // namespace
+
+std::string aligned_columns(const std::vector<std::vector<std::string>>& lines) {
+  const std::vector<std::size_t> widths = natural_widths(lines);
   std::string text;
   for (const auto& line : lines) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       text += i + 1 == line.size() ? line[i] : fmt::format("{:<{}}  ", line[i], widths[i]);
     }
     text += "\n";
+  }
+  return text;
+}
+
+std::string fitted_columns(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
+  std::vector<std::size_t> widths = natural_widths(lines);
+  const auto total = [&] {
+    std::size_t sum = widths.empty() ? 0 : kGap * (widths.size() - 1);
+    for (const std::size_t w : widths) sum += w;
+    return sum;
+  };
+  const std::vector<std::size_t> least = least_widths(lines, widths);
+  while (total() > width) {
+    std::optional<std::size_t> widest;
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+      if (widths[i] > least[i] && (!widest || widths[i] > widths[*widest])) widest = i;
+    }
+    if (!widest) break;
+    --widths[*widest];
+  }
+  std::vector<std::vector<std::string>> fitted;
+  for (const auto& line : lines) {
+    const std::size_t first = fitted.size();
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const std::vector<std::string> pieces = broken(line[i], std::max<std::size_t>(widths[i], 1));
+      while (fitted.size() < first + pieces.size()) fitted.emplace_back(line.size());
+      for (std::size_t k = 0; k < pieces.size(); ++k) fitted[first + k][i] = pieces[k];
+    }
+  }
+  std::string text;
+  for (const auto& line : fitted) {
+    std::string row;
+    for (std::size_t i = 0; i < line.size(); ++i) row += fmt::format("{:<{}}", line[i], widths[i] + kGap);
+    row.erase(row.find_last_not_of(' ') + 1);
+    text += row + "\n";
   }
   return text;
 }

@@ -1,6 +1,7 @@
 // Plain-text tables for terminals.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,11 @@ namespace fusebench::text {
 
 /// Lines of cells in columns of equal width, two blanks between them; the last column is not padded.
 [[nodiscard]] std::string aligned_columns(const std::vector<std::vector<std::string>>& lines);
+
+/// aligned_columns() in lines of at most `width` characters, as far as the words allow it: the widest columns
+/// become narrower, and their cells go on in the lines below, broken at blanks.
+[[nodiscard]] std::string fitted_columns(const std::vector<std::vector<std::string>>& lines,
+                                         std::size_t width);
 
 /// "45 s", "35 min", "2.5 h".
 [[nodiscard]] std::string duration_text(double time_s);

@@ -161,6 +161,8 @@ check_bad_usage() {
     calibrate freiburg1_copy --imu synthetic --out out
   refused "a calibration from the truth, automatic" 2 'made from its ground truth' -- \
     calibrate freiburg1_copy --imu auto --out out
+  refused "a calibration without samples" 2 'needs an IMU' 'hint:needs recorded inertial samples' -- \
+    calibrate freiburg1_copy --out out
   refused "one round" 2 'rounds' '2 (-|to) 20' -- calibrate freiburg1_copy --imu synthetic --rounds 1
   refused "frames backwards" 2 '4:2' -- "${run[@]}" --frames 4:2
   refused "frames beyond the end" 2 '3:9' -- "${run[@]}" --frames 3:9
@@ -226,6 +228,44 @@ check_recordings() {
   (mkdir elsewhere && cd elsewhere && "$binary" run fr1_rpy --data ../data --variant no-imu --frames 0:2 --out out) \
     >stdout 2>stderr || complain "run by a published name: exit code $?"
   grep -rq '"name": "rgbd_dataset_freiburg1_rpy"' --include record.json elsewhere/out || complain "another recording was run"
+  grep -q '"frames": null' <("$binary" list recordings --data data --json) || complain "unknown is not null in JSON"
+  listed "a text" '^fr3_office ' -- FR3_office
+  [[ $(grep -c . stdout) == 2 ]] || complain "list recordings FR3_office: other rows as well"
+  refused "a text that is nowhere" 2 "none of .* options contains 'voxl'" 'nearest' -- list options voxl
+
+  # What was run is run again by its record, and a window may be open.
+  local first again
+  checks=$((checks + 1))
+  first=$("$binary" run fr1_rpy --data data --variant no-imu --frames 3: --set iekf.max_iterations=3 --out like 2>stderr) ||
+    complain "an open window: exit code $?"
+  grep -q '"first_frame": 3' "$first/record.json" || complain "an open window: another first frame"
+  again=$("$binary" run --like "$first" --data data --out again 2>stderr) || complain "run --like: exit code $?"
+  [[ $(wc -l <stderr) == 1 && ${first#like/} == "${again#again/}" ]] || complain "run --like: another run, $again"
+  cmp -s "$first/trajectory.tum" "$again/trajectory.tum" || complain "run --like: another trajectory"
+  again=$("$binary" run scene/freiburg1_walk --data data --like "$first/record.json" --set iekf.max_iterations=2 \
+    --out again --json 2>stderr) || complain "run --like with changes: exit code $?"
+  grep -q 'another content' stderr && complain "run --like: the same images have another content"
+  refused "like, and something else" 2 'variant' 'hint:.' -- run --like "$first" --variant dm --data data --out out
+  refused "like nothing" 3 'absent' -- run --like absent --data data --out out
+  refused "no recording" 2 'no recording is given' 'hint:--like' -- run --variant no-imu --out out
+  "$binary" table again --format csv >stdout 2>stderr || complain "table: exit code $?"
+  grep -q 'iekf.max_iterations=2,3,1' stdout || complain "table: options and window of a run are not told"
+  "$binary" list runs again >stdout 2>stderr || complain "list runs: exit code $?"
+  grep -q 'no-imu iekf.max_iterations=3 ' stdout || complain "list runs: the options are not told"
+
+  # A configuration that was printed is one that is read.
+  checks=$((checks + 1))
+  "$binary" config --variant dm --set tsdf.voxel_m=0.02 >dm.toml 2>stderr || complain "config: exit code $?"
+  "$binary" config --config dm.toml >again.toml 2>stderr || complain "config of a printed one: exit code $?"
+  [[ $(grep '^# hash' dm.toml) == "$(grep '^# hash' again.toml)" ]] || complain "config: not the values that were printed"
+
+  # Suites go by name from any folder; of two values for one key either counts.
+  checks=$((checks + 1))
+  "$binary" bench quickstart --data data --only variant=full --only variant=no-imu --only recording=walk --dry-run \
+    >stdout 2>stderr || complain "a suite by its name: exit code $?"
+  [[ $(grep -c freiburg1_walk stdout) == 2 ]] || complain "--only twice: not both variants"
+  refused "nearly a suite" 3 "no suite 'quickstrat' .nearest: quickstart" 'hint:list suites' -- bench quickstrat --out out
+  diff <("$binary" help eval mesh) <("$binary" eval mesh --help) >stderr || complain "help is not --help"
   refused "known, but absent" 3 'fr1_desk.*rgbd_dataset_freiburg1_desk' 'hint:fetch_datasets.sh fr1_desk' \
     -- run fr1_desk --data data --variant no-imu --out out
   refused "by hand" 3 'dorm1_slow' 'hint:Google Drive.*data/dorm1/dorm1_slow' \
@@ -544,6 +584,9 @@ check_meshes() {
   grep -q 'yellow at 0.05 m' stderr || complain "a coloured mesh: its range is not told"
   [[ $(head -c 3 colored.ply) == ply ]] || complain "a coloured mesh was not written"
 
+  awk '/^v/ { print "v", -$3 + 2, $2 * 0.9 - $4 * 0.4 + 3, $2 * 0.4 + $4 * 0.9 - 1; next } { print }' truth.obj >first_camera.obj
+  refused "an icp that sticks" 3 'stuck in a wrong place' 'hint:--trajectories TRUTH ESTIMATE' -- \
+    eval mesh first_camera.obj truth.obj --align icp
   refused "millimetres for metres" 3 'not to be in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
   refused "no such mesh" 3 'absent.ply' -- eval mesh absent.ply truth.obj
   refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj
@@ -557,7 +600,7 @@ check_meshes() {
   refused "culling from nowhere" 2 'needs --recording' -- eval mesh rec.obj truth.obj --cull depth
   refused "a recording without culling" 2 '--cull frustum' -- eval mesh rec.obj truth.obj --recording x
   refused "no samples" 2 'samples 0' -- eval mesh rec.obj truth.obj --samples 0
-  refused "a threshold of none" 2 'thresholds' -- eval mesh rec.obj truth.obj --thresholds 0
+  refused "a threshold of none" 2 'thresholds: 0 .allowed: above 0' -- eval mesh rec.obj truth.obj --thresholds 0
   fresh_copy
   refused "a truth that nobody saw" 3 'observed' 'hint:one world' -- \
     eval mesh rec.obj truth.obj --cull depth --recording freiburg1_copy --cull-every 1

@@ -124,7 +124,7 @@ check_disks() {
   engine disk/out
   status=$?
   ((status == 4)) || complain "a full disk: exit code $status instead of 4"
-  grep -q 'cannot be written' stderr || complain "a full disk: not said"
+  grep -q 'cannot be written: No space left on device' stderr || complain "a full disk: not said"
   grep -qE '[0-9]+ of [0-9]+ runs are finished and kept' stderr || complain "a full disk: what is kept is not said"
   local kept
   kept=$(find disk/out -name record.json -not -path '*/.*/*' | wc -l)
@@ -132,6 +132,18 @@ check_disks() {
   while read -r file; do
     "$binary" table "$(dirname "$file")" >/dev/null 2>stderr || complain "a full disk: $file is not whole"
   done < <(find disk/out -name record.json -not -path '*/.*/*' | head -n 5)
+  # Pages and tables are whole or not there, and the reason is told.
+  head -c 2000k /dev/zero >disk/filler 2>/dev/null
+  local verb
+  for verb in 'inspect simulated/tiny --page' 'report undisturbed --out' 'collect undisturbed --out'; do
+    # shellcheck disable=SC2086  # several arguments
+    "$binary" $verb disk/page.html >stdout 2>stderr
+    status=$?
+    ((status == 4)) || complain "$verb on a full disk: exit code $status instead of 4"
+    grep -q 'page.html: cannot be written: No space left on device' stderr || complain "$verb on a full disk: why is not told"
+    [[ -z $(find disk -maxdepth 1 -name '*page*') ]] || complain "$verb on a full disk: leaves a part of a file"
+  done
+  rm disk/filler
   mount -o remount,size=500m disk
   mount -o remount,ro disk
   engine disk/out
@@ -194,6 +206,7 @@ check_verbs() {
   says 2 "unknown option 'tsdf.voxel' in a sweep" "${suite[@]}" --out elsewhere --set tsdf.voxel=1,2
   "$binary" "${suite[@]}" --out nowhere --executor slurm >stdout 2>stderr && complain "slurm without a cluster succeeds"
   grep -qE 'there is no sbatch here|no Slurm controller answers' stderr || complain "slurm without a cluster: not said"
+  [[ ! -e nowhere ]] || complain "slurm without a cluster: something is left"
   says 2 'for --executor slurm' "${suite[@]}" --out nowhere --submit
   says 2 'is swept as well' "${suite[@]}" --out nowhere --set tsdf.voxel_m=0.02
 
@@ -203,6 +216,8 @@ check_verbs() {
   says 0 '\| +1 \|' best undisturbed --by aie --group none
   says 2 'allowed|one of' best undisturbed --by beauty
   says 3 'absent' collect absent
+  says 4 '/dev/full: cannot be written: No space left on device' collect undisturbed --out /dev/full
+  says 0 'no-imu iekf.max_iterations=[0-9]+ tsdf.voxel_m=0.01[0-9]* ' list runs undisturbed
   says 0 "$runs runs" report undisturbed --out sweep.html
   grep -q 'Best configurations' sweep.html || complain "the report says nothing of the sweep"
 

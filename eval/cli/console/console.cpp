@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <array>
@@ -79,6 +80,13 @@ void install_stop_handler() {
   std::signal(SIGTERM, on_stop_signal);
 }
 
+std::optional<std::size_t> terminal_width() {
+  winsize size{};
+  if (isatty(STDOUT_FILENO) != 1 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return std::nullopt;
+  return size.ws_col;
+}
+
 ProgressBar::ProgressBar(std::string title)
     : title_(std::move(title)), terminal_(isatty(STDERR_FILENO) == 1) {}
 
@@ -106,8 +114,9 @@ std::string summary_line(const record::RunRecord& record) {
       line += fmt::format(" (final {:.2f} cm)", 100 * record.final_metrics->ate.value->stats.rmse);
     line += ", ";
   }
-  line +=
-      fmt::format("{}/{} frames, {:.1f} fps", record.frames.tracked, record.frames.total, record.timing.fps);
+  line += fmt::format("{}/{} frames", record.frames.tracked, record.frames.total);
+  // Nobody timed what was imported.
+  if (record.timing.fps > 0) line += fmt::format(", {:.1f} fps", record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)
     line += fmt::format(", {} silent failures", silent);
   return line;

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,8 @@ void print_output(std::string_view text);  ///< standard output
 /// Once, at the end: false, with an error, if standard output could not take all of it (a full disk, a closed
 /// descriptor). Where it is a pipe whose reader has left, the process ends by SIGPIPE.
 [[nodiscard]] bool output_arrived();
+/// Characters in a line of standard output; nothing where that is no terminal.
+[[nodiscard]] std::optional<std::size_t> terminal_width();
 void print_progress(std::string_view line);  ///< a line on standard error
 void print_status(std::string_view text);    ///< on standard error, as it is: of a line that is redrawn
 

@@ -20,7 +20,8 @@ void add_run_request(CLI::App& verb, RunRequest& request) {
   add_set_option(verb, request.sets);
   add_config_option(verb, request.config);
   add_threads_option(verb, request.threads);
-  verb.add_option("--frames", request.frames, "Only frames A to B-1")->type_name("A:B");
+  verb.add_option("--frames", request.frames, "Only frames A to B-1; A: takes all from A on")
+      ->type_name("A:B");
   add_reading_options(verb, request.reading);
   add_data_option(verb, request.data);
 }

@@ -11,6 +11,7 @@
 #include "core/mesh/mesh_file.hpp"
 #include "core/mesh/ply_file.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
@@ -50,6 +51,11 @@ void warn(const mesh_error::MeshEvaluation& evaluation) {
   if (evaluation.truth.extent_m.norm() > kRoom_m) {
     console::print_progress(fmt::format("warning: the truth measures {:.4g} m: are both meshes in metres?",
                                         evaluation.truth.extent_m.norm()));
+  }
+  if (evaluation.icp && !evaluation.icp->converged) {
+    console::print_progress(fmt::format(
+        "warning: icp had not converged after {} steps: the result may depend on where it started",
+        evaluation.icp->steps));
   }
   const mesh_error::MeshThreshold& widest = evaluation.errors.thresholds.back();
   if (widest.precision == 0) {
@@ -123,13 +129,13 @@ void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
                   "Folder of the recording of --cull, or the name of one under --data")
       ->type_name("REC");
   verb.add_option("--cull-every", options.cull_every, "Uses every N-th frame for --cull")
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("--depth-range", options.depth_range_m,
                   "Nearest and farthest depth that counts as seen, metres")
       ->expected(2)
-      ->check(CLI::NonNegativeNumber)
+      ->check(console::not_negative())
       ->type_name("MIN MAX")
       ->capture_default_str();
   verb.add_option("--min-observed", options.least_observed,
@@ -155,7 +161,7 @@ console::Verb add_eval_mesh_verb(CLI::App& eval) {
                    "Distances (metres) below which points count for precision, recall and F")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->type_name("M,M,...")
       ->capture_default_str();
   verb->add_option("--samples", options->samples,
@@ -171,7 +177,7 @@ console::Verb add_eval_mesh_verb(CLI::App& eval) {
       ->type_name("FILE.ply");
   verb->add_option("--colored-max", options->colored_max_m,
                    "Distance of the last colour; default: the largest threshold")
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->type_name("M");
   console::add_threads_option(*verb, options->threads);
   console::add_json_flag(*verb, options->json);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/evaluation/loaded_sides.hpp"
@@ -107,7 +108,7 @@ console::Verb add_eval_nees_verb(CLI::App& eval) {
       ->capture_default_str();
   verb->add_option("--t_max_diff", options->association.max_difference_s,
                    "The reference is interpolated at the estimate's stamps, in gaps of up to so much")
-      ->check(CLI::NonNegativeNumber)
+      ->check(console::not_negative())
       ->type_name("S")
       ->capture_default_str();
   verb->add_option("--t_offset", options->association.offset_s, "Added to the estimate's stamps")

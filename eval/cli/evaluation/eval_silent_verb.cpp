@@ -10,6 +10,7 @@
 #include "core/base/geometry.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/evaluation/loaded_sides.hpp"
@@ -83,15 +84,15 @@ console::Verb add_eval_silent_verb(CLI::App& eval) {
       ->required();
   verb->add_option("--interval", options->interval_s, "The motion over this long is judged")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->capture_default_str();
   verb->add_option("--translation", options->translation_m, "It may be off by this much")
       ->type_name("M")
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->capture_default_str();
   verb->add_option("--rotation", options->rotation_deg, "And be rotated by this much")
       ->type_name("DEG")
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->capture_default_str();
   verb->add_option("--offset", options->offset_m,
                    "Of the camera in the reference's body, as `eval ate --fit_offset` finds it")

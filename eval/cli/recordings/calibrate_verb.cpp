@@ -36,7 +36,13 @@ Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
                 fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.request.variant),
                 "take --variant full: the IMU only helps to find the poses, which are the images' own");
   }
-  return run::prepare_run(std::move(*spec));
+  auto prepared = run::prepare_run(std::move(*spec));
+  // What a run could do without an IMU of its own, a calibration cannot.
+  if (!prepared && prepared.error().hint.starts_with("--imu synthetic"))
+    prepared.error().hint =
+        "a calibration needs recorded inertial samples; with --imu synthetic and without --out it only shows "
+        "what it finds in those that the ground truth gives";
+  return prepared;
 }
 
 Result<int> run(const CalibrateVerbOptions& options) {

@@ -41,7 +41,7 @@ Result<recording::Recording> open_for_export(const ExportVerbOptions& options) {
   if (!folder) return tl::unexpected(folder.error());
   auto recording = datasets::open_recording(*folder, *how);
   if (!recording || !*window) return recording;
-  const auto selected = recording::select_frames(*recording, (*window)->begin, (*window)->end);
+  const auto selected = run::select_window(*recording, **window);
   if (!selected) return tl::unexpected(selected.error());
   return recording;
 }
@@ -131,7 +131,8 @@ console::Verb add_export_verb(CLI::App& app) {
   verb->add_option("--out", options->out, "What to write: a folder, for klg and sens a file; must not exist")
       ->type_name("PATH")
       ->required();
-  verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
+  verb->add_option("--frames", options->frames, "Only frames A to B-1; A: takes all from A on")
+      ->type_name("A:B");
   console::add_reading_options(*verb, options->reading, "--recording-format");
   console::add_data_option(*verb, options->data);
   console::add_json_flag(*verb, options->json);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "eval/inspection_report/inspection_page.hpp"
 #include "eval/inspection_report/inspection_text.hpp"
 #include "eval/suites/suite_file.hpp"
+#include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::recordings {
 
@@ -45,7 +45,7 @@ Result<recording::Recording> open(const InspectVerbOptions& options, const std::
   auto recording = datasets::open_recording(folder, *how);
   if (!recording) return recording;
   if (*window) {
-    const auto selected = recording::select_frames(*recording, (*window)->begin, (*window)->end);
+    const auto selected = run::select_window(*recording, **window);
     if (!selected) return tl::unexpected(selected.error());
   }
   return recording;
@@ -58,16 +58,6 @@ std::optional<std::size_t> published_frames(const std::filesystem::path& folder)
   const calibration::CatalogueEntry* entry = calibration::catalogue_entry_of_folder(folder);
   if (entry == nullptr || !entry->frames) return std::nullopt;
   return static_cast<std::size_t>(*entry->frames);
-}
-
-Result<void> write_page(const std::filesystem::path& file, const std::string& html) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << html;
-  stream.close();
-  if (!stream)
-    return fail(ErrorCode::io, fmt::format("{}: cannot be written", file.string()),
-                "choose another place for --page");
-  return {};
 }
 
 int print(const inspection::Inspection& inspection, const InspectVerbOptions& options) {
@@ -96,7 +86,8 @@ Result<int> run(const InspectVerbOptions& options) {
   const inspection::Inspection inspection = inspection::inspect(*recording, workers, inspect_options);
   if (console::stop_requested()) return interrupted();
   if (!options.page.empty()) {
-    const auto written = write_page(options.page, inspection_report::to_page(inspection, *recording));
+    const auto written =
+        text::write_text_file(options.page, inspection_report::to_page(inspection, *recording));
     if (!written) return tl::unexpected(written.error());
   }
   return print(inspection, options);
@@ -110,7 +101,8 @@ console::Verb add_inspect_verb(CLI::App& app) {
       "inspect", "Checks a recording: stamps, images, depth, motion, IMU, calibration and ground truth");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
-  verb->add_option("--frames", options->frames, "Only frames A to B-1")->type_name("A:B");
+  verb->add_option("--frames", options->frames, "Only frames A to B-1; A: takes all from A on")
+      ->type_name("A:B");
   console::add_reading_options(*verb, options->reading);
   verb->add_option("--page", options->page, "Writes a page with plots, which needs no network, as well")
       ->type_name("FILE.html");

@@ -2,9 +2,11 @@
 #include <memory>
 #include <string>
 
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/cli/running/suite_run.hpp"
+#include "eval/suites/suite_names.hpp"
 
 namespace fusebench::cli::running {
 
@@ -20,7 +22,7 @@ void add_slurm_options(CLI::App& verb, BenchOptions& options) {
       ->capture_default_str();
   verb.add_flag("--submit", slurm.submit_only, "With slurm: returns when everything is in the queue");
   verb.add_option("--chunk", slurm.chunk, "With slurm: runs of one task; default: about a minute's")
-      ->check(CLI::PositiveNumber)
+      ->check(console::positive())
       ->type_name("N");
   verb.add_option("--slurm-silence", slurm.silence_s,
                   "With slurm: a running task without a heartbeat for this long is cancelled, and its runs "
@@ -36,14 +38,15 @@ void add_slurm_options(CLI::App& verb, BenchOptions& options) {
 
 void add_suite_options(CLI::App& verb, engine::Invocation& invocation) {
   engine::BatchOptions& batch = invocation.options;
-  verb.add_option("SUITE", invocation.suite, "TOML file of a suite, e.g. configs/suites/quickstart.toml")
+  verb.add_option("SUITE", invocation.suite,
+                  "A suite: its TOML file, or the name of one in configs/suites (`fusebench list suites`)")
       ->required();
   console::add_data_option(verb, batch.data);
   verb.add_option("--out", batch.out, "Folder of the runs; default: results/runs/<suite>")->type_name("DIR");
   verb.add_option(
           "--only", batch.only,
           "Only some runs: recording=TEXT (the name contains it), variant=NAME, or split=held-out or tuning; "
-          "may be repeated")
+          "may be repeated: with one key, either counts")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   verb.add_option(
@@ -93,7 +96,10 @@ console::Verb add_bench_verb(CLI::App& app) {
       "docs/experiments.md says what a suite can ask for.");
   return {verb, [options, verb] {
             options->controls.threads_given = verb->count("--threads") > 0;
-            return run_suite(*options);
+            return suites::find_suite(options->invocation.suite).and_then([&](const auto& file) {
+              options->invocation.suite = file;
+              return run_suite(*options);
+            });
           }};
 }
 

@@ -7,6 +7,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/running/run_like.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/external/external_program.hpp"
 #include "eval/run/run.hpp"
@@ -18,6 +19,7 @@ namespace {
 struct RunOptions {
   console::RunRequest request;
   std::filesystem::path system;
+  std::filesystem::path like;
   int repetition = 1;
   std::filesystem::path out = "results/runs";
   bool profile = false;
@@ -54,14 +56,44 @@ Result<void> take_program(const RunOptions& options, run::RunSpec& spec) {
   return {};
 }
 
-Result<int> run(const RunOptions& options) {
+Result<run::RunSpec> asked_for(const RunOptions& options) {
+  if (options.request.recording.empty())
+    return fail(
+        ErrorCode::usage, "no recording is given",
+        "RECORDING is a folder, or the name of one under --data; --like RECORD takes that of a record");
   auto spec = console::spec_of(options.request);
-  if (!spec) return tl::unexpected(spec.error());
-  spec->out = options.out;
+  if (!spec) return spec;
   spec->repetition = options.repetition;
   if (auto taken = take_program(options, *spec); !taken) return tl::unexpected(taken.error());
+  return spec;
+}
+
+/// The run of a record again, with a warning where it cannot be the same.
+Result<run::PreparedRun> prepare_like(const RunOptions& options) {
+  const auto record = record_to_repeat(options.like);
+  if (!record) return tl::unexpected(record.error());
+  auto spec = spec_like(*record, options.request);
+  if (!spec) return tl::unexpected(spec.error());
+  spec->out = options.out;
   spec->profile = options.profile;
-  const auto prepared = run::prepare_run(std::move(*spec));
+  auto prepared = run::prepare_run(std::move(*spec));
+  if (!prepared) return prepared;
+  for (const std::string& difference : differences(*record, *prepared))
+    console::print_progress(fmt::format("warning: {}: results may differ", difference));
+  return prepared;
+}
+
+Result<run::PreparedRun> prepare(const RunOptions& options) {
+  if (!options.like.empty()) return prepare_like(options);
+  auto spec = asked_for(options);
+  if (!spec) return tl::unexpected(spec.error());
+  spec->out = options.out;
+  spec->profile = options.profile;
+  return run::prepare_run(std::move(*spec));
+}
+
+Result<int> run(const RunOptions& options) {
+  const auto prepared = prepare(options);
   if (!prepared) return tl::unexpected(prepared.error());
   for (const std::string& warning : prepared->recording.warnings)
     console::print_progress(fmt::format("warning: {}", warning));
@@ -91,15 +123,27 @@ console::Verb add_run_verb(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("run", "Runs one variant over one recording and writes the run's folder");
   console::add_run_request(*verb, options->request);
+  verb->get_option("RECORDING")->required(false);  // a record names one
+  CLI::Option* const like =
+      verb->add_option(
+              "--like", options->like,
+              "Repeats the run of this record.json, or of this run's folder: the same recording (by its "
+              "name under --data, or RECORDING), variant, options, IMU, frames and repetition; --set "
+              "changes something")
+          ->type_name("RECORD");
+  for (const char* const option : {"--variant", "--imu", "--config", "--frames"})
+    like->excludes(verb->get_option(option));
   verb->add_option("--system", options->system,
                    "Runs the external program of this file in place of a variant (docs/systems.md)")
       ->type_name("FILE.toml")
-      ->excludes("--variant");
+      ->excludes("--variant")
+      ->excludes("--like");
   verb->add_option("--repetition", options->repetition,
                    "Number of the repetition: in the folder's name, and an external program's {seed}")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes("--like");
   verb->add_option("--out", options->out, "Results go to DIR/<recording>/<variant>/<hash8>/")
       ->type_name("DIR")
       ->capture_default_str();

@@ -35,6 +35,9 @@ Result<std::vector<engine::BatchOutcome>> run_on_cluster(const BenchOptions& opt
 
 Result<std::vector<engine::BatchOutcome>> run_plan(const BenchOptions& options, const suites::Suite& suite,
                                                    const engine::BatchPlan& plan, int all_threads) {
+  if (options.executor == "slurm") {
+    if (auto usable = engine::check_slurm(options.slurm); !usable) return tl::unexpected(usable.error());
+  }
   const auto kept = engine::keep(options.invocation);
   if (!kept) return tl::unexpected(kept.error());
   if (options.executor == "slurm") return run_on_cluster(options, suite, plan, all_threads, *kept);

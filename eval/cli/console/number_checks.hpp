@@ -1,0 +1,34 @@
+// Ranges without an upper end, of which the parser's own messages would print all 309 digits.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <string>
+#include <system_error>
+
+namespace fusebench::cli::console {
+
+namespace detail {
+
+template <class Allows>
+[[nodiscard]] CLI::Validator number_check(const char* range, const char* description, Allows allows) {
+  return {[range, allows](const std::string& text) {
+            double value = 0;
+            const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool number = status == std::errc{} && end == text.data() + text.size();
+            return number && allows(value) ? std::string() : text + " (allowed: " + range + ")";
+          },
+          description};
+}
+
+}  // namespace detail
+
+[[nodiscard]] inline CLI::Validator not_negative() {
+  return detail::number_check("0 or more", "NONNEGATIVE", [](double value) { return value >= 0; });
+}
+
+[[nodiscard]] inline CLI::Validator positive() {
+  return detail::number_check("above 0", "POSITIVE", [](double value) { return value > 0; });
+}
+
+}  // namespace fusebench::cli::console

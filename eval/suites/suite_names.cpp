@@ -1,0 +1,63 @@
+#include "eval/suites/suite_names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/nearest_name.hpp"
+
+namespace fusebench::suites {
+
+namespace fs = std::filesystem;
+
+Result<std::vector<fs::path>> suite_files(const fs::path& configs) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  const fs::path folder = configs / "suites";
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".toml") files.push_back(entry->path());
+  }
+  if (error) {
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: cannot be listed: {}", folder.string(), error.message()),
+                "--configs names the folder that holds suites/");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+fs::path shipped_configs() {
+  std::error_code ignored;
+  if (fs::is_directory("configs/suites", ignored)) return "configs";  // as people would write it
+  for (const fs::path& start : {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
+    for (fs::path folder = start; folder.has_relative_path(); folder = folder.parent_path()) {
+      if (fs::is_directory(folder / "configs" / "suites", ignored)) return folder / "configs";
+    }
+  }
+  return {};
+}
+
+Result<fs::path> find_suite(const fs::path& name, const fs::path& configs) {
+  std::error_code ignored;
+  const bool plain = !name.has_parent_path() && !name.has_extension();
+  if (fs::is_regular_file(name, ignored) || !plain) return name;
+  const auto files = configs.empty() ? Result<std::vector<fs::path>>() : suite_files(configs);
+  std::vector<std::string> names;
+  if (files) {
+    for (const fs::path& file : *files) {
+      if (file.stem() == name) return file;
+      names.push_back(file.stem().string());
+    }
+  }
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return fail(
+      ErrorCode::data_missing,
+      fmt::format("no suite '{}'{}", name.string(),
+                  names.empty() ? "" : fmt::format(" (nearest: {})", nearest_name(name.string(), views))),
+      "`fusebench list suites` lists those that are found by name; any other one is given by its file");
+}
+
+}  // namespace fusebench::suites
