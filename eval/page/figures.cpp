@@ -80,9 +80,14 @@ std::string dashes(std::size_t place) {
 void add_data(const Chart& chart, std::string& script) {
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& series = chart.series[i];
+    if (series.on_request) continue;
     auto out = std::back_inserter(script);
     fmt::format_to(out, "$series{} << END\n", i);
-    for (const Vector2d& p : series.points) fmt::format_to(out, "{:.6g} {:.6g}\n", p.x(), p.y());
+    const bool segments = series.style == SeriesStyle::segments;
+    for (std::size_t k = 0; k < series.points.size(); ++k) {
+      const Vector2d& p = series.points[k];
+      fmt::format_to(out, "{:.6g} {:.6g}\n{}", p.x(), p.y(), segments && k % 2 == 1 ? "\n" : "");
+    }
     for (const ChartBox& b : series.boxes) {
       fmt::format_to(out, "{:.6g} {:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", b.x, b.quartile, b.min, b.max,
                      b.upper_quartile, b.median);
@@ -125,6 +130,8 @@ std::string curve(const Chart& chart, std::size_t i) {
                          dashes(lines_before(chart, i)), colour, title);
     case SeriesStyle::backdrop:
       return fmt::format("$series{}{} with lines lw 4 lc rgb '#66{}' title {}", i, axes, colour + 1, title);
+    case SeriesStyle::segments:
+      return fmt::format("$series{}{} with lines lw 0.6 lc rgb '{}' title {}", i, axes, colour, title);
     case SeriesStyle::dots:
       return fmt::format("$series{}{} with points pt 7 ps 0.3 lc rgb '{}' title {}", i, axes, colour, title);
     case SeriesStyle::bars:
@@ -217,9 +224,11 @@ std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFo
   if (chart.equal_scale) script += equal_axes(chart);
   if (!chart.categories.empty()) return script + stacked(chart);
   add_data(chart, script);
-  script += "plot ";
-  for (std::size_t i = 0; i < chart.series.size(); ++i) script += (i > 0 ? ", " : "") + curve(chart, i);
-  return script + "\n";
+  std::string curves;
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    if (!chart.series[i].on_request) curves += (curves.empty() ? "" : ", ") + curve(chart, i);
+  }
+  return script + "plot " + curves + "\n";
 }
 
 std::string figure_file(const std::string& name, FigureFormat format) {

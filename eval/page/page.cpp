@@ -37,6 +37,8 @@ std::string_view style_name(SeriesStyle style) {
       return "boxes";
     case SeriesStyle::backdrop:
       return "backdrop";
+    case SeriesStyle::segments:
+      return "segments";
     case SeriesStyle::line:
       break;
   }
@@ -57,6 +59,7 @@ Json json_of(const Chart& chart) {
                       {"style", style_name(s.style)},
                       {"colour", s.colour.value_or(place)},
                       {"right", s.right},
+                      {"hidden", s.on_request},
                       {"points", points}});
   }
   return {{"x", chart.x_label},

@@ -29,6 +29,7 @@ enum class SeriesStyle {
   dots,
   bars,
   boxes,
+  segments,  ///< thin lines: from the first point to the second, from the third to the fourth, ...
 };
 
 /// What a box of a box plot shows; whiskers reach the extremes.
@@ -48,6 +49,7 @@ struct ChartSeries {
   bool right = false;                      ///< belongs to the axis on the right
   std::optional<std::size_t> colour = {};  ///< of the style's; by default the series' place in its chart
   std::vector<ChartBox> boxes = {};        ///< with SeriesStyle::boxes, in place of points
+  bool on_request = false;                 ///< drawn after a click on its name; not in figures
 };
 
 struct Chart {

@@ -29,23 +29,30 @@ function withDashes(list) {
     dashes: series.style === "line" ? dashes[lines++ % dashes.length] : [] }, series));
 }
 
+/// Points with a gap after every other one.
+function segmentPoints(points) {
+  return points.flatMap(([x, y], i) => i % 2 === 0 ? [{ x: x, y: y }] : [{ x: x, y: y }, { x: null, y: null }]);
+}
+
 function dataset(series) {
   const stroke = strokeOf(series);
   const boxes = series.style === "boxes";
+  const segments = series.style === "segments";
   return {
     label: series.label,
     // A box is drawn by a plugin; its two points make the axes reach its whiskers.
     data: boxes ? series.points.flatMap((b) => [{ x: b[0], y: b[1] }, { x: b[0], y: b[5] }])
-      : series.points.map(([x, y]) => ({ x: x, y: y })),
+      : segments ? segmentPoints(series.points) : series.points.map(([x, y]) => ({ x: x, y: y })),
+    hidden: series.hidden,
     boxes: boxes ? series.points : null,
     yAxisID: series.right ? "right" : "left",
     borderColor: series.style === "backdrop" ? stroke + "66" : stroke,
     backgroundColor: series.style === "bars" ? stroke + "66" : stroke,
-    borderWidth: series.style === "dots" || boxes ? 0 : series.style === "backdrop" ? 4 : 1.3,
+    borderWidth: series.style === "dots" || boxes ? 0 : series.style === "backdrop" ? 4 : segments ? 0.8 : 1.3,
     borderDash: series.dashes,
-    pointStyle: series.style === "dots" ? "circle" : series.style === "line" || series.style === "backdrop" ? "line" : "rect",
+    pointStyle: series.style === "dots" ? "circle" : ["line", "backdrop", "segments"].includes(series.style) ? "line" : "rect",
     // Later lines are dashed: they lie on the earlier ones.
-    order: series.style === "backdrop" ? 1 : -series.place,
+    order: series.style === "backdrop" ? 1 : segments ? 0.5 : -series.place,
     pointRadius: series.style === "dots" ? 2.5 : 0,
     pointHitRadius: 6,
     showLine: series.style !== "dots" && !boxes,

@@ -16,12 +16,14 @@
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/page/image_source.hpp"
 #include "eval/record/data_labels.hpp"
+#include "eval/report/loop_sections.hpp"
 #include "eval/report/patch_pictures.hpp"
 #include "eval/report/profile_charts.hpp"
 #include "eval/report/run_charts.hpp"
 #include "eval/report/run_series.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/run_files/run_labels.hpp"
+#include "eval/tables/systems_table.hpp"
 #include "eval/tables/table.hpp"
 
 namespace fusebench::report {
@@ -242,8 +244,8 @@ page::PageDetails configuration_of(const run_files::FoundRun& run, const std::st
   return details;
 }
 
-void add_charts(page::Page& page, std::string title, std::vector<page::Chart> charts) {
-  if (!charts.empty()) page.sections.push_back({std::move(title), "", std::move(charts), 3});
+void add_charts(page::Page& page, std::string title, std::vector<page::Chart> charts, std::string text = "") {
+  if (!charts.empty()) page.sections.push_back({std::move(title), std::move(text), std::move(charts), 3});
 }
 
 std::vector<run_files::FoundRun> runs_to_draw(Group group) {
@@ -284,9 +286,16 @@ void add_recording(ResultsPage& result, Group group, const std::vector<run_files
     series.push_back(series_of(run, label_of(run, group, labels)));
     for (const std::string& warning : series.back().warnings) result.warnings.push_back(warning);
   }
-  add_charts(page, "Trajectories", view_charts(series, detail.buckets));
-  add_charts(page, "Position over time", position_charts(series, detail.buckets));
-  add_charts(page, "Errors", error_charts(series, detail.buckets));
+  const bool revised =
+      std::ranges::any_of(series, [](const RunSeries& run) { return !run.final_poses.empty(); });
+  const std::string which =
+      revised ? "Poses as each was known when its frame came; final ones are under Loops and final poses."
+              : "";
+  add_charts(page, "Trajectories", view_charts(series, detail.buckets), which);
+  add_charts(page, "Position over time", position_charts(series, detail.buckets), which);
+  add_charts(page, "Errors", error_charts(series, detail.buckets), which);
+  for (page::PageSection& section : loop_sections(series, detail.buckets))
+    page.sections.push_back(std::move(section));
   add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
   if (const PatchPictures pictures = pictures_of(drawn, group, labels, result.warnings);
       !pictures.pictures.empty())
@@ -303,6 +312,22 @@ void add_recording(ResultsPage& result, Group group, const std::vector<run_files
   page.sections.push_back({"Configuration and provenance", "", std::move(details), 3});
 }
 
+/// The table of systems and how to read it, where it says more than the table of runs.
+void add_systems(page::Page& page, const std::vector<run_files::FoundRun>& runs) {
+  if (!tables::compares_systems(runs)) return;
+  const tables::SystemsTable systems = tables::systems_table_of(runs);
+  const auto lines = tables::systems_table_cells(systems);
+  page::PageTable table{lines.front(), {}};
+  for (std::size_t i = 0; i < systems.rows.size(); ++i) {
+    const tables::SystemRow& row = systems.rows[i];
+    table.rows.push_back({lines[i + 1], row.runs == 0 ? "note" : row.ok < row.runs ? "warning" : ""});
+  }
+  page.sections.push_back({"Systems", "A row a recording, system and kind of poses.", std::move(table)});
+  std::vector<std::string> remarks = systems.footer;
+  remarks.insert(remarks.end(), systems.notes.begin(), systems.notes.end());
+  page.sections.push_back({"How to read the table of systems", "", lines_table(remarks), 3});
+}
+
 }  // namespace
 
 ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title) {
@@ -311,10 +336,18 @@ ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std
   const auto ok = std::ranges::count(table.rows, record::RunStatus::ok, &tables::TableRow::status);
   result.page.title = title;
   result.page.subtitle = fmt::format("{} of {} runs ok.", ok, runs.size());
-  result.page.sections.push_back({"Results", "", page_table(table)});
+  const bool revised = std::ranges::any_of(
+      runs, [](const run_files::FoundRun& run) { return run.record.final_metrics.has_value(); });
+  result.page.sections.push_back({"Results",
+                                  revised
+                                      ? "Of runs that revised their poses at the end: the online ones; the "
+                                        "final ones are in the table of systems below."
+                                      : "",
+                                  page_table(table)});
   std::vector<std::string> remarks = table.footer;
   remarks.insert(remarks.end(), table.notes.begin(), table.notes.end());
   result.page.sections.push_back({"How to read the columns", "", lines_table(remarks), 3});
+  add_systems(result.page, runs);
   result.tables = result.page.sections.size();
   std::size_t drawn = 0;
   for (const Group group : groups_of(runs)) drawn += std::min(group.size(), kMostDrawn);

@@ -31,8 +31,24 @@ Trajectory trajectory_of(const run_files::FoundRun& run, const char* name,
   return {};
 }
 
-std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& truth,
-                                   const SE3& T_truth_world) {
+/// The rows of a table that only some runs have.
+template <class Row>
+std::vector<Row> rows_of(const run_files::FoundRun& run, const char* name,
+                         Result<std::vector<Row>> (*read)(const fs::path& file),
+                         std::vector<std::string>& warnings) {
+  std::error_code ignored;
+  if (!fs::exists(run.folder / name, ignored)) return {};
+  auto rows = read(run.folder / name);
+  if (rows) return std::move(*rows);
+  warnings.push_back(rows.error().message);
+  return {};
+}
+
+/// ate: of this estimate; its alignment is that of the poses.
+std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& all_truth,
+                                   const record::Outcome<trajectory_error::AteResult>& ate) {
+  const Trajectory truth = ate.value ? all_truth : Trajectory{};
+  const SE3 T_truth_world = ate.value ? ate.value->alignment.T_reference_estimate : SE3{};
   std::vector<ComparedPose> poses;
   for (const StampedPose& pose : estimate) {
     ComparedPose both{pose.timestamp_ns, T_truth_world * pose.T_world_camera, {}, 0};
@@ -69,14 +85,15 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
   } else if (!series.truth.empty() || !estimate.empty()) {
     series.start_ns = (series.truth.empty() ? estimate : series.truth).front().timestamp_ns;
   }
-  if (fs::exists(run.folder / "nees.csv", ignored)) {
-    auto nees = run_files::read_nees_table(run.folder / "nees.csv");
-    if (nees) series.nees = std::move(*nees);
-    if (!nees) series.warnings.push_back(nees.error().message);
+  series.nees = rows_of(run, "nees.csv", run_files::read_nees_table, series.warnings);
+  series.candidates = rows_of(run, "loops.csv", run_files::read_candidate_table, series.warnings);
+  series.places = rows_of(run, "places.csv", run_files::read_place_table, series.warnings);
+  series.poses = compared(estimate, series.truth, run.record.metrics.ate);
+  if (run.record.final_metrics) {
+    const Trajectory revised = trajectory_of(run, "final.tum", series.warnings);
+    if (!revised.empty()) series.T_first_world = revised.front().T_world_camera.inverse();
+    series.final_poses = compared(revised, series.truth, run.record.final_metrics->ate);
   }
-  const auto& ate = run.record.metrics.ate.value;
-  series.poses = compared(estimate, ate ? series.truth : Trajectory{},
-                          ate ? ate->alignment.T_reference_estimate : SE3{});
   return series;
 }
 

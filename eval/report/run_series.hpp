@@ -10,6 +10,7 @@
 #include "core/base/types.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/frame_table.hpp"
+#include "eval/run_files/loop_table.hpp"
 #include "eval/run_files/nees_table.hpp"
 
 namespace fusebench::report {
@@ -28,9 +29,12 @@ struct RunSeries {
   std::vector<run_files::FrameTableRow> frames;  ///< none of an imported run
   std::int64_t start_ns = 0;                     ///< of the first frame, or the first pose that is known
   std::vector<ComparedPose> poses;
+  std::vector<ComparedPose> final_poses;  ///< as the system revised them at the end; none if it did not
+  std::vector<run_files::CandidateRow> candidates;  ///< of loops; none of a run that did not look for them
+  std::vector<run_files::PlaceRow> places;
   std::vector<run_files::NeesTableRow> nees;  ///< of simulated recordings, whose states are known
   Trajectory truth;                           ///< empty: not known
-  SE3 T_first_world;  ///< the first pose of the estimate, in whose frame models are shown
+  SE3 T_first_world;  ///< the first of the poses that the model is of: models are shown in its frame
   std::vector<std::string> warnings;
 
   [[nodiscard]] double time_s(std::int64_t timestamp_ns) const {
@@ -38,8 +42,8 @@ struct RunSeries {
   }
 };
 
-/// Reads frames.csv, trajectory.tum and truth.tum of a run; what is not there or not readable stays empty,
-/// with a warning.
+/// Reads the tables and trajectories of a run; what is not there or not readable stays empty, with a warning
+/// where it should be there.
 [[nodiscard]] RunSeries series_of(const run_files::FoundRun& run, std::string label);
 
 }  // namespace fusebench::report

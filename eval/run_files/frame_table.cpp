@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
-#include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
+#include "eval/run_files/named_rows.hpp"
 
 namespace fusebench::run_files {
 
@@ -80,59 +79,17 @@ std::string frame_table_row(std::size_t frame, const health::FrameOutcome& outco
 
 namespace {
 
-/// Cells may be empty.
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return cells;
-}
-
-/// Where each column of a table stands.
-class FrameTableColumns {
- public:
-  explicit FrameTableColumns(std::string_view header) {
-    for (const std::string_view name : cells_of(header)) names_.emplace_back(name);
-  }
-
-  [[nodiscard]] std::size_t size() const { return names_.size(); }
-
-  [[nodiscard]] Result<std::string_view> text(const std::vector<std::string_view>& cells,
-                                              std::string_view name) const {
-    const auto found = std::ranges::find(names_, name);
-    if (found == names_.end()) return fail(ErrorCode::data_corrupt, fmt::format("has no column {}", name));
-    return cells[static_cast<std::size_t>(found - names_.begin())];
-  }
-
-  /// Nothing of an empty cell.
-  [[nodiscard]] Result<std::optional<double>> number(const std::vector<std::string_view>& cells,
-                                                     std::string_view name) const {
-    const auto cell = text(cells, name);
-    if (!cell) return tl::unexpected(cell.error());
-    if (cell->empty()) return std::nullopt;
-    return io::parse_number(*cell).transform([](double value) { return std::optional(value); });
-  }
-
- private:
-  std::vector<std::string> names_;
-};
-
-Result<FrameTableRow> row_of(const FrameTableColumns& columns, const std::vector<std::string_view>& cells) {
+Result<FrameTableRow> row_of(const NamedRow& cells) {
   FrameTableRow row;
-  const auto stamp = columns.text(cells, "timestamp").and_then([](std::string_view text) {
-    return io::parse_time_ns(text);
-  });
+  const auto stamp = cells.time_ns("timestamp");
   if (!stamp) return tl::unexpected(stamp.error());
   row.timestamp_ns = *stamp;
   for (const auto& [name, value] : {std::pair{"status", &row.status}, std::pair{"health", &row.health}}) {
-    const auto text = columns.text(cells, name);
+    const auto text = cells.text(name);
     if (!text) return tl::unexpected(text.error());
     *value = *text;
   }
-  const auto aie = columns.number(cells, "aie_grey");
+  const auto aie = cells.number("aie_grey");
   if (!aie) return tl::unexpected(aie.error());
   row.aie_grey = *aie;
   const std::array<std::pair<const char*, double*>, 6> numbers = {
@@ -143,7 +100,7 @@ Result<FrameTableRow> row_of(const FrameTableColumns& columns, const std::vector
        {"patch_motion_px", &row.patch_motion_px},
        {"position_sigma_m", &row.position_sigma_m}}};
   for (const auto& [name, value] : numbers) {
-    const auto number = columns.number(cells, name);
+    const auto number = cells.number(name);
     if (!number) return tl::unexpected(number.error());
     *value = number->value_or(std::nan(""));
   }
@@ -153,23 +110,14 @@ Result<FrameTableRow> row_of(const FrameTableColumns& columns, const std::vector
 }  // namespace
 
 Result<std::vector<FrameTableRow>> read_frame_table(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::string line;
-  if (!stream || !std::getline(stream, line))
-    return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read", file.string()));
-  const FrameTableColumns columns(line);
   std::vector<FrameTableRow> rows;
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
-    const auto cells = cells_of(line);
-    const auto refuse = [&](std::string_view what) {
-      return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: {}", file.string(), number, what));
-    };
-    if (cells.size() != columns.size())
-      return refuse(fmt::format("{} cells (expected {})", cells.size(), columns.size()));
-    auto row = row_of(columns, cells);
-    if (!row) return refuse(row.error().message);
+  const Result<void> done = for_each_named_row(file, [&](const NamedRow& cells) -> Result<void> {
+    auto row = row_of(cells);
+    if (!row) return tl::unexpected(row.error());
     rows.push_back(std::move(*row));
-  }
+    return {};
+  });
+  if (!done) return tl::unexpected(done.error());
   return rows;
 }
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "datasets/calibration/recording_catalogue.hpp"
@@ -209,20 +211,6 @@ std::string shown(const std::optional<MedianRange>& value, double factor, int de
   return fmt::format("{} [{}, {}]", number(value->median), number(value->least), number(value->most));
 }
 
-std::vector<text::TableCells> cells_of(const SystemsTable& table) {
-  std::vector<text::TableCells> lines{{"recording", "data", "IMU", "system", "poses", "runs"}};
-  for (const SystemColumn& column : kColumns) lines.front().emplace_back(column.heading);
-  for (const SystemRow& row : table.rows) {
-    text::TableCells line{row.recording, row.data,
-                          row.imu,       row.system,
-                          row.poses,     row.runs == 0 ? "" : fmt::format("{}/{} ok", row.ok, row.runs)};
-    for (const SystemColumn& column : kColumns)
-      line.push_back(shown(row.*column.value, column.shown_factor, column.decimals));
-    lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
 std::string csv(const SystemsTable& table) {
   std::string text = "recording,data,imu,system,poses,runs,ok,reason";
   for (const SystemColumn& column : kColumns) text += fmt::format(",{0},{0}_least,{0}_most", column.key);
@@ -257,7 +245,7 @@ std::string json(const SystemsTable& table) {
 }
 
 std::string latex(const SystemsTable& table) {
-  const auto lines = cells_of(table);
+  const auto lines = systems_table_cells(table);
   std::string text = text::latex_begin(lines.front(), kTextColumns);
   for (std::size_t i = 1; i < lines.size(); ++i) text += text::latex_line(lines[i]);
   text += text::kLatexEnd;
@@ -266,18 +254,34 @@ std::string latex(const SystemsTable& table) {
 }
 
 std::string markdown(const SystemsTable& table) {
-  std::string text = text::markdown_table(cells_of(table), kTextColumns) + "\n";
-  for (const SystemRow& row : table.rows) {
-    if (!row.reason.empty())
-      text += fmt::format("- {}, {}: {} of {} runs not ok: {}\n", row.recording, row.system,
-                          row.runs - row.ok, row.runs, row.reason);
-  }
+  std::string text = text::markdown_table(systems_table_cells(table), kTextColumns) + "\n";
+  for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   text += "\n";
   for (const std::string& line : table.footer) text += line + "\n";
   return text;
 }
 
+/// Whether a run is not of this program's filter.
+bool is_of_another_system(const record::RunRecord& record) {
+  const auto method =
+      std::ranges::find(record.config, std::string_view("system.method"), &record::RecordedOption::key);
+  if (record.program || record.config.empty()) return true;  // imported runs have no configuration
+  return method != record.config.end() && method->value != config::OptionValue(std::string("filter"));
+}
+
 }  // namespace
+
+bool compares_systems(const std::vector<run_files::FoundRun>& runs) {
+  std::set<std::string_view> systems;
+  bool others = false, revised = false;
+  for (const run_files::FoundRun& run : runs) {
+    if (run.state != run_files::RunState::whole) continue;
+    systems.insert(run.record.variant);
+    others |= is_of_another_system(run.record);
+    revised |= run.record.final_metrics.has_value();
+  }
+  return revised || (others && systems.size() > 1);
+}
 
 SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   SystemsTable table;
@@ -288,11 +292,16 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   const std::vector<std::string> edits = run_files::differing_edits(traits);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     table.rows.push_back(row_of(groups[i]));
-    table.rows.back().system += what_tells_apart(groups, edits, i);
-    const std::string& recording = table.rows.back().recording;
+    SystemRow& row = table.rows.back();
+    row.system += what_tells_apart(groups, edits, i);
+    if (!row.reason.empty()) {
+      table.notes.push_back(fmt::format("{}, {}: {} of {} runs not ok: {}", row.recording, row.system,
+                                        row.runs - row.ok, row.runs, row.reason));
+    }
+    const std::string recording = row.recording;
     const bool last = i + 1 == groups.size() || groups[i + 1].front()->record.recording.name != recording;
     if (!last) continue;
-    for (SystemRow& row : published_rows(recording)) table.rows.push_back(std::move(row));
+    for (SystemRow& published : published_rows(recording)) table.rows.push_back(std::move(published));
   }
   table.footer = {
       "Medians over the runs of a system with their ranges; one number where all are the same. Poses: online "
@@ -302,10 +311,25 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
       "#: version of a program or configuration of a variant; [A:B]: frames, where rows of one system differ "
       "in them.",
       "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
-      "lost. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true surface. "
-      "Silent: frames with a wrong pose. CPU: user and system time of all threads by the frames of the "
-      "recording; of an external program everything it does."};
+      "lost. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true surface; a "
+      "run has one, at its final poses where it has these. Silent: frames with a wrong pose. CPU: user and "
+      "system time of all threads by the frames of the recording; of an external program everything it "
+      "does."};
   return table;
+}
+
+std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& table) {
+  std::vector<std::vector<std::string>> lines{{"recording", "data", "IMU", "system", "poses", "runs"}};
+  for (const SystemColumn& column : kColumns) lines.front().emplace_back(column.heading);
+  for (const SystemRow& row : table.rows) {
+    std::vector<std::string> line{
+        row.recording, row.data,  row.imu,
+        row.system,    row.poses, row.runs == 0 ? "" : fmt::format("{}/{} ok", row.ok, row.runs)};
+    for (const SystemColumn& column : kColumns)
+      line.push_back(shown(row.*column.value, column.shown_factor, column.decimals));
+    lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 std::string render_systems_table(const SystemsTable& table, TableFormat format) {

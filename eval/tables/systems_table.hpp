@@ -38,13 +38,21 @@ struct SystemRow {
 };
 
 struct SystemsTable {
-  std::vector<SystemRow> rows;  ///< by recording; then those that ran here, then published numbers
+  std::vector<SystemRow> rows;     ///< by recording; then those that ran here, then published numbers
+  std::vector<std::string> notes;  ///< how many runs of a row are not ok, and why
   std::vector<std::string> footer;
 };
+
+/// Whether such a table says more than one of the filter's variants: there are runs of several systems, or
+/// poses that were revised at the end.
+[[nodiscard]] bool compares_systems(const std::vector<run_files::FoundRun>& runs);
 
 /// Numbers are over the runs that are ok; published ATE of the recordings that the catalogue knows stands
 /// below them.
 [[nodiscard]] SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& runs);
+
+/// The heading, then a line a row, as people see them.
+[[nodiscard]] std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& table);
 
 /// csv_long is as csv here.
 [[nodiscard]] std::string render_systems_table(const SystemsTable& table, TableFormat format);

@@ -54,6 +54,23 @@ for (let i = 0; i < pixels.length && colours.size < 8; i += 4)
   colours.add(pixels[i] << 24 | pixels[i + 1] << 16 | pixels[i + 2] << 8 | pixels[i + 3]);
 return colours.size;
 """
+# Where the names of the series stand that are drawn on request, from the middle of the chart.
+ON_REQUEST = """
+const chart = drawn[Number(arguments[0].id.slice("chart-".length))];
+return chart.legend.legendItems.map((item, i) => [item, chart.legend.legendHitBoxes[i]])
+  .filter(([item, box]) => chart.data.datasets[item.datasetIndex].hidden)
+  .map(([item, box]) => [item.text, box.left + box.width / 2 - chart.width / 2, box.top + box.height / 2 - chart.height / 2]);
+"""
+# The picture between a chart's axes.
+AREA = """
+const area = drawn[Number(arguments[0].id.slice("chart-".length))].chartArea;
+const scale = arguments[0].width / arguments[0].clientWidth;
+const canvas = document.createElement("canvas");
+canvas.width = scale * area.width;
+canvas.height = scale * area.height;
+canvas.getContext("2d").drawImage(arguments[0], -scale * area.left, -scale * area.top);
+return canvas.toDataURL();
+"""
 PICTURE = "return arguments[0].toDataURL().length + ':' + arguments[0].toDataURL().slice(-4000);"
 
 
@@ -96,6 +113,19 @@ class Reader:
             if self.driver.execute_script(SERIES, canvas) < 8:
                 self.complain(f"{scheme}: nothing is drawn: {canvas.get_attribute('aria-label')}")
         return len(canvases)
+
+    def ask_for_hidden_series(self):
+        asked = 0
+        for canvas in self.driver.find_elements(By.CSS_SELECTOR, ".canvas canvas"):
+            for name, right, down in self.driver.execute_script(ON_REQUEST, canvas):
+                self.show(canvas)
+                before = self.driver.execute_script(AREA, canvas)
+                ActionChains(self.driver).move_to_element_with_offset(canvas, int(right), int(down)).click().perform()
+                settle(self.driver)
+                asked += 1
+                if self.driver.execute_script(AREA, canvas) == before:
+                    self.complain(f"a click on '{name}' shows nothing: {canvas.get_attribute('aria-label')}")
+        return asked
 
     def turn_meshes(self):
         scenes = self.driver.find_elements(By.CSS_SELECTOR, ".scene")
@@ -173,6 +203,7 @@ def main():
         settle(driver)
         reader.shoot("top")
         charts = reader.read_charts("light")
+        asked = reader.ask_for_hidden_series()
         scenes = reader.turn_meshes()
         reader.unfold()
         reader.follow_links()
@@ -183,7 +214,7 @@ def main():
         driver.quit()
     for problem in reader.problems:
         print("FAILED: " + problem)
-    print(f"{page.name}: {charts} charts, {scenes} scenes, {len(reader.problems)} problems")
+    print(f"{page.name}: {charts} charts, {scenes} scenes, {asked} series on request, {len(reader.problems)} problems")
     if charts == 0:
         print("FAILED: the page has no charts")
         return 1

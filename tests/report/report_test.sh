@@ -34,6 +34,12 @@ for variant in full dm no-imu; do
   if [[ $variant == no-imu ]]; then profile=(--profile); fi
   "$binary" run recording --variant "$variant" --out runs "${profile[@]}" >/dev/null 2>&1 || failed "the run $variant fails"
 done
+"$binary" run recording --variant infinitam --out runs >/dev/null 2>&1 || failed "the run infinitam fails"
+# A camera that comes back to where it was.
+"$binary" simulate --format tum --preset slow --duration 4 --seed 3 --size 320x240 --out room >/dev/null 2>&1 ||
+  failed "the recording with loops is not made"
+"$binary" run room --imu auto --set loops.mode=final --set loops.least_age_s=1 --out runs >/dev/null 2>&1 ||
+  failed "the run with loops fails"
 # A run that failed before its first frame has a record and nothing else.
 lost=runs/recording/planar/00000000
 mkdir -p "$lost"
@@ -48,6 +54,17 @@ grep -q '&lt;b&gt;no &amp; such' report.html || failed "a reason is not escaped"
 for part in 'Trajectories' 'Errors' 'Motion and intensity' 'Patches' 'Models' 'Health and time' 'Profiles' 'Configuration'; do
   grep -q "<h3[^>]*>$part" report.html || failed "the report has no part '$part'"
 done
+for part in 'Loops and final poses' 'Trajectories with loops' 'Loops over time' 'How to read the table of systems'; do
+  grep -q "<h3[^>]*>$part" report.html || failed "the report has no part '$part'"
+done
+# Its rows are those that `table` prints, online and final apart.
+"$binary" table runs --systems | grep '^|' | tail -n +3 |
+  sed -E 's/^\| */<td>/; s/ *\|$/<\/td>/; s/ *\| */<\/td><td>/g' >systems_rows
+grep -q '<td>full</td><td>final</td>' systems_rows || failed "no row of final poses: $(cat systems_rows)"
+grep -q '<td>infinitam</td><td>online</td>' systems_rows || failed "no row of another system: $(cat systems_rows)"
+while IFS= read -r row; do
+  grep -qF -- "$row" report.html || failed "the report does not have the row of systems $row"
+done <systems_rows
 if command -v gnuplot >/dev/null; then
   for format in svg pdf; do
     "$binary" report runs --out again.html --figures figures --figure-format "$format" 2>stderr ||
@@ -55,6 +72,9 @@ if command -v gnuplot >/dev/null; then
     for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error \
       time_of_the_stages_over_the_frames_no_imu; do
       [[ -s figures/recording-$figure.$format ]] || failed "no figure $figure.$format"
+    done
+    for figure in x_z_view_with_loops_full candidates_for_loops_full position_error_before_and_after_full; do
+      [[ -s figures/room-$figure.$format ]] || failed "no figure $figure.$format"
     done
   done
   cmp report.html again.html || failed "the report is not the same twice"

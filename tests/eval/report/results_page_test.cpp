@@ -1,11 +1,14 @@
 #include "eval/report/results_page.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "core/mesh/ply_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/page/figures.hpp"
+#include "eval/report/loop_charts.hpp"
 #include "eval/report/profile_charts.hpp"
 #include "eval/report/run_charts.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -147,6 +150,111 @@ TEST_F(ResultsPageTest, OnlyProfiledRunsHaveAProfile) {
     EXPECT_NEAR(sum, 100, 1e-9) << series.label;
   }
   EXPECT_NE(to_html(results_page({plain, profiled}, "t").page).find("Profiles"), std::string::npos);
+}
+
+/// Loops from the tenth frame to the fortieth and fiftieth, which make the poses right; the twentieth was
+/// compared as well.
+class LoopsPageTest : public ResultsPageTest {
+ protected:
+  FoundRun add_run_with_loops(std::size_t refused) {
+    const auto stamp = [](std::size_t frame) {
+      return fmt::format(
+          "{:.6f}", 1e-9 * static_cast<double>(kStart_ns + 33'000'000LL * static_cast<std::int64_t>(frame)));
+    };
+    FoundRun run = add_run("full", kFrames, SE3{});
+    run.record.config = {{"loops.mode", std::string("final"), "the test"}};
+    run.record.final_metrics = run.record.metrics;
+    run.record.final_metrics->ate.value->stats = statistics(std::vector<double>{0.0012});
+    loop_error::LoopError error;
+    error.sharp = {7, 5};
+    error.blurred = {3, 1};
+    error.oracle_ate_m = 0.0007;
+    run.record.loops = Outcome<loop_error::LoopError>{error, {}};
+    const auto folder = run.folder.lexically_relative(folder_);
+    write(folder / "record.json", to_json(run.record));
+    write(folder / "final.tum", tum_text(circle(kFrames)));
+    std::string table = "query_s,place_s,tx_m,ty_m,tz_m,qx,qy,qz,qw,verified_by,decision,why\n" + stamp(40) +
+                        "," + stamp(10) + ",0.1,0,0,0,0,0,1,features,accepted,\"agrees\"\n" + stamp(50) +
+                        "," + stamp(10) + ",0.1,0,0,0,0,0,1,depth,accepted,\"agrees\"\n";
+    for (std::size_t i = 0; i < refused; ++i)
+      table += stamp(20) + "," + stamp(i % 10) + ",0,0,0,0,0,0,1,nothing,refused,\"too few, by far\"\n";
+    write(folder / "loops.csv", table);
+    write(folder / "places.csv", "timestamp_s,blur_px,candidates,accepted\n" + stamp(10) + ",0.5,0,0\n" +
+                                     stamp(20) + ",2,8,0\n" + stamp(40) + ",3,1,1\n" + stamp(50) +
+                                     ",4,1,1\n");
+    return run;
+  }
+};
+
+TEST_F(LoopsPageTest, LoopsAreLinesBetweenFinalPoses) {
+  const FoundRun run = add_run_with_loops(3);
+  const RunSeries series = series_of(run, "full");
+  EXPECT_TRUE(series.warnings.empty());
+  const auto views = loop_view_charts(series, 200);
+  ASSERT_EQ(views.size(), 3U);
+  const ChartSeries& loops = series_of_chart(views, "x-z view with loops: full", "accepted loops (2)");
+  EXPECT_EQ(loops.style, SeriesStyle::segments);
+  EXPECT_FALSE(loops.on_request);
+  ASSERT_EQ(loops.points.size(), 4U);
+  const Trajectory poses = circle(kFrames);
+  for (const auto& [point, frame] : {std::pair{0, 10}, {1, 40}, {2, 10}, {3, 50}}) {
+    const Vector3d& p = poses[static_cast<std::size_t>(frame)].T_world_camera.translation;
+    EXPECT_NEAR((loops.points[static_cast<std::size_t>(point)] - Vector2d(p.x(), p.z())).norm(), 0, 1e-6);
+  }
+  const ChartSeries& refused = series_of_chart(views, "x-y view with loops: full", "refused, others (3)");
+  EXPECT_TRUE(refused.on_request);
+  EXPECT_EQ(refused.points.size(), 6U);
+  const std::string script = gnuplot_script(views[0], "view.svg", FigureFormat::svg);
+  EXPECT_EQ(script.find("refused, others"), std::string::npos);
+  EXPECT_NE(script.find("accepted loops"), std::string::npos);
+
+  const auto times = loop_time_charts(series, 200);
+  EXPECT_EQ(series_of_chart(times, "Candidates for loops: full", "accepted by depth alone (1)").points.size(),
+            1U);
+  EXPECT_NEAR(series_of_chart(times, "Candidates for loops: full", "accepted by features (1)").points[0].y(),
+              0.33, 1e-5);
+  EXPECT_EQ(series_of_chart(times, "Motion blur of the places: full", "with a loop (2)").points.size(), 2U);
+  for (const Vector2d& point :
+       series_of_chart(times, "Position error before and after: full", "before (online)").points)
+    EXPECT_NEAR(point.y(), 2, 1e-6);
+  for (const Vector2d& point :
+       series_of_chart(times, "Position error before and after: full", "after (final)").points)
+    EXPECT_NEAR(point.y(), 0, 1e-6);
+  for (const Vector2d& point :
+       series_of_chart(times, "How far the poses moved: full", "final against online").points)
+    EXPECT_NEAR(point.y(), 0, 1e-6);  // all alike
+}
+
+TEST_F(LoopsPageTest, ManyRefusedCandidatesAreThinnedOut) {
+  const FoundRun run = add_run_with_loops(1000);
+  const auto views = loop_view_charts(series_of(run, "full"), 100);
+  EXPECT_EQ(series_of_chart(views, "x-y view with loops: full", "refused, others (1000, one in 10 drawn)")
+                .points.size(),
+            200U);
+}
+
+TEST_F(LoopsPageTest, ThePageHasTheNumbersOfLoopsAndBothKindsOfPoses) {
+  add_run_with_loops(3);
+  const auto runs = find_runs(folder_ / "runs");
+  ASSERT_TRUE(runs.has_value());
+  const ResultsPage result = results_page(*runs, "Circles");
+  EXPECT_TRUE(result.warnings.empty());
+  const std::string html = to_html(result.page);
+  for (const char* const part : {"Loops and final poses", "Trajectories with loops", "Loops over time",
+                                 "<td>5 of 7</td><td>1 of 3</td>", "<td>1.00</td><td>0.12</td><td>0.07</td>",
+                                 "<td>online</td>", "<td>final</td>"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  EXPECT_LT(
+      std::ranges::find(result.page.sections, "Systems", &PageSection::title) - result.page.sections.begin(),
+      static_cast<std::ptrdiff_t>(result.tables));
+}
+
+TEST_F(ResultsPageTest, WithoutLoopsOrOtherSystemsNothingIsSaidOfThem) {
+  FoundRun run = add_run("full", kFrames, SE3{});
+  run.record.config = {{"system.method", std::string("filter"), "the test"}};
+  const std::string html = to_html(results_page({run}, "t").page);
+  for (const char* const part : {"loops", "Loops", "Systems"})
+    EXPECT_EQ(html.substr(0, html.find("<script")).find(part), std::string::npos) << part;
 }
 
 TEST_F(ResultsPageTest, APageHoldsAllRunsAndSaysWhatItCouldNotRead) {

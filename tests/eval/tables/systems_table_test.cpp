@@ -48,6 +48,9 @@ TEST(SystemsTable, HasTheMedianAndTheRangeOfRepetitionsAndTheirFailures) {
   EXPECT_DOUBLE_EQ(drawing.ate_m->most, 0.05);
   EXPECT_NEAR(drawing.lost_share->median, 0.1, 1e-12);
   EXPECT_NEAR(drawing.cpu_ms->median, 200, 1e-9);
+  const auto cells = systems_table_cells(table);
+  ASSERT_EQ(cells.size(), table.rows.size() + 1);
+  EXPECT_NE(std::ranges::find(cells[2], "3.00 [2.00, 5.00]"), cells[2].end());
   const std::string text = render_systems_table(table, TableFormat::markdown);
   testing::expect_contains(text, "3.00 [2.00, 5.00]");
   testing::expect_contains(text, "3/4 ok");
@@ -81,6 +84,26 @@ TEST(SystemsTable, PosesOfTheEndAreARowOfTheirOwn) {
   EXPECT_EQ(table.rows[1].poses, "final");
   EXPECT_EQ(table.rows[1].system, "full");
   EXPECT_DOUBLE_EQ(table.rows[1].ate_m->median, 0.01);
+}
+
+TEST(SystemsTable, ComparesOnlySeveralSystemsOrRevisedPoses) {
+  const auto of_method = [](const std::string& variant, const std::string& method) {
+    FoundRun run = run_of(variant, 0.01);
+    run.record.config = {{"system.method", method, "the variant"}};
+    return run;
+  };
+  const FoundRun full = of_method("full", "filter");
+  const FoundRun other = of_method("infinitam", "infinitam");
+  EXPECT_FALSE(compares_systems({full, of_method("dm", "filter")}));
+  EXPECT_TRUE(compares_systems({full, other}));
+  EXPECT_FALSE(compares_systems({other, other}));
+  EXPECT_TRUE(compares_systems({full, run_of("imported", 0.02)}));
+  FoundRun damaged = run_of("unknown", 0, "its record is no record");
+  damaged.state = RunState::damaged;
+  EXPECT_FALSE(compares_systems({full, damaged}));
+  FoundRun revised = full;
+  revised.record.final_metrics = revised.record.metrics;
+  EXPECT_TRUE(compares_systems({revised}));
 }
 
 TEST(SystemsTable, LabelsPublishedNumbersAndKeepsThemApart) {

@@ -1,0 +1,154 @@
+#include "eval/report/loop_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "core/base/geometry.hpp"
+#include "eval/loop_error/loop_error.hpp"
+#include "eval/report/chart_parts.hpp"
+#include "eval/report/loop_charts.hpp"
+#include "eval/text/plain_table.hpp"
+
+namespace fusebench::report {
+
+namespace {
+
+constexpr std::size_t kMostCharted = 4;  // runs of a recording
+
+using run_files::CandidateFate;
+using run_files::CandidateRow;
+
+std::string mode_of(const record::RunRecord& record) {
+  const auto option = std::ranges::find(record.config, std::string_view("loops.mode"),
+                                        [](const record::RecordedOption& o) { return o.key; });
+  const auto* mode = option == record.config.end() ? nullptr : std::get_if<std::string>(&option->value);
+  return mode == nullptr ? "-" : *mode;
+}
+
+std::string ate_cell(const record::Outcome<trajectory_error::AteResult>& ate) {
+  return text::number_cell(ate.value ? std::optional(ate.value->stats.rmse) : std::nullopt, kCentimetres, 2);
+}
+
+std::string found_cell(const loop_error::Revisits& revisits) {
+  return fmt::format("{} of {}", revisits.found, revisits.count);
+}
+
+/// Cells of what only a truth can tell.
+std::vector<std::string> error_cells(const record::RunRecord& record) {
+  if (!record.loops || !record.loops->value) return {"-", "-", "-", "-", "-"};
+  const loop_error::LoopError& error = *record.loops->value;
+  return {found_cell(error.sharp), found_cell(error.blurred), fmt::format("{}", error.false_accepted),
+          fmt::format("{:.2f} cm, {:.2f} deg", kCentimetres * error.median_translation_m,
+                      degrees(error.median_rotation_rad)),
+          fmt::format("{:.2f}, {:.2f}", error.nees_position, error.nees_rotation)};
+}
+
+page::PageTable::Row row_of(const RunSeries& run) {
+  const record::RunRecord& record = run.run->record;
+  page::PageTable::Row row;
+  const auto count = [&](CandidateFate fate) {
+    return std::ranges::count(run.candidates, fate, &CandidateRow::fate);
+  };
+  row.cells = {run.label, mode_of(record)};
+  if (run.places.empty()) {
+    row.cells.insert(row.cells.end(), 4, "-");
+  } else {
+    row.cells.push_back(fmt::format("{}", run.places.size()));
+    row.cells.push_back(fmt::format("{}", run.candidates.size()));
+    row.cells.push_back(fmt::format("{}, {}", count(CandidateFate::accepted_by_features),
+                                    count(CandidateFate::accepted_by_depth)));
+    row.cells.push_back(fmt::format("{}, {}, {}", count(CandidateFate::no_pose),
+                                    count(CandidateFate::depth_differs), count(CandidateFate::poses_differ)));
+  }
+  auto errors = error_cells(record);
+  row.cells.insert(row.cells.end(), std::make_move_iterator(errors.begin()),
+                   std::make_move_iterator(errors.end()));
+  row.cells.push_back(ate_cell(record.metrics.ate));
+  row.cells.push_back(record.final_metrics ? ate_cell(record.final_metrics->ate) : "-");
+  const bool known = record.loops && record.loops->value;
+  row.cells.push_back(
+      text::number_cell(known ? record.loops->value->oracle_ate_m : std::nullopt, kCentimetres, 2));
+  if (known && record.loops->value->false_accepted > 0) row.style = "warning";
+  return row;
+}
+
+std::string explanation() {
+  return fmt::format(
+      "Places are frames that are kept to be recognised; a candidate is a pair of places that look alike, "
+      "and a "
+      "loop one that was accepted. Online: each pose as it was known when its frame came; final: as all were "
+      "known at the end. Returns: places that see {:.0f} % or more of what an older place saw, by the true "
+      "poses, and how many of them have a loop; blurred are those with more than {:.0f} px of motion blur. "
+      "False: "
+      "loops that are off by more than {:.0f} cm or {:.0f} degrees, and by more than {:.0f} sigmas of what "
+      "they "
+      "claim. NEES: squared error of loops by what they claim, a number an axis; 1 is consistent. ATE with "
+      "true "
+      "loops: of the final poses if every return had a true loop.",
+      100 * loop_error::kRevisitOverlap, loop_error::kBlurred_px,
+      kCentimetres * loop_error::kFalseTranslation_m, degrees(loop_error::kFalseRotation_rad),
+      loop_error::kFalseSigmas);
+}
+
+page::PageSection table_section(std::span<const RunSeries* const> runs) {
+  page::PageTable table;
+  table.header = {"run",
+                  "loops.mode",
+                  "places",
+                  "candidates",
+                  "loops: by features, by depth alone",
+                  "refused: no certain pose, depth does not fit, contradicts the poses",
+                  "returns found, sharp",
+                  "returns found, blurred",
+                  "false loops",
+                  "error of loops, median",
+                  "NEES of loops: position, rotation",
+                  "ATE online [cm]",
+                  "ATE final [cm]",
+                  "ATE with true loops [cm]"};
+  std::string text = explanation();
+  for (const RunSeries* const run : runs) {
+    table.rows.push_back(row_of(*run));
+    const auto& loops = run->run->record.loops;
+    if (loops && !loops->value)
+      text += fmt::format(" {}: no errors of loops: {}.", run->label, loops->reason);
+  }
+  return {"Loops and final poses", std::move(text), std::move(table), 3};
+}
+
+}  // namespace
+
+std::vector<page::PageSection> loop_sections(std::span<const RunSeries> runs, std::size_t buckets) {
+  std::vector<const RunSeries*> with_loops;
+  for (const RunSeries& run : runs) {
+    if (has_loops(run)) with_loops.push_back(&run);
+  }
+  if (with_loops.empty()) return {};
+  std::vector<page::PageSection> sections = {table_section(with_loops)};
+  std::string text =
+      "Lines lead from a place to the frame that was compared with it. Candidates that were refused, those "
+      "that "
+      "contradict the poses and all others, are drawn after a click on their name, which is struck out until "
+      "then.";
+  if (with_loops.size() > kMostCharted) {
+    text += fmt::format(" Of the {} runs, the first {} are drawn.", with_loops.size(), kMostCharted);
+    with_loops.resize(kMostCharted);
+  }
+  std::vector<page::Chart> views, times;
+  for (const RunSeries* const run : with_loops) {
+    for (page::Chart& chart : loop_view_charts(*run, buckets)) views.push_back(std::move(chart));
+    for (page::Chart& chart : loop_time_charts(*run, buckets)) times.push_back(std::move(chart));
+  }
+  if (!views.empty()) sections.push_back({"Trajectories with loops", std::move(text), std::move(views), 3});
+  if (!times.empty()) sections.push_back({"Loops over time", "", std::move(times), 3});
+  return sections;
+}
+
+}  // namespace fusebench::report

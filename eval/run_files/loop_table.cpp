@@ -1,0 +1,90 @@
+#include "eval/run_files/loop_table.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "eval/run_files/named_rows.hpp"
+
+namespace fusebench::run_files {
+
+namespace {
+
+Result<double> needed_number(const NamedRow& cells, std::string_view name) {
+  const auto number = cells.number(name);
+  if (!number) return tl::unexpected(number.error());
+  if (!*number) return fail(ErrorCode::data_corrupt, fmt::format("{} is empty", name));
+  return **number;
+}
+
+/// A pair without a pose has zeros and the identity.
+Result<bool> has_pose(const NamedRow& cells) {
+  for (const char* const name : {"tx_m", "ty_m", "tz_m", "qx", "qy", "qz"}) {
+    const auto value = needed_number(cells, name);
+    if (!value) return tl::unexpected(value.error());
+    if (*value != 0) return true;
+  }
+  return false;
+}
+
+Result<CandidateFate> fate_of(const NamedRow& cells) {
+  const auto verified_by = cells.text("verified_by");
+  if (!verified_by) return tl::unexpected(verified_by.error());
+  const auto decision = cells.text("decision");
+  if (!decision) return tl::unexpected(decision.error());
+  const bool accepted = *decision == "accepted";
+  if (!accepted && *decision != "refused")
+    return fail(ErrorCode::data_corrupt, fmt::format("decision '{}' (accepted, refused)", *decision));
+  if (*verified_by == "features" || *verified_by == "depth") {
+    if (!accepted) return CandidateFate::poses_differ;
+    return *verified_by == "features" ? CandidateFate::accepted_by_features
+                                      : CandidateFate::accepted_by_depth;
+  }
+  if (*verified_by != "nothing" || accepted)
+    return fail(ErrorCode::data_corrupt, fmt::format("{}, verified by '{}'", *decision, *verified_by));
+  return has_pose(cells).transform(
+      [](bool pose) { return pose ? CandidateFate::depth_differs : CandidateFate::no_pose; });
+}
+
+}  // namespace
+
+Result<std::vector<CandidateRow>> read_candidate_table(const std::filesystem::path& file) {
+  std::vector<CandidateRow> rows;
+  const Result<void> done = for_each_named_row(file, [&](const NamedRow& cells) -> Result<void> {
+    const auto query_ns = cells.time_ns("query_s");
+    if (!query_ns) return tl::unexpected(query_ns.error());
+    const auto place_ns = cells.time_ns("place_s");
+    if (!place_ns) return tl::unexpected(place_ns.error());
+    const auto fate = fate_of(cells);
+    if (!fate) return tl::unexpected(fate.error());
+    rows.push_back({*query_ns, *place_ns, *fate});
+    return {};
+  });
+  if (!done) return tl::unexpected(done.error());
+  return rows;
+}
+
+Result<std::vector<PlaceRow>> read_place_table(const std::filesystem::path& file) {
+  std::vector<PlaceRow> rows;
+  const Result<void> done = for_each_named_row(file, [&](const NamedRow& cells) -> Result<void> {
+    PlaceRow row;
+    const auto stamp = cells.time_ns("timestamp_s");
+    if (!stamp) return tl::unexpected(stamp.error());
+    row.timestamp_ns = *stamp;
+    const std::array<std::pair<const char*, double*>, 3> numbers = {
+        {{"blur_px", &row.blur_px}, {"candidates", &row.candidates}, {"accepted", &row.accepted}}};
+    for (const auto& [name, value] : numbers) {
+      const auto number = needed_number(cells, name);
+      if (!number) return tl::unexpected(number.error());
+      *value = *number;
+    }
+    rows.push_back(row);
+    return {};
+  });
+  if (!done) return tl::unexpected(done.error());
+  return rows;
+}
+
+}  // namespace fusebench::run_files
