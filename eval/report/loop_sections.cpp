@@ -133,10 +133,11 @@ std::vector<page::PageSection> loop_sections(std::span<const RunSeries> runs, st
   if (with_loops.empty()) return {};
   std::vector<page::PageSection> sections = {table_section(with_loops)};
   std::string text =
-      "Lines lead from a place to the frame that was compared with it. Candidates that were refused, those "
-      "that "
-      "contradict the poses and all others, are drawn after a click on their name, which is struck out until "
-      "then.";
+      "A line leads from a place to the frame that was compared with it; it is short where the camera came "
+      "back "
+      "to the same spot. Candidates that were refused, those that contradict the poses and the others, are "
+      "drawn "
+      "after a click on their name, which is struck out until then.";
   if (with_loops.size() > kMostCharted) {
     text += fmt::format(" Of the {} runs, the first {} are drawn.", with_loops.size(), kMostCharted);
     with_loops.resize(kMostCharted);

@@ -92,11 +92,15 @@ using RunGroup = std::vector<const run_files::FoundRun*>;
 bool same_frames(const record::RunRecord& a, const record::RunRecord& b) {
   return a.recording.first_frame == b.recording.first_frame && a.recording.frames == b.recording.frames;
 }
-/// As far as a row names it. A run that failed may not say of which kind its poses would have been.
+/// A run that failed may not say of which kind its poses would have been.
+bool says_kind_of_poses(const record::RunRecord& run) {
+  return run.status == record::RunStatus::ok || run.final_metrics;
+}
+/// As far as a row names it.
 bool same_name(const record::RunRecord& a, const record::RunRecord& b) {
-  const bool both_ok = a.status == record::RunStatus::ok && b.status == record::RunStatus::ok;
+  const bool both_say = says_kind_of_poses(a) && says_kind_of_poses(b);
   return a.recording.name == b.recording.name && a.variant == b.variant &&
-         a.recording.imu == b.recording.imu && (a.poses == b.poses || !both_ok);
+         a.recording.imu == b.recording.imu && (a.poses == b.poses || !both_say);
 }
 
 /// After each run that revised its poses the same run with the metrics of these.

@@ -29,17 +29,16 @@ failed() {
 
 "$binary" simulate --preset fast --in-motion --duration 0.7 --size 320x240 --out recording >/dev/null 2>&1 ||
   failed "the recording is not made"
-for variant in full dm no-imu; do
-  profile=()
-  if [[ $variant == no-imu ]]; then profile=(--profile); fi
-  "$binary" run recording --variant "$variant" --out runs "${profile[@]}" >/dev/null 2>&1 || failed "the run $variant fails"
+for variant in full dm no-imu infinitam; do
+  options=()
+  if [[ $variant == no-imu ]]; then options=(--profile); fi
+  # The camera has no time to return anywhere: loops are taken that depth would refuse.
+  if [[ $variant == full ]]; then
+    for option in mode=final least_age_s=0.5 query_every=2 max_violating_share=1; do options+=(--set "loops.$option"); done
+  fi
+  "$binary" run recording --variant "$variant" --out runs "${options[@]}" >/dev/null 2>&1 || failed "the run $variant fails"
 done
-"$binary" run recording --variant infinitam --out runs >/dev/null 2>&1 || failed "the run infinitam fails"
-# A camera that comes back to where it was.
-"$binary" simulate --format tum --preset slow --duration 4 --seed 3 --size 320x240 --out room >/dev/null 2>&1 ||
-  failed "the recording with loops is not made"
-"$binary" run room --imu auto --set loops.mode=final --set loops.least_age_s=1 --out runs >/dev/null 2>&1 ||
-  failed "the run with loops fails"
+grep -q accepted runs/recording/full/*/loops.csv || failed "there is no loop to draw"
 # A run that failed before its first frame has a record and nothing else.
 lost=runs/recording/planar/00000000
 mkdir -p "$lost"
@@ -70,11 +69,9 @@ if command -v gnuplot >/dev/null; then
     "$binary" report runs --out again.html --figures figures --figure-format "$format" 2>stderr ||
       failed "no figures: $(cat stderr)"
     for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error \
-      time_of_the_stages_over_the_frames_no_imu; do
+      time_of_the_stages_over_the_frames_no_imu x_z_view_with_loops_full candidates_for_loops_full \
+      position_error_before_and_after_full; do
       [[ -s figures/recording-$figure.$format ]] || failed "no figure $figure.$format"
-    done
-    for figure in x_z_view_with_loops_full candidates_for_loops_full position_error_before_and_after_full; do
-      [[ -s figures/room-$figure.$format ]] || failed "no figure $figure.$format"
     done
   done
   cmp report.html again.html || failed "the report is not the same twice"

@@ -86,6 +86,18 @@ TEST(SystemsTable, PosesOfTheEndAreARowOfTheirOwn) {
   EXPECT_DOUBLE_EQ(table.rows[1].ate_m->median, 0.01);
 }
 
+TEST(SystemsTable, PosesOfTheEndOfALostRunAreARowOfTheirOwn) {
+  FoundRun run = run_of("full", 0.03);
+  run.record.status = RunStatus::lost;
+  run.record.final_metrics = run.record.metrics;
+  const SystemsTable table = systems_table_of({run});
+  ASSERT_GE(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0].poses, "online");
+  EXPECT_EQ(table.rows[0].runs, 1U);
+  EXPECT_EQ(table.rows[1].poses, "final");
+  EXPECT_EQ(table.rows[1].runs, 1U);
+}
+
 TEST(SystemsTable, ComparesOnlySeveralSystemsOrRevisedPoses) {
   const auto of_method = [](const std::string& variant, const std::string& method) {
     FoundRun run = run_of(variant, 0.01);
