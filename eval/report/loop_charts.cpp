@@ -77,7 +77,9 @@ page::ChartSeries lines_between_places(const RunSeries& run, const std::string& 
 page::Chart loop_view_chart(const RunSeries& run, int across, int along, std::size_t buckets) {
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
   const auto name = [&](int axis) { return kAxes[static_cast<std::size_t>(axis)]; };
-  page::Chart chart = chart_of(fmt::format("{}-{} view with loops: {}", name(across), name(along), run.label),
+  const char* const what =
+      run.final_poses.empty() || !run.candidates.empty() ? "with loops" : "before and after";
+  page::Chart chart = chart_of(fmt::format("{}-{} view {}: {}", name(across), name(along), what, run.label),
                                fmt::format("{} [m]", name(across)), fmt::format("{} [m]", name(along)));
   chart.from_zero = false;
   chart.equal_scale = true;

@@ -81,17 +81,14 @@ page::PageTable::Row row_of(const RunSeries& run) {
 
 std::string explanation() {
   return fmt::format(
-      "Places are frames that are kept to be recognised; a candidate is a pair of places that look alike, "
-      "and a "
-      "loop one that was accepted. Online: each pose as it was known when its frame came; final: as all were "
-      "known at the end. Returns: places that see {:.0f} % or more of what an older place saw, by the true "
-      "poses, and how many of them have a loop; blurred are those with more than {:.0f} px of motion blur. "
-      "False: "
-      "loops that are off by more than {:.0f} cm or {:.0f} degrees, and by more than {:.0f} sigmas of what "
-      "they "
-      "claim. NEES: squared error of loops by what they claim, a number an axis; 1 is consistent. ATE with "
-      "true "
-      "loops: of the final poses if every return had a true loop.",
+      "Places are frames that are kept to be recognised; a candidate is a pair of places that look "
+      "alike, and a loop one that was accepted. Online: each pose as it was known when its frame came; "
+      "final: as all were known at the end. Returns: places that see {:.0f} % or more of what an older "
+      "place saw, by the true poses, and how many of them have a loop; blurred are those with more "
+      "than {:.0f} px of motion blur. False: loops that are off by more than {:.0f} cm or {:.0f} "
+      "degrees, and by more than {:.0f} sigmas of what they claim. NEES: squared error of loops by "
+      "what they claim, a number an axis; 1 is consistent. ATE with true loops: of the final poses if "
+      "every return had a true loop.",
       100 * loop_error::kRevisitOverlap, loop_error::kBlurred_px,
       kCentimetres * loop_error::kFalseTranslation_m, degrees(loop_error::kFalseRotation_rad),
       loop_error::kFalseSigmas);
@@ -133,11 +130,9 @@ std::vector<page::PageSection> loop_sections(std::span<const RunSeries> runs, st
   if (with_loops.empty()) return {};
   std::vector<page::PageSection> sections = {table_section(with_loops)};
   std::string text =
-      "A line leads from a place to the frame that was compared with it; it is short where the camera came "
-      "back "
-      "to the same spot. Candidates that were refused, those that contradict the poses and the others, are "
-      "drawn "
-      "after a click on their name, which is struck out until then.";
+      "A line leads from a place to the frame that was compared with it; it is short where the camera "
+      "came back to the same spot. Candidates that were refused, those that contradict the poses and "
+      "the others, are drawn after a click on their name, which is struck out until then.";
   if (with_loops.size() > kMostCharted) {
     text += fmt::format(" Of the {} runs, the first {} are drawn.", with_loops.size(), kMostCharted);
     with_loops.resize(kMostCharted);
