@@ -162,7 +162,8 @@ std::vector<page::Chart> interaction_charts(const aggregate::SweepEffects& effec
   std::vector<page::Chart> charts;
   for (const aggregate::OptionInteraction& interaction : effects.interactions) {
     page::Chart chart = interaction_chart(effects, interaction);
-    if (!chart.series.empty()) charts.push_back(std::move(chart));
+    const auto is_curve = [](const page::ChartSeries& series) { return series.points.size() > 1; };
+    if (std::ranges::any_of(chart.series, is_curve)) charts.push_back(std::move(chart));
   }
   return charts;
 }

@@ -14,7 +14,7 @@ namespace fusebench::report {
 [[nodiscard]] std::vector<page::Chart> effect_charts(const aggregate::SweepEffects& effects);
 
 /// Of each pair of options a curve for each value of one of them (at most eight) over the values of the
-/// other; parallel curves do not interact.
+/// other; parallel curves do not interact. None of a pair that always changes together.
 [[nodiscard]] std::vector<page::Chart> interaction_charts(const aggregate::SweepEffects& effects);
 
 /// All configurations as dots, the front as a line, in the units that people see.

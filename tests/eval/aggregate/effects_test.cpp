@@ -148,6 +148,14 @@ TEST(SweepCharts, NumbersAreCurvesAndTextsAreBars) {
   EXPECT_EQ(pairs[0].series[1].points.size(), 3U);
 }
 
+TEST(SweepCharts, OptionsThatAlwaysChangeTogetherHaveNoCurves) {
+  const std::vector<RunRow> rows = {sample_row("easy", {{"a", "1"}, {"b", "10"}}, 1),
+                                    sample_row("easy", {{"a", "2"}, {"b", "20"}}, 2)};
+  const SweepEffects effects = sweep_effects(rows, metric_of("ate"));
+  EXPECT_EQ(effects.interactions.size(), 1U);
+  EXPECT_TRUE(interaction_charts(effects).empty());
+}
+
 TEST(SweepCharts, ThereAreAtMostEightCurves) {
   std::vector<RunRow> rows;
   for (int i = 0; i < 20; ++i) {
