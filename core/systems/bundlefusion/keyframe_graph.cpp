@@ -34,10 +34,15 @@ std::size_t KeyframeGraph::add(View keyframe, const std::optional<SE3>& T_world_
 }
 
 void KeyframeGraph::finish() {
-  for (bool found = true; found;) {
-    found = false;
+  const auto placed = [&] {
+    return std::ranges::count_if(T_world_keyframe_, [](const auto& pose) { return pose.has_value(); });
+  };
+  // While there are more of them: one that is placed may take the place from another that contradicts it,
+  // which would take it back the next time.
+  for (auto before = placed() - 1; before < placed();) {
+    before = placed();
     for (std::size_t k = 0; k < keyframes_.size(); ++k) {
-      if (!T_world_keyframe_[k] && place(k, std::nullopt)) found = true;
+      if (!T_world_keyframe_[k]) place(k, std::nullopt);
     }
   }
   std::vector<const DepthCloud*> clouds;
