@@ -34,7 +34,7 @@ std::string tum_text(const Trajectory& trajectory) {
 }
 
 Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                                       Duplicates duplicates) {
+                                       Duplicates duplicates, io::TimeUnit unit) {
   TrajectoryRows rows;
   const Result<void> done = io::for_each_stamped_row(
       file, "timestamp tx ty tz qx qy qz qw", order_for(duplicates),
@@ -42,7 +42,8 @@ Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file, std::v
         Eigen::Matrix<double, 7, 1> v;
         if (auto read = table.numbers(1, {v.data(), 7}); !read) return read;
         return take_pose(table, time_ns, v.head<3>(), Quaterniond(v[6], v[3], v[4], v[5]), rows);
-      });
+      },
+      unit);
   if (!done) return tl::unexpected(done.error());
   return ordered(std::move(rows), duplicates, file, warnings);
 }

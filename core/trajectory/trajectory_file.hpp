@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
+#include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_rows.hpp"
 
 namespace fusebench::trajectory {
@@ -19,12 +20,13 @@ namespace fusebench::trajectory {
 /// quaternion >= 0.
 [[nodiscard]] std::string tum_text(const Trajectory& trajectory);
 
-/// Reads TUM text (blank lines, # comments and commas as in TextTable). Quaternions are normalised; rows are
-/// ordered as ordered() does, with its warnings. Errors name file:line: data_missing, or data_corrupt for a
-/// row that is not eight finite numbers, a quaternion near zero, the order in time (see Duplicates), or a
-/// file without rows.
+/// Reads TUM text, whose stamps count in `unit` (blank lines, # comments and commas as in TextTable).
+/// Quaternions are normalised; rows are ordered as ordered() does, with its warnings. Errors name file:line:
+/// data_missing, or data_corrupt for a row that is not eight finite numbers, a quaternion near zero, the
+/// order in time (see Duplicates), or a file without rows.
 [[nodiscard]] Result<Trajectory> read_tum_trajectory(const std::filesystem::path& file,
                                                      std::vector<std::string>& warnings,
-                                                     Duplicates duplicates = Duplicates::error);
+                                                     Duplicates duplicates = Duplicates::error,
+                                                     io::TimeUnit unit = io::TimeUnit::seconds);
 
 }  // namespace fusebench::trajectory

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <exception>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/base/nearest_name.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/usage_error.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/cli/trajectories/evo_spelling.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/record/build_info.hpp"
 
@@ -31,19 +31,6 @@ std::vector<const char*> words_of(int argc, const char* const* argv) {
   return words;
 }
 
-/// The parser's own message for an unknown verb does not name the nearest one.
-Result<void> check_verb(const std::vector<console::Verb>& verbs, int argc, const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return {};
-  const std::string_view given = argv[1];
-  std::vector<std::string> names;
-  for (const console::Verb& verb : verbs) names.push_back(verb.app->get_name());
-  if (std::find(names.begin(), names.end(), given) != names.end()) return {};
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  return fail(ErrorCode::usage,
-              fmt::format("unknown verb '{}' (nearest: {})", given, nearest_name(given, views)),
-              "`fusebench --help` lists the verbs");
-}
-
 int finish(const Error& error) {
   console::print_error(error);
   return console::stop_requested() ? console::kExitInterrupted : exit_code(error.code);
@@ -58,8 +45,8 @@ int run_verb(const std::vector<console::Verb>& verbs) {
   return finish({ErrorCode::usage, "no verb is given", "`fusebench --help` lists the verbs"});
 }
 
-int command_line(int given, const char* const* arguments) {
-  const std::vector<const char*> words = words_of(given, arguments);
+int command_line(int given_count, const char* const* given) {
+  const std::vector<const char*> words = words_of(given_count, given);
   const int argc = static_cast<int>(words.size());
   const char* const* const argv = words.data();
   CLI::App app{
@@ -94,14 +81,15 @@ int command_line(int given, const char* const* arguments) {
                                             recordings::add_export_verb(app),
                                             recordings::add_calibrate_verb(app),
                                             recordings::add_smooth_verb(app)};
-  if (const auto known = check_verb(verbs, argc, argv); !known) return finish(known.error());
+  const auto arguments = trajectories::with_own_spelling({argv + std::min(argc, 1), argv + argc});
+  if (!arguments) return finish(arguments.error());
   try {
-    app.parse(argc, argv);
+    app.parse(
+        std::vector<std::string>(arguments->rbegin(), arguments->rend()));  // it takes them from the end
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return finish({ErrorCode::usage, error.what(),
-                   "`fusebench --help` and `fusebench VERB --help` say what is allowed"});
+    return finish(console::usage_error(app, *arguments, error));
   }
   console::install_stop_handler();
   return run_verb(verbs);

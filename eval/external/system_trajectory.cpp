@@ -14,8 +14,7 @@ namespace {
 Result<trajectory_files::LoadedTrajectory> load(const SystemTrajectory& trajectory,
                                                 std::vector<std::string>& warnings) {
   if (trajectory.format || trajectory.file.extension() != ".sens")
-    return trajectory_files::load_trajectory(trajectory.file, trajectory.format,
-                                             trajectory::Duplicates::rare_last, warnings);
+    return trajectory_files::load_trajectory(trajectory.file, {trajectory.format}, warnings);
   auto poses = image_logs::read_sens_trajectory(trajectory.file);
   if (!poses) return tl::unexpected(poses.error());
   return trajectory_files::LoadedTrajectory{trajectory_files::TrajectoryFormat::tum, std::move(*poses), {}};

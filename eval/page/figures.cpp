@@ -23,16 +23,6 @@ namespace {
 constexpr std::array<const char*, 8> kColours = {"#0067a8", "#c8500a", "#00795a", "#a3417f",
                                                  "#6b6b00", "#6a5acd", "#8c5a3c", "#5f6973"};
 
-/// gnuplot's strings in double quotes; marks of enhanced text are switched off.
-std::string gnuplot_text(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\' || c == '`') result += '\\';  // it runs what stands between backticks
-    result += c == '\n' ? ' ' : c;
-  }
-  return result + "\"";
-}
-
 /// As wide as a column of a two-column paper (8.5 cm), with letters of 8 points there.
 std::string terminal(FigureFormat format, bool equal) {
   if (format == FigureFormat::pdf)
@@ -205,6 +195,17 @@ Result<void> run_gnuplot(const std::filesystem::path& script) {
 }
 
 }  // namespace
+
+std::string gnuplot_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\' || c == '`') result += '\\';  // it runs what stands between backticks
+    result += c == '\n' ? ' ' : c;
+  }
+  return result + "\"";
+}
+
+std::string_view figure_colour(std::size_t place) { return kColours[place % kColours.size()]; }
 
 Result<FigureFormat> parse_figure_format(std::string_view text) {
   if (text == "svg") return FigureFormat::svg;

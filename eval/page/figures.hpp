@@ -16,6 +16,12 @@ enum class FigureFormat { svg, pdf };
 /// Error usage.
 [[nodiscard]] Result<FigureFormat> parse_figure_format(std::string_view text);
 
+/// A text as one of gnuplot's strings in double quotes, on one line. Nothing in it is run; that letters such
+/// as '_' and '^' are shown as they are takes a terminal with `noenhanced`.
+[[nodiscard]] std::string gnuplot_text(std::string_view text);
+/// The colour of the series at a place, "#0067a8"; they repeat.
+[[nodiscard]] std::string_view figure_colour(std::size_t place);
+
 /// A script that draws the chart into a file, with the data within it.
 [[nodiscard]] std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFormat format);
 

@@ -61,6 +61,7 @@ struct TrajectoryRequest {
   double delta_tolerance = 0.1;
   bool from_reference = false;
   MotionListing listing = {};
+  bool keep_poses = false;  ///< the evaluation keeps the poses as they were compared
   bool fit_offset = false;  ///< absolute errors: also with a fitted offset of the body, see fitted_offset()
 };
 

@@ -19,6 +19,12 @@ std::vector<SE3> poses_of(const Trajectory& trajectory) {
   return poses;
 }
 
+/// The same stamps with other poses.
+Trajectory with_poses(Trajectory trajectory, const std::vector<SE3>& poses) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory[i].T_world_camera = poses[i];
+  return trajectory;
+}
+
 /// Position without the component across the plane, and of the orientation the turn within it: the angle
 /// about the normal of Euler angles about fixed axes x, y, z.
 SE3 projected(const SE3& pose, Plane plane) {
@@ -38,12 +44,15 @@ struct Compared {
 };
 
 Result<Compared> compared(const trajectory_files::TrajectoryPair& pair, const AlignmentRequest& request,
-                          Plane plane) {
+                          Plane plane, bool keep_poses) {
   Compared result{poses_of(pair.reference), poses_of(pair.estimate), {}};
   const Result<Similarity> alignment = align(result.reference, result.estimate, request);
   if (!alignment) return tl::unexpected(alignment.error());
   for (SE3& pose : result.reference) pose = projected(pose, plane);
   for (SE3& pose : result.estimate) pose = projected(*alignment * pose, plane);
+  if (keep_poses)
+    result.error.compared = {with_poses(pair.reference, result.reference),
+                             with_poses(pair.estimate, result.estimate)};
   result.error.alignment_mode = request.mode;
   result.error.alignment = *alignment;
   result.error.pairs = pair.size();
@@ -81,11 +90,13 @@ Result<TrajectoryError> errors_of_motions(Compared sides, const trajectory_files
   result.relation = options.relation;
   result.errors.reserve(motions.size());
   result.at_ns.reserve(motions.size());
+  if (options.keep_poses) result.at.reserve(motions.size());
   for (const auto& [i, j] : motions) {
     const auto error = error_of_motion(options.relation, sides, i, j);
     if (!error) continue;
     result.errors.push_back(*error);
     result.at_ns.push_back(pair.estimate[j].timestamp_ns);
+    if (options.keep_poses) result.at.push_back(j);
   }
   if (result.errors.empty()) return without_errors(pair.size(), options, motions.size());
   result.stats = metrics::statistics(result.errors);
@@ -145,13 +156,14 @@ Result<TrajectoryError> absolute_error(const trajectory_files::TrajectoryPair& p
     return fail(ErrorCode::usage, fmt::format("{} is a relation of motions", to_string(options.relation)),
                 "use it with `fusebench eval rpe`");
   }
-  Result<Compared> sides = compared(pair, options.alignment, options.plane);
+  Result<Compared> sides = compared(pair, options.alignment, options.plane, options.keep_poses);
   if (!sides) return tl::unexpected(sides.error());
   TrajectoryError result = std::move(sides->error);
   result.relation = options.relation;
   for (std::size_t i = 0; i < pair.size(); ++i) {
     result.errors.push_back(absolute_error(options.relation, sides->reference[i], sides->estimate[i]));
     result.at_ns.push_back(pair.estimate[i].timestamp_ns);
+    if (options.keep_poses) result.at.push_back(i);
   }
   result.stats = metrics::statistics(result.errors);
   return result;
@@ -161,11 +173,10 @@ Result<TrajectoryError> relative_error(const trajectory_files::TrajectoryPair& p
                                        const RelativeOptions& options) {
   if (const auto sensible = check_delta(options.delta); !sensible) return tl::unexpected(sensible.error());
   // Lengths of the estimate are those of the aligned one: a scale is part of the alignment.
-  Result<Compared> sides = compared(pair, options.alignment, options.plane);
+  Result<Compared> sides = compared(pair, options.alignment, options.plane, options.keep_poses);
   if (!sides) return tl::unexpected(sides.error());
-  Trajectory selecting = options.from_reference ? pair.reference : pair.estimate;
-  const std::vector<SE3>& poses = options.from_reference ? sides->reference : sides->estimate;
-  for (std::size_t i = 0; i < selecting.size(); ++i) selecting[i].T_world_camera = poses[i];
+  Trajectory selecting = options.from_reference ? with_poses(pair.reference, sides->reference)
+                                                : with_poses(pair.estimate, sides->estimate);
   const std::size_t turns = count_turns(selecting, options);
   if (auto listed = check_listing(options.listing, turns); !listed) return tl::unexpected(listed.error());
   if (turns > options.listing.most)
@@ -178,7 +189,7 @@ Result<TrajectoryError> relative_error(const trajectory_files::TrajectoryPair& p
 
 Result<TrajectoryError> relative_error(const trajectory_files::TrajectoryPair& pair,
                                        const RelativeOptions& options, const IndexPairs& motions) {
-  Result<Compared> sides = compared(pair, options.alignment, options.plane);
+  Result<Compared> sides = compared(pair, options.alignment, options.plane, options.keep_poses);
   if (!sides) return tl::unexpected(sides.error());
   return errors_of_motions(std::move(*sides), pair, options, motions);
 }

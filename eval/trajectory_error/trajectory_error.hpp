@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/types.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/alignment.hpp"
 #include "eval/trajectory_error/motion_pairs.hpp"
@@ -14,6 +15,12 @@
 #include "eval/trajectory_files/trajectory_pair.hpp"
 
 namespace fusebench::trajectory_error {
+
+/// As many poses on either side, as they were compared: associated, the estimate aligned, both projected.
+struct ComparedPoses {
+  Trajectory reference;
+  Trajectory estimate;
+};
 
 /// What was compared, and how: everything that two numbers must share before they are compared themselves.
 struct TrajectoryError {
@@ -25,7 +32,10 @@ struct TrajectoryError {
   Similarity alignment;             ///< reference from estimate
   std::vector<double> errors;       ///< in the relation's unit
   std::vector<std::int64_t> at_ns;  ///< of each error, the estimate's stamp (of a motion: of its end)
-  /// Of more motions than are listed, the errors one by one; `errors` and `at_ns` are then empty.
+  /// Where poses are kept: of each error, its pose among the compared (of a motion: its end).
+  std::vector<std::size_t> at;
+  ComparedPoses compared;  ///< empty unless they are kept
+  /// Of more motions than are listed, the errors one by one; `errors`, `at_ns` and `at` are then empty.
   ValueSource streamed;
   metrics::Statistics stats;
 };
@@ -38,6 +48,7 @@ struct AbsoluteOptions {
   PoseRelation relation = PoseRelation::translation;
   AlignmentRequest alignment;
   Plane plane = Plane::none;
+  bool keep_poses = false;
 };
 
 /// What moves the estimate of a pair. Errors as align().
@@ -59,6 +70,7 @@ struct RelativeOptions {
   double tolerance = 0.1;       ///< of delta, where all motions are taken
   bool from_reference = false;  ///< the reference's motions decide which are taken
   MotionListing listing = {};
+  bool keep_poses = false;
 };
 
 /// Error of motions over a delta, selected from the associated poses. Errors: configuration for a delta that

@@ -15,7 +15,7 @@ namespace {
 ErrorSeries series_of(std::string relation, std::string unit, std::vector<double> errors,
                       std::vector<std::int64_t> at_ns) {
   const metrics::Statistics stats = metrics::statistics(errors);
-  return {std::move(relation), std::move(unit), std::move(errors), std::move(at_ns), {}, stats};
+  return {std::move(relation), std::move(unit), std::move(errors), std::move(at_ns), {}, {}, stats};
 }
 
 ErrorSeries series_of(TrajectoryError error) {
@@ -23,6 +23,7 @@ ErrorSeries series_of(TrajectoryError error) {
           std::string(unit_of(error.relation)),
           std::move(error.errors),
           std::move(error.at_ns),
+          std::move(error.at),
           std::move(error.streamed),
           error.stats};
 }
@@ -58,10 +59,11 @@ TrajectoryEvaluation described(const TrajectoryRequest& request, const trajector
 
 Result<TrajectoryEvaluation> of_poses(const trajectory_files::TrajectoryPair& pair,
                                       const TrajectoryRequest& request) {
-  Result<TrajectoryError> error =
-      absolute_error(pair, AbsoluteOptions{request.relation, request.alignment, request.plane});
+  Result<TrajectoryError> error = absolute_error(
+      pair, AbsoluteOptions{request.relation, request.alignment, request.plane, request.keep_poses});
   if (!error) return tl::unexpected(error.error());
   TrajectoryEvaluation result = described(request, pair, error->alignment);
+  result.compared = std::move(error->compared);
   result.series.push_back(series_of(std::move(*error)));
   if (!request.fit_offset) return result;
   Result<FittedOffset> fit = fitted_offset(pair);
@@ -75,13 +77,14 @@ Result<TrajectoryEvaluation> of_poses(const trajectory_files::TrajectoryPair& pa
 
 Result<TrajectoryEvaluation> of_motions(const trajectory_files::TrajectoryPair& pair,
                                         const TrajectoryRequest& request) {
-  Result<TrajectoryError> error =
-      relative_error(pair, RelativeOptions{request.relation, request.alignment, request.plane, request.delta,
-                                           request.motions == MotionRule::all ? MotionSelection::all
-                                                                              : MotionSelection::consecutive,
-                                           request.delta_tolerance, request.from_reference, request.listing});
+  Result<TrajectoryError> error = relative_error(
+      pair, RelativeOptions{
+                request.relation, request.alignment, request.plane, request.delta,
+                request.motions == MotionRule::all ? MotionSelection::all : MotionSelection::consecutive,
+                request.delta_tolerance, request.from_reference, request.listing, request.keep_poses});
   if (!error) return tl::unexpected(error.error());
   TrajectoryEvaluation result = described(request, pair, error->alignment);
+  result.compared = std::move(error->compared);
   result.series.push_back(series_of(std::move(*error)));
   return result;
 }
@@ -114,10 +117,21 @@ Result<TrajectoryEvaluation> of_tum_motions(const Trajectory& reference, Traject
   result.possible = rpe->possible;
   result.coverage = rpe->coverage;
   result.request.association.max_difference_s = rpe->max_difference_s;
-  result.series.push_back({"trans_part", "m", std::move(rpe->errors_m), rpe->at_ns,
-                           std::move(rpe->streamed_m), rpe->translation});
-  result.series.push_back({"angle_deg", "deg", std::move(rpe->errors_rad), std::move(rpe->at_ns),
-                           std::move(rpe->streamed_rad), rpe->rotation});
+  if (request.keep_poses) result.compared = {reference, std::move(estimate)};
+  result.series.push_back({"trans_part",
+                           "m",
+                           std::move(rpe->errors_m),
+                           rpe->at_ns,
+                           {},
+                           std::move(rpe->streamed_m),
+                           rpe->translation});
+  result.series.push_back({"angle_deg",
+                           "deg",
+                           std::move(rpe->errors_rad),
+                           std::move(rpe->at_ns),
+                           {},
+                           std::move(rpe->streamed_rad),
+                           rpe->rotation});
   scale(result.series.back(), kDegreesPerRadian);
   return result;
 }
@@ -189,6 +203,10 @@ Result<TrajectoryEvaluation> of_segments(const Trajectory& reference,
   const Result<Similarity> aligned = align(pair, request.alignment);
   if (!aligned) return tl::unexpected(aligned.error());
   TrajectoryEvaluation result = described(request, pair, *aligned);
+  if (request.keep_poses) {
+    result.compared = {pair.reference, pair.estimate};
+    for (StampedPose& pose : result.compared.estimate) pose.T_world_camera = *aligned * pose.T_world_camera;
+  }
   std::vector<double> percent;
   std::vector<double> deg_per_m;
   std::vector<std::int64_t> at_ns;

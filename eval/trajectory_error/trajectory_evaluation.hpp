@@ -14,6 +14,7 @@
 #include "eval/trajectory_error/fitted_offset.hpp"
 #include "eval/trajectory_error/protocol.hpp"
 #include "eval/trajectory_error/streamed_statistics.hpp"
+#include "eval/trajectory_error/trajectory_error.hpp"
 
 namespace fusebench::trajectory_error {
 
@@ -23,7 +24,10 @@ struct ErrorSeries {
   std::string unit;      ///< "m", "%", "rad", "deg", "deg/m", or "" of what has none
   std::vector<double> errors;
   std::vector<std::int64_t> at_ns;  ///< of each error: the stamp of the pose, or of the motion's end
-  /// Of more motions than are listed, the errors one by one; `errors` and `at_ns` are then empty.
+  /// Where poses are kept: of each error, its pose among the compared (of a motion: its end). Empty of
+  /// segments and of TUM's motions.
+  std::vector<std::size_t> at = {};
+  /// Of more motions than are listed, the errors one by one; the lists above are then empty.
   ValueSource streamed;
   metrics::Statistics stats;
 };
@@ -44,12 +48,14 @@ struct TrajectoryEvaluation {
   TrajectoryRequest request;
   std::size_t reference_poses = 0;
   std::size_t estimate_poses = 0;
-  std::size_t pairs = 0;             ///< associated poses; of TUM's relative error, motions with ground truth
-  std::size_t possible = 0;          ///< that there could have been
-  double coverage = 0;               ///< pairs / possible
-  Similarity alignment;              ///< reference from estimate
-  std::vector<ErrorSeries> series;   ///< the first is the protocol's own number
-  std::vector<SegmentRow> segments;  ///< where segments are what is compared
+  std::size_t pairs = 0;            ///< associated poses; of TUM's relative error, motions with ground truth
+  std::size_t possible = 0;         ///< that there could have been
+  double coverage = 0;              ///< pairs / possible
+  Similarity alignment;             ///< reference from estimate
+  std::vector<ErrorSeries> series;  ///< the first is the protocol's own number
+  /// Empty unless request.keep_poses. Of TUM's relative errors: all poses, the estimate's scaled.
+  ComparedPoses compared;
+  std::vector<SegmentRow> segments;           ///< where segments are what is compared
   std::optional<FittedOffset> fitted_offset;  ///< where it was asked for; its errors are the second series
 };
 

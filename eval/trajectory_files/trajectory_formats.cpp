@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "core/io/stamped_rows.hpp"
@@ -27,8 +28,46 @@ constexpr std::size_t kEurocColumns = 17;
 constexpr std::size_t kLogHeader = 3;
 constexpr std::size_t kOpenvinsColumns = 20;
 
-/// The format that the first row can only be. Of eight columns, an integer of nanoseconds is EuRoC's.
-Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
+constexpr std::array kUnits{
+    std::pair{io::TimeUnit::seconds, "s"}, std::pair{io::TimeUnit::milliseconds, "ms"},
+    std::pair{io::TimeUnit::microseconds, "us"}, std::pair{io::TimeUnit::nanoseconds, "ns"}};
+
+/// What a first row says of its file.
+struct FirstRow {
+  int line = 0;
+  std::size_t columns = 0;
+  bool commas = false;
+  std::string stamp;
+};
+
+/// Of eight columns, an integer of nanoseconds before a comma is EuRoC's.
+Result<TrajectoryFormat> format_of(const FirstRow& row, const std::filesystem::path& file) {
+  if (row.columns == kKittiColumns) return TrajectoryFormat::kitti;
+  if (row.columns == kEurocColumns) return TrajectoryFormat::euroc;
+  if (row.columns == kOpenvinsColumns) return TrajectoryFormat::openvins;
+  if (row.columns == kLogHeader) return TrajectoryFormat::log;
+  constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
+  const bool integer = row.stamp.find_first_not_of("0123456789") == std::string::npos;
+  if (row.columns == kTumColumns)
+    return row.commas && integer && row.stamp.size() >= kNanosecondDigits ? TrajectoryFormat::euroc
+                                                                          : TrajectoryFormat::tum;
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17, log 3, "
+                          "openvins 20)",
+                          file.string(), row.line, row.columns),
+              "`--format` names the format if the first row does not");
+}
+
+/// The unit that a stamp since 1970 can only be in: 1e11 s are in the year 5138, 1e11 ms in 1973.
+io::TimeUnit unit_of(const std::string& stamp) {
+  const Result<double> value = io::parse_number(stamp);
+  constexpr double kMostSeconds = 1e11;
+  if (!value || *value < kMostSeconds) return io::TimeUnit::seconds;
+  if (*value < 1e3 * kMostSeconds) return io::TimeUnit::milliseconds;
+  return *value < 1e6 * kMostSeconds ? io::TimeUnit::microseconds : io::TimeUnit::nanoseconds;
+}
+
+Result<FirstRow> first_row(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::string line;
@@ -39,20 +78,7 @@ Result<TrajectoryFormat> recognised(const std::filesystem::path& file) {
     fields.clear();
     io::split_fields(text, fields);
     if (fields.empty() || fields[0].starts_with('#')) continue;
-    if (fields.size() == kKittiColumns) return TrajectoryFormat::kitti;
-    if (fields.size() == kEurocColumns) return TrajectoryFormat::euroc;
-    if (fields.size() == kOpenvinsColumns) return TrajectoryFormat::openvins;
-    constexpr std::size_t kNanosecondDigits = 14;  // a day; seconds have not that many
-    if (fields.size() == kLogHeader) return TrajectoryFormat::log;
-    const bool integer = fields[0].find_first_not_of("0123456789") == std::string_view::npos;
-    if (fields.size() == kTumColumns)
-      return integer && fields[0].size() >= kNanosecondDigits ? TrajectoryFormat::euroc
-                                                              : TrajectoryFormat::tum;
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{}:{}: {} columns are no trajectory (tum has 8, kitti 12, euroc 8 or 17, log 3, "
-                            "openvins 20)",
-                            file.string(), number, fields.size()),
-                "`--format` names the format if the first row does not");
+    return FirstRow{number, fields.size(), text.find(',') != std::string_view::npos, std::string(fields[0])};
   }
   return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows (expected poses)", file.string()));
 }
@@ -79,14 +105,15 @@ Matrix3d symmetric(const double* upper) {
   return matrix;
 }
 
-Result<LoadedTrajectory> read_openvins(const std::filesystem::path& file,
+Result<LoadedTrajectory> read_openvins(const std::filesystem::path& file, io::TimeUnit unit,
                                        std::vector<std::string>& warnings) {
   trajectory::TrajectoryRows rows;
   LoadedTrajectory loaded;
   loaded.format = TrajectoryFormat::openvins;
   const Result<void> done = io::for_each_stamped_row(
       file, "timestamp tx ty tz qx qy qz qw Pr11 Pr12 Pr13 Pr22 Pr23 Pr33 Pt11 Pt12 Pt13 Pt22 Pt23 Pt33",
-      io::TimeOrder::increasing, [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+      io::TimeOrder::increasing,
+      [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
         Eigen::Matrix<double, kOpenvinsColumns - 1, 1> v;
         if (auto read = table.numbers(1, {v.data(), kOpenvinsColumns - 1}); !read) return read;
         const PoseCovariance covariance{symmetric(&v[7]), symmetric(&v[13])};
@@ -99,7 +126,8 @@ Result<LoadedTrajectory> read_openvins(const std::filesystem::path& file,
         }
         loaded.covariances.push_back(covariance);
         return trajectory::take_pose(table, time_ns, v.head<3>(), Quaterniond(v[6], v[3], v[4], v[5]), rows);
-      });
+      },
+      unit);
   if (!done) return tl::unexpected(done.error());
   auto poses = trajectory::ordered(std::move(rows), trajectory::Duplicates::error, file, warnings);
   if (!poses) return tl::unexpected(poses.error());
@@ -154,27 +182,56 @@ Result<TrajectoryFormat> parse_trajectory_format(std::string_view text) {
               "formats are tum, kitti, euroc, log and openvins");
 }
 
-Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
-                                         std::optional<TrajectoryFormat> format,
-                                         trajectory::Duplicates duplicates,
-                                         std::vector<std::string>& warnings) {
-  std::error_code ignored;
-  if (!format && std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored) &&
-      !std::filesystem::is_directory(file, ignored))
-    format = TrajectoryFormat::tum;
-  if (!format) {
-    const Result<TrajectoryFormat> found = recognised(file);
-    if (!found) return tl::unexpected(found.error());
-    format = *found;
+Result<io::TimeUnit> parse_stamp_unit(std::string_view text) {
+  for (const auto& [unit, name] : kUnits) {
+    if (text == name) return unit;
   }
-  if (*format == TrajectoryFormat::openvins) return read_openvins(file, warnings);
-  Result<Trajectory> poses = *format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
-                             : *format == TrajectoryFormat::log ? read_log_trajectory(file, warnings)
-                             : *format == TrajectoryFormat::euroc
-                                 ? read_euroc(file, duplicates, warnings)
-                                 : trajectory::read_tum_trajectory(file, warnings, duplicates);
+  return fail(ErrorCode::usage, fmt::format("unknown unit of stamps '{}'", text),
+              "units are s, ms, us and ns");
+}
+
+std::string kitti_text(const Trajectory& trajectory) {
+  std::string text;
+  for (const StampedPose& pose : trajectory) {
+    const Matrix3d R = pose.T_world_camera.rotation_matrix();
+    const Vector3d& t = pose.T_world_camera.translation;
+    for (int row = 0; row < 3; ++row)
+      fmt::format_to(std::back_inserter(text), "{} {} {} {}{}", R(row, 0), R(row, 1), R(row, 2), t[row],
+                     row < 2 ? ' ' : '\n');
+  }
+  return text;
+}
+
+Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file, const TrajectoryReading& reading,
+                                         std::vector<std::string>& warnings) {
+  TrajectoryFormat format = reading.format.value_or(TrajectoryFormat::tum);
+  io::TimeUnit unit = reading.stamp_unit.value_or(io::TimeUnit::seconds);
+  std::error_code ignored;
+  const bool once = std::filesystem::exists(file, ignored) &&
+                    !std::filesystem::is_regular_file(file, ignored) &&
+                    !std::filesystem::is_directory(file, ignored);
+  if (!once && !(reading.format && reading.stamp_unit)) {
+    const Result<FirstRow> row = first_row(file);
+    if (!row) return tl::unexpected(row.error());
+    if (!reading.format) {
+      const Result<TrajectoryFormat> found = format_of(*row, file);
+      if (!found) return tl::unexpected(found.error());
+      format = *found;
+    }
+    const bool counts = format == TrajectoryFormat::tum || format == TrajectoryFormat::openvins;
+    if (counts && !reading.stamp_unit) unit = unit_of(row->stamp);
+    if (counts && !reading.stamp_unit && unit != io::TimeUnit::seconds)
+      warnings.push_back(fmt::format("{}:{}: stamps are read as {}, by their size", file.string(), row->line,
+                                     io::to_string(unit)));
+  }
+  if (format == TrajectoryFormat::openvins) return read_openvins(file, unit, warnings);
+  Result<Trajectory> poses = format == TrajectoryFormat::kitti ? read_kitti(file, warnings)
+                             : format == TrajectoryFormat::log ? read_log_trajectory(file, warnings)
+                             : format == TrajectoryFormat::euroc
+                                 ? read_euroc(file, reading.duplicates, warnings)
+                                 : trajectory::read_tum_trajectory(file, warnings, reading.duplicates, unit);
   if (!poses) return tl::unexpected(poses.error());
-  return LoadedTrajectory{*format, std::move(*poses), {}};
+  return LoadedTrajectory{format, std::move(*poses), {}};
 }
 
 }  // namespace fusebench::trajectory_files

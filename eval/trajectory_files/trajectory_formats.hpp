@@ -9,6 +9,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
+#include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_rows.hpp"
 
 namespace fusebench::trajectory_files {
@@ -39,16 +40,29 @@ struct LoadedTrajectory {
   [[nodiscard]] bool has_numbers() const { return format == TrajectoryFormat::log; }
 };
 
+/// "s", "ms", "us" or "ns". Error usage for another name.
+[[nodiscard]] Result<io::TimeUnit> parse_stamp_unit(std::string_view text);
+
+/// The upper 3x4 of each pose, row by row, a pose a line; numbers with their shortest round trip.
+[[nodiscard]] std::string kitti_text(const Trajectory& trajectory);
+
+/// How a file is read; what is not given is recognised.
+struct TrajectoryReading {
+  std::optional<TrajectoryFormat> format = {};
+  std::optional<io::TimeUnit> stamp_unit = {};  ///< of tum and openvins; euroc counts nanoseconds
+  trajectory::Duplicates duplicates = trajectory::Duplicates::rare_last;
+};
+
 /// Reads a trajectory. Without a format, the first row's columns tell it; what cannot be read twice (a pipe)
-/// is taken for TUM text. Rotations are made unit and orthonormal; warnings say how far off they were, and
-/// what ordered() did.
+/// is taken for TUM text in seconds. Stamps that can only be milli-, micro- or nanoseconds since 1970 (the
+/// first one is above 1e11, 1e14 or 1e17) are read as such, with a warning. Rotations are made unit and
+/// orthonormal; warnings say how far off they were, and what ordered() did.
 ///
 /// Errors name file:line: data_missing; data_corrupt for a row that is no pose, a matrix that is no rotation
 /// to a hundredth, those of ordered(), columns that fit no format, or (openvins) time that does not increase
 /// or a variance below zero.
 [[nodiscard]] Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
-                                                       std::optional<TrajectoryFormat> format,
-                                                       trajectory::Duplicates duplicates,
+                                                       const TrajectoryReading& reading,
                                                        std::vector<std::string>& warnings);
 
 }  // namespace fusebench::trajectory_files

@@ -5,7 +5,7 @@ set -uo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|meshes|imports|exports|recordings|interrupt|determinism|profile
+Usage: tests/cli/cli_test.sh BINARY GOLDEN_TUM_FOLDER bad-data|bad-usage|evaluation|evo|meshes|imports|exports|recordings|interrupt|determinism|profile
 TEXT
 }
 
@@ -14,6 +14,7 @@ if (($# != 3)); then
   exit 2
 fi
 binary=$(realpath -- "$1")
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 golden=$(realpath -- "$2")
 group=$3
 unset FUSEBENCH_DATA
@@ -168,6 +169,12 @@ check_bad_usage() {
   refused "frames beyond the end" 2 '3:9' -- "${run[@]}" --frames 3:9
   refused "unknown camera" 2 'freiburg9' -- "${run[@]}" --camera freiburg9
   refused "unknown option" 2 'frobnicate' -- "${run[@]}" --frobnicate
+  refused "misspelt option" 2 'no option --varient \(nearest: --variant\)' 'hint:fusebench run --help' -- run freiburg1_copy --varient full
+  refused "misspelt option before the verb" 2 'fusebench. has no option --versoin \(nearest: --version\)' -- --versoin run
+  refused "a long option with one dash" 2 'no option -variant \(nearest: --variant\)' -- run freiburg1_copy -variant full
+  refused "too many arguments" 2 'fusebench run.*does not take|at most' -- run freiburg1_copy other another
+  refused "no value" 2 '--variant is given without its value' -- run freiburg1_copy --variant
+  refused "unknown verb of eval" 2 "unknown verb 'atee' of .fusebench eval. \(nearest: ate\)" -- eval atee gt.txt est.txt
   refused "no threads" 2 'threads' -- run freiburg1_copy --variant no-imu --out out --threads 0
 
   refused "speed without a path" 2 'speed' 'trajectory' -- simulate --out out --speed 2
@@ -518,8 +525,8 @@ check_evaluation() {
     eval nees gt.txt "$(sed -i '3s/1e-3$/-1e-3/' openvins.txt && echo openvins.txt)"
 
   refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
-  refused "one file" 2 'GT EST|files' -- eval ate gt.txt
-  refused "no metric" 2 -- eval
+  refused "one file" 2 'GT and EST, and 1 is given' -- eval ate gt.txt
+  refused "no metric" 2 'fusebench eval. is given without a verb' -- eval
   refused "unknown protocol" 2 "unknown protocol 'tums'" 'hint:evo, tum' -- eval ate gt.txt est.txt --protocol tums
   refused "unknown relation" 2 'angle' -- eval ate gt.txt est.txt -r angle
   refused "unknown unit" 2 "delta unit 'x'" -- eval rpe gt.txt est.txt -u x
@@ -543,6 +550,117 @@ check_evaluation() {
     eval ate "$(sed '1p' gt.txt >twice.txt && echo twice.txt)" est.txt
   refused "two trajectories" 3 'two.txt:61: time jumps back' 'hint:split' -- \
     eval ate "$(cat gt.txt est.txt >two.txt && echo two.txt)" est.txt
+}
+
+# archived NAME FILE ERRORS KIND ARGUMENT...: the program succeeds, and writes FILE as evo would read it.
+archived() {
+  local name=$1 file=$2 errors=$3 kind=$4
+  shift 4
+  checks=$((checks + 1))
+  "$binary" "$@" --save_results "$file" --silent >stdout 2>stderr || complain "$name: exit code $?"
+  if [[ -s stdout || -s stderr ]]; then complain "$name: --silent says something"; fi
+  "$here/evo_archive.py" check "$file" "$errors" "$kind" 2>stderr || complain "$name: not as evo reads it"
+}
+
+# What users of evo type.
+check_evo() {
+  curve 0 1 >gt.txt
+  curve 0.004 1.1 >est.txt
+  tumble >tumble.txt
+  awk '{ a = 0.05 * (NR - 1); printf "%.9f %.9f 0 %s %.9f %.9f 0 %s 0 0 1 %s\n", cos(a), -sin(a), $2, sin(a), cos(a), $3, $4 }' \
+    gt.txt >kitti.txt
+
+  prints 'alignment +se3' "evo_ape" eval ape tum gt.txt est.txt -va --no_warnings
+  prints 'alignment +se3' "a flag before files" eval ape --align gt.txt est.txt
+  prints 'alignment +sim3' "--align as ours" eval ape tum gt.txt est.txt --align sim3
+  prints 'alignment +sim3' "--align --correct_scale" eval ape tum gt.txt est.txt --align --correct_scale
+  prints 'all, delta 0.3 m' "evo_rpe" eval rpe tum gt.txt est.txt -r angle_deg --delta 0.3 --delta_unit m --all_pairs --debug
+  mkdir tum
+  prints 'rmse' "a folder named as the format" eval ape tum gt.txt est.txt
+
+  # Results, for evo and for ourselves.
+  archived "APE" runs/ape.zip 60 tum eval ape tum gt.txt est.txt
+  archived "APE with an alignment" sim3.zip 60 tum eval ape tum "$PWD/gt.txt" ./est.txt -as
+  archived "RPE" rpe.zip 59 tum eval rpe tum gt.txt est.txt
+  archived "RPE over a path" metres.zip "$("$binary" eval rpe gt.txt est.txt -d 0.3 -u m | awk '/^errors/ { print $2 }')" tum \
+    eval rpe gt.txt est.txt -d 0.3 -u m
+  archived "poses without stamps" kitti.zip 60 kitti eval ape kitti kitti.txt kitti.txt
+  cp runs/ape.zip again.zip
+  archived "the same again" again.zip 60 tum eval ape tum gt.txt est.txt
+  cmp again.zip runs/ape.zip >stderr || complain "two archives of one evaluation differ"
+  "$here/evo_archive.py" write evos.zip some/other.txt 1
+  prints 'est.txt +[0-9.e-]+.*60$' "evo_res" eval res runs/ape.zip evos.zip
+  prints 'other.txt +0.3 +0.2 +0.2 +0.1 +0.216 +0.14 +0.0816 +3$' "a result of evo's" eval res runs/ape.zip evos.zip --save_table table.csv
+  [[ $(head -1 table.csv) == ,max,mean,median,min,rmse,sse,std ]] || complain "evo_res --save_table: $(head -1 table.csv)"
+  prints '^evos.zip ' "--use_filenames" eval res runs/ape.zip evos.zip --use_filenames
+  prints '"label": "other.txt"' "results as JSON" eval res evos.zip --json
+  prints '^est.txt ' "--ignore_title --merge" eval res runs/ape.zip rpe.zip --ignore_title --merge
+  refused "other metrics" 2 'rpe.zip is .RPE w.r.t' 'hint:--ignore_title' -- eval res runs/ape.zip rpe.zip
+  refused "twice the same" 2 "estimate 'est.txt'" 'hint:--use_filenames' -- eval res runs/ape.zip again.zip
+  refused "no archive" 3 'gt.txt: is no ZIP archive' -- eval res gt.txt
+  refused "an archive that was cut off" 3 'cut.zip: is no ZIP archive, or was cut off' -- \
+    eval res "$(head -c 300 evos.zip >cut.zip && echo cut.zip)"
+
+  # Trajectories.
+  prints $'\tt_end \\(s\\)\t1305031105.9' "evo_traj -v" eval traj tum gt.txt -v
+  prints $'^infos:\t60 poses, 3.[0-9]+m path length, 5.900s duration$' "evo_traj" eval traj tum gt.txt est.txt --no_warnings
+  prints $'\tv_avg \\(m/s\\)\t0.5' "--full_check" eval traj tum gt.txt --full_check
+  prints $'\ttimestamps\twrong, pose 7' "a repeated stamp" eval traj tum <(sed 7p gt.txt) -f
+  checks=$((checks + 1))
+  "$binary" eval traj tum est.txt --ref=gt.txt -as --save_as_tum --save_as_kitti --save_table list.csv >stdout 2>stderr ||
+    complain "evo_traj --save_as_tum: exit code $?"
+  prints 'rmse +[0-9.]+e-1[0-9]' "what evo_traj aligned" eval ape tum gt.txt est.tum
+  [[ $(awk '{ print NF }' est.kitti | sort -u) == 12 ]] || complain "--save_as_kitti: not 12 columns"
+  [[ $(head -1 list.csv) == ,est,gt ]] || complain "evo_traj --save_table: $(head -1 list.csv)"
+  refused "no reference" 2 'needs a reference' 'hint:--ref' -- eval traj tum est.txt -a
+  refused "its own source" 2 'est.tum would be replaced' -- eval traj tum est.tum --save_as_tum
+  refused "two of one name" 2 'into gt.tum' -- eval traj tum gt.txt tum/../gt.txt --save_as_tum
+  refused "no trajectory" 2 'no trajectory' -- eval traj tum
+
+  # Stamps in other units.
+  local unit power
+  for unit in milliseconds:3 microseconds:6 nanoseconds:9; do
+    power=${unit#*:}
+    awk -v power="$power" '{ $1 = sprintf("%.0f", $1 * 10 ^ power); print }' est.txt >units.txt
+    checks=$((checks + 1))
+    "$binary" eval ape tum gt.txt units.txt >stdout 2>stderr || complain "stamps in ${unit%:*}: exit code $?"
+    [[ $(<stderr) == "warning: units.txt:1: stamps are read as ${unit%:*}, by their size" ]] || complain "stamps in ${unit%:*}: not told"
+    grep -q '60 of 60 possible' stdout || complain "stamps in ${unit%:*}: not all associated"
+  done
+  awk '{ $1 = sprintf("%.0f", ($1 - 1305031100) * 1000); print }' gt.txt >relative.txt
+  prints '5.900s duration' "a unit that is told" eval traj relative.txt --stamp_unit ms
+  refused "an unknown unit" 2 "unit of stamps 'min'" -- eval ape gt.txt est.txt --stamp_unit min
+
+  # What is not understood.
+  refused "a bag" 2 'bags are not read' 'hint:--save_as_tum' -- eval ape bag run.bag /gt /est
+  refused "a bag of ROS 2" 2 'bags are not read' 'hint:evo_traj bag2' -- eval traj bag2 run.db3 --all_topics
+  refused "an unknown format" 2 "trajectory format 'tumm'" -- eval ape tumm gt.txt est.txt
+  refused "five files" 2 'two files are compared, GT and EST, and 5 are given' -- eval ape a b c d e
+  refused "a picture that is none" 2 'plot.png: plots are drawn as .svg or .pdf' 'hint:PNG' -- eval ape gt.txt est.txt --plot plot.png
+  refused "no counterpart" 2 "evo's --rerun has no counterpart" 'hint:--save_plot' -- eval ape tum gt.txt est.txt --rerun
+  refused "a misspelt option" 2 'eval ate. has no option --alignn \(nearest: --align\)' -- eval ape gt.txt est.txt --alignn
+  refused "an unknown view" 2 'plot_mode' -- eval ape gt.txt est.txt --plot_mode xx
+  refused "no place for a log" 4 'logfile absent/log' -- eval traj gt.txt --silent --logfile absent/log
+
+  checks=$((checks + 1))
+  "$binary" eval ape gt.txt est.txt --silent --logfile log.txt || complain "--logfile: exit code $?"
+  "$binary" eval traj gt.txt --silent --logfile log.txt || complain "--logfile again: exit code $?"
+  [[ $(grep -cE '^(rmse|infos:)' log.txt) == 2 ]] || complain "--logfile does not hold what was said"
+
+  if ! command -v gnuplot >/dev/null; then return; fi
+  local verb
+  checks=$((checks + 1))
+  "$binary" eval ape tum gt.txt est.txt -vap >/dev/null 2>stderr || complain "-vap: $?"
+  "$binary" eval rpe tum gt.txt est.txt -p plots/rpe.pdf --plot_mode xz --plot_x_dimension index >/dev/null 2>stderr || complain "-p FILE: $?"
+  "$binary" eval ape kitti kitti.txt kitti.txt --plot --save_plot kitti.svg --plot_mode=xy >/dev/null 2>stderr || complain "--save_plot: $?"
+  "$binary" eval traj tum gt.txt est.txt --ref gt.txt -a --plot >/dev/null 2>stderr || complain "evo_traj --plot: $?"
+  "$binary" eval res runs/ape.zip evos.zip --save_plot res.svg >/dev/null 2>stderr || complain "evo_res --save_plot: $?"
+  [[ $(head -c 4 plots/rpe.pdf) == %PDF ]] || complain "-p FILE.pdf draws no PDF"
+  for verb in ape traj res kitti; do
+    grep -q '</svg>' $verb.svg || complain "$verb.svg is not drawn"
+    ! grep -qi 'nan"\|>nan<' $verb.svg || complain "$verb.svg shows what is no number"
+  done
+  grep -q 'APE w.r.t. translation part (m) (with SE(3) Umeyama alignment)' ape.svg || complain "ape.svg has no title"
 }
 
 # corner_obj FACTOR SHIFT: floor and two walls of a room of 4 x 3 x 2.5 m, times FACTOR, moved by SHIFT along z.
@@ -685,6 +803,7 @@ case "$group" in
   bad-data) check_bad_data ;;
   bad-usage) check_bad_usage ;;
   evaluation) check_evaluation ;;
+  evo) check_evo ;;
   meshes) check_meshes ;;
   imports) check_imports ;;
   exports) check_exports ;;

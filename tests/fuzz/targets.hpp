@@ -21,6 +21,7 @@ void infinitam(std::string_view bytes);
 void icl(std::string_view bytes);
 void klg(std::string_view bytes);
 void sens(std::string_view bytes);
+void zip_archive(std::string_view bytes);
 
 struct Target {
   std::string_view name;  ///< also its folder below tests/fuzz/corpus
@@ -41,6 +42,7 @@ inline constexpr std::array kTargets = {
     Target{"icl", icl},
     Target{"klg", klg},
     Target{"sens", sens},
+    Target{"zip_archive", zip_archive},
 };
 
 }  // namespace fusebench::fuzz

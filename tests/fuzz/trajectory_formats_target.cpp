@@ -16,7 +16,7 @@ namespace {
 
 void check_read(const MemoryFile& file, std::optional<TrajectoryFormat> format, Duplicates duplicates) {
   std::vector<std::string> warnings;
-  const auto loaded = load_trajectory(file.path(), format, duplicates, warnings);
+  const auto loaded = load_trajectory(file.path(), {format, {}, duplicates}, warnings);
   if (!loaded) {
     check_error(loaded.error(), file.path());
     return;

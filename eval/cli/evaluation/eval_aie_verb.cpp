@@ -44,7 +44,7 @@ Result<std::vector<pose_intensity::NamedTrajectory>> load_all(const AieOptions& 
   }
   for (const std::filesystem::path& file : options.estimates) {
     std::vector<std::string> warnings;
-    auto loaded = trajectory_files::load_trajectory(file, {}, trajectory::Duplicates::rare_last, warnings);
+    auto loaded = trajectory_files::load_trajectory(file, {}, warnings);
     if (!loaded) return tl::unexpected(loaded.error());
     for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
     if (!loaded->has_stamps())

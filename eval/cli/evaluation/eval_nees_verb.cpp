@@ -13,7 +13,7 @@
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
-#include "eval/cli/evaluation/loaded_sides.hpp"
+#include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/metric_reports/nees_report.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/text/text_file.hpp"
@@ -70,7 +70,7 @@ Result<void> write_files(const NeesOptions& options, const trajectory_error::Pos
 }
 
 Result<int> run(const NeesOptions& options) {
-  const auto sides = load_sides(options.reference, options.estimate);
+  const auto sides = trajectories::load_sides(options.reference, options.estimate);
   if (!sides) return tl::unexpected(sides.error());
   if (!sides->reference.has_stamps())
     return fail(ErrorCode::usage, "the reference has no stamps (kitti)", "use a TUM or EuRoC file");

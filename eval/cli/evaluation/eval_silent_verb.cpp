@@ -13,7 +13,7 @@
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/evaluation/eval_verbs.hpp"
-#include "eval/cli/evaluation/loaded_sides.hpp"
+#include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/trajectory_error/silent_failures.hpp"
 
@@ -59,7 +59,7 @@ std::string to_json(const trajectory_error::SilentFailures& found) {
 }
 
 Result<int> run(const SilentOptions& options) {
-  const auto sides = load_sides(options.reference, options.estimate);
+  const auto sides = trajectories::load_sides(options.reference, options.estimate);
   if (!sides) return tl::unexpected(sides.error());
   if (!sides->have_stamps())
     return fail(ErrorCode::usage, "silent failures need stamps, which the format kitti does not have",

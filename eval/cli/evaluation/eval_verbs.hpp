@@ -7,8 +7,6 @@ namespace fusebench::cli::evaluation {
 
 [[nodiscard]] console::Verb add_eval_verb(CLI::App& app);
 
-[[nodiscard]] console::Verb add_eval_ate_verb(CLI::App& eval);
-[[nodiscard]] console::Verb add_eval_rpe_verb(CLI::App& eval);
 [[nodiscard]] console::Verb add_eval_nees_verb(CLI::App& eval);
 [[nodiscard]] console::Verb add_eval_silent_verb(CLI::App& eval);
 [[nodiscard]] console::Verb add_eval_mesh_verb(CLI::App& eval);

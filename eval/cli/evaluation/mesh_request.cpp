@@ -9,6 +9,7 @@
 
 #include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/mesh_error/transform_file.hpp"
 #include "eval/suites/suite_file.hpp"
 #include "eval/trajectory_error/pose_alignment.hpp"
@@ -34,7 +35,7 @@ Result<mesh_error::MeshSampling> sampling_of(const MeshVerbOptions& options) {
 
 /// What moves the reconstruction so that its cameras come to the true ones.
 Result<SE3> alignment_of_trajectories(const std::vector<std::filesystem::path>& files) {
-  const auto sides = load_sides(files[0], files[1]);
+  const auto sides = trajectories::load_sides(files[0], files[1]);
   if (!sides) return tl::unexpected(sides.error());
   constexpr double kMaxGap_s = 0.1;
   const auto pair =

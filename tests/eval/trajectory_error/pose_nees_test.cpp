@@ -121,7 +121,7 @@ TEST(PoseConsistency, ReadsTheFormatOfOvEval) {
   std::ofstream(file) << "# timestamp(s) ...\n1.5 0 0 0 0 0 0 1 11 12 13 22 23 33 1.1 1.2 1.3 2.2 2.3 3.3\n"
                       << pose << "1 0 0 1 0 1 1 0 0 1 0 1\n";
   std::vector<std::string> warnings;
-  const auto loaded = load_trajectory(file, {}, Duplicates::rare_last, warnings);
+  const auto loaded = load_trajectory(file, {}, warnings);
   ASSERT_TRUE(loaded) << loaded.error().message;
   EXPECT_EQ(loaded->format, TrajectoryFormat::openvins);
   ASSERT_EQ(loaded->covariances.size(), 2U);
@@ -130,7 +130,7 @@ TEST(PoseConsistency, ReadsTheFormatOfOvEval) {
   EXPECT_TRUE(loaded->covariances[0].orientation_rad2.isApprox(expected, 0));
   EXPECT_TRUE(loaded->covariances[0].position_m2.isApprox(0.1 * expected, 1e-15));
   std::ofstream(file) << pose << "1 0 0 -1 0 1 1 0 0 1 0 1\n";
-  const auto negative = load_trajectory(file, {}, Duplicates::rare_last, warnings);
+  const auto negative = load_trajectory(file, {}, warnings);
   ASSERT_FALSE(negative);
   EXPECT_NE(negative.error().message.find(":1: a variance is below zero"), std::string::npos);
 }

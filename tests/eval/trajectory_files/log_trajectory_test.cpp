@@ -26,7 +26,7 @@ class LogTrajectory : public testing::InTemporaryFolder {
 TEST_F(LogTrajectory, ReadsPosesByTheNumberOfTheirFrame) {
   std::vector<std::string> warnings;
   const auto file = write("t.log", "0 0 1\n" + kPose + "4 4 5\n" + kPose);
-  const auto loaded = load_trajectory(file, {}, trajectory::Duplicates::error, warnings);
+  const auto loaded = load_trajectory(file, {{}, {}, trajectory::Duplicates::error}, warnings);
   ASSERT_TRUE(loaded.has_value()) << loaded.error().message;
   EXPECT_EQ(loaded->format, TrajectoryFormat::log) << "recognised by its first row";
   EXPECT_TRUE(loaded->has_numbers());

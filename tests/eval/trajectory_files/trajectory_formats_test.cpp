@@ -18,11 +18,12 @@ namespace {
 class TrajectoryFormats : public ::testing::Test {
  protected:
   Result<LoadedTrajectory> load(std::string_view text, Duplicates duplicates = Duplicates::none,
-                                std::optional<TrajectoryFormat> format = {}) {
+                                std::optional<TrajectoryFormat> format = {},
+                                std::optional<io::TimeUnit> unit = {}) {
     const auto file = folder_.path() / "trajectory.txt";
     std::ofstream(file, std::ios::binary) << text;
     warnings_.clear();
-    return load_trajectory(file, format, duplicates, warnings_);
+    return load_trajectory(file, {format, unit, duplicates}, warnings_);
   }
 
   void expect_refused(std::string_view text, std::string_view part) {
@@ -67,6 +68,49 @@ TEST_F(TrajectoryFormats, ColumnsTellTheFormat) {
 
   expect_refused("1 2 3 4\n", ":1: 4 columns are no trajectory");
   expect_refused("# nothing\n", "has no rows");
+}
+
+TEST_F(TrajectoryFormats, UnitsOfStampsAreFoundByTheirSizeOrTold) {
+  const auto stamp_of = [&](std::string_view stamp, std::optional<io::TimeUnit> unit = {}) {
+    const auto loaded =
+        load(std::string(stamp) + " 1 2 3 0 0 0 1\n", Duplicates::none, TrajectoryFormat::tum, unit);
+    EXPECT_TRUE(loaded.has_value()) << loaded.error().message;
+    return loaded ? loaded->poses[0].timestamp_ns : 0;
+  };
+  constexpr std::int64_t kStamp_ns = 1305031102175304000;
+  EXPECT_EQ(stamp_of("1305031102.175304"), kStamp_ns);
+  EXPECT_TRUE(warnings_.empty());
+  for (const auto& [stamp, name] :
+       {std::pair{"1305031102175.304", ":1: stamps are read as milliseconds, by their size"},
+        {"1305031102175304", "microseconds"},
+        {"1305031102175304000", "nanoseconds"},
+        {"1.305031102175304000e+18", "nanoseconds"}}) {
+    EXPECT_EQ(stamp_of(stamp), kStamp_ns) << stamp;
+    ASSERT_EQ(warnings_.size(), 1U) << stamp;
+    EXPECT_NE(warnings_[0].find(name), std::string::npos) << warnings_[0];
+  }
+  EXPECT_EQ(stamp_of("5000000", io::TimeUnit::nanoseconds), 5'000'000) << "told";
+  EXPECT_EQ(stamp_of("5", io::TimeUnit::milliseconds), 5'000'000);
+  EXPECT_TRUE(warnings_.empty()) << "nothing was guessed";
+
+  const auto blanks = load("1403636579763555584 1 2 3 0.5 0.5 0.5 -0.5\n");
+  ASSERT_TRUE(blanks.has_value()) << blanks.error().message;
+  EXPECT_EQ(blanks->format, TrajectoryFormat::tum) << "EuRoC's files have commas";
+  EXPECT_EQ(blanks->poses[0].timestamp_ns, 1403636579763555584);
+  EXPECT_FALSE(parse_stamp_unit("min").has_value());
+}
+
+TEST_F(TrajectoryFormats, KittiTextReadsBack) {
+  const auto kitti = load(kQuarterTurnKitti);
+  ASSERT_TRUE(kitti.has_value());
+  EXPECT_EQ(kitti_text(kitti->poses).substr(0, 24), "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const auto again = load(kitti_text(kitti->poses));
+  ASSERT_TRUE(again.has_value()) << again.error().message;
+  EXPECT_EQ(again->format, TrajectoryFormat::kitti);
+  EXPECT_TRUE(again->poses[1].T_world_camera.translation == kitti->poses[1].T_world_camera.translation);
+  EXPECT_LT(
+      rotation_angle_rad(again->poses[1].T_world_camera.rotation, kitti->poses[1].T_world_camera.rotation),
+      1e-12);
 }
 
 TEST_F(TrajectoryFormats, MatricesBecomeRotationsOrAreRefused) {

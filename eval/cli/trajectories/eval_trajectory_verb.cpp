@@ -10,37 +10,45 @@
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
-#include "eval/cli/evaluation/eval_verbs.hpp"
-#include "eval/cli/evaluation/trajectory_request.hpp"
+#include "eval/cli/trajectories/trajectory_request.hpp"
+#include "eval/cli/trajectories/trajectory_verbs.hpp"
+#include "eval/evo_results/result_archive.hpp"
 #include "eval/metric_reports/trajectory_report.hpp"
 #include "eval/text/text_file.hpp"
 
-namespace fusebench::cli::evaluation {
+namespace fusebench::cli::trajectories {
 
 namespace {
 
 template <typename T, std::size_t N>
 CLI::IsMember members(const std::array<std::pair<const char*, T>, N>& names) {
-  std::vector<std::string> list;
-  for (const auto& [name, value] : names) list.emplace_back(name);
-  return CLI::IsMember(list);
+  return CLI::IsMember(names_of(names));
 }
 
-Result<Sides> load(const TrajectoryOptions& options, trajectory_error::Protocol protocol) {
-  std::optional<trajectory_files::TrajectoryFormat> format;
+Result<Sides> load(const TrajectoryOptions& options, trajectory_error::Protocol protocol,
+                   Transcript& transcript) {
+  trajectory_files::TrajectoryReading reading;
   if (!options.format.empty()) {
     const auto parsed = trajectory_files::parse_trajectory_format(options.format);
     if (!parsed) return tl::unexpected(parsed.error());
-    format = *parsed;
+    reading.format = *parsed;
+  }
+  if (!options.stamp_unit.empty()) {
+    const auto parsed = trajectory_files::parse_stamp_unit(options.stamp_unit);
+    if (!parsed) return tl::unexpected(parsed.error());
+    reading.stamp_unit = *parsed;
   }
   const trajectory::Duplicates usual = protocol == trajectory_error::Protocol::evo
                                            ? trajectory::Duplicates::rare_kept
                                            : trajectory::Duplicates::rare_last;
-  const trajectory::Duplicates duplicates =
-      options.duplicates.empty() ? usual : named(kDuplicates, options.duplicates);
+  reading.duplicates = options.duplicates.empty() ? usual : named(kDuplicates, options.duplicates);
+  SideReadings readings{reading, reading};
   // evo's euroc: the reference is a data.csv, the estimate may be TUM text.
-  const auto estimate_format = format == trajectory_files::TrajectoryFormat::euroc ? std::nullopt : format;
-  return load_sides(options.files[0], options.files[1], {format, estimate_format, duplicates});
+  if (reading.format == trajectory_files::TrajectoryFormat::euroc) readings.estimate.format.reset();
+  std::vector<std::string> warnings;
+  auto sides = load_sides(options.files[0], options.files[1], readings, warnings);
+  transcript.warn(warnings);
+  return sides;
 }
 
 std::string errors_text(const trajectory_error::ErrorSeries& series) {
@@ -51,66 +59,97 @@ std::string errors_text(const trajectory_error::ErrorSeries& series) {
   return text;
 }
 
-void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation) {
+void warn_of_few(const trajectory_error::TrajectoryEvaluation& evaluation, Transcript& transcript) {
   constexpr double kFew = 0.5;
   if (evaluation.coverage >= kFew) return;
-  console::print_progress(
-      fmt::format("warning: only {} of {} possible pairs were compared ({:.1f} %): the numbers say little "
-                  "about the rest",
-                  evaluation.pairs, evaluation.possible, 100 * evaluation.coverage));
+  transcript.warn(
+      {fmt::format("only {} of {} possible pairs were compared ({:.1f} %): the numbers say little "
+                   "about the rest",
+                   evaluation.pairs, evaluation.possible, 100 * evaluation.coverage)});
+}
+
+Result<void> change_units(trajectory_error::TrajectoryEvaluation& evaluation, const std::string& wanted) {
+  if (wanted.empty()) return {};
+  const std::string unit = evaluation.series.front().unit;
+  for (trajectory_error::ErrorSeries& series : evaluation.series) {
+    if (series.unit != unit) continue;
+    if (auto converted = trajectory_error::change_unit(series, wanted); !converted) return converted;
+  }
+  return {};
+}
+
+Result<void> write_files(const TrajectoryOptions& options, const Sides& sides,
+                         const trajectory_error::TrajectoryEvaluation& evaluation,
+                         const std::vector<metric_reports::PlotFile>& plots, Transcript& transcript) {
+  const trajectory_error::ErrorSeries& series = evaluation.series.front();
+  if (!options.errors.empty()) {
+    if (auto written = text::write_text_file(options.errors, errors_text(series)); !written) return written;
+  }
+  if (options.save_results.empty() && plots.empty()) return {};
+  const evo_results::EvoResult result =
+      evo_results::result_of(evaluation, {options.files[0], options.files[1], sides.have_stamps()});
+  if (!options.save_results.empty()) {
+    const auto archive = evo_results::archive_of(result);
+    if (!archive) return tl::unexpected(archive.error());
+    if (auto written = text::write_text_file(options.save_results, *archive); !written) return written;
+  }
+  const ErrorPlotOptions& drawn = options.error_plot;
+  const metric_reports::ErrorPlot plot{
+      result,
+      drawn.full_reference ? sides.reference.poses : evaluation.compared.reference,
+      evaluation.compared.estimate,
+      series.at,
+      metric_reports::plot_mode(drawn.mode),
+      named(kAbscissae, drawn.abscissa),
+      drawn.colour_min,
+      drawn.colour_max,
+      drawn.colour_max_percentile};
+  return draw_all(plots, transcript, [&](const metric_reports::PlotFile& file) {
+    return metric_reports::plot_script(plot, file);
+  });
 }
 
 Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric metric) {
-  if (auto taken = take_leading_format(options); !taken) return tl::unexpected(taken.error());
+  if (auto taken = take_two_files(options); !taken) return tl::unexpected(taken.error());
   auto request = request_of(options, metric);
   if (!request) return tl::unexpected(request.error());
-  const auto sides = load(options, request->protocol);
+  const auto plots = plot_files(options.plot);
+  if (!plots) return tl::unexpected(plots.error());
+  Transcript transcript(options.transcript);
+  const auto sides = load(options, request->protocol, transcript);
   if (!sides) return tl::unexpected(sides.error());
   if (auto suited = suit_stamps(*sides, *request); !suited) return tl::unexpected(suited.error());
   auto evaluation = trajectory_error::evaluate(sides->reference.poses, sides->estimate.poses, *request);
   if (!evaluation) return tl::unexpected(evaluation.error());
-  if (!options.change_unit.empty()) {
-    const std::string unit = evaluation->series.front().unit;
-    for (trajectory_error::ErrorSeries& series : evaluation->series) {
-      if (series.unit != unit) continue;
-      if (auto converted = trajectory_error::change_unit(series, options.change_unit); !converted)
-        return tl::unexpected(converted.error());
-    }
-  }
-  warn_of_few(*evaluation);
-  if (!options.errors.empty()) {
-    if (auto written = text::write_text_file(options.errors, errors_text(evaluation->series.front()));
-        !written)
-      return tl::unexpected(written.error());
-  }
+  if (auto changed = change_units(*evaluation, options.change_unit); !changed)
+    return tl::unexpected(changed.error());
+  warn_of_few(*evaluation, transcript);
+  if (auto written = write_files(options, *sides, *evaluation, *plots, transcript); !written)
+    return tl::unexpected(written.error());
   const metric_reports::ComparedFiles files = {options.files[0], sides->reference.format, options.files[1],
                                                sides->estimate.format};
-  console::print_output(options.json ? metric_reports::to_json(*evaluation, files)
-                                     : metric_reports::to_text(*evaluation, files));
+  transcript.result(options.json ? metric_reports::to_json(*evaluation, files)
+                                 : metric_reports::to_text(*evaluation, files));
+  if (auto logged = transcript.finish(); !logged) return tl::unexpected(logged.error());
   return 0;
 }
 
 void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("GT EST", options.files,
-                  "Reference and estimate; a format before them, as with evo, is understood")
-      ->expected(2, 3)
-      ->required();
+                  "Reference and estimate; a format may stand before them, as with evo: tum ref.txt est.txt")
+      ->type_name("");
   verb.add_option("--format", options.format,
                   "Format of both files: tum, kitti, euroc, log or openvins; recognised if not given")
       ->type_name("NAME");
+  verb.add_option(
+          "--stamp_unit", options.stamp_unit,
+          "What stamps of tum and openvins count: s, ms, us or ns; recognised by their size if since 1970")
+      ->type_name("UNIT");
   verb.add_option("--protocol", options.protocol,
                   "evo, tum, rpg, eth3d or kitti: sets the defaults of the options below")
       ->type_name("NAME")
       ->capture_default_str();
-  verb.add_option("--align", options.align,
-                  "Alignment of the estimate: none, se3, sim3, scale, yaw (and position) or origin")
-      ->type_name("MODE")
-      ->check(members(kAlignments));
-  verb.add_flag("-a", options.evo_align, "As --align se3");
-  verb.add_flag("-s", options.evo_scale, "As --align scale; -as as --align sim3");
-  verb.add_flag("--align_origin", options.evo_origin, "As --align origin");
-  verb.add_option("--n_to_align", options.n_to_align, "Computes the alignment from the first N pairs only")
-      ->type_name("N");
+  add_alignment_options(verb, options.alignment);
   verb.add_option("--t_max_diff", options.t_max_diff,
                   "Largest difference of stamps (evo 0.01, tum and rpg 0.02), or gap to interpolate")
       ->check(CLI::NonNegativeNumber)
@@ -169,6 +208,25 @@ void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
                 "Selects pairs by the motion of the reference instead of the estimate");
 }
 
+void add_error_plot_options(CLI::App& verb, ErrorPlotOptions& options) {
+  add_plot_mode_option(verb, options.mode);
+  verb.add_option("--plot_x_dimension", options.abscissa,
+                  "Of the plot of errors: seconds, index or distances")
+      ->type_name("NAME")
+      ->check(members(kAbscissae))
+      ->capture_default_str();
+  verb.add_option("--plot_colormap_min", options.colour_min, "Error of the first colour; default: the least")
+      ->type_name("E");
+  verb.add_option("--plot_colormap_max", options.colour_max, "Error of the last colour; default: the largest")
+      ->type_name("E");
+  verb.add_option("--plot_colormap_max_percentile", options.colour_max_percentile,
+                  "Percentile of the errors for the last colour, in place of --plot_colormap_max")
+      ->check(CLI::Range(0.0, 100.0))
+      ->type_name("P");
+  verb.add_flag("--plot_full_ref", options.full_reference,
+                "Draws all of the reference, not only what was compared");
+}
+
 console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, const char* description) {
   auto options = std::make_shared<TrajectoryOptions>();
   CLI::App* verb = eval.add_subcommand(std::string(trajectory_error::to_string(metric)), description);
@@ -178,11 +236,18 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
     add_motion_options(*verb, *options);
   else
     add_offset_option(*verb, *options);
-  verb->add_flag("-v", options->verbose,
-                 "Accepted for compatibility with evo; the output is always complete");
+  options->plot.usual_file = metric == trajectory_error::TrajectoryMetric::ate ? "ape.svg" : "rpe.svg";
+  add_plot_options(*verb, options->plot);
+  add_error_plot_options(*verb, options->error_plot);
+  verb->add_option("--save_results", options->save_results,
+                   "Writes errors, statistics and poses as evo does, for `fusebench eval res` and evo_res")
+      ->type_name("FILE.zip");
   verb->add_option("--errors", options->errors, "Writes each error with its stamp")->type_name("FILE.csv");
+  add_transcript_options(*verb, options->transcript, kAlwaysComplete);
   console::add_json_flag(*verb, options->json);
-  verb->footer("docs/metrics.md defines the protocols. Exit code 3 for files that cannot be compared.");
+  verb->footer(
+      "docs/metrics.md defines the protocols, docs/evo.md lists evo's flags. Exit code 3 for files that "
+      "cannot be compared.");
   return {verb, [options, metric] { return run(*options, metric); }};
 }
 
@@ -190,7 +255,7 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
 
 console::Verb add_eval_ate_verb(CLI::App& eval) {
   return add(eval, trajectory_error::TrajectoryMetric::ate,
-             "Computes the absolute trajectory error (evo_ape, evaluate_ate.py)");
+             "Computes the absolute trajectory error (evo_ape, evaluate_ate.py); `eval ape` is the same");
 }
 
 console::Verb add_eval_rpe_verb(CLI::App& eval) {
@@ -199,4 +264,4 @@ console::Verb add_eval_rpe_verb(CLI::App& eval) {
       "Computes the relative pose error (evo_rpe, evaluate_rpe.py), or that of segments (rpg, eth3d, kitti)");
 }
 
-}  // namespace fusebench::cli::evaluation
+}  // namespace fusebench::cli::trajectories

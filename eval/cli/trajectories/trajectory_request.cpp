@@ -1,32 +1,13 @@
-#include "eval/cli/evaluation/trajectory_request.hpp"
+#include "eval/cli/trajectories/trajectory_request.hpp"
 
 #include <fmt/format.h>
 
+#include "eval/cli/trajectories/evo_spelling.hpp"
 #include "eval/trajectory_files/stamped_list.hpp"
 
-namespace fusebench::cli::evaluation {
+namespace fusebench::cli::trajectories {
 
 namespace {
-
-Result<void> set_alignment(const TrajectoryOptions& options, trajectory_error::TrajectoryRequest& request) {
-  const bool evo = options.evo_align || options.evo_scale || options.evo_origin;
-  if (!options.align.empty() && evo)
-    return fail(ErrorCode::usage, "--align and evo's -a, -s or --align_origin exclude each other");
-  if (options.evo_align && options.evo_origin)
-    return fail(ErrorCode::usage, "-a and --align_origin exclude each other");
-  if (!options.align.empty()) request.alignment.mode = named(kAlignments, options.align);
-  if (options.evo_align)
-    request.alignment.mode =
-        options.evo_scale ? trajectory_error::AlignmentMode::sim3 : trajectory_error::AlignmentMode::se3;
-  if (options.evo_scale && !options.evo_align)
-    request.alignment.mode = trajectory_error::AlignmentMode::scale;
-  if (options.evo_origin) {
-    request.alignment.mode = trajectory_error::AlignmentMode::origin;
-    request.alignment.scale_origin = options.evo_scale;
-  }
-  request.alignment.first = options.n_to_align;
-  return {};
-}
 
 Result<void> set_association(const TrajectoryOptions& options, trajectory_error::TrajectoryRequest& request) {
   trajectory_files::AssociationOptions& association = request.association;
@@ -75,15 +56,17 @@ Result<void> set_motions(const TrajectoryOptions& options, trajectory_error::Tra
 
 }  // namespace
 
-/// "fusebench eval ate tum GT EST" is how evo is called.
-Result<void> take_leading_format(TrajectoryOptions& options) {
-  if (options.files.size() == 3) {
-    if (!options.format.empty())
-      return fail(ErrorCode::usage, "the format is given twice, before the files and with --format");
-    options.format = options.files.front();
-    options.files.erase(options.files.begin());
-  }
-  return {};
+Result<void> take_two_files(TrajectoryOptions& options) {
+  if (auto taken = take_leading_format(options.files, options.format); !taken) return taken;
+  const std::size_t count = options.files.size();
+  if (count == 2) return {};
+  std::error_code ignored;
+  if (count == 3 && !std::filesystem::is_regular_file(options.files.front(), ignored))
+    return trajectory_files::parse_trajectory_format(options.files.front()).map([](auto) {});
+  return fail(
+      ErrorCode::usage,
+      fmt::format("two files are compared, GT and EST, and {} {} given", count, count == 1 ? "is" : "are"),
+      "a format may stand before them: tum, kitti, euroc, log or openvins");
 }
 
 Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& options,
@@ -98,13 +81,17 @@ Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& 
   request->plane = named(kPlanes, options.plane);
   request->downsample = options.downsample;
   request->fit_offset = options.fit_offset;
-  request->listing.needed = !options.errors.empty();
+  request->keep_poses = !options.save_results.empty() || options.plot.asked();
+  request->listing.needed = request->keep_poses || !options.errors.empty();
   constexpr std::size_t kMostInJson = std::size_t{1} << 20;  // 240 bytes each while the document is made
-  if (options.json && options.errors.empty()) request->listing.most = kMostInJson;
+  if (options.json && !request->listing.needed) request->listing.most = kMostInJson;
   if (!options.motion_filter.empty())
     request->motion_filter =
         trajectory_error::MotionFilter{options.motion_filter[0], radians(options.motion_filter[1])};
-  for (const auto& set : {set_alignment(options, *request), set_association(options, *request),
+  const auto alignment = aligned_by(options.alignment, request->alignment);
+  if (!alignment) return tl::unexpected(alignment.error());
+  request->alignment = *alignment;
+  for (const auto& set : {set_association(options, *request),
                           metric == trajectory_error::TrajectoryMetric::rpe ? set_motions(options, *request)
                                                                             : Result<void>{}}) {
     if (!set) return tl::unexpected(set.error());
@@ -138,4 +125,4 @@ Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest
   return {};
 }
 
-}  // namespace fusebench::cli::evaluation
+}  // namespace fusebench::cli::trajectories

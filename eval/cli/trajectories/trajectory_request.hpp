@@ -10,23 +10,34 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/trajectory/trajectory_file.hpp"
-#include "eval/cli/evaluation/loaded_sides.hpp"
+#include "core/trajectory/trajectory_rows.hpp"
+#include "eval/cli/trajectories/alignment_options.hpp"
+#include "eval/cli/trajectories/loaded_sides.hpp"
+#include "eval/cli/trajectories/plot_options.hpp"
+#include "eval/cli/trajectories/transcript.hpp"
+#include "eval/metric_reports/error_plot.hpp"
 #include "eval/trajectory_error/trajectory_evaluation.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
-namespace fusebench::cli::evaluation {
+namespace fusebench::cli::trajectories {
+
+/// How an evaluation is drawn.
+struct ErrorPlotOptions {
+  std::string mode = "xyz";
+  std::string abscissa = "seconds";
+  std::optional<double> colour_min;
+  std::optional<double> colour_max;
+  std::optional<double> colour_max_percentile;
+  bool full_reference = false;
+};
 
 /// What the command line says, by the names of its options.
 struct TrajectoryOptions {
   std::vector<std::string> files;  ///< reference and estimate; before them, as evo has it, perhaps a format
   std::string format;
+  std::string stamp_unit;
   std::string protocol = "evo";
-  std::string align;
-  bool evo_align = false;
-  bool evo_scale = false;
-  bool evo_origin = false;
-  std::size_t n_to_align = 0;
+  AlignmentOptions alignment;
   std::optional<double> t_max_diff;
   double t_offset = 0;
   std::optional<double> t_start;
@@ -45,8 +56,11 @@ struct TrajectoryOptions {
   bool all_pairs = false;
   bool pairs_from_reference = false;
   bool fit_offset = false;
-  bool verbose = false;
   std::filesystem::path errors;
+  std::filesystem::path save_results;
+  PlotOptions plot;
+  ErrorPlotOptions error_plot;
+  TranscriptOptions transcript;
   bool json = false;
 };
 
@@ -60,25 +74,14 @@ inline constexpr std::array<std::pair<const char*, trajectory_error::Plane>, 4> 
      {"xy", trajectory_error::Plane::xy},
      {"xz", trajectory_error::Plane::xz},
      {"yz", trajectory_error::Plane::yz}}};
-inline constexpr std::array<std::pair<const char*, trajectory_error::AlignmentMode>, 6> kAlignments{
-    {{"none", trajectory_error::AlignmentMode::none},
-     {"se3", trajectory_error::AlignmentMode::se3},
-     {"sim3", trajectory_error::AlignmentMode::sim3},
-     {"scale", trajectory_error::AlignmentMode::scale},
-     {"yaw", trajectory_error::AlignmentMode::yaw},
-     {"origin", trajectory_error::AlignmentMode::origin}}};
+inline constexpr std::array<std::pair<const char*, metric_reports::PlotAbscissa>, 3> kAbscissae{
+    {{"seconds", metric_reports::PlotAbscissa::seconds},
+     {"index", metric_reports::PlotAbscissa::index},
+     {"distances", metric_reports::PlotAbscissa::distances}}};
 
-/// The value of a name that the parser has let through.
-template <typename T, std::size_t N>
-T named(const std::array<std::pair<const char*, T>, N>& names, const std::string& name) {
-  for (const auto& [known, value] : names) {
-    if (name == known) return value;
-  }
-  return names.front().second;  // the parser lets no other name through
-}
-
-/// Takes a format that stands before the files. Error usage if it is given twice.
-[[nodiscard]] Result<void> take_leading_format(TrajectoryOptions& options);
+/// Takes a format that stands before the files, of which two are left. Error usage if they are not, and those
+/// of take_leading_format().
+[[nodiscard]] Result<void> take_two_files(TrajectoryOptions& options);
 
 /// The protocol's request, with what the options change. Error usage for options that do not go together;
 /// errors of read_stamps() for --images.
@@ -89,4 +92,4 @@ T named(const std::array<std::pair<const char*, T>, N>& names, const std::string
 /// that is not possible.
 [[nodiscard]] Result<void> suit_stamps(const Sides& sides, trajectory_error::TrajectoryRequest& request);
 
-}  // namespace fusebench::cli::evaluation
+}  // namespace fusebench::cli::trajectories

@@ -1,0 +1,170 @@
+#include "eval/cli/trajectories/bundle_request.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "core/trajectory/trajectory.hpp"
+#include "core/trajectory/trajectory_file.hpp"
+#include "eval/cli/trajectories/trajectory_request.hpp"
+#include "eval/text/text_file.hpp"
+#include "eval/trajectory_error/trajectory_error.hpp"
+
+namespace fusebench::cli::trajectories {
+
+namespace {
+
+Result<trajectory_files::TrajectoryReading> reading_of(const BundleOptions& options) {
+  trajectory_files::TrajectoryReading reading;
+  reading.duplicates = trajectory::Duplicates::as_written;  // a look at the file as it is
+  if (!options.format.empty()) {
+    const auto format = trajectory_files::parse_trajectory_format(options.format);
+    if (!format) return tl::unexpected(format.error());
+    reading.format = *format;
+  }
+  if (!options.stamp_unit.empty()) {
+    const auto unit = trajectory_files::parse_stamp_unit(options.stamp_unit);
+    if (!unit) return tl::unexpected(unit.error());
+    reading.stamp_unit = *unit;
+  }
+  return reading;
+}
+
+Result<NamedFile> load(const std::string& file, const BundleOptions& options,
+                       const trajectory_files::TrajectoryReading& reading, Transcript& transcript) {
+  std::vector<std::string> warnings;
+  auto loaded = trajectory_files::load_trajectory(file, reading, warnings);
+  if (!loaded) return tl::unexpected(loaded.error());
+  transcript.warn(warnings);
+  const std::string name = options.full_names ? file : std::filesystem::path(file).stem().string();
+  const bool has_stamps = loaded->has_stamps();
+  Trajectory poses = std::move(loaded->poses);
+  if (options.downsample > 0) poses = trajectory_error::downsampled(poses, options.downsample);
+  if (!options.motion_filter.empty())
+    poses = trajectory_error::moved_only(poses, options.motion_filter[0], radians(options.motion_filter[1]));
+  return NamedFile{file, {name, std::move(poses), has_stamps, std::move(warnings)}};
+}
+
+Result<Bundle> load_all(const BundleOptions& options, Transcript& transcript) {
+  const auto reading = reading_of(options);
+  if (!reading) return tl::unexpected(reading.error());
+  std::vector<std::string> files;
+  for (const std::string& file : options.files) {
+    if (file != options.reference) files.push_back(file);
+  }
+  if (!options.reference.empty()) files.push_back(options.reference);
+  Bundle bundle;
+  bundle.has_reference = !options.reference.empty();
+  for (const std::string& file : files) {
+    auto loaded = load(file, options, *reading, transcript);
+    if (!loaded) return tl::unexpected(loaded.error());
+    bundle.trajectories.push_back(std::move(*loaded));
+  }
+  bundle.has_stamps = bundle.trajectories.front().trajectory.has_stamps;
+  for (const NamedFile& entry : bundle.trajectories) {
+    if (entry.trajectory.has_stamps == bundle.has_stamps) continue;
+    return fail(ErrorCode::usage,
+                fmt::format("{} has {}stamps, {} has {}", entry.file, bundle.has_stamps ? "no " : "",
+                            bundle.trajectories.front().file, bundle.has_stamps ? "some" : "none"),
+                "use trajectories with stamps, or trajectories without (kitti)");
+  }
+  return bundle;
+}
+
+Result<void> check_reference(const BundleOptions& options, const Bundle& bundle) {
+  if (options.alignment.n_to_align > 0 && !options.alignment.asked())
+    return fail(ErrorCode::usage, "--n_to_align without an alignment", "-a, -s or --align MODE aligns");
+  if ((options.alignment.asked() || options.sync) && !bundle.has_reference)
+    return fail(ErrorCode::usage,
+                fmt::format("{} needs a reference", options.sync ? "--sync" : "an alignment"),
+                "--ref FILE names it");
+  if (options.t_offset != 0 && !bundle.has_stamps)
+    return fail(ErrorCode::usage, "--t_offset of trajectories without stamps (kitti)");
+  return {};
+}
+
+/// Associated with the reference where that is asked for, aligned and projected.
+Result<Trajectory> brought_to(const Trajectory& reference, const Trajectory& poses,
+                              const BundleOptions& options, bool has_stamps) {
+  const auto alignment = aligned_by(options.alignment, {});
+  if (!alignment) return tl::unexpected(alignment.error());
+  trajectory_files::AssociationOptions association;
+  association.max_difference_s = options.t_max_diff;
+  if (!has_stamps) association.rule = trajectory_files::AssociationRule::index;
+  const auto pair = trajectory_files::pair_up(reference, poses, association);
+  if (!pair) return tl::unexpected(pair.error());
+  auto compared = trajectory_error::absolute_error(
+      *pair, {trajectory_error::PoseRelation::translation, *alignment, named(kPlanes, options.plane), true});
+  if (!compared) return tl::unexpected(compared.error());
+  return std::move(compared->compared.estimate);
+}
+
+/// Against itself, pose by pose: projected and nothing else.
+Result<Trajectory> projected(Trajectory poses, const BundleOptions& options) {
+  trajectory_files::TrajectoryPair pair;
+  pair.reference = poses;
+  pair.estimate = std::move(poses);
+  auto compared = trajectory_error::absolute_error(
+      pair, {trajectory_error::PoseRelation::translation, {}, named(kPlanes, options.plane), true});
+  if (!compared) return tl::unexpected(compared.error());
+  return std::move(compared->compared.estimate);
+}
+
+}  // namespace
+
+Result<Bundle> bundle_of(const BundleOptions& options, Transcript& transcript) {
+  auto bundle = load_all(options, transcript);
+  if (!bundle) return bundle;
+  if (auto checked = check_reference(options, *bundle); !checked) return tl::unexpected(checked.error());
+  const std::size_t others = bundle->trajectories.size() - (bundle->has_reference ? 1 : 0);
+  const bool associated = options.alignment.asked() || (options.sync && bundle->has_stamps);
+  for (std::size_t i = 0; i < bundle->trajectories.size(); ++i) {
+    NamedFile& entry = bundle->trajectories[i];
+    Trajectory& poses = entry.trajectory.poses;
+    if (i < others && options.t_offset != 0)
+      poses = trajectory::with_clock_offset(std::move(poses), std::llround(1e9 * options.t_offset));
+    const Trajectory& reference = bundle->trajectories.back().trajectory.poses;
+    auto brought = i < others && associated ? brought_to(reference, poses, options, bundle->has_stamps)
+                                            : projected(std::move(poses), options);
+    if (!brought)
+      return fail(brought.error().code, fmt::format("{}: {}", entry.file, brought.error().message),
+                  brought.error().hint);
+    poses = std::move(*brought);
+  }
+  return bundle;
+}
+
+Result<void> save_bundle(const BundleOptions& options, const Bundle& bundle, Transcript& transcript) {
+  std::vector<std::pair<std::filesystem::path, std::string>> outputs;
+  std::set<std::filesystem::path> taken;
+  for (const auto& [wanted, ending] :
+       {std::pair{options.save_as_tum, ".tum"}, {options.save_as_kitti, ".kitti"}}) {
+    if (!wanted) continue;
+    const bool tum = std::string_view(ending) == ".tum";
+    for (const NamedFile& entry : bundle.trajectories) {
+      const std::filesystem::path file = std::filesystem::path(entry.file).stem().string() + ending;
+      std::error_code ignored;
+      if (tum && !entry.trajectory.has_stamps)
+        return fail(ErrorCode::usage, fmt::format("--save_as_tum: {} has no stamps", entry.file),
+                    "--save_as_kitti needs none");
+      if (!taken.insert(file).second)
+        return fail(ErrorCode::usage, fmt::format("two trajectories would be written into {}", file.string()),
+                    "give their files different names, or save them one by one");
+      if (std::filesystem::equivalent(file, entry.file, ignored))
+        return fail(ErrorCode::usage, fmt::format("{} would be replaced by what was made of it", entry.file),
+                    "run it in another folder: results go into the current one");
+      outputs.emplace_back(file, tum ? trajectory::tum_text(entry.trajectory.poses)
+                                     : trajectory_files::kitti_text(entry.trajectory.poses));
+    }
+  }
+  for (const auto& [file, content] : outputs) {
+    if (auto written = text::write_text_file(file, content); !written) return written;
+    transcript.note(file.string() + ": written");
+  }
+  return {};
+}
+
+}  // namespace fusebench::cli::trajectories

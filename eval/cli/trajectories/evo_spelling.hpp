@@ -1,0 +1,25 @@
+// Command lines of evo as ours: what its users type after evo_ape, evo_rpe, evo_traj and evo_res is
+// understood after `fusebench eval ape`, `rpe`, `traj` and `res`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+
+namespace fusebench::cli::trajectories {
+
+/// The arguments of fusebench, without its name. `ape` is `ate`. Where ours take a value that evo's flags
+/// have not, the flag alone is meant if none follows: --align is -a unless a mode follows, --plot and -p draw
+/// into a file of the usual name unless the name of a picture follows. Arguments of other verbs stay as they
+/// are.
+///
+/// Error usage: a bag (bag, bag2, mcap), or a flag of evo's that has no counterpart here, with what to do
+/// instead.
+[[nodiscard]] Result<std::vector<std::string>> with_own_spelling(std::vector<std::string> arguments);
+
+/// Takes a format that stands before the files, as in `evo_ape tum ref.txt est.txt`, off the list. Error
+/// usage: it is given twice.
+[[nodiscard]] Result<void> take_leading_format(std::vector<std::string>& files, std::string& format);
+
+}  // namespace fusebench::cli::trajectories

@@ -1,0 +1,45 @@
+#include "eval/cli/trajectories/transcript.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+
+#include "eval/cli/console/console.hpp"
+
+namespace fusebench::cli::trajectories {
+
+void add_transcript_options(CLI::App& verb, TranscriptOptions& options, const char* what_verbose_does) {
+  verb.add_flag("--silent", options.silent, "Prints nothing but errors");
+  verb.add_option("--logfile", options.logfile, "Appends what is printed, also with --silent")
+      ->type_name("FILE");
+  verb.add_flag("-v,--verbose,--debug", options.verbose, what_verbose_does);
+  verb.add_flag("--no_warnings", options.no_warnings,
+                "Accepted for compatibility with evo: nothing asks before it writes");
+}
+
+void Transcript::note(std::string_view line) {
+  said_ += fmt::format("{}\n", line);
+  if (!options_.silent) console::print_progress(line);
+}
+
+void Transcript::warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) note("warning: " + warning);
+}
+
+void Transcript::result(std::string_view text) {
+  said_ += text;
+  if (!options_.silent) console::print_output(text);
+}
+
+Result<void> Transcript::finish() const {
+  if (options_.logfile.empty()) return {};
+  std::ofstream stream(options_.logfile, std::ios::app | std::ios::binary);
+  stream << said_;
+  stream.close();
+  if (stream) return {};
+  return fail(ErrorCode::io, fmt::format("--logfile {}: cannot be written", options_.logfile.string()),
+              "choose a file in a folder that exists and can be written");
+}
+
+}  // namespace fusebench::cli::trajectories
