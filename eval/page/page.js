@@ -172,6 +172,17 @@ function scalesOf(chart) {
   return scales;
 }
 
+/// A long name over several lines, since a tick of one line would leave no room for the bars.
+function linesOf(name) {
+  const lines = [];
+  name.split(" ").forEach((word) => {
+    const last = lines.length - 1;
+    if (last >= 0 && lines[last].length + word.length < 24) lines[last] += " " + word;
+    else lines.push(word);
+  });
+  return lines;
+}
+
 function draw() {
   drawn.forEach((chart) => chart.destroy());
   drawn = description.map((chart, index) => {
@@ -179,7 +190,7 @@ function draw() {
     const made = new Chart(document.getElementById("chart-" + index), {
       type: bars ? "bar" : "line",
       data: {
-        labels: bars ? chart.categories : undefined,
+        labels: bars ? chart.categories.map(linesOf) : undefined,
         datasets: withDashes(chart.series).map((series) => bars ? barDataset(series, chart.categories.length) : dataset(series)),
       },
       options: {
@@ -192,7 +203,7 @@ function draw() {
         onResize: chart.equal ? (resized) => setTimeout(() => { if (resized.ctx) equalise(resized); }) : undefined,
         plugins: {
           legend: { labels: { color: colour("--text"), sort: (a, b) => a.datasetIndex - b.datasetIndex, usePointStyle: true, pointStyleWidth: 26, boxHeight: 5 } },
-          tooltip: { callbacks: bars ? {} : { title: (items) => chart.x + ": " + items[0].parsed.x } },
+          tooltip: { callbacks: bars ? { title: (items) => chart.categories[items[0].dataIndex] } : { title: (items) => chart.x + ": " + items[0].parsed.x } },
         },
         scales: scalesOf(chart),
       },
