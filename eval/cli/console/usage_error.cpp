@@ -1,6 +1,7 @@
 #include "eval/cli/console/usage_error.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -118,9 +119,14 @@ std::string reworded(const CLI::App& verb, const std::string& complaint) {
     return fmt::format("{} {}: not a value of this option", part[1].str(), printable(part[2].str()));
   if (complaint == "A subcommand is required")
     return fmt::format("`{}` is given without a verb", full_name(verb));
-  if (std::regex_match(complaint, part,
-                       std::regex("The following arguments? (?:was|were) not expected: (.*)")))
-    return fmt::format("`{}` does not take {}", full_name(verb), printable(part[1].str(), 200));
+  if (std::regex_match(complaint, part, std::regex("(.+): (.*) not in \\{(.+)\\}"))) {
+    const std::vector<std::string> allowed = CLI::detail::split(part[3].str(), ',');
+    return fmt::format("{} {}: not one of {} (nearest: {})", part[1].str(), printable(part[2].str()),
+                       fmt::join(allowed, ", "), nearest(part[2].str(), allowed));
+  }
+  if (complaint.starts_with("The following argument"))
+    return fmt::format("`{}` does not take {}", full_name(verb),
+                       printable(fmt::format("{}", fmt::join(verb.remaining(), " ")), 200));
   return complaint;
 }
 

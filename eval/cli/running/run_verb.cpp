@@ -83,6 +83,18 @@ Result<run::PreparedRun> prepare_like(const RunOptions& options) {
   return prepared;
 }
 
+/// The record says these. (The parser lists options that exclude several in another order each time.)
+Result<void> check_alone(const CLI::App& verb) {
+  if (verb.count("--like") == 0) return {};
+  for (const char* const option :
+       {"--variant", "--imu", "--config", "--frames", "--repetition", "--system"}) {
+    if (verb.count(option) > 0)
+      return fail(ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
+                  "a record says variant, options, IMU, frames and repetition; --set changes an option");
+  }
+  return {};
+}
+
 Result<run::PreparedRun> prepare(const RunOptions& options) {
   if (!options.like.empty()) return prepare_like(options);
   auto spec = asked_for(options);
@@ -124,26 +136,20 @@ console::Verb add_run_verb(CLI::App& app) {
       app.add_subcommand("run", "Runs one variant over one recording and writes the run's folder");
   console::add_run_request(*verb, options->request);
   verb->get_option("RECORDING")->required(false);  // a record names one
-  CLI::Option* const like =
-      verb->add_option(
-              "--like", options->like,
-              "Repeats the run of this record.json, or of this run's folder: the same recording (by its "
-              "name under --data, or RECORDING), variant, options, IMU, frames and repetition; --set "
-              "changes something")
-          ->type_name("RECORD");
-  for (const char* const option : {"--variant", "--imu", "--config", "--frames"})
-    like->excludes(verb->get_option(option));
+  verb->add_option("--like", options->like,
+                   "Repeats the run of this record.json, or of this run's folder: the same recording (by its "
+                   "name under --data, or RECORDING), variant, options, IMU, frames and repetition; --set "
+                   "changes something")
+      ->type_name("RECORD");
   verb->add_option("--system", options->system,
                    "Runs the external program of this file in place of a variant (docs/systems.md)")
       ->type_name("FILE.toml")
-      ->excludes("--variant")
-      ->excludes("--like");
+      ->excludes("--variant");
   verb->add_option("--repetition", options->repetition,
                    "Number of the repetition: in the folder's name, and an external program's {seed}")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
-      ->capture_default_str()
-      ->excludes("--like");
+      ->capture_default_str();
   verb->add_option("--out", options->out, "Results go to DIR/<recording>/<variant>/<hash8>/")
       ->type_name("DIR")
       ->capture_default_str();
@@ -151,7 +157,7 @@ console::Verb add_run_verb(CLI::App& app) {
   console::add_json_flag(*verb, options->json);
   verb->footer(
       "Prints the run's folder, or with --json its record. Exit code 4 if the run failed or was lost.");
-  return {verb, [options] { return run(*options); }};
+  return {verb, [options, verb] { return check_alone(*verb).and_then([&] { return run(*options); }); }};
 }
 
 }  // namespace fusebench::cli::running
