@@ -26,7 +26,7 @@ struct RelocalisationConfig {
   double shared_error_factor = 3.0;
   double keyframe_rotation_sigma_rad = 0.005;
   double keyframe_position_sigma_m = 0.005;
-  double max_innovation = 25.0;
+  double max_innovation = 225.0;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("keyframe_distance_m", self.keyframe_distance_m, 0.001, 100.0,
@@ -97,7 +97,8 @@ struct RelocalisationConfig {
     v.number(
         "max_innovation", self.max_innovation, 0.1, 1e12,
         "a found pose is refused if its squared distance from the prediction, in variances and per degree "
-        "of freedom, is larger (repeating texture gives false poses); 25 are five standard deviations");
+        "of freedom, is larger (repeating texture gives false poses); 225 are five standard deviations, each "
+        "three times what the filter claims, as of drift (loops.drift_factor)");
   }
 };
 
@@ -189,14 +190,16 @@ struct LoopsConfig {
   double place_angle_deg = 15.0;
   int query_every = 10;
   double least_age_s = 10.0;
+  int max_features = 400;
   int max_candidates = 8;
   double max_dissimilarity = 0.7;
+  int max_path_candidates = 3;
   double min_consistent_share = 0.25;
   double max_violating_share = 0.05;
   double depth_sigmas = 3.0;
   double dense_gate_m = 0.12;
-  int dense_min_pairs = 500;
-  double dense_pixels_per_measurement = 50.0;
+  double dense_min_share = 0.1;
+  double dense_measurements = 100.0;
   double min_grey_correlation = 0.6;
   double max_rotation_sigma_deg = 0.5;
   double max_position_sigma_m = 0.02;
@@ -230,9 +233,14 @@ struct LoopsConfig {
              "every so many fused frames, and each place, are compared with the older places");
     v.number("least_age_s", self.least_age_s, 0.5, 1000.0,
              "with those that were left at least so long ago (the model itself holds what is younger)");
+    v.number("max_features", self.max_features, 20, 20000,
+             "at most so many features a place, of the image at half its size (not below 320 pixels): depth "
+             "refines what they say, and motion blur leaves no finer ones");
     v.number("max_candidates", self.max_candidates, 1, 100, "the most similar so many of them are verified");
     v.number("max_dissimilarity", self.max_dissimilarity, 0.05, 1.0,
              "share of the ferns that may differ (Glocker et al. 2015)");
+    v.number("max_path_candidates", self.max_path_candidates, 0, 100,
+             "and so many more that see the same by the poses so far, those with the nearest view first");
     v.number("min_consistent_share", self.min_consistent_share, 0.01, 1.0,
              "of the depth of either frame at least this share lies on the surface that the other one sees");
     v.number("max_violating_share", self.max_violating_share, 0.0, 1.0,
@@ -242,9 +250,11 @@ struct LoopsConfig {
     v.number("dense_gate_m", self.dense_gate_m, 0.01, 1.0,
              "the pose of a pair is refined by points of one on planes of the other, at a quarter of the "
              "size: those that are nearer than this (metres) at first, and than a quarter of it at the end");
-    v.number("dense_min_pairs", self.dense_min_pairs, 50, 19200, "by no fewer of the 4800 points than this");
-    v.number("dense_pixels_per_measurement", self.dense_pixels_per_measurement, 1.0, 10000.0,
-             "so many of them tell as much as one: errors of neighbouring depths are common");
+    v.number("dense_min_share", self.dense_min_share, 0.01, 1.0,
+             "by no smaller a share of the pixels than this");
+    v.number("dense_measurements", self.dense_measurements, 1.0, 20000.0,
+             "an image full of them tells as much as so many independent ones: errors of neighbouring depths "
+             "are common");
     v.number("min_grey_correlation", self.min_grey_correlation, -1.0, 1.0,
              "a pair that features do not verify is verified by depth, starting where the path leads: where "
              "the depth fits, the intensities of both have to correlate at least so well, and");

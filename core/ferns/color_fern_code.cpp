@@ -5,13 +5,12 @@
 #include <random>
 
 #include "core/base/error.hpp"
+#include "core/ferns/cell_means.hpp"
 
 namespace fusebench::ferns {
 
 namespace {
 
-constexpr int kWidth = 80;
-constexpr int kHeight = 60;
 constexpr std::size_t kChannels = kTestsOfFern;  // red, green, blue, depth
 constexpr double kMeanGrey = 110;                // that colour is scaled to
 constexpr std::uint64_t kSeed = 20261125;
@@ -30,7 +29,7 @@ FernTests make_tests() {
     tests[i].x = static_cast<int>(uniform(generator) * kWidth);
     tests[i].y = static_cast<int>(uniform(generator) * kHeight);
     const bool depth = i % kChannels == kChannels - 1;
-    tests[i].threshold = static_cast<float>(depth ? 0.4 + 3.6 * uniform(generator)   // metres
+    tests[i].threshold = static_cast<float>(depth ? kNearest_m + kReach_m * uniform(generator)
                                                   : 20 + 215 * uniform(generator));  // grey levels
   }
   return tests;
@@ -38,14 +37,6 @@ FernTests make_tests() {
 
 using Channels = std::array<Image<float>, kChannels>;
 
-/// The pixels of a cell of the small image: first and one past the last.
-struct Cells {
-  int begin;
-  int end;
-};
-Cells cells_of(int index, int count, int size) { return {index * size / count, (index + 1) * size / count}; }
-
-/// Means of the cells; of depth those of the pixels that have some.
 Channels small_image(const ColorImage& color, const DepthImage& depth_m) {
   Channels channels;
   channels.fill(Image<float>(kWidth, kHeight));
@@ -53,20 +44,17 @@ Channels small_image(const ColorImage& color, const DepthImage& depth_m) {
     const Cells rows = cells_of(y, kHeight, color.height);
     for (int x = 0; x < kWidth; ++x) {
       const Cells columns = cells_of(x, kWidth, color.width);
-      std::array<double, kChannels> sums{};
-      int measured = 0;
+      std::array<double, 3> sums{};
       for (int v = rows.begin; v < rows.end; ++v) {
         for (int u = columns.begin; u < columns.end; ++u) {
           for (std::size_t c = 0; c < 3; ++c) sums[c] += color(u, v)[c];
-          sums[3] += static_cast<double>(depth_m(u, v));
-          measured += depth_m(u, v) > 0 ? 1 : 0;
         }
       }
       const double pixels = (rows.end - rows.begin) * (columns.end - columns.begin);
       for (std::size_t c = 0; c < 3; ++c) channels[c](x, y) = static_cast<float>(sums[c] / pixels);
-      channels[3](x, y) = measured > 0 ? static_cast<float>(sums[3] / measured) : 0.0F;
     }
   }
+  channels[3] = mean_depth_m(depth_m);
   return channels;
 }
 

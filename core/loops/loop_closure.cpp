@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/filter/moved_state.hpp"
@@ -36,6 +37,24 @@ Matrix6d covariance_by_axis(double rotation_sigma_rad, double position_sigma_m) 
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
+/// Those with the smallest numbers.
+std::vector<std::size_t> first_of(std::vector<std::pair<double, std::size_t>> ranked, int count) {
+  std::ranges::sort(ranked);
+  ranked.resize(std::min(ranked.size(), static_cast<std::size_t>(count)));
+  std::vector<std::size_t> first;
+  for (const auto& [number, index] : ranked) first.push_back(index);
+  return first;
+}
+
+double median_depth_m(const DepthImage& depth_m) {
+  std::vector<float> measured;
+  std::ranges::copy_if(depth_m.data, std::back_inserter(measured), [](float m) { return m > 0; });
+  if (measured.empty()) return 0;
+  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
+  std::ranges::nth_element(measured, middle);
+  return static_cast<double>(*middle);
+}
+
 }  // namespace
 
 void LoopClosure::add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera) {
@@ -61,6 +80,7 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   Place place;
   place.timestamp_ns = frame.timestamp_ns;
   place.appearance = places::appearance_of(frame, rig_.camera, config_);
+  place.view_depth_m = median_depth_m(place.appearance.small.depth_m);
   place.T_world_camera = T_world_camera;
   const Matrix6d to_camera = filter::pose_transport(T_world_camera, in_odometry.mean.T_world_imu);
   const filter::GaussianState in_first = filter::in_first_camera_world(in_odometry);
@@ -75,29 +95,63 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   look_for_loops(places_.size() - 1);
 }
 
-/// Among the places that were left long ago: the most similar ones, until one is verified.
-void LoopClosure::look_for_loops(std::size_t query) {
-  const config::LoopsConfig& config = config_.loops;
+/// Up to this one (not included) places were left long ago.
+std::size_t LoopClosure::first_recent(std::size_t query) const {
+  std::size_t known = 0;
+  while (known < query && seconds_apart(places_[known], places_[query]) >= config_.loops.least_age_s) ++known;
+  return known;
+}
+
+/// The most similar places first.
+std::vector<std::size_t> LoopClosure::candidates_by_appearance(std::size_t query) const {
   std::vector<std::pair<double, std::size_t>> similar;
-  for (std::size_t known = 0; known < query; ++known) {
-    if (seconds_apart(places_[known], places_[query]) < config.least_age_s) break;
-    const double different =
-        ferns::dissimilarity(places_[known].appearance.code, places_[query].appearance.code);
-    if (different <= config.max_dissimilarity) similar.emplace_back(different, known);
+  for (std::size_t known = 0; known < first_recent(query); ++known) {
+    const double different = dissimilarity(known, query);
+    if (different <= config_.loops.max_dissimilarity) similar.emplace_back(different, known);
   }
-  std::ranges::sort(similar);
-  similar.resize(std::min(similar.size(), static_cast<std::size_t>(config.max_candidates)));
-  for (const auto& [different, known] : similar) {
-    LoopCandidate candidate{known, query, different, {}, 0, false, {}};
-    candidate.pair = places::verify_pair(
-        places_[known].appearance, places_[query].appearance,
-        places_[known].T_world_camera.inverse() * places_[query].T_world_camera, rig_.camera, config_);
+  return first_of(similar, config_.loops.max_candidates);
+}
+
+/// Places whose view is that of the query, by the poses so far: where it is dark, blurred or bare, nothing
+/// else tells them. The nearest first.
+std::vector<std::size_t> LoopClosure::candidates_by_path(std::size_t query) const {
+  constexpr double kMostTurned_rad = radians(60);
+  constexpr double kViewShare = 0.5;  // of the distance to what is seen: half of it is then seen by both
+  const auto middle_of_view = [&](std::size_t place) {
+    return T_current_camera(place) * Vector3d(0, 0, places_[place].view_depth_m);
+  };
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t known = 0; known < first_recent(query); ++known) {
+    const double apart_m = (middle_of_view(known) - middle_of_view(query)).norm();
+    const double turned_rad =
+        rotation_angle_rad(T_current_camera(known).rotation, T_current_camera(query).rotation);
+    if (apart_m <= kViewShare * places_[query].view_depth_m && turned_rad <= kMostTurned_rad)
+      near.emplace_back(apart_m, known);
+  }
+  return first_of(near, config_.loops.max_path_candidates);
+}
+
+/// Among the candidates, until one is verified.
+void LoopClosure::look_for_loops(std::size_t query) {
+  std::vector<std::size_t> known_places = candidates_by_appearance(query);
+  for (const std::size_t known : candidates_by_path(query)) {
+    if (std::ranges::find(known_places, known) == known_places.end()) known_places.push_back(known);
+  }
+  for (const std::size_t known : known_places) {
+    LoopCandidate candidate{known, query, dissimilarity(known, query), {}, 0, false, {}};
+    candidate.pair = places::verify_pair(places_[known].appearance, places_[query].appearance,
+                                         T_current_camera(known).inverse() * T_current_camera(query),
+                                         rig_.camera, config_);
     const bool same = candidate.pair.same;
     if (!same) candidate.verdict = candidate.pair.reason;
     if (same) poses_are_wrong_ = contradicts_current_poses(candidate);
     candidates_.push_back(std::move(candidate));
     if (same) break;
   }
+}
+
+double LoopClosure::dissimilarity(std::size_t known, std::size_t query) const {
+  return ferns::dissimilarity(places_[known].appearance.code, places_[query].appearance.code);
 }
 
 /// What the filter says of the motion from a to b, with the drift that came on in between.

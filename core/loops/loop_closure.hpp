@@ -2,11 +2,11 @@
 // paper leaves this open ("has not achieved loop closure with fast camera motion").
 //
 // Fused frames become places every few frames. Each is compared with the older ones by what it looks like
-// (color_fern_code.hpp); the most similar are verified by features and by depth in both directions
-// (core/places). An edge is accepted if it agrees with the poses so far within their drift, or
-// with another edge near to it in time: appearance alone never moves anything. The graph of places is
-// optimised at the end, or online as well when a loop shows that the poses are wrong (pose_graph.hpp);
-// between places, poses move with their neighbours.
+// (color_fern_code.hpp), and by where the path leads; the most similar and the nearest are verified by
+// features and by depth in both directions (core/places). An edge is accepted if it agrees with the poses so
+// far within their drift, or with another edge near to it in time: appearance alone never moves anything. The
+// graph of places is optimised at the end, or online as well when a loop shows that the poses are wrong
+// (pose_graph.hpp); between places, poses move with their neighbours.
 //
 // Two worlds: that of the odometry is as if nothing was ever corrected, and is what all of this works in; the
 // estimate is in the current one, which is the same until a correction.
@@ -36,6 +36,7 @@ struct Place {
   /// Of that pose in the world of the first camera, in its tangent (rotation on the right, world position).
   Matrix6d covariance = Matrix6d::Zero();
   std::optional<Vector3d> gravity_camera;  ///< unit; with an IMU
+  double view_depth_m = 0;                 ///< median of its depth
   double blur_px = 0;
   double angular_speed_radps = 0;
   double speed_mps = 0;
@@ -101,6 +102,10 @@ class LoopClosure {
 
  private:
   void look_for_loops(std::size_t query);
+  [[nodiscard]] std::size_t first_recent(std::size_t query) const;
+  [[nodiscard]] std::vector<std::size_t> candidates_by_appearance(std::size_t query) const;
+  [[nodiscard]] std::vector<std::size_t> candidates_by_path(std::size_t query) const;
+  [[nodiscard]] double dissimilarity(std::size_t known, std::size_t query) const;
   [[nodiscard]] GraphEdge path_edge(std::size_t a, std::size_t b) const;
   [[nodiscard]] GraphEdge loop_edge(const LoopCandidate& candidate) const;
   [[nodiscard]] double chi2_of(const LoopCandidate& candidate) const;

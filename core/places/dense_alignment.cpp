@@ -66,6 +66,12 @@ class Surface {
   Image<Plane> planes_;
 };
 
+/// Of an image without holes.
+double most_points(const DepthImage& depth_m) {
+  const auto every_other = [](int pixels) { return (pixels + kPointStep - 1) / kPointStep; };
+  return static_cast<double>(every_other(depth_m.width) * every_other(depth_m.height));
+}
+
 std::vector<Vector3d> points_of(const DepthImage& depth_m, const PinholeCamera& camera) {
   std::vector<Vector3d> points;
   for (int y = 0; y < depth_m.height; y += kPointStep) {
@@ -130,6 +136,7 @@ std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const Sma
                                              const config::Config& config) {
   constexpr double kLastStep = 1e-5;  // rad and m
   const config::LoopsConfig& loops = config.loops;
+  const double most_pairs = most_points(query.depth_m);
   const Surface surface(known.depth_m, camera, config.depth);
   const std::vector<Vector3d> points_query = points_of(query.depth_m, camera);
   const Matrix6d prior = start.from_features
@@ -140,8 +147,8 @@ std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const Sma
   for (const double gate_m : narrowing_gates_m(start.reach_m, loops.dense_gate_m)) {
     for (int step = 0; step < kStepsOfGate; ++step) {
       const DepthSums sums = sums_at(pose, points_query, surface, gate_m, config.depth);
-      if (sums.pairs < loops.dense_min_pairs) return std::nullopt;
-      const double share = 1.0 / (sums.variance() * loops.dense_pixels_per_measurement);
+      if (sums.pairs < loops.dense_min_share * most_pairs) return std::nullopt;
+      const double share = loops.dense_measurements / (sums.variance() * most_pairs);
       information = share * sums.information + prior;
       const Vector6d gradient = share * sums.gradient + prior * pose_minus(pose, start.pose.T_known_query);
       const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);

@@ -27,7 +27,7 @@ struct AlignmentStart {
 /// Searches from that pose. With `from_features`, its covariance counts: directions that depth does not tell,
 /// such as sideways along a wall, stay as they were; without, the pose is no more than the start. Nothing if
 /// too little of the depth lies near the other surface, or it leaves a direction open. The covariance is that
-/// of the scatter, as loops.dense_pixels_per_measurement counts it.
+/// of the scatter, as loops.dense_measurements counts it.
 [[nodiscard]] std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                                            const AlignmentStart& start,
                                                            const PinholeCamera& camera,

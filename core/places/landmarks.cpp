@@ -4,6 +4,22 @@
 
 namespace fusebench::places {
 
+namespace {
+
+Landmarks with_depth(const std::vector<PlaceFeature>& features, const DepthImage& depth_m,
+                     const PinholeCamera& camera, const config::Config& config) {
+  Landmarks landmarks;
+  for (const PlaceFeature& feature : features) {
+    const double z_m = landmark_depth_m(depth_m, feature.pixel_px, config.relocalisation);
+    if (z_m <= 0) continue;
+    landmarks.features.push_back(feature);
+    landmarks.points_camera.push_back(camera.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
+  }
+  return landmarks;
+}
+
+}  // namespace
+
 double landmark_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px,
                         const config::RelocalisationConfig& config) {
   const auto edge_jump = static_cast<float>(config.landmark_edge_jump);
@@ -23,14 +39,23 @@ double landmark_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px,
 
 Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera,
                        const config::Config& config) {
-  Landmarks landmarks;
-  for (const PlaceFeature& feature : find_place_features(grey, config.place_features)) {
-    const double z_m = landmark_depth_m(depth_m, feature.pixel_px, config.relocalisation);
-    if (z_m <= 0) continue;
-    landmarks.features.push_back(feature);
-    landmarks.points_camera.push_back(camera.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
+  return with_depth(find_place_features(grey, config.place_features), depth_m, camera, config);
+}
+
+Landmarks coarse_landmarks_of(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera,
+                              int max_count, const config::Config& config) {
+  constexpr int kLeastWidth_px = 320;
+  const bool halved = grey.width >= 2 * kLeastWidth_px;
+  const GreyImage half = halved ? build_pyramid(grey, 2).back() : GreyImage{};
+  const double step = halved ? 2.0 : 1.0;
+  config::PlaceFeaturesConfig fewer = config.place_features;
+  fewer.max_count = max_count;
+  std::vector<PlaceFeature> features = find_place_features(halved ? half : grey, fewer);
+  for (PlaceFeature& feature : features) {
+    feature.pixel_px *= step;
+    feature.scale *= step;
   }
-  return landmarks;
+  return with_depth(features, depth_m, camera, config);
 }
 
 }  // namespace fusebench::places

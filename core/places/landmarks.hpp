@@ -18,6 +18,12 @@ struct Landmarks {
 [[nodiscard]] Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m,
                                      const PinholeCamera& camera, const config::Config& config);
 
+/// The landmarks in the frame's image of half the size, if that is not less than 320 pixels wide, at most
+/// `max_count`: a quarter of the work, and what is left of a blurred image.
+[[nodiscard]] Landmarks coarse_landmarks_of(const GreyImage& grey, const DepthImage& depth_m,
+                                            const PinholeCamera& camera, int max_count,
+                                            const config::Config& config);
+
 /// The depth of a feature; 0 if it is at an edge of depth, where it may be that of the thing behind.
 [[nodiscard]] double landmark_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px,
                                       const config::RelocalisationConfig& config);

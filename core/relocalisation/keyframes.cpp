@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/ferns/depth_fern_code.hpp"
 #include "core/places/depth_agreement.hpp"
 #include "core/places/place_certainty.hpp"
 #include "core/places/place_verification.hpp"
@@ -68,6 +69,17 @@ std::optional<FoundPlace> place_by(std::span<const places::PlaceFeature> query, 
   return found;
 }
 
+/// The candidates with the smallest numbers; of equal ones those that were kept first.
+template <class Candidate>
+std::vector<Candidate> first_of(std::vector<std::pair<double, Candidate>> ranked) {
+  constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less, or look less alike, add nothing
+  std::ranges::stable_sort(ranked, {}, &std::pair<double, Candidate>::first);
+  ranked.resize(std::min(ranked.size(), kMostAligned));
+  std::vector<Candidate> first;
+  for (auto& [number, candidate] : ranked) first.push_back(std::move(candidate));
+  return first;
+}
+
 }  // namespace
 
 /// 1 where the spacing ends.
@@ -104,7 +116,7 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
   }
   if (replaces_nearest) kept_.erase(nearest);
   kept_.push_back(
-      {timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), std::move(landmarks), {}});
+      {timestamp_ns, T_world_camera, grey, blur_px, PackedDepth(depth_m), std::move(landmarks), {}, {}});
   if (kept_.size() > static_cast<std::size_t>(config.max_keyframes)) drop_most_crowded();
   return true;
 }
@@ -164,34 +176,59 @@ std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
   return best;
 }
 
-std::optional<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& query,
-                                                   const SE3& T_world_camera_predicted, double reach_m) {
-  constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less than these add nothing
-  std::vector<std::pair<double, std::size_t>> overlaps;
-  for (std::size_t k = 0; k < kept_.size(); ++k) {
-    Keyframe& keyframe = kept_[k];
-    if (!keyframe.small) keyframe.small = places::small_images_of(keyframe.grey, keyframe.depth.unpacked_m());
-    const SE3 T_keyframe_camera = keyframe.T_world_camera.inverse() * T_world_camera_predicted;
-    const double overlap =
-        places::depth_agreement(query, *keyframe.small, T_keyframe_camera, camera_, config_).overlap;
-    if (overlap >= config_.loops.min_consistent_share) overlaps.emplace_back(-overlap, k);
-  }
-  std::ranges::sort(overlaps);
-  overlaps.resize(std::min(overlaps.size(), kMostAligned));
+/// With what depth is looked for by.
+void Keyframes::complete(Keyframe& keyframe) const {
+  if (keyframe.small) return;
+  keyframe.small = places::small_images_of(keyframe.grey, keyframe.depth.unpacked_m());
+  keyframe.depth_code = ferns::depth_fern_code(keyframe.small->depth_m);
+}
 
+std::vector<Keyframes::AlignmentCandidate> Keyframes::seen_by_prediction(const places::SmallImages& query,
+                                                                         const SE3& T_world_camera) const {
+  std::vector<std::pair<double, AlignmentCandidate>> overlaps;
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    const SE3 T_keyframe_camera = kept_[k].T_world_camera.inverse() * T_world_camera;
+    const double overlap =
+        places::depth_agreement(query, *kept_[k].small, T_keyframe_camera, camera_, config_).overlap;
+    if (overlap >= config_.loops.min_consistent_share) overlaps.push_back({-overlap, {k, T_keyframe_camera}});
+  }
+  return first_of(std::move(overlaps));
+}
+
+std::vector<Keyframes::AlignmentCandidate> Keyframes::most_similar(const places::SmallImages& query) const {
+  const ferns::FernCode code = ferns::depth_fern_code(query.depth_m);
+  std::vector<std::pair<double, AlignmentCandidate>> similar;
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    const double different = ferns::dissimilarity(kept_[k].depth_code, code);
+    if (different <= config_.loops.max_dissimilarity) similar.push_back({different, {k, SE3{}}});
+  }
+  return first_of(std::move(similar));
+}
+
+/// The one that most of the depth agrees with.
+std::optional<FoundPlace> Keyframes::best_aligned(const places::SmallImages& query,
+                                                  const std::vector<AlignmentCandidate>& candidates,
+                                                  double reach_m) const {
   std::optional<FoundPlace> best;
   double best_share = 0;
-  for (const auto& [negative_overlap, k] : overlaps) {
-    const Keyframe& keyframe = kept_[k];
+  for (const AlignmentCandidate& candidate : candidates) {
+    const Keyframe& keyframe = kept_[candidate.keyframe];
     const places::VerifiedPair pair = places::verify_by_depth(
-        *keyframe.small, query, keyframe.T_world_camera.inverse() * T_world_camera_predicted, reach_m,
-        camera_, config_);
+        *keyframe.small, query, candidate.T_keyframe_camera, reach_m, camera_, config_);
     if (!pair.same || pair.consistent_share <= best_share) continue;
     best_share = pair.consistent_share;
     best = found_from(keyframe, pair.T_known_query, pair.covariance);
-    best->keyframe = k;
+    best->keyframe = candidate.keyframe;
   }
   return best;
+}
+
+std::optional<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& query,
+                                                   const SE3& T_world_camera_predicted, double reach_m) {
+  for (Keyframe& keyframe : kept_) complete(keyframe);
+  if (auto found = best_aligned(query, seen_by_prediction(query, T_world_camera_predicted), reach_m))
+    return found;
+  return best_aligned(query, most_similar(query), config_.relocalisation.keyframe_distance_m);
 }
 
 }  // namespace fusebench::relocalisation

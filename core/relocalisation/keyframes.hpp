@@ -17,6 +17,7 @@
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
+#include "core/ferns/fern_code.hpp"
 #include "core/places/landmarks.hpp"
 #include "core/places/small_images.hpp"
 #include "core/relocalisation/packed_depth.hpp"
@@ -33,6 +34,7 @@ struct Keyframe {
   // When they were first asked for: most trackers are never lost.
   std::optional<places::Landmarks> landmarks;
   std::optional<places::SmallImages> small;
+  ferns::FernCode depth_code{};  ///< of these
 };
 
 /// A pose found by matching, or by depth: then without inliers, matches and rms.
@@ -66,9 +68,10 @@ class Keyframes {
   /// offering them would have taken, but all in one frame.
   [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
 
-  /// The pose of an image by its depth alone, where blur, darkness or a bare wall leave no features: aligned
-  /// with the kept frames that see the most of it by the prediction, starting there (off by about reach_m),
-  /// and verified as loops are (core/places/place_verification.hpp). Nothing if it is not certain.
+  /// The pose of an image by its depth alone, where blur, darkness or a bare wall leave no features, verified
+  /// as loops are (core/places/place_verification.hpp); nothing if it is not certain. First by the kept
+  /// frames that see the most of it by the prediction, aligned from there (off by about reach_m); then by
+  /// those whose depth looks most like it, aligned as if the camera were where they were taken from.
   [[nodiscard]] std::optional<FoundPlace> find_by_depth(const places::SmallImages& query,
                                                         const SE3& T_world_camera_predicted, double reach_m);
 
@@ -79,8 +82,20 @@ class Keyframes {
   [[nodiscard]] const Keyframe& operator[](std::size_t index) const { return kept_[index]; }
 
  private:
+  /// A keyframe, and where the camera is taken to be against it.
+  struct AlignmentCandidate {
+    std::size_t keyframe = 0;
+    SE3 T_keyframe_camera;
+  };
   [[nodiscard]] double separation(const SE3& a, const SE3& b) const;
   void drop_most_crowded();
+  void complete(Keyframe& keyframe) const;
+  [[nodiscard]] std::vector<AlignmentCandidate> seen_by_prediction(const places::SmallImages& query,
+                                                                   const SE3& T_world_camera) const;
+  [[nodiscard]] std::vector<AlignmentCandidate> most_similar(const places::SmallImages& query) const;
+  [[nodiscard]] std::optional<FoundPlace> best_aligned(const places::SmallImages& query,
+                                                       const std::vector<AlignmentCandidate>& candidates,
+                                                       double reach_m) const;
 
   PinholeCamera camera_;
   const config::Config& config_;

@@ -121,6 +121,24 @@ TEST_F(Loops, ComeTogetherWhereTheCameraComesBack) {
   }
 }
 
+/// Where nothing looks alike, as in the dark, the poses so far say what to compare with.
+TEST_F(Loops, ThePathLeadsToPlacesThatAppearanceDoesNotFind) {
+  config::Config config = configuration(config::LoopMode::final);
+  config.loops.max_dissimilarity = 0.05;
+  config.loops.max_path_candidates = 0;
+  LoopClosure by_appearance(config, rig_);
+  run(by_appearance, true, frames());
+  ASSERT_FALSE(by_appearance.close().value()) << candidate_table(by_appearance);
+  config.loops.max_path_candidates = 3;
+  LoopClosure by_path(config, rig_);
+  run(by_path, true, frames());
+  ASSERT_TRUE(by_path.close().value()) << candidate_table(by_path);
+  EXPECT_LT((by_path.corrected_trajectory().back().T_world_camera.translation -
+             T_room_camera(kFrames - 1).translation)
+                .norm(),
+            0.01);
+}
+
 TEST_F(Loops, AStateIsCorrectedAsItsPoseIs) {
   const config::Config config = configuration(config::LoopMode::final);
   LoopClosure loops(config, rig_);

@@ -42,16 +42,8 @@ RelativePose start_with(double rotation_sigma_rad, double position_sigma_m) {
   return start;
 }
 
-/// The images are of half the size in either direction that the default is meant for.
-config::Config configuration() {
-  config::Config config;
-  config.loops.dense_pixels_per_measurement /= 4;
-  config.loops.dense_min_pairs /= 4;
-  return config;
-}
-
 TEST(DenseAlignment, DepthAloneFindsThePose) {
-  const config::Config config = configuration();
+  const config::Config config;
   const auto found =
       aligned_by_depth(appearance_at(kCorner, config).small, appearance_at(kCorner * kTrue, config).small,
                        {start_with(1, 1), false, 0}, small_camera(), config);
@@ -63,7 +55,7 @@ TEST(DenseAlignment, DepthAloneFindsThePose) {
 
 /// As after a second without images: 30 cm and 7 degrees off.
 TEST(DenseAlignment, AWideReachFindsThePoseFromFarAway) {
-  const config::Config config = configuration();
+  const config::Config config;
   const SmallImages known = appearance_at(kCorner, config).small;
   const SmallImages query = appearance_at(kCorner * kTrue, config).small;
   const RelativePose start{pose_plus(kTrue, (Vector6d() << 0.07, -0.08, 0.06, 0.2, -0.15, 0.17).finished()),
@@ -77,7 +69,7 @@ TEST(DenseAlignment, AWideReachFindsThePoseFromFarAway) {
 }
 
 TEST(DenseAlignment, AWallLeavesThePoseToTheFeatures) {
-  const config::Config config = configuration();
+  const config::Config config;
   const Appearance known = appearance_at({}, config, wall());
   const Appearance query = appearance_at(kTrue, config, wall());
   EXPECT_FALSE(
@@ -93,7 +85,7 @@ TEST(DenseAlignment, AWallLeavesThePoseToTheFeatures) {
 }
 
 TEST(DenseAlignment, TooLittleDepthIsNoPose) {
-  const config::Config config = configuration();
+  const config::Config config;
   const Appearance known = appearance_at(kCorner, config);
   Appearance query = appearance_at(kCorner * kTrue, config);
   std::fill(query.small.depth_m.data.begin(), query.small.depth_m.data.end(), 0.0F);
@@ -102,7 +94,7 @@ TEST(DenseAlignment, TooLittleDepthIsNoPose) {
 }
 
 TEST(DepthAgreement, APlaceAgreesWithItselfAndNotWithOneElsewhere) {
-  const config::Config config = configuration();
+  const config::Config config;
   const Appearance here = appearance_at({}, config);
   const DepthAgreement same = depth_agreement(here.small, here.small, SE3{}, small_camera(), config);
   EXPECT_GT(same.overlap, 0.99);
@@ -118,7 +110,7 @@ TEST(DepthAgreement, APlaceAgreesWithItselfAndNotWithOneElsewhere) {
 
 /// Features are gone by blur: the pair is verified by depth, starting where the path leads.
 TEST(PlaceVerification, WithoutFeaturesDepthVerifiesAndIntensitiesHaveToFit) {
-  const config::Config config = configuration();
+  const config::Config config;
   const Appearance known = appearance_at(kCorner, config);
   Appearance query = appearance_at(kCorner * kTrue, config);
   query.landmarks = {};
@@ -134,7 +126,7 @@ TEST(PlaceVerification, WithoutFeaturesDepthVerifiesAndIntensitiesHaveToFit) {
 }
 
 TEST(PlaceVerification, DepthRefinesWhatFeaturesSay) {
-  const config::Config config = configuration();
+  const config::Config config;
   const Appearance known = appearance_at(kCorner, config);
   const Appearance query = appearance_at(kCorner * kTrue, config);
   const VerifiedPair pair = verify_pair(known, query, kStart, small_camera(), config);

@@ -97,22 +97,13 @@ TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
   EXPECT_GT((cov_b - cov_a).norm(), 1e-3 * size) << "the axes make no difference: the test is empty";
 }
 
-/// The images are of half the size in either direction that the defaults are meant for.
-Config for_small_images() {
-  Config config;
-  config.loops.dense_pixels_per_measurement /= 4;
-  config.loops.dense_min_pairs /= 4;
-  return config;
-}
-
 /// Towards a corner of the room, so that surfaces face all directions.
 const SE3 kCorner{so3_exp({-0.45, 0.6, 0}), {0, 0, 0}};
 
 TEST(Keyframes, DepthFindsThePoseInTheDark) {
-  const Config config = for_small_images();
   const SE3 T_world_room{so3_exp({0.4, -1.1, 0.7}), {3, -2, 5}};
   const RgbdFrame key = seen_from(kCorner);
-  Keyframes keyframes(small_camera(), config);
+  Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, T_world_room * kCorner, 0));
   const SE3 truth = T_world_room * kCorner * SE3{so3_exp({0.05, 0.1, -0.05}), {0.1, -0.05, 0.05}};
   const SE3 predicted = pose_plus(truth, (Vector6d() << 0.03, -0.03, 0.02, 0.04, 0.02, -0.03).finished());
@@ -127,17 +118,30 @@ TEST(Keyframes, DepthFindsThePoseInTheDark) {
   EXPECT_EQ(found->inliers, 0);
 }
 
-TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
-  const Config config = for_small_images();
+TEST(Keyframes, DepthFindsAPlaceThatNothingPredicted) {
   const RgbdFrame key = seen_from(kCorner);
-  Keyframes keyframes(small_camera(), config);
+  Keyframes keyframes(small_camera(), kDefaults);
+  ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
+  const SE3 truth = kCorner * SE3{so3_exp({0.03, 0.06, -0.04}), {0.08, -0.05, 0.05}};
+  RgbdFrame query = seen_from(truth);
+  std::fill(query.grey.data.begin(), query.grey.data.end(), std::uint8_t{2});
+  const SE3 lost{so3_exp({0, radians(170), 0}), {2, 0, 1}};
+  const auto found = keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), lost, 0.5);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->T_world_camera.translation - truth.translation).norm(), 0.006);
+  EXPECT_LT(rotation_angle_rad(found->T_world_camera.rotation, truth.rotation), radians(0.3));
+}
+
+TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
+  const RgbdFrame key = seen_from(kCorner);
+  Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
   const auto of = [](const RgbdFrame& frame) { return places::small_images_of(frame.grey, frame.depth_m); };
   const SE3 turned = kCorner * SE3{so3_exp({0, radians(150), 0}), Vector3d::Zero()};
   EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), turned, 0.5))
       << "it shares nothing with the keyframe";
   EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), kCorner, 0.5))
-      << "the prediction is of another place";
+      << "neither the prediction nor what it looks like is of this place";
 }
 
 TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
