@@ -67,7 +67,7 @@ sources() {
 
 check_scripts() {
   local script status=0
-  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh tests/report/*.sh tests/slurm/*.sh .ci/run; do
+  for script in scripts/*.sh tests/scripts/*.sh tests/cli/*.sh tests/report/*.sh tests/slurm/*.sh tests/installed/*.sh tests/python/*.sh .ci/run; do
     bash -n "$script" || status=1
   done
   return "$status"
@@ -101,6 +101,7 @@ step scripts check_scripts
 step formatting check_format
 step includes ./scripts/check_includes.py
 step references ./scripts/check_references.sh
+step links ./scripts/check_links.py
 step type-names ./scripts/check_type_names.sh
 step build ./scripts/build.sh ci
 if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi

@@ -14,6 +14,7 @@
 #include "eval/cli/recordings/recording_verbs.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/cli/shell/shell_verbs.hpp"
 #include "eval/cli/trajectories/evo_spelling.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/record/build_info.hpp"
@@ -80,7 +81,9 @@ int command_line(int given_count, const char* const* given) {
                                             recordings::add_inspect_verb(app),
                                             recordings::add_export_verb(app),
                                             recordings::add_calibrate_verb(app),
-                                            recordings::add_smooth_verb(app)};
+                                            recordings::add_smooth_verb(app),
+                                            shell::add_completion_verb(app),
+                                            shell::add_manual_verb(app)};
   const auto arguments = trajectories::with_own_spelling({argv + std::min(argc, 1), argv + argc});
   if (!arguments) return finish(arguments.error());
   try {

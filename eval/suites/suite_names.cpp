@@ -34,7 +34,9 @@ fs::path shipped_configs() {
   if (fs::is_directory("configs/suites", ignored)) return "configs";  // as people would write it
   for (const fs::path& start : {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
     for (fs::path folder = start; folder.has_relative_path(); folder = folder.parent_path()) {
-      if (fs::is_directory(folder / "configs" / "suites", ignored)) return folder / "configs";
+      for (const fs::path& configs : {folder / "configs", folder / "share" / "fusebench" / "configs"}) {
+        if (fs::is_directory(configs / "suites", ignored)) return configs;
+      }
     }
   }
   return {};

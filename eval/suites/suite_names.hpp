@@ -11,7 +11,8 @@ namespace fusebench::suites {
 /// The files of suites in a folder of configurations, sorted. Error data_missing.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> suite_files(const std::filesystem::path& configs);
 
-/// configs/ in the working folder or above it, else above the program; empty if there is none.
+/// configs/ in the working folder or above it, else above the program; share/fusebench/configs where it is
+/// installed. Empty if there is none.
 [[nodiscard]] std::filesystem::path shipped_configs();
 
 /// The file that a command line calls by `name`: a file of that path, else configs/suites/<name>.toml. Error

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/json_schema.hpp"
+#include "tests/support/repository.hpp"
 
 namespace fusebench {
 
@@ -297,6 +301,76 @@ TEST(Record, FilesStandWithTheirSizesAndHashes) {
   older.erase("files");
   older["timing"].erase("files");
   EXPECT_TRUE(parse_record(older.dump(), "record.json")->files.empty());
+}
+
+/// sample_record() with what only some runs have.
+RunRecord complete_record() {
+  RunRecord record = sample_record();
+  FittedOffset fitted;
+  fitted.stats = record.metrics.ate.value->stats;
+  record.metrics.ate_fitted = {fitted, {}};
+  record.metrics.rpe_second = record.metrics.rpe_frame;
+  record.metrics.intensity_readings = {IntensityReadings{}, {}};
+  record.metrics.mesh.value->positions = record.metrics.mesh.value->first_camera;
+  record.metrics.silent = {RecordedSilentFailures{}, {}};
+  record.metrics.pose_intensity = {RecordedPoseIntensity{}, {}};
+  for (Outcome<NeesResult>& nees : record.metrics.nees) nees = record.metrics.nees[1];
+  record.final_metrics = record.metrics;
+  record.program = {"text", "1.2", 3};
+  record.sensors = {{"imu_time_offset_s", 0.01, 0.002}};
+  record.files = {{"mesh.ply", 12, "ff"}};
+  record.timing.files = {{"frames.csv", 7, "aa"}};
+  record.timing.histograms = {{"update", histogram_of({3, 4, 4.5, 20})}};
+  return record;
+}
+
+testing::JsonSchema record_schema() {
+  std::ifstream file(testing::repository_root() / "docs" / "record.schema.json");
+  return testing::JsonSchema(json::parse(file));
+}
+
+TEST(RecordSchema, KnowsEveryFieldAndNoOther) {
+  testing::JsonSchema schema = record_schema();
+  for (const RunRecord& record : {sample_record(), complete_record(), RunRecord{}})
+    EXPECT_EQ(schema.violations(json::parse(to_json(record))), std::vector<std::string>());
+  EXPECT_EQ(schema.unused_properties(), std::vector<std::string>());
+  RunRecord without_loops = sample_record();
+  without_loops.loops = Outcome<loop_error::LoopError>{std::nullopt, "no truth"};
+  EXPECT_EQ(schema.violations(json::parse(to_json(without_loops))), std::vector<std::string>());
+}
+
+TEST(RecordSchema, HoldsForTheBaseline) {
+  testing::JsonSchema schema = record_schema();
+  std::size_t records = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(testing::repository_root() / "results" / "baseline")) {
+    if (entry.path().filename() != "record.json") continue;
+    std::ifstream file(entry.path());
+    EXPECT_EQ(schema.violations(json::parse(file)), std::vector<std::string>()) << entry.path();
+    ++records;
+  }
+  EXPECT_GT(records, 5U);
+}
+
+TEST(RecordSchema, FindsWhatDoesNotFit) {
+  testing::JsonSchema schema = record_schema();
+  const json whole = json::parse(to_json(complete_record()));
+  const auto violations_with = [&](const char* pointer, const json& value) {
+    json changed = whole;
+    changed[json::json_pointer(pointer)] = value;
+    return schema.violations(changed);
+  };
+  using Violations = std::vector<std::string>;
+  EXPECT_EQ(violations_with("/metrics/ate/new_field", 1),
+            Violations{"/metrics/ate/new_field: the schema does not know it"});
+  EXPECT_EQ(violations_with("/timing/gpu_s", 1), Violations{"/timing/gpu_s: the schema does not know it"});
+  EXPECT_EQ(violations_with("/status", "great").size(), 1U);
+  EXPECT_EQ(violations_with("/frames/total", -1).size(), 1U);
+  EXPECT_EQ(violations_with("/frames/total", "many").size(), 1U);
+  EXPECT_EQ(violations_with("/metrics/ate/alignment/matrix/16", 1.0).size(), 1U);
+  json without = whole;
+  without["recording"].erase("fingerprint");
+  EXPECT_EQ(schema.violations(without), Violations{"/recording: lacks fingerprint"});
 }
 
 }  // namespace

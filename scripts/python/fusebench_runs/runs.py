@@ -1,0 +1,139 @@
+"""Folders of runs."""
+
+import json
+import math
+import pathlib
+
+from .columns import read_csv, table_of
+from .intensity import read_intensity
+from .trajectories import read_trajectory
+
+SCHEMA = 1
+
+
+class Run:
+    """A run's folder. `record` is its record.json (docs/record.schema.json)."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        file = self.folder / "record.json"
+        try:
+            self.record = json.loads(file.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ValueError(f"{file}: damaged: {error}") from error
+        if self.record.get("schema") != SCHEMA:
+            raise ValueError(f"{file}: schema = {self.record.get('schema')} (this module reads {SCHEMA})")
+
+    def __repr__(self):
+        return f"<Run {self.recording} {self.label} {self.status}>"
+
+    @property
+    def recording(self):
+        return self.record["recording"]["name"]
+
+    @property
+    def variant(self):
+        return self.record["variant"]
+
+    @property
+    def status(self):
+        """ok, lost or failed."""
+        return self.record["status"]
+
+    @property
+    def edits(self):
+        """Options that a file, --set, a suite or a sweep gave: {"tsdf.voxel_m": 0.02}."""
+        return {key: option["value"] for key, option in self.record["config"].items()
+                if option["origin"] != "default" and not option["origin"].startswith("variant ")}
+
+    @property
+    def label(self):
+        """The variant, and the options that were edited: "full tsdf.voxel_m=0.02"."""
+        return " ".join([self.variant] + [f"{key}={_as_typed(value)}" for key, value in self.edits.items()])
+
+    def has(self, name):
+        """Whether the run has that file."""
+        return (self.folder / name).is_file()
+
+    def metric(self, path, default=math.nan):
+        """A number of record["metrics"], by its path: "ate/stats/rmse"; default where there is none."""
+        value = self.record["metrics"]
+        for key in path.split("/"):
+            if not isinstance(value, dict) or key not in value:
+                return default
+            value = value[key]
+        return default if value is None else value
+
+    def frames(self, frames=None):
+        """frames.csv, a row per frame."""
+        return read_csv(self.folder / "frames.csv", frames)
+
+    def states(self, frames=None):
+        """states.csv, a row per frame."""
+        return read_csv(self.folder / "states.csv", frames)
+
+    def nees(self, frames=None):
+        """nees.csv, a row per frame and part of the state."""
+        return read_csv(self.folder / "nees.csv", frames)
+
+    def patches(self, frames=None):
+        """patches.csv, a row per pixel of the frames that moved most."""
+        return read_csv(self.folder / "patches.csv", frames)
+
+    def loops(self, frames=None):
+        """loops.csv, a row per candidate."""
+        return read_csv(self.folder / "loops.csv", frames)
+
+    def places(self, frames=None):
+        """places.csv, a row per place."""
+        return read_csv(self.folder / "places.csv", frames)
+
+    def intensity(self):
+        """intensity.bin: see read_intensity()."""
+        return read_intensity(self.folder / "intensity.bin")
+
+    def trajectory(self):
+        """Poses of tracked frames; the world is the first camera."""
+        return read_trajectory(self.folder / "trajectory.tum")
+
+    def final(self):
+        """Poses as the system revised them at the end."""
+        return read_trajectory(self.folder / "final.tum")
+
+    def truth(self):
+        """The ground truth as it was read, in its own world."""
+        return read_trajectory(self.folder / "truth.tum")
+
+
+def _as_typed(value):
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def open_runs(folder):
+    """Every run below a folder, by its place. Raises FileNotFoundError if there is none, ValueError for a damaged record."""
+    folder = pathlib.Path(folder)
+    # Folders whose names begin with a point belong to runs that are not finished.
+    records = [file for file in sorted(folder.rglob("record.json"))
+               if not any(part.startswith(".") for part in file.relative_to(folder).parts)]
+    if not records:
+        raise FileNotFoundError(f"{folder}: no runs (no record.json at any depth)")
+    return [Run(file.parent) for file in records]
+
+
+def summary(runs, frames=None):
+    """A row per run with the numbers that tables show."""
+    columns = {
+        "recording": [run.recording for run in runs],
+        "label": [run.label for run in runs],
+        "status": [run.status for run in runs],
+        "ate_rmse_m": [run.metric("ate/stats/rmse") for run in runs],
+        "rpe_second_rmse_m": [run.metric("rpe/second/translation/stats/rmse") for run in runs],
+        "rpe_second_rmse_rad": [run.metric("rpe/second/rotation/stats/rmse") for run in runs],
+        "aie_grey": [run.metric("aie/aie") for run in runs],
+        "mesh_accuracy_rmse_m": [run.metric("mesh/accuracy/rmse") for run in runs],
+        "coverage": [run.metric("coverage/share") for run in runs],
+        "silent": [run.metric("silent_failures/silent") for run in runs],
+        "fps": [run.record["timing"]["fps"] for run in runs],
+        "folder": [str(run.folder) for run in runs],
+    }
+    return table_of(columns, frames)
