@@ -37,5 +37,11 @@ cp scripts/mkdocs.yml "$stage/mkdocs.yml"
 } | LC_ALL=C sort -u | while read -r file; do
   install -D -m 644 "$file" "$stage/pages/$file"
 done
-mkdocs build --quiet --strict --config-file "$stage/mkdocs.yml" --site-dir "${out:-$PWD/$stage/site}"
+for page in "$stage"/pages/docs/*.md; do
+  if ! grep -q ": docs/$(basename "$page")\$" scripts/mkdocs.yml; then
+    printf 'build_site: docs/%s is in no menu of scripts/mkdocs.yml\n' "$(basename "$page")" >&2
+    exit 1
+  fi
+done
+mkdocs build --strict --config-file "$stage/mkdocs.yml" --site-dir "${out:-$PWD/$stage/site}"
 printf 'build_site: %s\n' "${out:-$PWD/$stage/site}/index.html"

@@ -52,6 +52,7 @@ class AWrittenRun(unittest.TestCase):
         self.assertEqual(len(self.run_of_test.states(frames=False)), total)
         self.assertEqual(frames["status"][0], "initialised")
         self.assertTrue(math.isnan(frames["aie_grey"][0]))
+        self.assertEqual(set(frames["reason"]), {""})
         tracked = {pose.timestamp_ns for pose in self.run_of_test.trajectory()}
         self.assertLessEqual(tracked, set(frames["timestamp_ns"]))
         self.assertEqual(len(next(iter(frames.rows()))), len(frames.keys()))

@@ -46,6 +46,10 @@ def nanoseconds(seconds):
     return int(whole) * 10**9 + sign * int((fraction + "000000000")[:9])
 
 
+#: Columns of words, also where all of them are empty, which else is a column of NaN.
+_TEXTS = {"status", "health", "reason", "part", "verified_by", "decision", "why"}
+
+
 def _numbers(cells):
     """Cells as numbers, empty ones as NaN; None if one is no number. Whole numbers stay whole."""
     try:
@@ -70,7 +74,7 @@ def read_csv(file, frames=None):
     columns = Columns()
     for index, name in enumerate(names):
         cells = [row[index] for row in rows]
-        numbers = _numbers(cells)
+        numbers = None if name in _TEXTS else _numbers(cells)
         columns[name] = cells if numbers is None else numbers
         if name in ("timestamp", "capture_timestamp", "timestamp_s", "query_s", "place_s"):
             columns[name.removesuffix("_s") + "_ns"] = [nanoseconds(cell) for cell in cells]
