@@ -20,8 +20,9 @@ namespace fusebench::page {
 namespace {
 
 // Those of pages, in light.
-constexpr std::array<const char*, 8> kColours = {"#0067a8", "#c8500a", "#00795a", "#a3417f",
-                                                 "#6b6b00", "#6a5acd", "#8c5a3c", "#5f6973"};
+constexpr std::array<const char*, kSeriesColours> kColours = {"#0067a8", "#c8500a", "#00795a", "#a3417f",
+                                                              "#6b6b00", "#6a5acd", "#8c5a3c", "#5f6973",
+                                                              "#b3125c", "#3b7a1e", "#00767f", "#7b3fa0"};
 
 /// As wide as a column of a two-column paper (8.5 cm), with letters of 8 points there.
 std::string terminal(FigureFormat format, bool equal) {
@@ -42,6 +43,9 @@ std::string equal_axes(const Chart& chart) {
       if (point.allFinite()) box.extend(point);
     }
   }
+  if (chart.x_range && chart.y_range)
+    box = Eigen::AlignedBox2d(Vector2d(chart.x_range->x(), chart.y_range->x()),
+                              Vector2d(chart.x_range->y(), chart.y_range->y()));
   if (box.isEmpty()) return "";
   constexpr double kMargin = 1.06;
   constexpr double kLeastShare = 0.4;
@@ -122,6 +126,10 @@ std::string curve(const Chart& chart, std::size_t i) {
       return fmt::format("$series{}{} with lines lw 4 lc rgb '#66{}' title {}", i, axes, colour + 1, title);
     case SeriesStyle::segments:
       return fmt::format("$series{}{} with lines lw 0.6 lc rgb '{}' title {}", i, axes, colour, title);
+    case SeriesStyle::band:
+      return fmt::format(
+          "$series{}{} with filledcurves y1=0 fs transparent solid 0.15 noborder lc rgb '{}' title {}", i,
+          axes, colour, title);
     case SeriesStyle::dots:
       return fmt::format("$series{}{} with points pt 7 ps 0.3 lc rgb '{}' title {}", i, axes, colour, title);
     case SeriesStyle::bars:
@@ -160,6 +168,16 @@ std::string stacked(const Chart& chart) {
         kColours[chart.series[i].colour.value_or(i) % kColours.size()], gnuplot_text(chart.series[i].label));
   }
   return script + "\n";
+}
+
+/// Names at 1, 2, ... along x, upright so that long ones have room.
+std::string name_tics(const Chart& chart) {
+  if (chart.x_names.empty()) return "";
+  std::string tics;
+  for (std::size_t i = 0; i < chart.x_names.size(); ++i)
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", gnuplot_text(chart.x_names[i]), i + 1);
+  return fmt::format("set xtics rotate by 60 right ({})\nset xrange [0.5:{}.5]\n", tics,
+                     chart.x_names.size());
 }
 
 /// Letters and digits, in lower case; what is between them becomes one '_'.
@@ -220,14 +238,26 @@ std::string gnuplot_script(const Chart& chart, const std::string& file, FigureFo
                         gnuplot_text(chart.left_label));
   if (!chart.right_label.empty())
     script += fmt::format("set y2label {}\nset y2tics\n", gnuplot_text(chart.right_label));
-  if (chart.from_zero) script += "set yrange [0:*]\n";
+  if (chart.equal_scale) {
+    script += equal_axes(chart);
+  } else if (chart.y_range) {
+    script += fmt::format("set yrange [{:.6g}:{:.6g}]\n", chart.y_range->x(), chart.y_range->y());
+  } else if (chart.from_zero) {
+    script += "set yrange [0:*]\n";
+  }
+  if (chart.x_range && !chart.equal_scale)
+    script += fmt::format("set xrange [{:.6g}:{:.6g}]\n", chart.x_range->x(), chart.x_range->y());
+  script += name_tics(chart);
   if (chart.log_x) script += "set logscale x\n";
-  if (chart.equal_scale) script += equal_axes(chart);
   if (!chart.categories.empty()) return script + stacked(chart);
   add_data(chart, script);
   std::string curves;
-  for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    if (!chart.series[i].on_request) curves += (curves.empty() ? "" : ", ") + curve(chart, i);
+  for (const bool bands : {true, false}) {
+    for (std::size_t i = 0; i < chart.series.size(); ++i) {
+      const ChartSeries& series = chart.series[i];
+      if (series.on_request || (series.style == SeriesStyle::band) != bands) continue;
+      curves += (curves.empty() ? "" : ", ") + curve(chart, i);
+    }
   }
   return script + "plot " + curves + "\n";
 }

@@ -39,13 +39,20 @@ std::string_view style_name(SeriesStyle style) {
       return "backdrop";
     case SeriesStyle::segments:
       return "segments";
+    case SeriesStyle::band:
+      return "band";
     case SeriesStyle::line:
       break;
   }
   return "line";
 }
 
-Json json_of(const Chart& chart) {
+Json json_of(const std::optional<Vector2d>& range) {
+  return range ? Json{number(range->x()), number(range->y())} : Json(nullptr);
+}
+
+/// part: the place of the part that it stands in.
+Json json_of(const Chart& chart, std::size_t part) {
   Json series = Json::array();
   for (std::size_t place = 0; place < chart.series.size(); ++place) {
     const ChartSeries& s = chart.series[place];
@@ -69,6 +76,10 @@ Json json_of(const Chart& chart) {
           {"equal", chart.equal_scale},
           {"log", chart.log_x},
           {"categories", chart.categories},
+          {"names", chart.x_names},
+          {"xRange", json_of(chart.x_range)},
+          {"yRange", json_of(chart.y_range)},
+          {"part", part},
           {"series", series}};
 }
 
@@ -104,14 +115,33 @@ Json json_of(const SceneMesh& scene) {
           {"errors", colors_text(scene.error_colors)}};
 }
 
-Json json_of(const PageScene& scene) {
+Json json_of(const Vector3d& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
+
+/// Eight numbers a pose: time, position, quaternion (x, y, z, w).
+Json json_of(const ScenePath& path) {
+  Json numbers = Json::array();
+  for (const TimedPose& pose : path.poses) {
+    const Vector3d& p = pose.T_scene_camera.translation;
+    const Quaterniond& q = pose.T_scene_camera.rotation;
+    for (const double value : {pose.time_s, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()})
+      numbers.push_back(io::parse_number(fmt::format("{:.4f}", value)).value_or(value));
+  }
+  return {{"label", path.label}, {"colour", path.colour}, {"poses", std::move(numbers)}};
+}
+
+Json json_of(const PageScene& scene, std::size_t part) {
   Json meshes = Json::array();
   for (const SceneMesh& mesh : scene.meshes) meshes.push_back(json_of(mesh));
+  Json paths = Json::array();
+  for (const ScenePath& path : scene.paths) paths.push_back(json_of(path));
   return {{"meshes", std::move(meshes)},
+          {"paths", std::move(paths)},
           {"largest_error_m", scene.largest_error_m},
-          {"centre", {number(scene.centre.x()), number(scene.centre.y()), number(scene.centre.z())}},
-          {"radius_m", number(scene.radius_m)},
-          {"up", scene.up}};
+          {"low", json_of(scene.low)},
+          {"high", json_of(scene.high)},
+          {"up", scene.up},
+          {"ahead", scene.ahead},
+          {"part", part}};
 }
 
 /// JSON that can neither end the script element that holds it nor begin another one.
@@ -127,22 +157,51 @@ std::string script_safe(const Json& json) {
   return safe;
 }
 
-std::string html_of(const PageTable& table) {
-  std::string html = "<div class=\"scroll\"><table>\n";
-  if (!table.header.empty()) {
-    html += "<tr>";
-    for (const std::string& cell : table.header) html += fmt::format("<th>{}</th>", escaped(cell));
-    html += "</tr>\n";
-  }
-  for (const PageTable::Row& row : table.rows) {
-    html += row.style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", row.style);
-    for (const std::string& cell : row.cells) html += fmt::format("<td>{}</td>", escaped(cell));
-    html += "</tr>\n";
-  }
-  return html + "</table></div>\n";
+/// A number, a share such as 12/34, a number with its range or uncertainty, "1 to 2".
+bool is_number(std::string_view cell) {
+  constexpr std::string_view kOthers = "0123456789.,+-/%e ()to";
+  return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
+         cell.find_first_of("(/%e,to") != 0 && cell.find_first_not_of(kOthers) == std::string_view::npos;
 }
 
-std::string html_of(const std::vector<Chart>& charts, Json& all) {
+/// Names of the style's classes for columns of numbers: n1 is the first column.
+std::string number_columns(const PageTable& table) {
+  std::string classes;
+  for (std::size_t column = 0; column < table.header.size(); ++column) {
+    bool any = false;
+    const bool all = std::ranges::all_of(table.rows, [&](const PageTable::Row& row) {
+      if (column >= row.cells.size() || row.cells[column].empty() || row.cells[column] == "-") return true;
+      any = true;
+      return is_number(row.cells[column]);
+    });
+    if (all && any) classes += fmt::format("{}n{}", classes.empty() ? "" : " ", column + 1);
+  }
+  return classes;
+}
+
+std::string html_of(const PageTable& table) {
+  const std::string classes = number_columns(table);
+  std::string html = "<div class=\"scroll\"><table";
+  html += classes.empty() ? ">\n" : fmt::format(" class=\"{}\">\n", classes);
+  if (!table.header.empty()) {
+    html += "<thead><tr>";
+    for (const std::string& cell : table.header)
+      html += fmt::format("<th scope=\"col\">{}</th>", escaped(cell));
+    html += "</tr></thead>\n";
+  }
+  html += "<tbody>\n";
+  for (const PageTable::Row& row : table.rows) {
+    html += row.style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", row.style);
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const bool best = std::ranges::find(row.best, i) != row.best.end();
+      html += fmt::format("<td{}>{}</td>", best ? " class=\"best\"" : "", escaped(row.cells[i]));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string html_of(const std::vector<Chart>& charts, std::size_t part, Json& all) {
   std::string html = "<div class=\"charts\">\n";
   for (const Chart& chart : charts) {
     html += fmt::format(
@@ -150,26 +209,29 @@ std::string html_of(const std::vector<Chart>& charts, Json& all) {
         "aria-label=\"{}\"></canvas></div><figcaption>{}</figcaption></figure>\n",
         escaped(chart.title), chart.equal_scale ? " square" : "", all.size(), escaped(chart.title),
         escaped(chart.caption));
-    all.push_back(json_of(chart));
+    all.push_back(json_of(chart, part));
   }
   return html + "</div>\n";
 }
 
-std::string html_of(const std::vector<PageImage>& images, std::size_t columns) {
-  std::string html = columns > 0
-                         ? fmt::format("<div class=\"images rows\" style=\"--columns: {}\">\n", columns)
-                         : "<div class=\"images\">\n";
+std::string html_of(const std::vector<PageImage>& images, const PageSection& section) {
+  std::string html =
+      section.strip ? "<div class=\"strip\" tabindex=\"0\">\n"
+      : section.image_columns > 0
+          ? fmt::format("<div class=\"images rows\" style=\"--columns: {}\">\n", section.image_columns)
+          : "<div class=\"images\">\n";
   for (const PageImage& image : images) {
-    html += fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
+    html += image.time_s ? fmt::format("<figure data-time=\"{:.6g}\">", *image.time_s) : "<figure>";
+    html += fmt::format("<img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
                         escaped(image.caption), image.data_uri);
   }
   return html + "</div>\n";
 }
 
-std::string html_of(const PageScene& scene, Json& all) {
+std::string html_of(const PageScene& scene, std::size_t part, Json& all) {
   std::string html = fmt::format("<div class=\"scene\" id=\"scene-{}\"></div>\n", all.size());
   if (!scene.caption.empty()) html += fmt::format("<p>{}</p>\n", escaped(scene.caption));
-  all.push_back(json_of(scene));
+  all.push_back(json_of(scene, part));
   return html;
 }
 
@@ -182,24 +244,49 @@ std::string html_of(const std::vector<PageDetails>& list) {
   return html;
 }
 
+std::string html_of(const PageParagraphs& paragraphs) {
+  std::string html = "<div class=\"paragraphs\">\n";
+  for (const std::string& line : paragraphs.lines) html += fmt::format("<p>{}</p>\n", escaped(line));
+  return html + "</div>\n";
+}
+
 /// What the script draws.
 struct Drawn {
   Json charts = Json::array();
   Json scenes = Json::array();
 };
 
-std::string html_of(const PageSection& section, std::size_t place, Drawn& drawn) {
+/// part: the place of the section that begins its part.
+std::string html_of(const PageSection& section, std::size_t place, std::size_t part, Drawn& drawn) {
   std::string html =
       fmt::format("<h{0} id=\"section-{1}\">{2}</h{0}>\n", section.level, place, escaped(section.title));
   if (!section.text.empty()) html += fmt::format("<p>{}</p>\n", escaped(section.text));
   if (const auto* table = std::get_if<PageTable>(&section.content)) return html + html_of(*table);
   if (const auto* list = std::get_if<std::vector<Chart>>(&section.content))
-    return html + html_of(*list, drawn.charts);
+    return html + html_of(*list, part, drawn.charts);
   if (const auto* scene = std::get_if<PageScene>(&section.content))
-    return html + html_of(*scene, drawn.scenes);
+    return html + html_of(*scene, part, drawn.scenes);
   if (const auto* details = std::get_if<std::vector<PageDetails>>(&section.content))
     return html + html_of(*details);
-  return html + html_of(std::get<std::vector<PageImage>>(section.content), section.image_columns);
+  if (const auto* paragraphs = std::get_if<PageParagraphs>(&section.content))
+    return html + html_of(*paragraphs);
+  return html + html_of(std::get<std::vector<PageImage>>(section.content), section);
+}
+
+/// All sections; those of a part, which a section of level 2 begins, stand in an element of their own.
+std::string body_of(const Page& page, Drawn& drawn) {
+  std::string body;
+  std::size_t part = 0;
+  for (std::size_t place = 0; place < page.sections.size(); ++place) {
+    const PageSection& section = page.sections[place];
+    if (place == 0 || section.level == 2) {
+      part = place;
+      body += fmt::format("{}<section class=\"part{}\" id=\"part-{}\">\n", place > 0 ? "</section>\n" : "",
+                          section.timeline ? " timeline" : "", part);
+    }
+    body += html_of(section, place, part, drawn);
+  }
+  return page.sections.empty() ? body : body + "</section>\n";
 }
 
 /// Links to the main sections, where there are many.
@@ -220,25 +307,26 @@ std::string contents_of(const Page& page) {
 
 std::string to_html(const Page& page) {
   Drawn drawn;
-  std::string body = contents_of(page);
-  for (std::size_t place = 0; place < page.sections.size(); ++place)
-    body += html_of(page.sections[place], place, drawn);
+  std::string body = contents_of(page) + body_of(page, drawn);
+  body += fmt::format(
+      "<script type=\"application/json\" id=\"charts\">{}</script>\n<script>{}</script>\n"
+      "<script>\n{}{}{}{}</script>\n",
+      script_safe(drawn.charts), chart_library(), chart_axes_script(), chart_plugins_script(), page_script(),
+      timeline_script());
   if (!drawn.scenes.empty()) {
     body += fmt::format(
         "<script type=\"application/json\" "
         "id=\"scenes\">{}</script>\n<script>{}</script>\n<script>{}</script>\n"
-        "<script>\n{}</script>\n",
-        script_safe(drawn.scenes), scene_library(), scene_controls(), scene_script());
+        "<script>\n{}{}</script>\n",
+        script_safe(drawn.scenes), scene_library(), scene_controls(), scene_camera_script(), scene_script());
   }
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{0}</title>\n<style>\n{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p>{1}</p>\n"
       "<noscript><p>The charts need JavaScript; everything else is here.</p></noscript>\n{3}"
-      "<script type=\"application/json\" id=\"charts\">{4}</script>\n"
-      "<script>{5}</script>\n<script>\n{6}</script>\n</body>\n</html>\n",
-      escaped(page.title), escaped(page.subtitle), page_style(), body, script_safe(drawn.charts),
-      chart_library(), page_script());
+      "</body>\n</html>\n",
+      escaped(page.title), escaped(page.subtitle), page_style(), body);
 }
 
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& points, std::size_t buckets) {

@@ -14,18 +14,24 @@
 
 namespace fusebench::page {
 
+/// Columns of numbers are right-aligned: those whose cells are all numbers, "-" or empty.
 struct PageTable {
   struct Row {
     std::vector<std::string> cells;
-    std::string style;  ///< "error", "warning", "note" or empty
+    std::string style;                   ///< "error", "warning", "note" or empty
+    std::vector<std::size_t> best = {};  ///< places of the cells that are the best of their kind
   };
   std::vector<std::string> header;
   std::vector<Row> rows;
 };
 
+/// How many colours the style has for series: --series-0 and so on. They repeat.
+inline constexpr std::size_t kSeriesColours = 12;
+
 enum class SeriesStyle {
   line,
   backdrop,  ///< a wide line beneath the others
+  band,      ///< the area from zero to the points, beneath all lines
   dots,
   bars,
   boxes,
@@ -62,12 +68,18 @@ struct Chart {
   bool equal_scale = false;                  ///< a metre is as long on either axis
   bool log_x = false;                        ///< x is positive, and its axis logarithmic
   std::vector<std::string> categories = {};  ///< of x, which are then 0, 1, ...: bars stand on one another
+  std::vector<std::string> x_names = {};     ///< of the places 1, 2, ... of x, in place of its numbers
+  /// What is drawn at first, least and most; what lies beyond is cut and marked, and shown on request. All
+  /// where there is none.
+  std::optional<Vector2d> x_range = {};
+  std::optional<Vector2d> y_range = {};  ///< of the axis on the left
   std::vector<ChartSeries> series;
 };
 
 struct PageImage {
   std::string caption;
   std::string data_uri;
+  std::optional<double> time_s = {};  ///< of what it shows, on the charts' axis of time
 };
 
 /// A mesh, ready to be drawn: positions are quantised to 16 bits within its box.
@@ -77,14 +89,35 @@ struct SceneMesh {
   std::vector<Rgb> error_colors;  ///< one a vertex, or none
 };
 
-/// Meshes side by side, turned together.
+/// A pose of a camera whose z points ahead and whose y points down.
+struct TimedPose {
+  double time_s = 0;
+  SE3 T_scene_camera;
+};
+
+/// The way of a camera, drawn beside the mesh of that label.
+struct ScenePath {
+  std::string label;
+  std::size_t colour = 0;
+  std::vector<TimedPose> poses;
+};
+
+/// Meshes side by side, turned together. The first look is along `ahead`, from where all of the box is in
+/// view.
 struct PageScene {
   std::string caption;
   std::vector<SceneMesh> meshes;
-  double largest_error_m = 0;          ///< of the last colour
-  Vector3d centre = Vector3d::Zero();  ///< that is looked at
-  double radius_m = 1;                 ///< of what should be in view around it
+  std::vector<ScenePath> paths = {};
+  double largest_error_m = 0;        ///< of the last colour
+  Vector3d low = Vector3d::Zero();   ///< corner of the box that should be in view
+  Vector3d high = Vector3d::Zero();  ///< the corner across
   std::array<double, 3> up = {0, 0, 1};
+  std::array<double, 3> ahead = {0, 1, 0};
+};
+
+/// What a reader should know first, a paragraph a line.
+struct PageParagraphs {
+  std::vector<std::string> lines;
 };
 
 /// Text that is folded away until it is asked for.
@@ -96,10 +129,13 @@ struct PageDetails {
 struct PageSection {
   std::string title;
   std::string text;
-  std::variant<PageTable, std::vector<Chart>, std::vector<PageImage>, PageScene, std::vector<PageDetails>>
+  std::variant<PageTable, std::vector<Chart>, std::vector<PageImage>, PageScene, std::vector<PageDetails>,
+               PageParagraphs>
       content;
-  int level = 2;                  ///< of the heading; level 2 stands in the page's list of contents
+  int level = 2;  ///< of the heading; level 2 stands in the page's list of contents, and begins a part
   std::size_t image_columns = 0;  ///< of images where there is room; 0: as many as fit
+  bool strip = false;             ///< images in one row, small, to scroll through
+  bool timeline = false;          ///< of a part: one time for all of its charts, images and cameras
 };
 
 struct Page {

@@ -39,6 +39,7 @@
 
   function viewOf(mesh, host) {
     const figure = element("div", host);
+    figure.dataset.run = mesh.label;
     element("div", figure, mesh.label);
     const canvas = element("canvas", figure);
     canvas.setAttribute("role", "img");
@@ -47,10 +48,11 @@
     const scene = new THREE.Scene();
     const object = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors, side: THREE.DoubleSide }));
     scene.add(object);
-    scene.add(new THREE.AmbientLight(0xffffff, 0.55));
-    const light = new THREE.DirectionalLight(0xffffff, 0.55);
+    // Dark surfaces stay visible: much of the light comes from everywhere.
+    scene.add(new THREE.AmbientLight(0xffffff, 0.85));
+    const light = new THREE.DirectionalLight(0xffffff, 0.45);
     scene.add(light);
-    return { mesh: mesh, canvas: canvas, scene: scene, light: light, geometry: geometry, material: object.material };
+    return { mesh: mesh, figure: figure, canvas: canvas, scene: scene, light: light, geometry: geometry, path: null };
   }
 
   function paint(view, errors) {
@@ -75,17 +77,24 @@
     const grid = element("div", host);
     grid.className = "views";
     const views = description.meshes.map((mesh) => viewOf(mesh, grid));
-    const centre = new THREE.Vector3(...description.centre);
-    const radius = Math.max(description.radius_m, 1e-3);
-    const camera = new THREE.PerspectiveCamera(45, 1, 0.01 * radius, 50 * radius);
-    camera.up.set(...description.up);
-    const home = centre.clone().add(camera.up.clone().multiplyScalar(0.9 * radius))
-      .add(new THREE.Vector3(0.55, 0.35, -1).normalize().multiplyScalar(2.1 * radius));
-    camera.position.copy(home);
-    camera.lookAt(centre);
+    if (views.length === 1) grid.classList.add("single");
+    const camera = new THREE.PerspectiveCamera(45, 1, 0.01, 100);
+    const shapeOf = (canvas) => Math.max(1, canvas.clientWidth) / Math.max(1, canvas.clientHeight);
+    camera.aspect = shapeOf(views[0].canvas);
+    const home = fittedView(camera, description, views.flatMap((view) => somePoints(view.geometry, 1500 / views.length)));
+    const centre = home.centre;
+    const pathColour = (path) => colour("--series-" + (path.colour % seriesColours));
+    views.forEach((view) => {
+      const path = description.paths.find((other) => other.label === view.mesh.label);
+      if (!path || path.poses.length < 8) return;
+      view.path = cameraPath(path, 0.16 * home.radius, pathColour(path));
+      view.description = path;
+      view.scene.add(view.path);
+    });
 
     function render() {
       views.forEach((view) => {
+        if (view.figure.hidden) return;
         const scale = window.devicePixelRatio || 1;
         const width = Math.max(1, Math.round(view.canvas.clientWidth * scale));
         const height = Math.max(1, Math.round(view.canvas.clientHeight * scale));
@@ -97,24 +106,42 @@
         camera.updateProjectionMatrix();
         view.light.position.copy(camera.position).sub(centre);
         renderer.setSize(width, height, false);
-        renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue("--back").trim());
+        renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue("--scene").trim());
         renderer.render(view.scene, camera);
         view.canvas.getContext("2d").drawImage(renderer.domElement, 0, 0);
       });
     }
 
     const hasErrors = description.meshes.some((mesh) => mesh.errors !== "");
-    const show = (errors) => { views.forEach((view) => paint(view, errors)); render(); };
+    let scale = null;
+    const show = (errors) => {
+      if (scale) scale.hidden = !errors;
+      views.forEach((view) => paint(view, errors));
+      render();
+    };
     if (hasErrors) {
       choose(bar, "colours-" + index, "error", true, () => show(true));
       choose(bar, "colours-" + index, "surface", false, () => show(false));
-      const legend = element("span", bar, "distance to the true surface: 0 ");
-      element("span", legend).className = "ramp";
-      legend.appendChild(document.createTextNode(" " + Number((100 * description.largest_error_m).toPrecision(3)) + " cm and more"));
+      scale = element("span", bar, "distance to the true surface: 0 ");
+      element("span", scale).className = "ramp";
+      scale.appendChild(document.createTextNode(" " + Number((100 * description.largest_error_m).toPrecision(3)) + " cm and more"));
     }
     const reset = element("button", bar, "reset view");
     reset.type = "button";
-    element("span", bar, "drag to turn, wheel to zoom, right button to move");
+    let withPaths = true;
+    if (views.some((view) => view.path)) {
+      const label = element("label", bar);
+      const box = element("input", label);
+      box.type = "checkbox";
+      box.checked = true;
+      label.appendChild(document.createTextNode(" camera"));
+      box.addEventListener("change", () => {
+        withPaths = box.checked;
+        views.forEach((view) => { if (view.path) view.path.visible = withPaths; });
+        render();
+      });
+    }
+    element("span", bar, "drag or arrow keys to turn, wheel or + and - to zoom, right button to move");
 
     const controls = views.map((view) => {
       const control = new THREE.OrbitControls(camera, view.canvas);
@@ -129,20 +156,63 @@
       controls.forEach((other) => { if (other !== control) other.target.copy(control.target); });
     }));
     reset.addEventListener("click", () => {
-      camera.position.copy(home);
+      camera.position.copy(home.position);
       controls.forEach((control) => { control.target.copy(centre); });
       camera.lookAt(centre);
       render();
     });
+    views.forEach((view) => {
+      view.canvas.tabIndex = 0;
+      view.canvas.addEventListener("keydown", (event) => { if (turn(event.key)) event.preventDefault(); });
+    });
+
+    /// By a key; false: it is none of a view.
+    function turn(key) {
+      const target = controls[0].target;
+      const offset = camera.position.clone().sub(target);
+      const angle = { ArrowLeft: -0.1, ArrowRight: 0.1 }[key];
+      const tilt = { ArrowUp: 0.1, ArrowDown: -0.1 }[key];
+      const zoom = { "+": 0.9, "-": 1.1 }[key];
+      if (angle) offset.applyAxisAngle(camera.up, angle);
+      else if (zoom) offset.multiplyScalar(zoom);
+      else if (tilt) {
+        const side = new THREE.Vector3().crossVectors(camera.up, offset).normalize();
+        const tilted = offset.clone().applyAxisAngle(side, -tilt);
+        if (tilted.angleTo(camera.up) > 0.1 && tilted.angleTo(camera.up) < 3.0) offset.copy(tilted);
+      } else return false;
+      camera.position.copy(target).add(offset);
+      camera.lookAt(target);
+      render();
+      return true;
+    }
+
+    let waiting = false;
+    const renderSoon = () => {
+      if (!waiting) requestAnimationFrame(() => { waiting = false; render(); });
+      waiting = true;
+    };
+    window.addEventListener("time-chosen", (event) => {
+      if (event.detail.part !== description.part) return;
+      views.forEach((view) => { if (view.path) view.path.userData.show(event.detail.time_s); });
+      renderSoon();
+    });
+    window.addEventListener("run-shown", (event) => {
+      if (event.detail.part !== description.part) return;
+      views.forEach((view) => { if (isOf(view.mesh.label, event.detail.run)) view.figure.hidden = !event.detail.visible; });
+      renderSoon();
+    });
+    window.addEventListener("charts-drawn", () => {
+      views.forEach((view) => { if (view.path) view.path.userData.colour(pathColour(view.description)); });
+      render();
+    });
     show(hasErrors);
     window.addEventListener("resize", render);
-    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", render);
   }
 
   // A scene is prepared when it comes into view, or is printed.
-  const waiting = new Set(scenes.keys());
+  const unprepared = new Set(scenes.keys());
   function prepare(index) {
-    if (waiting.delete(index)) start(scenes[index], index);
+    if (unprepared.delete(index)) start(scenes[index], index);
   }
   const observer = new IntersectionObserver((entries) => entries.forEach((entry) => {
     if (entry.isIntersecting) prepare(Number(entry.target.id.slice("scene-".length)));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,8 +24,17 @@ void add(std::vector<page::Chart>& charts, page::Chart chart);
 /// Every so many of the points, the last among them: for curves that may run in any direction.
 [[nodiscard]] std::vector<Vector2d> strided(const std::vector<Vector2d>& points, std::size_t most);
 
-/// The runs' colours come after that of the truth, also where the truth is not drawn.
-[[nodiscard]] inline std::size_t colour_of(std::size_t run) { return run + 1; }
+/// Where an axis of values ends so that a few that are far beyond do not flatten the others: somewhat above
+/// the largest of the peaks that are not over five times their median. Nothing if there are none beyond.
+[[nodiscard]] std::optional<double> top_of_most(std::vector<double> peaks);
+
+/// Cuts the axis of values there, by the peaks of the chart's series, and says in the caption which are
+/// beyond.
+void cut_far_values(page::Chart& chart);
+
+/// The same for views from above and the side, and for positions over time: around the series of the ground
+/// truth, with what runs within three times its extent.
+void cut_far_places(page::Chart& chart);
 
 /// The first run that has a ground truth; null if there is none.
 [[nodiscard]] const RunSeries* with_truth(std::span<const RunSeries> runs);

@@ -36,20 +36,22 @@ page::Chart error_over_time(std::span<const RunSeries> runs, std::size_t buckets
         points.emplace_back(runs[i].time_s(pose.timestamp_ns), kCentimetres * pose.error_m);
     }
     chart.series.push_back(
-        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, runs[i].colour});
   }
+  cut_far_values(chart);
   return chart;
 }
 
 page::Chart error_histogram(std::span<const RunSeries> runs) {
   constexpr std::size_t kBins = 30;
   page::Chart chart = chart_of("Histogram of position errors", "error [cm]", "share of frames [%]");
-  double largest_cm = 0;
+  std::vector<double> large_cm;
   for (const RunSeries& run : runs) {
     const auto errors = errors_cm(run);
-    if (!errors.empty()) largest_cm = std::max(largest_cm, mesh_error::percentile(errors, 0.98));
+    if (!errors.empty()) large_cm.push_back(mesh_error::percentile(errors, 0.98));
   }
-  if (largest_cm <= 0) return chart;
+  if (large_cm.empty() || std::ranges::max(large_cm) <= 0) return chart;
+  const double largest_cm = top_of_most(large_cm).value_or(std::ranges::max(large_cm));
   chart.caption = fmt::format("{} bins; the last one holds everything beyond.", kBins);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto errors = errors_cm(runs[i]);
@@ -59,7 +61,7 @@ page::Chart error_histogram(std::span<const RunSeries> runs) {
       const auto bin = static_cast<std::size_t>(static_cast<double>(kBins) * error_cm / largest_cm);
       ++counts[std::min(bin, kBins - 1)];
     }
-    page::ChartSeries series{runs[i].label, {}, page::SeriesStyle::bars, false, colour_of(i)};
+    page::ChartSeries series{runs[i].label, {}, page::SeriesStyle::bars, false, runs[i].colour};
     for (std::size_t bin = 0; bin < kBins; ++bin) {
       series.points.emplace_back((static_cast<double>(bin) + 0.5) * largest_cm / static_cast<double>(kBins),
                                  100 * counts[bin] / static_cast<double>(errors.size()));
@@ -74,6 +76,7 @@ page::Chart cumulative_errors(std::span<const RunSeries> runs, std::size_t bucke
       "Cumulative position error", "error [cm]", "share of all frames [%]",
       "Share of the recording's frames whose error is smaller. A curve that ends below 100 % has lost "
       "frames.");
+  std::vector<double> peaks_cm;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto errors = errors_cm(runs[i]);
     std::vector<Vector2d> points;
@@ -81,16 +84,22 @@ page::Chart cumulative_errors(std::span<const RunSeries> runs, std::size_t bucke
     for (std::size_t k = 0; k < errors.size(); ++k)
       points.emplace_back(errors[k], 100 * static_cast<double>(k + 1) / all);
     chart.series.push_back(
-        {runs[i].label, strided(points, buckets), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, strided(points, buckets), page::SeriesStyle::line, false, runs[i].colour});
+    if (!errors.empty()) peaks_cm.push_back(errors.back());
+  }
+  if (const auto top_cm = top_of_most(peaks_cm)) {
+    chart.x_range = {0, *top_cm};
+    chart.caption += fmt::format(" Cut at {:.3g} cm: some runs have larger errors.", *top_cm);
   }
   return chart;
 }
 
 /// By the first pose in place of an alignment: the filter's certainty counts from there.
 page::Chart error_and_sigma(std::span<const RunSeries> runs, std::size_t buckets) {
-  page::Chart chart =
-      chart_of("Drift against the filter's own 3 sigma", "time [s]", "distance [cm]",
-               "Position relative to the first frame, without alignment; 3 sigma of the longest axis.");
+  page::Chart chart = chart_of(
+      "Drift against the filter's own 3 sigma", "time [s]", "distance [cm]",
+      "Position relative to the first frame, without alignment. Bands: 3 sigma of the longest axis, as "
+      "the filter has it; a curve above its band says that the filter is too certain.");
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto first = std::ranges::find_if(
         runs[i].poses, [](const ComparedPose& p) { return p.T_truth_truth.has_value(); });
@@ -105,15 +114,16 @@ page::Chart error_and_sigma(std::span<const RunSeries> runs, std::size_t buckets
       drift.emplace_back(runs[i].time_s(pose.timestamp_ns), kCentimetres * (truth - estimate).norm());
     }
     chart.series.push_back(
-        {runs[i].label, page::thinned(drift, buckets), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, page::thinned(drift, buckets), page::SeriesStyle::line, false, runs[i].colour});
     chart.series.push_back({runs[i].label + ", 3 sigma",
                             of_frames(runs[i], buckets / 8 + 1,
                                       [](const run_files::FrameTableRow& f) {
                                         return f.status == "lost" ? std::nan("")
                                                                   : 3 * kCentimetres * f.position_sigma_m;
                                       }),
-                            page::SeriesStyle::dots, false, colour_of(i)});
+                            page::SeriesStyle::band, false, runs[i].colour});
   }
+  cut_far_values(chart);
   return chart;
 }
 
@@ -130,7 +140,7 @@ page::Chart consistency_chart(std::span<const RunSeries> runs, std::size_t bucke
         points.emplace_back(runs[i].time_s(row.capture_ns), std::log10(row.nees_per_dof));
     }
     chart.series.push_back(
-        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, runs[i].colour});
   }
   return chart;
 }
@@ -157,7 +167,7 @@ page::Chart segment_boxes(std::span<const RunSeries> runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const trajectory_files::TrajectoryPair pair = pair_of(runs[i]);
     if (pair.size() < 2) continue;
-    page::ChartSeries series{runs[i].label, {}, page::SeriesStyle::boxes, false, colour_of(i)};
+    page::ChartSeries series{runs[i].label, {}, page::SeriesStyle::boxes, false, runs[i].colour};
     for (const double length_m : lengths) {
       if (!(length_m > 0)) continue;
       const trajectory_error::IndexPairs segments =
@@ -172,6 +182,7 @@ page::Chart segment_boxes(std::span<const RunSeries> runs) {
     }
     chart.series.push_back(std::move(series));
   }
+  cut_far_values(chart);
   return chart;
 }
 

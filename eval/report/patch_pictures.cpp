@@ -167,6 +167,7 @@ PatchPictures patch_pictures(std::span<const LabelledPatches> runs) {
       common.push_back(corner);
   }
   if (common.empty()) return result;
+  result.timestamp_ns = frames.front()->timestamp_ns;
   result.text = fmt::format(
       "Frame {}, the one of those kept whose patches moved most ({:.1f} px, median). Mean difference over "
       "the "

@@ -1,6 +1,7 @@
 // Patches before and after deformation, as pictures.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct PatchPicture {
 
 struct PatchPictures {
   std::string text;  ///< which frame, and the mean error of the patches that all runs track in it
+  std::int64_t timestamp_ns = 0;       ///< of that frame
   std::vector<PatchPicture> pictures;  ///< by patch, then run
 };
 

@@ -15,16 +15,16 @@
 #include "eval/mesh_error/mesh_clustering.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/page/image_source.hpp"
+#include "eval/page/series_colours.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/report/loop_sections.hpp"
 #include "eval/report/patch_pictures.hpp"
 #include "eval/report/profile_charts.hpp"
 #include "eval/report/run_charts.hpp"
 #include "eval/report/run_series.hpp"
+#include "eval/report/summary_sections.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/run_files/run_labels.hpp"
-#include "eval/tables/systems_table.hpp"
-#include "eval/tables/table.hpp"
 
 namespace fusebench::report {
 
@@ -36,16 +36,19 @@ constexpr std::size_t kMostPictured = 2;  // variants whose patches stand beside
 
 /// How much of each run a page of so many runs shows.
 struct Detail {
-  std::size_t buckets = 0;    ///< of charts over time
-  std::size_t triangles = 0;  ///< of a mesh
+  std::size_t buckets = 0;     ///< of charts over time
+  std::size_t triangles = 0;   ///< of a mesh
+  std::size_t in_between = 0;  ///< images of a recording for its time line
 };
 
-Detail detail_for(std::size_t runs) {
+Detail detail_for(std::size_t runs, std::size_t recordings) {
   constexpr std::size_t kBuckets = 12'000;  // of all runs together
   constexpr std::size_t kTriangles = 400'000;
+  constexpr std::size_t kImages = 100;
   const std::size_t share = std::max<std::size_t>(runs, 1);
   return {std::clamp<std::size_t>(kBuckets / share, 40, 450),
-          std::clamp<std::size_t>(kTriangles / share, 1'500, 40'000)};
+          std::clamp<std::size_t>(kTriangles / share, 1'500, 40'000),
+          std::min<std::size_t>(kImages / std::max<std::size_t>(recordings, 1), 16)};
 }
 
 /// The runs of one recording.
@@ -71,9 +74,9 @@ std::vector<Group> groups_of(const std::vector<run_files::FoundRun>& runs) {
 
 using Labels = std::vector<std::string>;  // one a run of a group
 
-const std::string& label_of(const run_files::FoundRun& run, Group group, const Labels& labels) {
-  const auto found = std::ranges::find(group, run.folder, &run_files::FoundRun::folder);
-  return labels[static_cast<std::size_t>(found - group.begin())];
+std::size_t place_of(const run_files::FoundRun& run, Group group) {
+  return static_cast<std::size_t>(std::ranges::find(group, run.folder, &run_files::FoundRun::folder) -
+                                  group.begin());
 }
 
 /// The recording's name, with the window where others of it have sections of their own.
@@ -87,26 +90,6 @@ std::string title_of(const record::RecordedRecording& recording,
   if (!other_window || recording.frames == 0) return recording.name;
   return fmt::format("{}, frames {}:{}", recording.name, recording.first_frame,
                      recording.first_frame + recording.frames);
-}
-
-page::PageTable page_table(const tables::ResultTable& table) {
-  page::PageTable page;
-  const auto lines = tables::table_cells(table);
-  page.header = lines.front();
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const record::RunStatus status =
-        i <= table.rows.size() ? table.rows[i - 1].status : record::RunStatus::ok;
-    page.rows.push_back({lines[i], status == record::RunStatus::failed ? "error"
-                                   : status == record::RunStatus::lost ? "warning"
-                                                                       : ""});
-  }
-  return page;
-}
-
-page::PageTable lines_table(const std::vector<std::string>& lines) {
-  page::PageTable table;
-  for (const std::string& line : lines) table.rows.push_back({{line}, ""});
-  return table;
 }
 
 std::string facts_of(const record::RecordedRecording& recording) {
@@ -133,18 +116,19 @@ page::PageTable run_facts(Group group, const Labels& labels) {
   return table;
 }
 
-std::vector<page::PageImage> page_images(const PatchPictures& pictures) {
+/// time_s: of the frame that they are of, where it is known.
+std::vector<page::PageImage> page_images(const PatchPictures& pictures, std::optional<double> time_s) {
   std::vector<page::PageImage> result;
   for (const PatchPicture& picture : pictures.pictures) {
     constexpr int kQuality = 92;
-    result.push_back({picture.caption(), page::jpeg_source(picture.strip, kQuality)});
+    result.push_back({picture.caption(), page::jpeg_source(picture.strip, kQuality), time_s});
   }
   return result;
 }
 
 /// Of the first variants that kept their patches.
-PatchPictures pictures_of(Group drawn, Group group, const Labels& labels,
-                          std::vector<std::string>& warnings) {
+std::vector<LabelledPatches> patches_of(Group drawn, Group group, const Labels& labels,
+                                        std::vector<std::string>& warnings) {
   std::vector<LabelledPatches> runs;
   std::vector<std::string> variants;
   for (const run_files::FoundRun& run : drawn) {
@@ -158,17 +142,15 @@ PatchPictures pictures_of(Group drawn, Group group, const Labels& labels,
     auto frames = checked ? run_files::read_patch_table(run.folder) : tl::unexpected(checked.error());
     if (!frames) warnings.push_back(frames.error().message);
     if (!frames || frames->empty()) continue;
-    runs.push_back({label_of(run, group, labels), std::move(*frames)});
+    runs.push_back({labels[place_of(run, group)], std::move(*frames)});
     variants.push_back(run.record.variant);
   }
-  return patch_pictures(runs);
+  return runs;
 }
 
 /// Stray bits of a mesh would make the rest small.
 void look_at_most(page::PageScene& scene) {
   constexpr double kStray = 0.02;
-  Vector3d low = Vector3d::Zero();
-  Vector3d high = Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> places;
     for (const page::SceneMesh& mesh : scene.meshes) {
@@ -176,18 +158,29 @@ void look_at_most(page::PageScene& scene) {
     }
     if (places.empty()) return;
     std::ranges::sort(places);
-    low[axis] = mesh_error::percentile(places, kStray);
-    high[axis] = mesh_error::percentile(places, 1 - kStray);
+    scene.low[axis] = mesh_error::percentile(places, kStray);
+    scene.high[axis] = mesh_error::percentile(places, 1 - kStray);
   }
-  scene.centre = 0.5 * (low + high);
-  scene.radius_m = 0.5 * (high - low).norm();
 }
 
-page::PageScene scene_of(std::span<const RunSeries> runs, std::size_t triangles,
+/// Of the poses that the model is of, in the frame of their first.
+page::ScenePath path_of(const RunSeries& run, std::size_t most) {
+  const std::vector<ComparedPose>& poses = run.final_poses.empty() ? run.poses : run.final_poses;
+  page::ScenePath path{run.label, run.colour, {}};
+  const std::size_t step = poses.size() / std::max<std::size_t>(most, 1) + 1;
+  for (std::size_t i = 0; i < poses.size(); i += step) {
+    path.poses.push_back({run.time_s(poses[i].timestamp_ns),
+                          poses.front().T_truth_camera.inverse() * poses[i].T_truth_camera});
+  }
+  return path;
+}
+
+page::PageScene scene_of(std::span<const RunSeries> runs, const Detail& detail,
                          std::vector<std::string>& warnings) {
   page::PageScene scene;
   scene.largest_error_m = kLargestError_m;
-  scene.up = {0, -1, 0};  // of the first camera, whose y points down
+  scene.up = {0, -1, 0};  // of the first camera, whose y points down and whose z points ahead
+  scene.ahead = {0, 0, 1};
   for (const RunSeries& run : runs) {
     const auto file = run.run->folder / "mesh.ply";
     if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
@@ -195,7 +188,7 @@ page::PageScene scene_of(std::span<const RunSeries> runs, std::size_t triangles,
     const auto mesh = checked ? mesh::read_ply(file) : tl::unexpected(checked.error());
     if (!mesh) warnings.push_back(mesh.error().message);
     if (!mesh || mesh->triangles.empty()) continue;
-    page::SceneMesh shown{run.label, mesh_error::reduced(*mesh, triangles), {}};
+    page::SceneMesh shown{run.label, mesh_error::reduced(*mesh, detail.triangles), {}};
     for (Vector3d& vertex : shown.mesh.vertices) vertex = run.T_first_world * vertex;
     if (shown.mesh.colors.empty()) shown.mesh.colors.assign(shown.mesh.vertices.size(), Rgb{170, 170, 170});
     if (run.run->record.metrics.mesh.value && !shown.mesh.quality.empty()) {
@@ -203,6 +196,7 @@ page::PageScene scene_of(std::span<const RunSeries> runs, std::size_t triangles,
       shown.error_colors = mesh_error::error_colors(errors_m, kLargestError_m);
     }
     scene.meshes.push_back(std::move(shown));
+    scene.paths.push_back(path_of(run, detail.buckets));
   }
   look_at_most(scene);
   return scene;
@@ -260,32 +254,25 @@ std::vector<run_files::FoundRun> runs_to_draw(Group group) {
   return runs;
 }
 
-void add_recording(ResultsPage& result, Group group, const std::vector<run_files::FoundRun>& all,
-                   const Detail& detail) {
-  page::Page& page = result.page;
-  const auto started = std::ranges::find_if(
-      group, [](const run_files::FoundRun& run) { return run.record.recording.frames > 0; });
-  const record::RecordedRecording& recording =
-      (started == group.end() ? group.begin() : started)->record.recording;
-  const Labels labels = run_files::run_labels(run_files::traits_of(group));
-  page.sections.push_back({title_of(recording, all),
-                           started == group.end() ? "No run began." : facts_of(recording),
-                           run_facts(group, labels)});
-  const std::vector<run_files::FoundRun> drawn = runs_to_draw(group);
-  if (drawn.size() < group.size()) {
-    page.sections.back().text +=
-        fmt::format(" Of its {} runs, the {} with the smallest ATE are drawn.", group.size(), drawn.size());
-  }
+/// Of the runs that have something to draw. colours: one a run of the group.
+std::vector<RunSeries> series_to_draw(Group drawn, Group group, const Labels& labels,
+                                      std::span<const std::size_t> colours,
+                                      std::vector<std::string>& warnings) {
   std::vector<RunSeries> series;
   for (const run_files::FoundRun& run : drawn) {
     if (run.state != run_files::RunState::whole) {
-      result.warnings.push_back(fmt::format("{}: {}", run.folder.string(), run.record.reason));
+      warnings.push_back(fmt::format("{}: {}", run.folder.string(), run.record.reason));
       continue;
     }
     if (run.record.frames.total == 0) continue;  // failed before its first frame: there is nothing to draw
-    series.push_back(series_of(run, label_of(run, group, labels)));
-    for (const std::string& warning : series.back().warnings) result.warnings.push_back(warning);
+    series.push_back(series_of(run, labels[place_of(run, group)]));
+    series.back().colour = colours[place_of(run, group)];
+    warnings.insert(warnings.end(), series.back().warnings.begin(), series.back().warnings.end());
   }
+  return series;
+}
+
+void add_curves(page::Page& page, std::span<const RunSeries> series, const Detail& detail) {
   const bool revised =
       std::ranges::any_of(series, [](const RunSeries& run) { return !run.final_poses.empty(); });
   const std::string which =
@@ -297,62 +284,97 @@ void add_recording(ResultsPage& result, Group group, const std::vector<run_files
   for (page::PageSection& section : loop_sections(series, detail.buckets))
     page.sections.push_back(std::move(section));
   add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
-  if (const PatchPictures pictures = pictures_of(drawn, group, labels, result.warnings);
-      !pictures.pictures.empty())
-    page.sections.push_back({"Patches", pictures.text, page_images(pictures), 3});
-  if (page::PageScene scene = scene_of(series, detail.triangles, result.warnings); !scene.meshes.empty()) {
+}
+
+void add_patches(page::Page& page, std::span<const LabelledPatches> patches,
+                 std::span<const RunSeries> series) {
+  const PatchPictures pictures = patch_pictures(patches);
+  if (pictures.pictures.empty()) return;
+  const auto framed = std::ranges::find_if(series, [](const RunSeries& run) { return !run.frames.empty(); });
+  const auto time_s =
+      framed == series.end() ? std::nullopt : std::optional(framed->time_s(pictures.timestamp_ns));
+  page.sections.push_back({"Patches", pictures.text, page_images(pictures, time_s), 3});
+}
+
+/// What is the same for all recordings of a page.
+struct PageContext {
+  const std::vector<run_files::FoundRun>& runs;
+  std::vector<std::size_t> colours;  ///< one a run
+  Detail detail;
+  const FrameReader& reader;
+};
+
+void add_recording(ResultsPage& result, Group group, const PageContext& context) {
+  page::Page& page = result.page;
+  const Detail& detail = context.detail;
+  const auto started = std::ranges::find_if(
+      group, [](const run_files::FoundRun& run) { return run.record.recording.frames > 0; });
+  const record::RecordedRecording& recording =
+      (started == group.end() ? group.begin() : started)->record.recording;
+  const Labels labels = run_files::run_labels(run_files::traits_of(group));
+  page.sections.push_back({title_of(recording, context.runs),
+                           started == group.end() ? "No run began." : facts_of(recording),
+                           run_facts(group, labels)});
+  page.sections.back().timeline = true;
+  const std::vector<run_files::FoundRun> drawn = runs_to_draw(group);
+  if (drawn.size() < group.size()) {
+    page.sections.back().text +=
+        fmt::format(" Of its {} runs, the {} with the smallest ATE are drawn.", group.size(), drawn.size());
+  }
+  const auto colours =
+      std::span(context.colours)
+          .subspan(static_cast<std::size_t>(group.data() - context.runs.data()), group.size());
+  const std::vector<RunSeries> series = series_to_draw(drawn, group, labels, colours, result.warnings);
+  const std::vector<LabelledPatches> patches = patches_of(drawn, group, labels, result.warnings);
+  if (!series.empty()) {
+    for (page::PageSection& section :
+         frame_pictures(recording, series, patches, detail.in_between, context.reader))
+      page.sections.push_back(std::move(section));
+  }
+  add_curves(page, series, detail);
+  add_patches(page, patches, series);
+  if (page::PageScene scene = scene_of(series, detail, result.warnings); !scene.meshes.empty()) {
     page.sections.push_back(
-        {"Models", "Simplified for this page; mesh.ply of each run has all triangles.", std::move(scene), 3});
+        {"Models",
+         "Simplified for this page; mesh.ply of each run has all triangles. Lines: the way of "
+         "the camera, and where it was at the chosen time.",
+         std::move(scene), 3});
   }
   add_charts(page, "Health and time", tracking_charts(series, detail.buckets));
   add_charts(page, "Profiles", profile_charts(series));
   std::vector<page::PageDetails> details;
   for (const run_files::FoundRun& run : drawn)
-    details.push_back(configuration_of(run, label_of(run, group, labels)));
+    details.push_back(configuration_of(run, labels[place_of(run, group)]));
   page.sections.push_back({"Configuration and provenance", "", std::move(details), 3});
 }
 
-/// The table of systems and how to read it, where it says more than the table of runs.
-void add_systems(page::Page& page, const std::vector<run_files::FoundRun>& runs) {
-  if (!tables::compares_systems(runs)) return;
-  const tables::SystemsTable systems = tables::systems_table_of(runs);
-  const auto lines = tables::systems_table_cells(systems);
-  page::PageTable table{lines.front(), {}};
-  for (std::size_t i = 0; i < systems.rows.size(); ++i) {
-    const tables::SystemRow& row = systems.rows[i];
-    table.rows.push_back({lines[i + 1], row.runs == 0 ? "note" : row.ok < row.runs ? "warning" : ""});
+/// One a run: of its variant, with the options that not all runs share.
+std::vector<std::size_t> colours_of(const std::vector<run_files::FoundRun>& runs) {
+  const std::vector<std::string> edits = run_files::differing_edits(run_files::traits_of(runs));
+  std::vector<page::ColouredName> names;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::string& variant = runs[i].record.variant;
+    names.push_back({variant + " " + edits[i], run_files::variant_rank(variant)});
   }
-  page.sections.push_back({"Systems", "A row a recording, system and kind of poses.", std::move(table)});
-  std::vector<std::string> remarks = systems.footer;
-  remarks.insert(remarks.end(), systems.notes.begin(), systems.notes.end());
-  page.sections.push_back({"How to read the table of systems", "", lines_table(remarks), 3});
+  return page::series_colours(names);
 }
 
 }  // namespace
 
-ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title) {
+ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title,
+                         const FrameReader& reader) {
   ResultsPage result;
-  const tables::ResultTable table = tables::table_of(runs);
-  const auto ok = std::ranges::count(table.rows, record::RunStatus::ok, &tables::TableRow::status);
+  const auto ok = std::ranges::count_if(
+      runs, [](const run_files::FoundRun& run) { return run.record.status == record::RunStatus::ok; });
   result.page.title = title;
   result.page.subtitle = fmt::format("{} of {} runs ok.", ok, runs.size());
-  const bool revised = std::ranges::any_of(
-      runs, [](const run_files::FoundRun& run) { return run.record.final_metrics.has_value(); });
-  result.page.sections.push_back({"Results",
-                                  revised
-                                      ? "Of runs that revised their poses at the end: the online ones; the "
-                                        "final ones are in the table of systems below."
-                                      : "",
-                                  page_table(table)});
-  std::vector<std::string> remarks = table.footer;
-  remarks.insert(remarks.end(), table.notes.begin(), table.notes.end());
-  result.page.sections.push_back({"How to read the columns", "", lines_table(remarks), 3});
-  add_systems(result.page, runs);
+  result.page.sections = summary_sections(runs);
   result.tables = result.page.sections.size();
+  const std::vector<Group> groups = groups_of(runs);
   std::size_t drawn = 0;
-  for (const Group group : groups_of(runs)) drawn += std::min(group.size(), kMostDrawn);
-  const Detail detail = detail_for(drawn);
-  for (const Group group : groups_of(runs)) add_recording(result, group, runs, detail);
+  for (const Group group : groups) drawn += std::min(group.size(), kMostDrawn);
+  const PageContext context{runs, colours_of(runs), detail_for(drawn, groups.size()), reader};
+  for (const Group group : groups) add_recording(result, group, context);
   return result;
 }
 

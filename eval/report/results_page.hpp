@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
+#include "eval/report/frame_pictures.hpp"
 #include "eval/run_files/found_runs.hpp"
 
 namespace fusebench::report {
@@ -17,8 +18,8 @@ struct ResultsPage {
 };
 
 /// As many runs as there are; details are thinned so that the page stays within some megabytes. title: shown
-/// at the top.
-[[nodiscard]] ResultsPage results_page(const std::vector<run_files::FoundRun>& runs,
-                                       const std::string& title);
+/// at the top. reader: of pictures of the recordings, which the runs do not keep.
+[[nodiscard]] ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std::string& title,
+                                       const FrameReader& reader = {});
 
 }  // namespace fusebench::report

@@ -25,7 +25,8 @@ struct ComparedPose {
 
 struct RunSeries {
   const run_files::FoundRun* run = nullptr;
-  std::string label;                             ///< the variant, with the run's name if there are several
+  std::string label;       ///< the variant, with the run's name if there are several
+  std::size_t colour = 1;  ///< of its curves, of the style's: one for a variant on all of a page
   std::vector<run_files::FrameTableRow> frames;  ///< none of an imported run
   std::int64_t start_ns = 0;                     ///< of the first frame, or the first pose that is known
   std::vector<ComparedPose> poses;

@@ -52,8 +52,9 @@ page::Chart frame_chart(std::span<const RunSeries> runs, std::size_t buckets, pa
                         const Value& value) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     chart.series.push_back(
-        {runs[i].label, of_frames(runs[i], buckets, value), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, of_frames(runs[i], buckets, value), page::SeriesStyle::line, false, runs[i].colour});
   }
+  cut_far_values(chart);
   return chart;
 }
 
@@ -78,7 +79,8 @@ page::Chart health_chart(std::span<const RunSeries> runs, std::size_t buckets) {
       return f.status == "lost" ? 0.0 : std::nan("");
     });
     if (!lost.empty())
-      chart.series.push_back({runs[i].label + ", lost", lost, page::SeriesStyle::dots, false, colour_of(i)});
+      chart.series.push_back(
+          {runs[i].label + ", lost", lost, page::SeriesStyle::dots, false, runs[i].colour});
     if (!runs[i].frames.empty())
       chart.caption += (chart.caption.empty() ? "Frames: " : " ") + health_text(runs[i]);
   }

@@ -43,8 +43,9 @@ page::Chart view_chart(std::span<const RunSeries> runs, int across, int along, s
     const auto points =
         of_poses(runs[i], [&](const ComparedPose& p) { return place(p.T_truth_camera.translation); });
     chart.series.push_back(
-        {runs[i].label, strided(points, 2 * buckets), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, strided(points, 2 * buckets), page::SeriesStyle::line, false, runs[i].colour});
   }
+  cut_far_places(chart);
   return chart;
 }
 
@@ -64,8 +65,9 @@ page::Chart position_chart(std::span<const RunSeries> runs, int axis, std::size_
       return Vector2d(runs[i].time_s(p.timestamp_ns), p.T_truth_camera.translation[axis]);
     });
     chart.series.push_back(
-        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, colour_of(i)});
+        {runs[i].label, page::thinned(points, buckets), page::SeriesStyle::line, false, runs[i].colour});
   }
+  cut_far_places(chart);
   return chart;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "eval/aggregate/mean_ratio.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/record/record.hpp"
 #include "eval/tables/published_table.hpp"
@@ -13,17 +14,6 @@
 namespace fusebench::reproduction {
 
 namespace {
-
-/// 0.975 quantile of Student's t.
-double student_quantile(std::size_t freedom) {
-  constexpr std::array<double, 10> kQuantiles = {12.706, 4.303, 3.182, 2.776, 2.571,
-                                                 2.447,  2.365, 2.306, 2.262, 2.228};
-  if (freedom <= kQuantiles.size()) return kQuantiles[freedom - 1];
-  // Cornish & Fisher's expansion around the normal quantile, to a thousandth from here on.
-  constexpr double z = 1.959964;
-  const auto n = static_cast<double>(freedom);
-  return z + (z * z * z + z) / (4 * n) + (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n);
-}
 
 Result<MethodNumbers> numbers_of(const engine::BatchOutcome& outcome, std::string& data) {
   MethodNumbers numbers;
@@ -41,18 +31,10 @@ Result<MethodNumbers> numbers_of(const engine::BatchOutcome& outcome, std::strin
   return numbers;
 }
 
-/// Geometric mean, and how sure it is.
 void describe_mean(const std::vector<double>& logarithms, Ratio& ratio) {
-  const auto count = static_cast<double>(logarithms.size());
-  double mean = 0;
-  for (const double value : logarithms) mean += value / count;
-  ratio.ratio = std::exp(mean);
-  if (logarithms.size() < 2) return;
-  double squares = 0;
-  for (const double value : logarithms) squares += (value - mean) * (value - mean);
-  const double error = std::sqrt(squares / (count - 1) / count);
-  const double reach = student_quantile(logarithms.size() - 1) * error;
-  ratio.interval = {std::exp(mean - reach), std::exp(mean + reach)};
+  const aggregate::MeanRatio mean = aggregate::mean_ratio(logarithms);
+  ratio.ratio = mean.ratio;
+  ratio.interval = mean.interval;
 }
 
 double geometric_mean(const std::vector<double>& values) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eval/reproduction/table1.hpp"
+#include "eval/tables/latex_table.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -188,9 +189,13 @@ std::string latex(const Table1& table) {
   auto lines = ratio_lines(table, false);
   const auto factors = ratio_lines(table, true);
   lines.insert(lines.end(), factors.begin() + 2, factors.end());
-  std::string text = text::latex_begin(lines.front(), 1);
-  for (std::size_t i = 1; i < lines.size(); ++i) text += text::latex_line(lines[i]);
-  return text + std::string(text::kLatexEnd);
+  tables::LatexTable latex;
+  latex.caption = "Ratios of the intensity errors, DM / Ours: published, and by each reading.";
+  latex.label = "ratios";
+  latex.heading = lines.front();
+  for (std::size_t i = 1; i < lines.size(); ++i) latex.lines.push_back({lines[i]});
+  latex.footnotes = {std::string(kProtocol)};
+  return tables::latex_table(latex, {});
 }
 
 Json json_of(const Ratio& ratio) {

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "eval/page/page.hpp"
+#include "eval/page/series_colours.hpp"
+#include "eval/run_files/found_runs.hpp"
 #include "eval/study/summary_formats.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
@@ -26,8 +28,15 @@ double place_px(const MotionBin& bin) {
   return std::isfinite(bin.to_px) ? (bin.from_px + bin.to_px) / 2 : bin.from_px + 5;
 }
 
-/// Of the variants that the suite names, charts show so many; each has its own colour wherever it occurs.
+/// Of the variants that the suite names, charts show so many.
 constexpr std::size_t kMostCharted = 3;
+
+/// One a variant, as on other pages.
+std::vector<std::size_t> colours_of(const std::vector<std::string>& variants) {
+  std::vector<page::ColouredName> names;
+  for (const std::string& variant : variants) names.push_back({variant, run_files::variant_rank(variant)});
+  return page::series_colours(names);
+}
 
 page::ChartSeries series_of(const std::string& variant, std::size_t colour, page::SeriesStyle style) {
   return {.label = variant, .points = {}, .style = style, .colour = colour};
@@ -39,11 +48,12 @@ page::Chart motion_chart(const StudySummary& summary, const MotionCurve& curve) 
   chart.x_label = "motion of patches between two frames [px]";
   chart.left_label = "AIE [grey levels]";
   chart.right_label = fmt::format("{} / {}", summary.partner, summary.reference);
-  page::ChartSeries reference = series_of(summary.reference, 0, page::SeriesStyle::line);
-  page::ChartSeries partner = series_of(summary.partner, 1, page::SeriesStyle::line);
+  const std::vector<std::size_t> colours = colours_of({summary.reference, summary.partner});
+  page::ChartSeries reference = series_of(summary.reference, colours[0], page::SeriesStyle::line);
+  page::ChartSeries partner = series_of(summary.partner, colours[1], page::SeriesStyle::line);
   page::ChartSeries ratio{
       .label = chart.right_label, .points = {}, .style = page::SeriesStyle::dots, .right = true};
-  ratio.colour = kMostCharted;
+  ratio.colour = 7;  // grey
   std::size_t frames = 0;
   for (const MotionBin& bin : curve.bins) {
     const SharedMeans& means = bin.means;
@@ -68,7 +78,7 @@ std::vector<std::string_view> recordings_of(const Study& study, std::string_view
   return recordings;
 }
 
-/// A dot for each ok run, above the number of its recording.
+/// A dot for each ok run, above the name of its recording.
 page::Chart value_chart(const StudySummary& summary, const Study& study, std::string_view group,
                         const suites::StudyValue& value) {
   page::Chart chart;
@@ -76,9 +86,11 @@ page::Chart value_chart(const StudySummary& summary, const Study& study, std::st
   chart.x_label = "recording";
   chart.left_label = value.label;
   const std::vector<std::string_view> recordings = recordings_of(study, group);
+  chart.x_names.assign(recordings.begin(), recordings.end());
+  const std::vector<std::size_t> colours = colours_of(study.variants);
   for (std::size_t i = 0; i < std::min(study.variants.size(), kMostCharted); ++i) {
     const std::string& variant = study.variants[i];
-    page::ChartSeries series = series_of(variant, i, page::SeriesStyle::dots);
+    page::ChartSeries series = series_of(variant, colours[i], page::SeriesStyle::dots);
     for (const StudyRun& run : study.runs) {
       if (run.group != group || run.variant != variant) continue;
       const auto number = value_of(study, run, value);

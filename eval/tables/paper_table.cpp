@@ -163,12 +163,16 @@ std::string markdown(const PaperTable& table) {
   return text;
 }
 
-std::string latex(const PaperTable& table) {
-  std::string text = text::latex_begin(heading_of(table), kTextColumns);
-  for (const PaperRow& row : table.rows) text += text::latex_line(cells_of(table.of, row));
-  text += text::kLatexEnd;
-  for (const std::string& note : table.notes) text += "% " + note + "\n";
-  return text;
+std::string latex(const PaperTable& table, const LatexLayout& layout) {
+  LatexTable latex;
+  latex.caption = fmt::format("{}: published numbers, and what was run here.", table.of.title);
+  latex.label = table.of.name;
+  std::ranges::replace(latex.label, '_', '-');
+  latex.heading = heading_of(table);
+  latex.text_columns = kTextColumns;
+  for (const PaperRow& row : table.rows) latex.lines.push_back({cells_of(table.of, row)});
+  latex.footnotes = table.notes;
+  return latex_table(latex, layout);
 }
 
 std::string csv(const PaperTable& table) {
@@ -248,7 +252,7 @@ PaperTable paper_table(const PublishedTable& published, const std::vector<run_fi
   return table;
 }
 
-std::string render_paper_table(const PaperTable& table, TableFormat format) {
+std::string render_paper_table(const PaperTable& table, TableFormat format, const LatexLayout& layout) {
   switch (format) {
     case TableFormat::markdown:
       return markdown(table);
@@ -258,7 +262,7 @@ std::string render_paper_table(const PaperTable& table, TableFormat format) {
     case TableFormat::json:
       return json(table);
     case TableFormat::latex:
-      return latex(table);
+      return latex(table, layout);
   }
   return {};
 }

@@ -38,7 +38,8 @@ struct PaperTable {
                                      const std::vector<run_files::FoundRun>& runs);
 
 /// CSV has a line for each number, with "published" or "here" beside it; numbers of CSV and JSON are in the
-/// value's unit.
-[[nodiscard]] std::string render_paper_table(const PaperTable& table, TableFormat format);
+/// value's unit. layout: of LaTeX.
+[[nodiscard]] std::string render_paper_table(const PaperTable& table, TableFormat format,
+                                             const LatexLayout& layout = {});
 
 }  // namespace fusebench::tables

@@ -248,13 +248,20 @@ std::string json(const SystemsTable& table) {
   return text::json_text({{"rows", rows}, {"protocol", table.footer}}) + "\n";
 }
 
-std::string latex(const SystemsTable& table) {
+std::string latex(const SystemsTable& table, const LatexLayout& layout) {
   const auto lines = systems_table_cells(table);
-  std::string text = text::latex_begin(lines.front(), kTextColumns);
-  for (std::size_t i = 1; i < lines.size(); ++i) text += text::latex_line(lines[i]);
-  text += text::kLatexEnd;
-  for (const std::string& line : table.footer) text += fmt::format("% {}\n", line);
-  return text;
+  LatexTable latex;
+  latex.caption = "Systems: medians over the repetitions of a run, with their ranges.";
+  latex.label = "systems";
+  latex.heading = lines.front();
+  latex.text_columns = kTextColumns;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    latex.lines.push_back(
+        {lines[i], {}, i > 1 && table.rows[i - 1].recording != table.rows[i - 2].recording});
+  }
+  latex.footnotes = table.notes;
+  latex.footnotes.insert(latex.footnotes.end(), table.footer.begin(), table.footer.end());
+  return latex_table(latex, layout);
 }
 
 std::string markdown(const SystemsTable& table) {
@@ -336,7 +343,7 @@ std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& ta
   return lines;
 }
 
-std::string render_systems_table(const SystemsTable& table, TableFormat format) {
+std::string render_systems_table(const SystemsTable& table, TableFormat format, const LatexLayout& layout) {
   switch (format) {
     case TableFormat::csv:
     case TableFormat::csv_long:
@@ -344,7 +351,7 @@ std::string render_systems_table(const SystemsTable& table, TableFormat format) 
     case TableFormat::json:
       return json(table);
     case TableFormat::latex:
-      return latex(table);
+      return latex(table, layout);
     case TableFormat::markdown:
       break;
   }

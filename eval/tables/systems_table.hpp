@@ -54,7 +54,8 @@ struct SystemsTable {
 /// The heading, then a line a row, as people see them.
 [[nodiscard]] std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& table);
 
-/// csv_long is as csv here.
-[[nodiscard]] std::string render_systems_table(const SystemsTable& table, TableFormat format);
+/// csv_long is as csv here. layout: of LaTeX.
+[[nodiscard]] std::string render_systems_table(const SystemsTable& table, TableFormat format,
+                                               const LatexLayout& layout = {});
 
 }  // namespace fusebench::tables

@@ -13,6 +13,7 @@
 #include "core/base/error.hpp"
 #include "eval/record/record.hpp"
 #include "eval/run_files/found_runs.hpp"
+#include "eval/tables/latex_table.hpp"
 
 namespace fusebench::tables {
 
@@ -85,6 +86,10 @@ struct ResultTable {
 /// The heading, a line a row and then a line a mean, as people see them: cm and degrees.
 [[nodiscard]] std::vector<std::vector<std::string>> table_cells(const ResultTable& table);
 
+/// The places of the cells in which a run is the best of its recording's ok runs over the same frames, if
+/// there are others; ties are all best.
+[[nodiscard]] std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row);
+
 enum class TableFormat { markdown, csv, csv_long, json, latex };
 /// Error usage.
 [[nodiscard]] Result<TableFormat> parse_table_format(std::string_view text);
@@ -92,6 +97,8 @@ enum class TableFormat { markdown, csv, csv_long, json, latex };
 /// Markdown is aligned for a terminal; LaTeX uses booktabs and has the best of each recording in bold; both
 /// show cm and degrees. CSV and JSON are SI with an empty cell or null for what does not exist; csv_long has
 /// a line for each number of each run, and leaves out what does not exist.
-[[nodiscard]] std::string render_table(const ResultTable& table, TableFormat format);
+/// layout: of LaTeX.
+[[nodiscard]] std::string render_table(const ResultTable& table, TableFormat format,
+                                       const LatexLayout& layout = {});
 
 }  // namespace fusebench::tables

@@ -6,6 +6,7 @@
 
 #include "core/base/geometry.hpp"
 #include "eval/record/data_labels.hpp"
+#include "eval/tables/latex_table.hpp"
 #include "eval/tables/table.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
@@ -69,39 +70,24 @@ std::string markdown(const ResultTable& table) {
   return text;
 }
 
-/// The cells in which a run is the best of its recording's ok runs over the same frames, if there are others;
-/// ties are all best.
-std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row) {
-  std::vector<std::size_t> best;
-  for (std::size_t c = 0; c < table_columns().size(); ++c) {
-    const TableColumn& column = table_columns()[c];
-    std::size_t others = 0;
-    bool is_best = row.status == record::RunStatus::ok && (row.*column.value).has_value();
-    for (const TableRow& other : table.rows) {
-      if (!is_best || &other == &row || other.recording != row.recording) continue;
-      if (other.first_frame != row.first_frame || other.total != row.total) continue;
-      if (other.status != record::RunStatus::ok || !(other.*column.value)) continue;
-      ++others;
-      is_best = *(row.*column.value) <= *(other.*column.value);
-    }
-    if (is_best && others > 0) best.push_back(kTextColumns + c);
-  }
-  return best;
-}
-
-std::string latex(const ResultTable& table) {
-  std::string text = text::latex_begin(header_cells(), kTextColumns);
+std::string latex(const ResultTable& table, const LatexLayout& layout) {
+  LatexTable latex;
+  latex.caption =
+      "Each run, and means over recordings. Bold: the best of a recording's runs that are ok over the same "
+      "frames.";
+  latex.label = "runs";
+  latex.heading = header_cells();
+  latex.text_columns = kTextColumns;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    if (i > 0 && table.rows[i].recording != table.rows[i - 1].recording) text += "\\midrule\n";
-    text += text::latex_line(shown_cells(table.rows[i]), best_cells(table, table.rows[i]));
+    latex.lines.push_back({shown_cells(table.rows[i]), best_cells(table, table.rows[i]),
+                           i > 0 && table.rows[i].recording != table.rows[i - 1].recording});
   }
-  if (!table.means.empty()) text += "\\midrule\n";
-  for (const TableMean& mean : table.means) text += text::latex_line(shown_cells(mean));
-  text += text::kLatexEnd;
-  text += "% " + count_line(table) + "\n";
-  for (const std::string& note : table.notes) text += fmt::format("% {}\n", note);
-  for (const std::string& line : table.footer) text += fmt::format("% {}\n", line);
-  return text;
+  for (std::size_t i = 0; i < table.means.size(); ++i)
+    latex.lines.push_back({shown_cells(table.means[i]), {}, i == 0});
+  latex.footnotes = {count_line(table)};
+  latex.footnotes.insert(latex.footnotes.end(), table.notes.begin(), table.notes.end());
+  latex.footnotes.insert(latex.footnotes.end(), table.footer.begin(), table.footer.end());
+  return latex_table(latex, layout);
 }
 
 std::string csv_identity(const TableRow& row) {
@@ -201,6 +187,24 @@ std::string json(const ResultTable& table) {
 
 }  // namespace
 
+std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row) {
+  std::vector<std::size_t> best;
+  for (std::size_t c = 0; c < table_columns().size(); ++c) {
+    const TableColumn& column = table_columns()[c];
+    std::size_t others = 0;
+    bool is_best = row.status == record::RunStatus::ok && (row.*column.value).has_value();
+    for (const TableRow& other : table.rows) {
+      if (!is_best || &other == &row || other.recording != row.recording) continue;
+      if (other.first_frame != row.first_frame || other.total != row.total) continue;
+      if (other.status != record::RunStatus::ok || !(other.*column.value)) continue;
+      ++others;
+      is_best = *(row.*column.value) <= *(other.*column.value);
+    }
+    if (is_best && others > 0) best.push_back(kTextColumns + c);
+  }
+  return best;
+}
+
 std::vector<Cells> table_cells(const ResultTable& table) {
   std::vector<Cells> lines = {header_cells()};
   for (const TableRow& row : table.rows) lines.push_back(shown_cells(row));
@@ -222,7 +226,7 @@ Result<TableFormat> parse_table_format(std::string_view text) {
               fmt::format("--format {} (allowed: markdown | csv | csv-long | json | latex)", text));
 }
 
-std::string render_table(const ResultTable& table, TableFormat format) {
+std::string render_table(const ResultTable& table, TableFormat format, const LatexLayout& layout) {
   switch (format) {
     case TableFormat::markdown:
       return markdown(table);
@@ -233,7 +237,7 @@ std::string render_table(const ResultTable& table, TableFormat format) {
     case TableFormat::json:
       return json(table);
     case TableFormat::latex:
-      return latex(table);
+      return latex(table, layout);
   }
   return {};
 }

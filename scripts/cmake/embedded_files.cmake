@@ -28,14 +28,19 @@ find_file(THREE_JS three.min.js PATHS /usr/share/javascript/three REQUIRED)
 find_file(ORBIT_CONTROLS_JS OrbitControls.js PATHS /usr/share/javascript/three/examples/js/controls REQUIRED)
 set(page_folder ${PROJECT_SOURCE_DIR}/eval/page)
 set(page_assets ${PROJECT_BINARY_DIR}/embedded/page_assets.cpp)
-set(page_files page_style=${page_folder}/page.css page_script=${page_folder}/page.js chart_library=${CHART_JS}
-  scene_script=${page_folder}/scene.js scene_library=${THREE_JS} scene_controls=${ORBIT_CONTROLS_JS})
+set(page_sources ${page_folder}/page.css)
+set(page_files page_style=${page_folder}/page.css chart_library=${CHART_JS} scene_library=${THREE_JS}
+  scene_controls=${ORBIT_CONTROLS_JS})
+foreach(script chart_axes chart_plugins page timeline scene_camera scene)
+  list(APPEND page_sources ${page_folder}/${script}.js)
+  list(APPEND page_files ${script}_script=${page_folder}/${script}.js)
+endforeach()
 string(REPLACE ";" "," page_files "${page_files}")
 add_custom_command(OUTPUT ${page_assets}
   COMMAND ${CMAKE_COMMAND} -DOUTPUT=${page_assets} -DHEADER=eval/page/page_assets.hpp -DNAMESPACE=page -DFILES=${page_files}
     -P ${PROJECT_SOURCE_DIR}/scripts/cmake/embed_files.cmake
-  DEPENDS ${page_folder}/page.css ${page_folder}/page.js ${page_folder}/scene.js ${CHART_JS} ${THREE_JS}
-    ${ORBIT_CONTROLS_JS} ${PROJECT_SOURCE_DIR}/scripts/cmake/embed_files.cmake
+  DEPENDS ${page_sources} ${CHART_JS} ${THREE_JS} ${ORBIT_CONTROLS_JS}
+    ${PROJECT_SOURCE_DIR}/scripts/cmake/embed_files.cmake
   COMMENT "Embedding the files of pages"
   VERBATIM)
 

@@ -14,6 +14,7 @@ try:
     from selenium import webdriver
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
     from selenium.webdriver.chrome.service import Service
 except ImportError as missing:
     print(f"skipped: {missing}")
@@ -70,6 +71,24 @@ canvas.width = scale * area.width;
 canvas.height = scale * area.height;
 canvas.getContext("2d").drawImage(arguments[0], -scale * area.left, -scale * area.top);
 return canvas.toDataURL();
+"""
+# Cells of tables whose right end is beyond the screen, where one would have to scroll for them.
+OUT_OF_SIGHT = """
+return [...document.querySelectorAll("table.labelled td")].filter((cell) => cell.textContent !== "" && cell.getBoundingClientRect().right > innerWidth + 1)
+  .map((cell) => cell.textContent);
+"""
+CUT_TABLES = """
+return [...document.querySelectorAll(".scroll")].filter((box) => getComputedStyle(box).overflowX !== "visible").length;
+"""
+LISTEN = """
+window.chosenTimes = [];
+window.addEventListener("time-chosen", (event) => window.chosenTimes.push(event.detail.time_s));
+"""
+# In how many charts of a part a run is drawn.
+SHOWN = """
+const [part, run] = arguments;
+return description.filter((chart, i) => chart.part === part
+  && chart.series.some((series, place) => isOf(series.label, run) && drawn[i].isDatasetVisible(place))).length;
 """
 PICTURE = "return arguments[0].toDataURL().length + ':' + arguments[0].toDataURL().slice(-4000);"
 
@@ -156,6 +175,73 @@ class Reader:
                 self.complain("the view is not reset")
         return len(scenes)
 
+    def narrow(self):
+        """On a telephone every row says its numbers, and the page is no wider than the screen."""
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+        settle(self.driver)
+        hidden = self.driver.execute_script(OUT_OF_SIGHT)
+        if hidden:
+            self.complain("at 400 px these cells are out of sight: " + ", ".join(hidden[:5]))
+        if self.driver.execute_script("return document.documentElement.scrollWidth > 400"):
+            self.complain("at 400 px the page is wider than the screen")
+        self.shoot("narrow")
+        self.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        settle(self.driver)
+
+    def choose_times(self):
+        """Arrow keys on the slider move the lines of the charts, the dots of the views and the camera of the models."""
+        bars = self.driver.find_elements(By.CSS_SELECTOR, ".timebar")
+        for bar in bars:
+            part = bar.find_element(By.XPATH, "..")
+            self.show(bar)
+            lines = [line for line in part.find_elements(By.CSS_SELECTOR, ".cursor")]
+            before = [line.get_attribute("style") for line in lines]
+            self.driver.execute_script(LISTEN)
+            slider = bar.find_element(By.CSS_SELECTOR, "input[type=range]")
+            slider.send_keys(*([Keys.ARROW_RIGHT] * 40))
+            settle(self.driver)
+            if not lines or any(old == line.get_attribute("style") for old, line in zip(before, lines)):
+                self.complain("a chart does not follow the time: " + part.get_attribute("id"))
+            if not self.driver.execute_script("return window.chosenTimes.length"):
+                self.complain("nobody is told of the time")
+            if part.find_elements(By.CSS_SELECTOR, ".strip") and not part.find_elements(By.CSS_SELECTOR, ".strip .current"):
+                self.complain("no image is that of the time")
+        return len(bars)
+
+    def hide_a_run(self):
+        """A click in the legend acts on all charts of the recording."""
+        for bar in self.driver.find_elements(By.CSS_SELECTOR, ".timebar"):
+            buttons = bar.find_elements(By.CSS_SELECTOR, ".legend button")
+            run = buttons[-1].get_attribute("data-run")
+            part = int(bar.find_element(By.XPATH, "..").get_attribute("id").split("-")[1])
+            self.show(bar)
+            shown = self.driver.execute_script(SHOWN, part, run)
+            buttons[-1].click()
+            settle(self.driver)
+            if shown < 3 or self.driver.execute_script(SHOWN, part, run) != 0:
+                self.complain(f"the legend hides '{run}' in some charts only")
+            buttons[-1].click()
+            settle(self.driver)
+            if self.driver.execute_script(SHOWN, part, run) != shown:
+                self.complain(f"the legend does not bring '{run}' back")
+
+    def print_in_dark(self):
+        """Paper is white, also for who reads in the dark; tables are not cut."""
+        self.scheme("dark")
+        self.driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print",
+                                    "features": [{"name": "prefers-color-scheme", "value": "dark"}]})
+        settle(self.driver)
+        if self.driver.execute_script("return getComputedStyle(document.documentElement).getPropertyValue('--text').trim()") != "#1c2126":
+            self.complain("print has the colours of the dark scheme")
+        cut = self.driver.execute_script(CUT_TABLES)
+        if cut:
+            self.complain(f"print cuts {cut} tables")
+        self.driver.execute_script("window.dispatchEvent(new Event('afterprint'))")
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
+        settle(self.driver)
+
     def unfold(self):
         for details in self.driver.find_elements(By.CSS_SELECTOR, "details"):
             self.show(details)
@@ -204,17 +290,24 @@ def main():
         reader.shoot("top")
         charts = reader.read_charts("light")
         asked = reader.ask_for_hidden_series()
+        bars = reader.choose_times()
+        reader.hide_a_run()
         scenes = reader.turn_meshes()
         reader.unfold()
         reader.follow_links()
         reader.scheme("dark")
         reader.read_charts("dark")
+        reader.print_in_dark()
+        reader.narrow()
         reader.no_leaks()
     finally:
         driver.quit()
     for problem in reader.problems:
         print("FAILED: " + problem)
-    print(f"{page.name}: {charts} charts, {scenes} scenes, {asked} series on request, {len(reader.problems)} problems")
+    print(f"{page.name}: {charts} charts, {scenes} scenes, {bars} time lines, {asked} series on request, {len(reader.problems)} problems")
+    if bars == 0:
+        print("FAILED: the page has no time line")
+        return 1
     if charts == 0:
         print("FAILED: the page has no charts")
         return 1

@@ -8,6 +8,8 @@
 
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/results/recorded_frames.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/page/figures.hpp"
 #include "eval/report/results_page.hpp"
@@ -22,6 +24,7 @@ namespace {
 struct ReportOptions {
   std::filesystem::path runs;
   std::filesystem::path out;
+  std::filesystem::path data;
   std::string title;
   std::filesystem::path figures;
   std::string figure_format = "svg";
@@ -33,7 +36,7 @@ Result<int> report(const ReportOptions& options) {
   std::string title = options.title;
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
-  report::ResultsPage page = report::results_page(*runs, title);
+  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data));
   const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
   if (!rows) return tl::unexpected(rows.error());
   auto sweep = report::sweep_sections(*rows);
@@ -63,6 +66,7 @@ console::Verb add_report_verb(CLI::App& app) {
       "report", "Writes a self-contained HTML page of a folder of runs: tables, charts, patches and meshes");
   verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
   verb->add_option("--out", options->out, "The page to write")->type_name("FILE.html")->required();
+  console::add_data_option(*verb, options->data);
   verb->add_option("--title", options->title, "Heading of the page; default: the folder's name")
       ->type_name("TEXT");
   verb->add_option(

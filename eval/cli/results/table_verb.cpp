@@ -18,6 +18,7 @@ struct TableOptions {
   std::string paper;
   bool systems = false;
   std::string format = "markdown";
+  tables::LatexLayout layout;
   bool json = false;
 };
 
@@ -27,18 +28,20 @@ Result<int> table(const TableOptions& options) {
   const auto runs = run_files::find_runs(options.runs);
   if (options.systems) {
     if (!runs) return tl::unexpected(runs.error());
-    console::print_output(tables::render_systems_table(tables::systems_table_of(*runs), *format));
+    console::print_output(
+        tables::render_systems_table(tables::systems_table_of(*runs), *format, options.layout));
     return 0;
   }
   if (options.paper.empty()) {
     if (!runs) return tl::unexpected(runs.error());
-    console::print_output(tables::render_table(tables::table_of(*runs), *format));
+    console::print_output(tables::render_table(tables::table_of(*runs), *format, options.layout));
     return 0;
   }
   const auto published = tables::published_table(options.paper);
   if (!published) return tl::unexpected(published.error());
   if (!runs) return tl::unexpected(runs.error());
-  console::print_output(tables::render_paper_table(tables::paper_table(*published, *runs), *format));
+  console::print_output(
+      tables::render_paper_table(tables::paper_table(*published, *runs), *format, options.layout));
   return 0;
 }
 
@@ -60,6 +63,13 @@ console::Verb add_table_verb(CLI::App& app) {
           "A row a recording and system: medians and ranges over repetitions, with lost frames, CPU and "
           "memory, and published numbers below")
       ->excludes("--paper");
+  verb->add_option(
+          "--columns", options->layout.columns,
+          "LaTeX: how many columns of a two-column paper the table covers, 1 or 2; it is split where it "
+          "is wider")
+      ->check(CLI::IsMember({1, 2}))
+      ->capture_default_str();
+  verb->add_flag("--rotated", options->layout.rotated, "LaTeX: turned, on a page of its own");
   console::add_json_flag(*verb, options->json);
   return {verb, [options] { return table(*options); }};
 }

@@ -8,6 +8,8 @@
 #include "core/mesh/ply_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/page/figures.hpp"
+#include "eval/report/chart_parts.hpp"
+#include "eval/report/frame_pictures.hpp"
 #include "eval/report/loop_charts.hpp"
 #include "eval/report/profile_charts.hpp"
 #include "eval/report/run_charts.hpp"
@@ -125,6 +127,132 @@ TEST_F(ResultsPageTest, ChartsShowWhatTheFilesSay) {
   const auto tracking = tracking_charts(runs, 100);
   EXPECT_EQ(series_of_chart(tracking, "Accepted patches and lost frames", "no-imu, lost").points.size(), 30U);
   EXPECT_EQ(series_of_chart(tracking, "Time of the stages", "update").points[1].y(), 12);
+}
+
+Chart chart_with_peaks(const std::vector<std::pair<std::string, double>>& peaks) {
+  Chart chart;
+  chart.left_label = "error [cm]";
+  for (const auto& [label, peak] : peaks) chart.series.push_back({label, {{0, 0.1}, {1, peak}, {2, 0.2}}});
+  return chart;
+}
+
+TEST(FarValues, OneBadRunIsCutAndSaid) {
+  Chart chart = chart_with_peaks({{"full", 1.1}, {"dm", 2.0}, {"no-imu", 340}});
+  cut_far_values(chart);
+  ASSERT_TRUE(chart.y_range.has_value());
+  EXPECT_GE(chart.y_range->y(), 2.0);
+  EXPECT_LE(chart.y_range->y(), 4.0);
+  EXPECT_EQ(chart.caption, "Cut at 2.5 cm, where triangles stand: no-imu reaches 340 cm.");
+  EXPECT_EQ(chart.series[2].points[1].y(), 340) << "what is cut is still there";
+}
+
+TEST(FarValues, RunsThatAreAlikeAreNotCut) {
+  Chart alike = chart_with_peaks({{"full", 1.1}, {"dm", 2.0}, {"no-imu", 5.2}});
+  cut_far_values(alike);
+  EXPECT_FALSE(alike.y_range.has_value());
+  Chart single = chart_with_peaks({{"full", 500}});
+  cut_far_values(single);
+  EXPECT_FALSE(single.y_range.has_value());
+  EXPECT_TRUE(single.caption.empty());
+}
+
+TEST(FarPlaces, AViewStaysAroundTheGroundTruth) {
+  Chart chart;
+  chart.equal_scale = true;
+  chart.series = {{"ground truth", {{0, 0}, {2, 1}}, SeriesStyle::backdrop},
+                  {"full", {{0.1, 0}, {2.2, 1}}},
+                  {"dm", {{0, 0}, {90, -400}}}};
+  cut_far_places(chart);
+  ASSERT_TRUE(chart.x_range && chart.y_range);
+  EXPECT_LT(chart.x_range->y(), 5);
+  EXPECT_GT(chart.x_range->y(), 2.2);
+  EXPECT_GT(chart.y_range->x(), -3);
+  EXPECT_EQ(chart.caption, "Cut around the ground truth; beyond it runs dm.");
+  chart.series.pop_back();
+  chart.x_range.reset();
+  chart.y_range.reset();
+  cut_far_places(chart);
+  EXPECT_FALSE(chart.x_range.has_value());
+}
+
+TEST_F(ResultsPageTest, TheFirstBinOfAHistogramIsAsWideAsTheOthers) {
+  const FoundRun full = add_run("full", kFrames, SE3{});
+  const auto charts = error_charts(std::vector<RunSeries>{series_of(full, "full")}, 100);
+  const auto& points = series_of_chart(charts, "Histogram of position errors", "full").points;
+  ASSERT_EQ(points.size(), 30U);
+  EXPECT_NEAR(points[0].x(), 0.5 * (points[1].x() - points[0].x()), 1e-9)
+      << "middles of bins that begin at zero";
+}
+
+TEST_F(ResultsPageTest, TheCertaintyOfTheFilterIsABand) {
+  const FoundRun full = add_run("full", kFrames, SE3{});
+  const auto charts = error_charts(std::vector<RunSeries>{series_of(full, "full")}, 100);
+  EXPECT_EQ(series_of_chart(charts, "Drift against the filter's own 3 sigma", "full, 3 sigma").style,
+            SeriesStyle::band);
+}
+
+TEST_F(ResultsPageTest, PicturesShowTheFirstFrameAndTheWorst) {
+  FoundRun full = add_run("full", kFrames, SE3{});
+  RunSeries series = series_of(full, "full");
+  series.poses[40].error_m = 0.07;
+  std::vector<std::size_t> asked;
+  const FrameReader reader = [&](const RecordedRecording&, std::span<const std::size_t> frames) {
+    asked.assign(frames.begin(), frames.end());
+    return Result<std::vector<ColorImage>>(
+        std::vector<ColorImage>(frames.size(), ColorImage(64, 48, Rgb{9, 9, 9})));
+  };
+  const auto sections = frame_pictures(full.record.recording, std::vector{series}, {}, 3, reader);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{0, 29, 40, 59}));
+  ASSERT_EQ(sections.size(), 2U);
+  const auto& scene = std::get<std::vector<PageImage>>(sections[0].content);
+  ASSERT_EQ(scene.size(), 2U);
+  EXPECT_EQ(scene[1].caption, "largest error of full, 7.0 cm, frame 40");
+  EXPECT_NEAR(*scene[1].time_s, 40 * 0.033, 1e-6);
+  EXPECT_TRUE(sections[1].strip);
+
+  const FrameReader gone = [](const RecordedRecording&, std::span<const std::size_t>) {
+    return Result<std::vector<ColorImage>>(fail(ErrorCode::data_missing, "circle: no such folder"));
+  };
+  const auto without = frame_pictures(full.record.recording, std::vector{series}, {}, 3, gone);
+  ASSERT_EQ(without.size(), 1U);
+  EXPECT_EQ(without[0].text, "No images of the recording (circle: no such folder).");
+}
+
+TEST_F(ResultsPageTest, AModelHasTheWayOfItsCameraAndItsBoxAndTheSameColourAsItsCurves) {
+  add_run("full", kFrames, SE3{so3_exp({0.3, -0.2, 0.5}), {4, 5, 6}});
+  add_run("no-imu", kFrames, SE3{});
+  const auto runs = find_runs(folder_ / "runs");
+  ASSERT_TRUE(runs.has_value());
+  const ResultsPage result = results_page(*runs, "Circles");
+  const auto models = std::ranges::find(result.page.sections, "Models", &PageSection::title);
+  ASSERT_NE(models, result.page.sections.end());
+  const auto& scene = std::get<PageScene>(models->content);
+  ASSERT_EQ(scene.paths.size(), 2U);
+  EXPECT_EQ(scene.paths[0].colour, 1U);
+  EXPECT_EQ(scene.paths[1].colour, 3U);
+  EXPECT_LT(scene.paths[0].poses.front().T_scene_camera.translation.norm(), 1e-9)
+      << "it begins at the origin";
+  const Trajectory poses = circle(kFrames);
+  const SE3 T_first_30 = poses[0].T_world_camera.inverse() * poses[30].T_world_camera;
+  EXPECT_NEAR((scene.paths[0].poses[30].T_scene_camera.translation - T_first_30.translation).norm(), 0, 1e-6);
+  EXPECT_NEAR(scene.paths[0].poses[30].time_s, 30 * 0.033, 1e-6);
+  EXPECT_TRUE((scene.high.array() > scene.low.array()).all());
+}
+
+TEST_F(ResultsPageTest, TheHeadSaysWhatWasFoundBeforeAllTables) {
+  add_run("full", kFrames, SE3{});
+  add_run("no-imu", 30, SE3{});
+  const auto runs = find_runs(folder_ / "runs");
+  ASSERT_TRUE(runs.has_value());
+  const ResultsPage result = results_page(*runs, "Circles");
+  EXPECT_EQ(result.page.sections.front().title, "What was found");
+  const auto& lines = std::get<PageParagraphs>(result.page.sections.front().content).lines;
+  EXPECT_NE(lines[0].find("full"), std::string::npos) << lines[0];
+  const bool failed = std::ranges::any_of(lines, [](const std::string& line) {
+    return line.find("no-imu on circle (lost: lost at the end)") != std::string::npos;
+  });
+  EXPECT_TRUE(failed);
+  EXPECT_EQ(result.page.sections[1].title, "What was compared");
 }
 
 TEST_F(ResultsPageTest, OnlyProfiledRunsHaveAProfile) {

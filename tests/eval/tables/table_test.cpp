@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "eval/metrics/intensity_file.hpp"
+#include "eval/text/plain_table.hpp"
 #include "tests/support/collected_table.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -200,6 +201,47 @@ TEST_F(TableTest, LatexHasTheBestOfEachRecordingInBold) {
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);
   EXPECT_NE(text.find("& 6.000 & \\textbf{2.000} & \\textbf{1.23} &"), std::string::npos) << text;
   EXPECT_NE(text.find("& \\textbf{3.000} & 3.000 & 5.00 &"), std::string::npos) << text;
+}
+
+std::size_t occurrences(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(TableTest, LatexIsAFloatWithCaptionAndPrintedFootnotes) {
+  add_three_runs();
+  const auto table = collect_table(folder_ / "runs");
+  const std::string both = render_table(*table, TableFormat::latex);
+  for (const char* const part : {"\\begin{table*}", "\\caption{", "\\label{tab:runs}", "\\end{table*}"})
+    EXPECT_NE(both.find(part), std::string::npos) << part;
+  // What a comment holds is not printed.
+  std::string printed;
+  std::istringstream lines(both);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with('%')) printed += line + "\n";
+  }
+  for (const std::string& footnote : table->footer)
+    EXPECT_NE(printed.find(text::latex_escaped(footnote)), std::string::npos) << footnote;
+  EXPECT_NE(printed.find("runs ok"), std::string::npos);
+  EXPECT_EQ(occurrences(both, "\\begin{"), occurrences(both, "\\end{"));
+}
+
+TEST_F(TableTest, LatexOfOneColumnIsSplitAndNamesItsRowsInEachPart) {
+  add_three_runs();
+  const auto table = collect_table(folder_ / "runs");
+  const std::string narrow = render_table(*table, TableFormat::latex, {1, false});
+  EXPECT_EQ(narrow.find("table*"), std::string::npos);
+  const std::size_t parts = occurrences(narrow, "\\begin{tabular}");
+  EXPECT_GT(parts, 1U);
+  EXPECT_EQ(occurrences(narrow, "\\end{tabular}"), parts);
+  EXPECT_EQ(occurrences(narrow, "fr1\\_rpy & recorded & synthetic IMU & full &"), parts);
+  EXPECT_EQ(occurrences(narrow, "\\textbf{1.23}"), 1U)
+      << "each number stands once, and bold where it is the best";
+  EXPECT_EQ(occurrences(narrow, "\\ifdim\\width>\\linewidth"), parts) << "none is wider than its column";
+  const std::string rotated = render_table(*table, TableFormat::latex, {2, true});
+  EXPECT_NE(rotated.find("\\begin{sidewaystable*}"), std::string::npos);
+  EXPECT_EQ(occurrences(rotated, "\\begin{tabular}"), 1U);
 }
 
 TEST_F(TableTest, LatexEscapesNames) {

@@ -1,0 +1,178 @@
+#include "eval/findings/findings.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "eval/record/record.hpp"
+
+namespace fusebench::findings {
+
+namespace {
+
+constexpr std::size_t kMostNamed = 6;
+
+/// "a, b and 3 more".
+std::string list_of(const std::vector<std::string>& names, const char* between) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
+    text += (i > 0 ? between : "") + names[i];
+  if (names.size() > kMostNamed) text += fmt::format(" and {} more", names.size() - kMostNamed);
+  return text;
+}
+
+std::string counted(std::size_t count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
+/// "ATE" of "ATE [cm]", and "cm".
+std::pair<std::string, std::string> name_and_unit(const tables::TableColumn& column) {
+  const std::string heading = column.heading;
+  const std::size_t open = heading.find(" [");
+  if (open == std::string::npos) return {heading, ""};
+  return {heading.substr(0, open), " " + heading.substr(open + 2, heading.size() - open - 3)};
+}
+
+std::string shown(const tables::TableColumn& column, double value) {
+  return fmt::format("{:.{}f}{}", value * column.shown_factor, column.decimals, name_and_unit(column).second);
+}
+
+/// What a ratio is worth.
+std::string evidence_of(const Ranking& ranking, const aggregate::MeanRatio& ratio) {
+  if (!ratio.interval) return ". One recording each: no evidence that the order is the same on others.";
+  const auto& [low, high] = *ratio.interval;
+  std::string text =
+      fmt::format(" (95 % interval {:.2f} to {:.2f} over {})", low, high, counted(ratio.count, "recording"));
+  text += low > 1 || high < 1 ? ": more than the differences between recordings explain."
+                              : ": the interval holds 1, so it may be noise between recordings.";
+  if (ranking.configurations.size() > 2) {
+    text += fmt::format(" The interval takes no account of that it is the best of {}.",
+                        ranking.configurations.size());
+  }
+  return text;
+}
+
+std::string best_sentence(const Ranking& ranking) {
+  const RankedConfiguration& best = ranking.configurations.front();
+  const std::string name = name_and_unit(ranking.column).first;
+  const std::string where = ranking.recordings == 1
+                                ? fmt::format("one {} recording", ranking.data)
+                                : fmt::format("{} {} recordings", ranking.recordings, ranking.data);
+  if (!best.value) {
+    return fmt::format("Nothing has an {} on all of {}; {} has it on most, {}.", name, where, best.label,
+                       best.recordings);
+  }
+  const std::string number =
+      shown(ranking.column, *best.value) + (ranking.recordings > 1 ? " (geometric mean)" : "");
+  if (ranking.configurations.size() == 1) {
+    return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
+                       number, where);
+  }
+  const RankedConfiguration& second = ranking.configurations[1];
+  if (second.value && second.to_best) {
+    return fmt::format("{} has the smallest {} on {}: {}. Next is {} with {}, {:.2f} times as much{}",
+                       best.label, name, where, number, second.label, shown(ranking.column, *second.value),
+                       second.to_best->ratio, evidence_of(ranking, *second.to_best));
+  }
+  std::string text = fmt::format("{} alone has an {} on all of {}: {}.", best.label, name, where, number);
+  if (!second.to_best) return text;
+  return text + fmt::format(" Where both have one, {} has {:.2f} times as much{}", second.label,
+                            second.to_best->ratio, evidence_of(ranking, *second.to_best));
+}
+
+std::string moment(std::filesystem::file_time_type time) {
+  const auto seconds =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(time)).time_since_epoch();
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(seconds.count())));
+}
+
+/// Without repetitions, in their order.
+void add_once(std::vector<std::string>& list, const std::string& text) {
+  if (!text.empty() && std::ranges::find(list, text) == list.end()) list.push_back(text);
+}
+
+}  // namespace
+
+std::vector<std::string> sentences_of(const Ranking& ranking) {
+  std::vector<std::string> sentences;
+  if (ranking.configurations.empty() || ranking.recordings == 0) return sentences;
+  sentences.push_back(best_sentence(ranking));
+  std::vector<std::string> helped;
+  std::size_t others = 0;
+  for (const RankedConfiguration& configuration : ranking.configurations) {
+    if (configuration.imu_from_truth) {
+      add_once(helped, configuration.variant);
+    } else {
+      ++others;
+    }
+  }
+  if (!helped.empty() && others > 0) {
+    sentences.push_back(fmt::format(
+        "The IMU of {} was made from the ground truth: beside the others, {} better than with a real one.",
+        list_of(helped, ", "), helped.size() == 1 ? "it looks" : "they look"));
+  }
+  return sentences;
+}
+
+std::vector<std::string> failures_of(const tables::ResultTable& table) {
+  std::vector<std::string> bad;
+  std::vector<std::string> silent;
+  for (const tables::TableRow& row : table.rows) {
+    if (row.status != record::RunStatus::ok) {
+      bad.push_back(fmt::format("{} on {} ({}: {})", row.label, row.recording, record::to_string(row.status),
+                                row.reason));
+    } else if (row.silent.value_or(0) > 0) {
+      silent.push_back(fmt::format("{} on {} ({})", row.label, row.recording, counted(*row.silent, "frame")));
+    }
+  }
+  std::vector<std::string> sentences;
+  if (bad.empty()) {
+    sentences.push_back(fmt::format("{} ended well.", table.rows.size() == 1
+                                                          ? "The run"
+                                                          : fmt::format("All {} runs", table.rows.size())));
+  } else {
+    sentences.push_back(fmt::format("{} of {} did not end well: {}.", bad.size(),
+                                    counted(table.rows.size(), "run"), list_of(bad, "; ")));
+  }
+  if (!silent.empty()) {
+    sentences.push_back(fmt::format("Poses that were claimed and are wrong, in {} that ended well: {}.",
+                                    counted(silent.size(), "run"), list_of(silent, "; ")));
+  }
+  return sentences;
+}
+
+std::string origin_of(std::span<const run_files::FoundRun> runs) {
+  std::vector<std::string> programs;
+  std::vector<std::string> machines;
+  std::optional<std::filesystem::file_time_type> first, last;
+  for (const run_files::FoundRun& run : runs) {
+    const record::RecordedProvenance& p = run.record.provenance;
+    if (run.state == run_files::RunState::whole && !p.version.empty()) {
+      add_once(programs, fmt::format("fusebench {}{}", p.version, p.git.empty() ? "" : " (" + p.git + ")"));
+      add_once(machines, fmt::format("{}{} ({})", p.host.empty() ? "" : p.host + ", ", p.cpu,
+                                     counted(static_cast<std::size_t>(std::max(p.threads, 0)), "thread")));
+    }
+    std::error_code unknown;
+    const auto time = std::filesystem::last_write_time(run.folder / "record.json", unknown);
+    if (unknown) continue;
+    first = first ? std::min(*first, time) : time;
+    last = last ? std::max(*last, time) : time;
+  }
+  std::string text = programs.empty()
+                         ? "It is not known what made these runs"
+                         : fmt::format("Made by {} on {}", list_of(programs, ", "), list_of(machines, "; "));
+  if (first) {
+    text += "; records written " + moment(*first);
+    if (moment(*last) != moment(*first)) text += " to " + moment(*last);
+    text += " UTC";
+  }
+  return text + ".";
+}
+
+}  // namespace fusebench::findings

@@ -1,0 +1,22 @@
+// What a folder of runs says, in sentences.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/findings/ranking.hpp"
+
+namespace fusebench::findings {
+
+/// Which configuration is best, by how much, and whether the difference is larger than the noise between
+/// recordings; then which poses come with an IMU made from the truth. Nothing of runs without numbers.
+[[nodiscard]] std::vector<std::string> sentences_of(const Ranking& ranking);
+
+/// What was lost, failed or is silently wrong, and where. A sentence that nothing did if nothing did.
+[[nodiscard]] std::vector<std::string> failures_of(const tables::ResultTable& table);
+
+/// Versions, machines, threads, and when the records were written (UTC, by their files).
+[[nodiscard]] std::string origin_of(std::span<const run_files::FoundRun> runs);
+
+}  // namespace fusebench::findings

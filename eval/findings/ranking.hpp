@@ -1,0 +1,44 @@
+// Which configuration is best, by how much, and whether that is more than noise.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/aggregate/mean_ratio.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/tables/table.hpp"
+
+namespace fusebench::findings {
+
+/// A variant with the options that not all runs share.
+struct RankedConfiguration {
+  std::string label;
+  std::string variant;
+  std::string description;  ///< in a line
+  bool imu_from_truth = false;
+  std::size_t runs = 0;
+  std::size_t ok = 0;
+  std::size_t recordings = 0;   ///< of those that it has a number of
+  std::optional<double> value;  ///< SI, geometric mean; absent where it lacks a number that others have
+  /// Its number by that of the best, over the recordings that both have numbers of. Nothing of the best one.
+  std::optional<aggregate::MeanRatio> to_best;
+};
+
+/// Over data of one kind, which alone can be compared.
+struct Ranking {
+  std::string data;  ///< "recorded", "simulated"
+  tables::TableColumn column;
+  std::size_t recordings = 0;  ///< of which any configuration has a number
+  /// The best first, which has the most numbers; those that lack some come last. By the ratio to the best.
+  std::vector<RankedConfiguration> configurations;
+};
+
+/// By ATE, or by AIE on common pixels where there is no ATE; a configuration's number of a recording is the
+/// mean over its runs that are ok. One a kind of data that has a number. table: of these runs.
+[[nodiscard]] std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
+                                               const tables::ResultTable& table);
+
+}  // namespace fusebench::findings

@@ -1,0 +1,169 @@
+#include "eval/report/frame_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "eval/page/image_source.hpp"
+
+namespace fusebench::report {
+
+namespace {
+
+constexpr const char* kTitle = "What the camera saw";
+constexpr int kPictureWidth_px = 400;
+constexpr int kStripWidth_px = 160;
+constexpr std::size_t kMostWorst = 3;  // runs whose worst frame is shown
+
+/// A frame to show, with what it is.
+struct Choice {
+  std::size_t frame = 0;
+  double time_s = 0;
+  std::string caption;
+};
+
+std::string source_of(const ColorImage& image, int width_px) {
+  const int width = std::min(width_px, image.width);
+  const int height = std::max(1, width * image.height / std::max(1, image.width));
+  cv::Mat view(image.height, image.width, CV_8UC3, const_cast<Rgb*>(image.data.data()));  // only read
+  ColorImage small(width, height);
+  cv::Mat result(height, width, CV_8UC3, small.data.data());
+  cv::resize(view, result, result.size(), 0, 0, cv::INTER_AREA);
+  constexpr int kQuality = 75;
+  return page::jpeg_source(small, kQuality);
+}
+
+ColorImage color_of(const GreyImage& grey) {
+  ColorImage color(grey.width, grey.height);
+  for (int y = 0; y < grey.height; ++y) {
+    for (int x = 0; x < grey.width; ++x) {
+      const auto value = grey(x, y);
+      color(x, y) = Rgb{value, value, value};
+    }
+  }
+  return color;
+}
+
+/// The run's frame of a pose; stamps of trajectories are rounded.
+std::size_t frame_at(const RunSeries& run, std::int64_t timestamp_ns) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < run.frames.size(); ++i) {
+    if (std::abs(run.frames[i].timestamp_ns - timestamp_ns) <
+        std::abs(run.frames[best].timestamp_ns - timestamp_ns))
+      best = i;
+  }
+  return best;
+}
+
+Choice choice_of(const RunSeries& run, std::size_t frame, std::string what) {
+  const double time_s = run.time_s(run.frames[frame].timestamp_ns);
+  return {frame, time_s, fmt::format("{}frame {}", what.empty() ? "" : what + ", ", frame)};
+}
+
+std::optional<Choice> worst_of(const RunSeries& run) {
+  const ComparedPose* worst = nullptr;
+  for (const ComparedPose& pose : run.poses) {
+    if (pose.T_truth_truth && (worst == nullptr || pose.error_m > worst->error_m)) worst = &pose;
+  }
+  if (worst == nullptr || run.frames.empty()) return std::nullopt;
+  return choice_of(run, frame_at(run, worst->timestamp_ns),
+                   fmt::format("largest error of {}, {:.1f} cm", run.label, 100 * worst->error_m));
+}
+
+/// The first frame, and the worst of some runs.
+std::vector<Choice> scene_choices(std::span<const RunSeries> runs, const RunSeries& framed) {
+  std::vector<Choice> choices = {choice_of(framed, 0, "the scene as it is seen first")};
+  for (const RunSeries& run : runs) {
+    if (choices.size() > kMostWorst) break;
+    if (auto worst = worst_of(run)) choices.push_back(std::move(*worst));
+  }
+  return choices;
+}
+
+std::vector<page::PageImage> images_of(const std::vector<Choice>& choices,
+                                       const std::map<std::size_t, const ColorImage*>& images, int width_px) {
+  std::vector<page::PageImage> result;
+  for (const Choice& choice : choices)
+    result.push_back({choice.caption, source_of(*images.at(choice.frame), width_px), choice.time_s});
+  return result;
+}
+
+/// Of the frames that runs kept with their patches, each once.
+std::vector<page::PageImage> kept_images(const RunSeries* framed, std::span<const LabelledPatches> patches) {
+  std::map<std::size_t, page::PageImage> images;
+  for (const LabelledPatches& run : patches) {
+    for (const run_files::PatchTableFrame& frame : run.frames) {
+      if (images.contains(frame.frame)) continue;
+      images[frame.frame] = {fmt::format("frame {}", frame.frame),
+                             source_of(color_of(frame.grey), kPictureWidth_px), std::nullopt};
+      if (framed != nullptr) images[frame.frame].time_s = framed->time_s(frame.timestamp_ns);
+    }
+  }
+  std::vector<page::PageImage> result;
+  for (auto& [frame, image] : images) result.push_back(std::move(image));
+  return result;
+}
+
+/// Evenly from the first frame to the last.
+std::vector<Choice> choices_between(const RunSeries& framed, std::size_t most) {
+  std::vector<Choice> choices;
+  const std::size_t count = std::min(most, framed.frames.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t frame = k * (framed.frames.size() - 1) / std::max<std::size_t>(count - 1, 1);
+    choices.push_back(choice_of(framed, frame, ""));
+  }
+  return choices;
+}
+
+Result<std::vector<page::PageSection>> read_pictures(const record::RecordedRecording& recording,
+                                                     const std::vector<Choice>& scene,
+                                                     const std::vector<Choice>& between,
+                                                     const FrameReader& reader) {
+  std::set<std::size_t> numbers;
+  for (const std::vector<Choice>* choices : {&scene, &between}) {
+    for (const Choice& choice : *choices) numbers.insert(choice.frame);
+  }
+  const std::vector<std::size_t> frames(numbers.begin(), numbers.end());
+  const auto read = reader(recording, frames);
+  if (!read) return tl::unexpected(read.error());
+  std::map<std::size_t, const ColorImage*> images;
+  for (std::size_t i = 0; i < frames.size(); ++i) images[frames[i]] = &(*read)[i];
+  std::vector<page::PageSection> sections = {
+      {kTitle, "", images_of(scene, images, kPictureWidth_px), 3, std::max<std::size_t>(scene.size(), 3)}};
+  if (!between.empty()) {
+    sections.push_back({"Frames over time", "", images_of(between, images, kStripWidth_px), 3});
+    sections.back().strip = true;
+  }
+  return sections;
+}
+
+}  // namespace
+
+std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& recording,
+                                              std::span<const RunSeries> runs,
+                                              std::span<const LabelledPatches> patches,
+                                              std::size_t in_between, const FrameReader& reader) {
+  const auto longest =
+      std::ranges::max_element(runs, {}, [](const RunSeries& run) { return run.frames.size(); });
+  const RunSeries* const framed = longest == runs.end() || longest->frames.empty() ? nullptr : &*longest;
+  std::string why = framed == nullptr ? "no run has a table of its frames" : "it was not looked for";
+  if (framed != nullptr && reader) {
+    auto sections =
+        read_pictures(recording, scene_choices(runs, *framed), choices_between(*framed, in_between), reader);
+    if (sections) return std::move(*sections);
+    why = sections.error().message;
+  }
+  std::vector<page::PageImage> kept = kept_images(framed, patches);
+  const std::string sentence = fmt::format("No images of the recording ({}).", why);
+  if (kept.empty()) return {{kTitle, sentence, page::PageParagraphs{}, 3}};
+  return {
+      {kTitle, sentence + " These are the frames that runs kept with their patches.", std::move(kept), 3, 4}};
+}
+
+}  // namespace fusebench::report

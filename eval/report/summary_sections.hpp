@@ -1,0 +1,14 @@
+// What stands at the head of a page of runs: what was found, what was compared, and the tables of all runs.
+#pragma once
+
+#include <vector>
+
+#include "eval/page/page.hpp"
+#include "eval/run_files/found_runs.hpp"
+
+namespace fusebench::report {
+
+/// In the order in which they are read. The first says in words what came out.
+[[nodiscard]] std::vector<page::PageSection> summary_sections(const std::vector<run_files::FoundRun>& runs);
+
+}  // namespace fusebench::report

@@ -1,0 +1,119 @@
+#include "eval/findings/findings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "tests/support/expect_text.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+
+using namespace findings;
+using namespace record;
+using namespace run_files;
+
+namespace {
+
+class FindingsTest : public testing::InTemporaryFolder {
+ protected:
+  void add_run(const std::string& recording, const std::string& variant, double ate_m,
+               const std::string& reason = "") {
+    RunRecord record;
+    record.status = reason.empty() ? RunStatus::ok : RunStatus::lost;
+    record.reason = reason;
+    record.recording.name = recording;
+    record.recording.fingerprint = recording;
+    record.recording.imu = variant == "no-imu" ? "none" : "synthetic IMU";
+    record.variant = variant;
+    record.config = {{"terms.prior", std::string("imu"), "default"}};
+    record.frames = {100, 100, 0};
+    trajectory_error::AteResult ate;
+    ate.stats = metrics::statistics(std::vector<double>{ate_m});
+    if (reason.empty()) record.metrics.ate = {ate, {}};
+    record.provenance = {"0.1.0", "abc", "GNU", "-O3", "e", "CPU X", 2, "host"};
+    const auto folder = std::filesystem::path("runs") / recording / variant / "01234567";
+    write(folder / "record.json", to_json(record));
+    runs_.push_back({folder_ / folder, record});
+  }
+
+  [[nodiscard]] std::vector<Ranking> rankings() const { return rankings_of(runs_, tables::table_of(runs_)); }
+
+  std::vector<FoundRun> runs_;
+};
+
+TEST_F(FindingsTest, OneRecordingIsNoEvidence) {
+  add_run("a", "full", 0.01);
+  add_run("a", "dm", 0.02);
+  const auto found = rankings();
+  ASSERT_EQ(found.size(), 1U);
+  const std::string sentence = sentences_of(found[0]).front();
+  testing::expect_contains(sentence, "full has the smallest ATE on one recorded recording: 1.00 cm");
+  testing::expect_contains(sentence, "dm with 2.00 cm, 2.00 times as much");
+  testing::expect_contains(sentence, "One recording each: no evidence");
+  EXPECT_FALSE(found[0].configurations[1].to_best->interval.has_value());
+}
+
+TEST_F(FindingsTest, ADifferenceIsJudgedByItsIntervalOverRecordings) {
+  const double noise[] = {0.02, -0.01, 0.015, -0.025};
+  for (int i = 0; i < 4; ++i) {
+    const std::string name(1, static_cast<char>('a' + i));
+    add_run(name, "full", 0.01 * (i + 1));  // recordings differ by far more than the variants
+    add_run(name, "dm", 0.013 * (i + 1) * std::exp(noise[i]));
+  }
+  const auto clear = rankings();
+  EXPECT_NEAR(clear[0].configurations[1].to_best->ratio, 1.3, 1e-9);
+  EXPECT_GT((*clear[0].configurations[1].to_best->interval)[0], 1.2);
+  testing::expect_contains(sentences_of(clear[0]).front(), "more than the differences between recordings");
+  testing::expect_contains(sentences_of(clear[0]).front(), "(geometric mean)");
+
+  runs_.clear();
+  for (const auto& [name, dm_m] : {std::pair{"a", 0.02}, {"b", 0.006}, {"c", 0.012}}) {
+    add_run(name, "full", 0.01);
+    add_run(name, "dm", dm_m);
+  }
+  testing::expect_contains(sentences_of(rankings()[0]).front(), "the interval holds 1, so it may be noise");
+}
+
+TEST_F(FindingsTest, WhoLostARecordingIsComparedWhereBothHaveNumbers) {
+  add_run("a", "full", 0.01);
+  add_run("b", "full", 0.04);
+  add_run("a", "dm", 0.005);  // better, but lost elsewhere
+  add_run("b", "dm", 0.0, "too many lost frames");
+  const auto found = rankings();
+  EXPECT_EQ(found[0].configurations[0].label, "full");
+  EXPECT_NEAR(*found[0].configurations[0].value, 0.02, 1e-12);
+  EXPECT_FALSE(found[0].configurations[1].value.has_value());
+  EXPECT_NEAR(found[0].configurations[1].to_best->ratio, 0.5, 1e-12);
+  const std::string sentence = sentences_of(found[0]).front();
+  testing::expect_contains(sentence, "full alone has an ATE on all of 2 recorded recordings");
+  testing::expect_contains(sentence, "Where both have one, dm has 0.50 times as much");
+  const auto failures = failures_of(tables::table_of(runs_));
+  ASSERT_EQ(failures.size(), 1U);
+  testing::expect_contains(failures[0], "1 of 4 runs did not end well: dm on b (lost: too many lost frames)");
+}
+
+TEST_F(FindingsTest, AnImuMadeFromTheTruthIsSaid) {
+  add_run("a", "full", 0.01);
+  add_run("a", "no-imu", 0.02);
+  const auto sentences = sentences_of(rankings()[0]);
+  ASSERT_EQ(sentences.size(), 2U);
+  testing::expect_contains(sentences[1], "The IMU of full was made from the ground truth");
+}
+
+TEST_F(FindingsTest, TheOriginHasVersionMachineAndWhenTheRecordsWereWritten) {
+  add_run("a", "full", 0.01);
+  add_run("b", "full", 0.01);
+  const auto time =
+      std::chrono::file_clock::from_sys(std::chrono::sys_seconds(std::chrono::seconds(1'700'000'000)));
+  std::filesystem::last_write_time(runs_[0].folder / "record.json", time);
+  std::filesystem::last_write_time(runs_[1].folder / "record.json", time + std::chrono::hours(1));
+  EXPECT_EQ(origin_of(runs_),
+            "Made by fusebench 0.1.0 (abc) on host, CPU X (2 threads); records written 2023-11-14 22:13 to "
+            "2023-11-14 23:13 UTC.");
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,81 @@
+#include "eval/page/page.hpp"
+
+#include <gtest/gtest.h>
+
+#include "eval/page/figures.hpp"
+#include "eval/page/series_colours.hpp"
+#include "tests/support/expect_text.hpp"
+
+namespace fusebench {
+
+using namespace page;
+
+namespace {
+
+std::string html_of(PageSection section) { return to_html({"t", "", {std::move(section)}}); }
+
+TEST(Page, ColumnsOfNumbersAreMarkedAndTheBestOfThemIs) {
+  PageTable table;
+  table.header = {"run", "ATE", "tracked", "left"};
+  table.rows = {{{"full", "1.20", "12/34", "5 of 7"}, "", {1}}, {{"dm", "-", "", "none"}, ""}};
+  const std::string html = html_of({"s", "", table});
+  testing::expect_contains(html, "<table class=\"n2 n3\">");
+  testing::expect_contains(html, "<td>full</td><td class=\"best\">1.20</td>");
+  testing::expect_contains(html, "<th scope=\"col\">ATE</th>");
+}
+
+TEST(Page, PartsHaveAnElementAndTheirChartsKnowIt) {
+  Chart chart;
+  chart.x_label = "time [s]";
+  chart.series = {{"full", {{0, 1}, {1, 2}}}};
+  chart.y_range = Vector2d(0, 5);
+  chart.x_names = {"<a>"};
+  PageSection first{"one", "", PageParagraphs{{"a < b"}}};
+  PageSection second{"two", "", std::vector<Chart>{chart}};
+  second.timeline = true;
+  PageSection third{"three", "", std::vector<PageImage>{{"c", "data:image/jpeg;base64,x", 1.5}}, 3};
+  third.strip = true;
+  const std::string html = to_html({"t", "", {first, second, third}});
+  testing::expect_contains(html, "<p>a &lt; b</p>");
+  testing::expect_contains(html, "<section class=\"part timeline\" id=\"part-1\">");
+  EXPECT_EQ(html.find("id=\"part-2\""), std::string::npos) << "a section of level 3 begins no part";
+  testing::expect_contains(html, "\"yRange\":[0,5],\"part\":1");
+  testing::expect_contains(html, "\\u003ca>");
+  testing::expect_contains(html, "<div class=\"strip\"");
+  testing::expect_contains(html, "<figure data-time=\"1.5\">");
+}
+
+TEST(Page, FiguresAreCutAsChartsAreAndNameTheirPlaces) {
+  Chart chart;
+  chart.series = {{"full", {{1, 1}}, SeriesStyle::line}, {"full, 3 sigma", {{1, 2}}, SeriesStyle::band}};
+  chart.y_range = Vector2d(0, 5);
+  chart.x_names = {"fr1_xyz", "fr1_rpy"};
+  const std::string script = gnuplot_script(chart, "f.svg", FigureFormat::svg);
+  testing::expect_contains(script, "set yrange [0:5]");
+  testing::expect_contains(script, "\"fr1_xyz\" 1, \"fr1_rpy\" 2");
+  EXPECT_LT(script.find("filledcurves y1=0"), script.find("with lines")) << "a band would hide the line";
+}
+
+TEST(SeriesColours, AVariantHasItsOwnOnEveryPage) {
+  const auto some = series_colours(std::vector<ColouredName>{{"full ", 0}, {"no-imu ", 2}});
+  const auto all =
+      series_colours(std::vector<ColouredName>{{"no-imu ", 2}, {"dm ", 1}, {"full ", 0}, {"no-imu ", 2}});
+  EXPECT_EQ(some, (std::vector<std::size_t>{1, 3}));
+  EXPECT_EQ(all, (std::vector<std::size_t>{3, 2, 1, 3}));
+}
+
+TEST(SeriesColours, OtherOptionsAndOtherSystemsGetFreeOnes) {
+  // The variant of rank 10 would have the colour of the first.
+  const auto colours = series_colours(
+      std::vector<ColouredName>{{"full ", 0}, {"full tsdf.voxel_m=0.01", 0}, {"literal ", 10}});
+  EXPECT_EQ(colours, (std::vector<std::size_t>{1, 2, 3}));
+  std::vector<ColouredName> many;
+  for (std::size_t i = 0; i < 30; ++i) many.push_back({std::to_string(i), 0});
+  for (const std::size_t colour : series_colours(many)) {
+    EXPECT_GT(colour, 0U) << "that of the ground truth";
+    EXPECT_LT(colour, kSeriesColours);
+  }
+}
+
+}  // namespace
+}  // namespace fusebench
