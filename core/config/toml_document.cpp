@@ -12,6 +12,7 @@
 #include <toml++/toml.h>
 
 #include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 
 namespace fusebench::config {
 
@@ -157,7 +158,7 @@ Result<TomlDocument> parse_toml(std::string_view text, const std::string& name) 
 }
 
 Result<TomlDocument> read_toml(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (!stream || std::filesystem::is_directory(file)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   }

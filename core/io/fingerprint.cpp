@@ -6,6 +6,8 @@
 #include <array>
 #include <fstream>
 
+#include "core/io/input_file.hpp"
+
 namespace fusebench::io {
 
 struct Fingerprint::State {
@@ -37,7 +39,7 @@ void Fingerprint::add(std::string_view bytes) {
 }
 
 Result<ContentHash> Fingerprint::add_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = input_file(file);
   if (!stream) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   }

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 
 namespace fusebench::io {
 
@@ -175,7 +176,7 @@ Result<TextTable> TextTable::open(const std::filesystem::path& file, std::string
   if (!std::filesystem::exists(file, ignored)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such file", file.string()));
   }
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = input_file(file);
   if (!stream || std::filesystem::is_directory(file, ignored)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read as a file", file.string()));
   }

@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
 namespace fusebench::mesh {
@@ -33,15 +38,36 @@ Rgb color_of(const float* channels) {
   return color;
 }
 
+/// Its number of a vertex, before any slash: the library would take the digits that it finds, and wrap.
+bool is_corner(std::string_view field) {
+  const std::string_view vertex = field.substr(0, field.find('/'));
+  std::int32_t number = 0;
+  const auto [end, error] = std::from_chars(vertex.data(), vertex.data() + vertex.size(), number);
+  return error == std::errc() && end == vertex.data() + vertex.size();
+}
+
+Result<void> check_corners(std::span<const std::string_view> corners, const fs::path& file,
+                           std::size_t line) {
+  const auto bad = std::ranges::find_if_not(corners, is_corner);
+  if (bad == corners.end()) return {};
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}:{}: '{}' names no vertex of a face", file.string(), line, printable(*bad)));
+}
+
 /// In double precision. The library reads floats, and invalid numbers as 0.
 Result<std::vector<Vector3d>> read_vertices(const fs::path& file) {
-  std::ifstream lines(file);
+  std::ifstream lines = io::input_file(file);
   std::string line;
   std::vector<std::string_view> fields;
   std::vector<Vector3d> vertices;
   for (std::size_t number = 1; std::getline(lines, line); ++number) {
     io::split_fields(line, fields);
-    if (fields.empty() || fields[0] != "v") continue;
+    if (fields.empty()) continue;
+    if (fields[0] == "f") {
+      if (auto fits = check_corners(std::span(fields).subspan(1), file, number); !fits)
+        return tl::unexpected(fits.error());
+    }
+    if (fields[0] != "v") continue;
     fields.erase(fields.begin());
     if (fields.size() < 3) {
       return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: a vertex of {} numbers (expected 3 or more)",
@@ -87,15 +113,19 @@ Result<PreciseMesh> read_obj(const fs::path& file) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such file", file.string()));
   Result<std::vector<Vector3d>> vertices = read_vertices(file);
   if (!vertices) return tl::unexpected(vertices.error());
-  tinyobj::ObjReaderConfig config;
-  config.triangulate = false;   // the library drops polygons of vertices that do not exist
-  config.vertex_color = false;  // no white where the file has no colours
-  tinyobj::ObjReader reader;
-  if (!reader.ParseFromFile(file.string(), config)) {
-    return fail(ErrorCode::data_corrupt, fmt::format("{}: not a readable OBJ file: {}", file.string(),
-                                                     without_line_end(reader.Error())));
+  tinyobj::attrib_t attributes;
+  std::vector<tinyobj::shape_t> shapes;
+  std::vector<tinyobj::material_t> materials;
+  std::string warning, error;
+  std::ifstream stream = io::input_file(file);
+  constexpr tinyobj::MaterialReader* kNoMaterials = nullptr;  // files that it names are not opened
+  constexpr bool kTriangulate = false;    // the library drops polygons of vertices that do not exist
+  constexpr bool kDefaultColors = false;  // no white where the file has no colours
+  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, kNoMaterials,
+                        kTriangulate, kDefaultColors)) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: not a readable OBJ file: {}", file.string(), without_line_end(error)));
   }
-  const tinyobj::attrib_t& attributes = reader.GetAttrib();
   PreciseMesh mesh;
   mesh.vertices = std::move(*vertices);
   if (attributes.vertices.size() != 3 * mesh.vertices.size()) {
@@ -108,7 +138,7 @@ Result<PreciseMesh> read_obj(const fs::path& file) {
     for (std::size_t i = 0; i < attributes.colors.size(); i += 3)
       mesh.colors.push_back(color_of(&attributes.colors[i]));
   }
-  for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+  for (const tinyobj::shape_t& shape : shapes) {
     if (auto added = add_faces(shape, file, mesh); !added) return tl::unexpected(added.error());
   }
   return mesh;

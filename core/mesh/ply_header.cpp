@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "core/base/printable.hpp"
@@ -90,8 +92,12 @@ class HeaderReader {
 
   bool read_element(std::istringstream& words) {
     PlyElement element;
-    words >> element.name >> element.count;
-    if (!words) return reject("expected 'element NAME COUNT'");
+    std::string count;
+    words >> element.name >> count;
+    const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), element.count);
+    if (!words || error != std::errc() || end != count.data() + count.size())
+      return reject(
+          fmt::format("expected 'element NAME COUNT', with a whole number and not '{}'", printable(count)));
     const auto is_same = [&](const PlyElement& other) { return other.name == element.name; };
     if (std::ranges::any_of(header_.elements, is_same))
       return reject(fmt::format("element {} is there twice", printable(element.name)));

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 #include "core/mesh/ply_file.hpp"
 #include "core/mesh/ply_header.hpp"
 
@@ -233,7 +234,7 @@ class PlyReader {
 Result<PreciseMesh> read_ply(const std::filesystem::path& file) {
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(file, no_size);
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   std::string bytes(no_size ? 0 : size, '\0');
   if (no_size || !stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot read the file", file.string()),

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
 namespace fusebench::calibration {
@@ -24,7 +25,7 @@ struct Word {
 };
 
 Result<std::vector<Word>> words_of(const std::filesystem::path& file) {
-  std::ifstream stream(file);
+  std::ifstream stream = io::input_file(file);
   std::error_code ignored;
   if (!stream || !std::filesystem::is_regular_file(file, ignored))
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read as a file", file.string()));

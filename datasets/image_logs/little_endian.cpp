@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/input_file.hpp"
+
 namespace fusebench::image_logs {
 
 LittleEndianReader::LittleEndianReader(std::string file, std::ifstream stream, std::uint64_t size)
@@ -14,7 +16,7 @@ Result<LittleEndianReader> LittleEndianReader::open(const std::filesystem::path&
   std::error_code error;
   const bool is_file = std::filesystem::is_regular_file(file, error);
   const std::uintmax_t size = is_file ? std::filesystem::file_size(file, error) : 0;
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (!is_file || error || !stream)
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read as a file", file.string()));
   return LittleEndianReader(file.string(), std::move(stream), size);

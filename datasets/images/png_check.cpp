@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/io/input_file.hpp"
+
 namespace fusebench::images {
 
 namespace {
@@ -31,7 +33,7 @@ std::uint32_t checksum(std::string_view bytes) {
 // it prints on standard error.
 std::string png_damage(const std::filesystem::path& file) {
   std::ostringstream content;
-  content << std::ifstream(file, std::ios::binary).rdbuf();
+  content << io::input_file(file).rdbuf();
   const std::string_view bytes = content.view();
   if (!bytes.starts_with(kSignature)) return {};
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "core/io/input_file.hpp"
 #include "datasets/inspection/checks.hpp"
 
 namespace fusebench::inspection {
@@ -17,7 +18,7 @@ namespace {
 constexpr double kVisibleMotion_px = 0.3;
 
 std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 

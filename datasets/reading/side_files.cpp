@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
@@ -32,11 +33,6 @@ Result<void> check_positions(const Trajectory& truth, const std::filesystem::pat
         "remove its row, or subtract an origin from all positions");
   }
   return {};
-}
-
-bool is_there(const std::filesystem::path& file) {
-  std::error_code ignored;
-  return std::filesystem::exists(file, ignored);
 }
 
 }  // namespace
@@ -71,12 +67,12 @@ Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
 
 Result<void> read_ground_truth_beside(const std::filesystem::path& folder, recording::Recording& recording) {
   const std::filesystem::path file = folder / "groundtruth.txt";
-  if (!is_there(file)) return {};
+  if (!io::is_named(file)) return {};
   // The published truth of freiburg2_desk repeats a stamp; TUM's own scripts keep the last of such rows.
   auto truth =
       trajectory::read_tum_trajectory(file, recording.warnings, trajectory::Duplicates::last_in_order);
   if (!truth) return tl::unexpected(truth.error());
-  if (std::string first; std::getline(std::ifstream(file), first) && first.starts_with("# ") &&
+  if (std::string first; std::getline(io::input_file(file), first) && first.starts_with("# ") &&
                          first.substr(2).starts_with(recording::kPseudoGroundTruth)) {
     recording.truth_label = recording::kPseudoGroundTruth;
     recording.notes.push_back(fmt::format("ground truth: {}", recording::kPseudoGroundTruth));
@@ -102,7 +98,7 @@ Result<std::vector<ImuSample>> read_imu_table(const std::filesystem::path& file,
 
 Result<void> read_imu_beside(const std::filesystem::path& folder, recording::Recording& recording) {
   const std::filesystem::path file = folder / "imu.csv";
-  if (!is_there(file)) return {};
+  if (!io::is_named(file)) return {};
   auto samples = read_imu_table(file, io::TimeUnit::nanoseconds);
   if (!samples) return tl::unexpected(samples.error());
   recording.imu = std::move(*samples);
@@ -111,9 +107,9 @@ Result<void> read_imu_beside(const std::filesystem::path& folder, recording::Rec
 }
 
 Result<void> read_exact_truth_beside(const std::filesystem::path& folder, recording::Recording& recording) {
-  if (const auto mesh = folder / "scene.ply"; is_there(mesh)) recording.truth_mesh_file = mesh;
+  if (const auto mesh = folder / "scene.ply"; io::is_named(mesh)) recording.truth_mesh_file = mesh;
   const std::filesystem::path file = folder / "state_groundtruth.csv";
-  if (!is_there(file)) return {};
+  if (!io::is_named(file)) return {};
   auto states = recording::read_state_truth(file);
   if (!states) return tl::unexpected(states.error());
   recording.state_truth = std::move(*states);
@@ -121,7 +117,7 @@ Result<void> read_exact_truth_beside(const std::filesystem::path& folder, record
 }
 
 void note_simulation(const std::filesystem::path& folder, recording::Recording& recording) {
-  recording.simulated = is_there(folder / "simulation.toml");
+  recording.simulated = io::is_named(folder / "simulation.toml");
   if (recording.simulated) recording.notes.emplace_back("simulated: simulation.toml says how it was made");
 }
 

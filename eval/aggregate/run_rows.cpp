@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "eval/aggregate/option_order.hpp"
 #include "eval/aggregate/record_scan.hpp"
 #include "eval/run_files/found_runs.hpp"
@@ -28,7 +29,7 @@ RunRow read_row(const fs::path& root, const fs::path& file) {
   const fs::path folder = file.parent_path();
   std::error_code error;
   const auto bytes = fs::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   std::string text(error ? 0 : bytes, '\0');
   if (!error && stream.read(text.data(), static_cast<std::streamsize>(text.size()))) {
     std::vector<record::RecordedFile> files;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
 namespace fusebench::compare {
@@ -54,7 +55,7 @@ Result<std::vector<Row>> read_rows(const fs::path& file) {
 
 /// The frame's number in the run's frames.csv, whose first two columns are the frame and its stamp.
 std::optional<std::size_t> frame_at(const fs::path& run, std::int64_t timestamp_ns) {
-  std::ifstream stream(run / "frames.csv");
+  std::ifstream stream = io::input_file(run / "frames.csv");
   std::string line;
   if (!std::getline(stream, line) || !line.starts_with("frame,timestamp,")) return std::nullopt;
   while (std::getline(stream, line)) {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/io/fingerprint.hpp"
+#include "core/io/input_file.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_file.hpp"
@@ -23,7 +24,7 @@ using Json = nlohmann::ordered_json;
 fs::path invocations_folder(const fs::path& out) { return engine_folder(out) / "invocations"; }
 
 Result<std::string> text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::ostringstream text;
   text << stream.rdbuf();

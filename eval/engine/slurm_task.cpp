@@ -12,6 +12,7 @@
 
 #include "core/config/config_access.hpp"
 #include "core/io/fingerprint.hpp"
+#include "core/io/input_file.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/process/forked_job.hpp"
 #include "eval/record/build_info.hpp"
@@ -77,7 +78,7 @@ Result<std::vector<BatchJob>> jobs_of_task(std::span<const BatchJob> jobs, const
 }  // namespace
 
 std::string text_if_there(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();

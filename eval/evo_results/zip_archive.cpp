@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 
 namespace fusebench::evo_results {
 
@@ -68,7 +69,7 @@ tl::unexpected<Error> corrupt(const std::filesystem::path& file, std::string_vie
 }
 
 Result<std::string> content(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   std::error_code no_size;
   const auto size = std::filesystem::file_size(file, no_size);
   if (!stream || no_size)

@@ -15,6 +15,7 @@
 #include "core/base/nearest_name.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
+#include "core/io/input_file.hpp"
 #include "eval/external/system_name.hpp"
 
 namespace fusebench::external {
@@ -303,7 +304,7 @@ Result<ExternalProgram> read_external_program(const fs::path& file) {
   }
   std::error_code ignored;
   program.file = fs::absolute(file, ignored);
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   program.definition.assign(std::istreambuf_iterator<char>(stream), {});
   return program;
 }

@@ -16,6 +16,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/intensity_residual.hpp"
+#include "core/io/input_file.hpp"
 
 namespace fusebench::metrics {
 
@@ -31,8 +32,7 @@ class IntensityWriter {
   [[nodiscard]] Result<void> finish();
 
  private:
-  explicit IntensityWriter(const std::filesystem::path& file)
-      : file_(file), stream_(file, std::ios::binary) {}
+  explicit IntensityWriter(const std::filesystem::path& file) : file_(file), stream_(io::input_file(file)) {}
   [[nodiscard]] Result<void> state() const;
 
   std::filesystem::path file_;
@@ -59,8 +59,7 @@ class IntensityReader {
   [[nodiscard]] std::uint32_t height_px() const { return height_px_; }
 
  private:
-  explicit IntensityReader(const std::filesystem::path& file)
-      : file_(file), stream_(file, std::ios::binary) {}
+  explicit IntensityReader(const std::filesystem::path& file) : file_(file), stream_(io::input_file(file)) {}
   [[nodiscard]] tl::unexpected<Error> corrupt(const std::string& what) const;
   [[nodiscard]] Result<std::optional<IntensityFrame>> read_end();
 

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/io/input_file.hpp"
 #include "eval/record/histogram_json.hpp"
 #include "eval/record/record_loops.hpp"
 #include "eval/record/record_metrics.hpp"
@@ -291,7 +292,7 @@ Result<RunRecord> parse_record(std::string_view json, const std::string& name) {
 }
 
 Result<RunRecord> read_record(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::ostringstream text;
   text << stream.rdbuf();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
 namespace fusebench::run_files {
@@ -45,7 +46,7 @@ Result<std::int64_t> NamedRow::time_ns(std::string_view name) const {
 
 Result<void> for_each_named_row(const std::filesystem::path& file,
                                 const std::function<Result<void>(const NamedRow&)>& row) {
-  std::ifstream stream(file);
+  std::ifstream stream = io::input_file(file);
   std::string line;
   if (!stream || !std::getline(stream, line))
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read", file.string()));

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 #include "eval/metrics/intensity_file.hpp"
 
@@ -103,7 +104,7 @@ Result<std::vector<SharedFrame>> shared_frames(const std::filesystem::path& refe
 }
 
 Result<std::map<std::int64_t, double>> read_patch_motion(const std::filesystem::path& frames_csv) {
-  std::ifstream stream(frames_csv);
+  std::ifstream stream = io::input_file(frames_csv);
   std::string line;
   if (!stream || !std::getline(stream, line))
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read", frames_csv.string()));

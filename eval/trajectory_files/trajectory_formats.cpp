@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_file.hpp"
@@ -68,7 +69,7 @@ io::TimeUnit unit_of(const std::string& stamp) {
 }
 
 Result<FirstRow> first_row(const std::filesystem::path& file) {
-  std::ifstream stream(file);
+  std::ifstream stream = io::input_file(file);
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::string line;
   std::vector<std::string_view> fields;

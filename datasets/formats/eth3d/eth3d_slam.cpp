@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/reading/associated_row.hpp"
@@ -67,8 +68,7 @@ Result<void> read_frames(const std::filesystem::path& folder, recording::Recordi
 Result<void> take_imu(const std::filesystem::path& folder, const calibration::RigCalibration& calibration,
                       recording::Recording& recording) {
   const std::filesystem::path file = folder / "imu.txt";
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return reading::read_imu_beside(folder, recording);
+  if (!io::is_named(file)) return reading::read_imu_beside(folder, recording);
   if (!calibration.imu) {
     recording.warnings.push_back(
         fmt::format("{}: not used, since the recording does not say where its IMU sits; put a "

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/formats/icl/icl_conventions.hpp"
 #include "datasets/formats/icl/icl_povray.hpp"
@@ -107,8 +108,7 @@ Result<std::optional<std::filesystem::path>> truth_file(const std::filesystem::p
         "keep the one of this trajectory");
   }
   const std::filesystem::path beside = folder / "groundtruth.txt";
-  std::error_code ignored;
-  const bool has_beside = std::filesystem::exists(beside, ignored);
+  const bool has_beside = io::is_named(beside);
   if (published.empty()) return has_beside ? std::optional(beside) : std::nullopt;
   if (has_beside) {
     recording.notes.push_back(fmt::format("ground truth: {} is used, groundtruth.txt is not",

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 #include "datasets/images/file_content.hpp"
 
@@ -37,7 +38,7 @@ Result<std::string> read_text(const std::filesystem::path& file, std::uintmax_t 
                 fmt::format("{}: {} bytes (at most {} expected)", file.string(), size, longest));
   }
   std::string text(size, '\0');
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   stream.read(text.data(), static_cast<std::streamsize>(size));
   if (!stream) return fail(ErrorCode::data_corrupt, fmt::format("{}: read error", file.string()));
   return text;

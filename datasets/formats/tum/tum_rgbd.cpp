@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/io/input_file.hpp"
 #include "datasets/calibration/camera_presets.hpp"
 #include "datasets/formats/tum/image_pairs.hpp"
 #include "datasets/formats/tum/tum_lists.hpp"
@@ -42,7 +43,7 @@ Result<void> read_lists(const std::filesystem::path& folder, const recording::Re
 
 Result<void> read_accelerometer(const std::filesystem::path& folder, recording::Recording& recording) {
   const std::filesystem::path file = folder / "accelerometer.txt";
-  if (!std::filesystem::exists(file)) return {};
+  if (!io::is_named(file)) return {};
   auto samples = read_tum_accelerometer(file);
   if (!samples) return tl::unexpected(samples.error());
   recording.accelerometer = std::move(*samples);

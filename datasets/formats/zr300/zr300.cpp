@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/calibration/infinitam_calibration.hpp"
 #include "datasets/calibration/recording_catalogue.hpp"
@@ -22,11 +23,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kUnitsPerMetre = 1000;
-
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
 
 /// calib.txt has no distortion. FMDataset's lens has some; another device, whose focal length may be near, is
 /// recognised by its intrinsics as a whole.
@@ -67,15 +63,15 @@ Result<calibration::RigCalibration> known_calibration(const fs::path& folder) {
   // One file serves all sequences of a scene. A trailing slash would make the folder its own parent.
   const fs::path whole = fs::absolute(folder / "x").lexically_normal().parent_path();
   for (const fs::path& place : {whole, whole.parent_path()}) {
-    if (is_there(place / "calib.txt")) return read_calib_txt(place / "calib.txt", *fmdataset);
+    if (io::is_named(place / "calib.txt")) return read_calib_txt(place / "calib.txt", *fmdataset);
   }
   fmdataset->source = fmt::format("published for FMDataset's ZR300 ({})", fmdataset->source);
   return fmdataset;
 }
 
 Result<void> read_imu(const fs::path& folder, recording::Recording& recording) {
-  if (is_there(folder / "IMU.txt")) return read_zr300_imu(folder, recording);
-  if (is_there(folder / "GYRO.txt")) return read_zr300_gyro_and_accel(folder, recording);
+  if (io::is_named(folder / "IMU.txt")) return read_zr300_imu(folder, recording);
+  if (io::is_named(folder / "GYRO.txt")) return read_zr300_gyro_and_accel(folder, recording);
   return reading::read_imu_beside(folder, recording);
 }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
 #include "core/trajectory/trajectory_file.hpp"
@@ -33,7 +34,7 @@ SE3 from_icl(const SE3& T_icl) {
 }
 
 Result<std::size_t> count_columns(const std::filesystem::path& file) {
-  std::ifstream stream(file);
+  std::ifstream stream = io::input_file(file);
   if (!stream) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()),
                 "give a trajectory file: TUM columns, or one of ICL-NUIM's");

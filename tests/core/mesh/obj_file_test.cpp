@@ -25,6 +25,13 @@ TEST_F(ObjFile, KeepsEveryDigitOfAVertex) {
   EXPECT_TRUE(mesh->colors.empty());
 }
 
+TEST_F(ObjFile, DoesNotOpenTheMaterialsThatItNames) {
+  const auto mesh =
+      read_obj(write("mesh.obj", "mtllib /dev/zero\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  ASSERT_TRUE(mesh.has_value()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 1U);
+}
+
 TEST_F(ObjFile, NamesWhatIsWrong) {
   const auto refusal = [&](const std::string& text) {
     const auto mesh = read_obj(write("mesh.obj", text));
@@ -37,6 +44,10 @@ TEST_F(ObjFile, NamesWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nf 1 2 3 9 5\n").find("vertex 9 of 5"),
             std::string::npos);
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+  EXPECT_NE(refusal(triangle + "f 1 2 4294967300\n").find("mesh.obj:5: '4294967300' names no vertex"),
+            std::string::npos);
+  EXPECT_NE(refusal(triangle + "f 1 2x 3\n").find("mesh.obj:5: '2x' names no vertex"), std::string::npos);
   EXPECT_EQ(read_obj(folder_ / "none.obj").error().code, ErrorCode::data_missing);
   const auto other = read_mesh(write("mesh.stl", ""));
   EXPECT_EQ(other.error().code, ErrorCode::usage);
