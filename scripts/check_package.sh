@@ -67,7 +67,7 @@ inside() {
     chroot "$root" bash -euo pipefail -c "$1" >"$scratch/log" 2>&1
 }
 as_user() {
-  env -i PATH=/usr/bin:/bin HOME=/tmp/user LC_ALL=C.UTF-8 TERM=dumb \
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp/user LC_ALL=C.UTF-8 TERM=dumb \
     chroot --userspec=nobody:nogroup "$root" bash -euo pipefail -c "cd /tmp/user; $1" >"$scratch/log" 2>&1
 }
 # Every file of the system but those that apt, dpkg and the users of this script write.
@@ -98,7 +98,7 @@ step 'installing it with what it depends on'
 inside 'apt-get update -q; apt-get install -y -q --no-install-recommends /tmp/fusebench.deb' || failed "it cannot be installed"
 step 'quickstart, as a user without rights'
 as_user 'fusebench --version
-  fusebench simulate --preset slow --format zr300 --seed 1 --duration 1 --out data/slow
+  fusebench simulate --preset slow --size 320x240 --duration 2.5 --out data/slow
   fusebench list suites | grep -q quickstart
   fusebench bench quickstart --data data --out runs
   fusebench table runs

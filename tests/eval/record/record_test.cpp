@@ -311,6 +311,7 @@ RunRecord complete_record() {
   record.metrics.ate_fitted = {fitted, {}};
   record.metrics.rpe_second = record.metrics.rpe_frame;
   record.metrics.intensity_readings = {IntensityReadings{}, {}};
+  record.metrics.mesh.value->first_camera.thresholds = record.metrics.mesh.value->poses.thresholds;
   record.metrics.mesh.value->positions = record.metrics.mesh.value->first_camera;
   record.metrics.silent = {RecordedSilentFailures{}, {}};
   record.metrics.pose_intensity = {RecordedPoseIntensity{}, {}};
@@ -331,12 +332,11 @@ testing::JsonSchema record_schema() {
 
 TEST(RecordSchema, KnowsEveryFieldAndNoOther) {
   testing::JsonSchema schema = record_schema();
-  for (const RunRecord& record : {sample_record(), complete_record(), RunRecord{}})
-    EXPECT_EQ(schema.violations(json::parse(to_json(record))), std::vector<std::string>());
-  EXPECT_EQ(schema.unused_properties(), std::vector<std::string>());
   RunRecord without_loops = sample_record();
   without_loops.loops = Outcome<loop_error::LoopError>{std::nullopt, "no truth"};
-  EXPECT_EQ(schema.violations(json::parse(to_json(without_loops))), std::vector<std::string>());
+  for (const RunRecord& record : {sample_record(), complete_record(), without_loops, RunRecord{}})
+    EXPECT_EQ(schema.violations(json::parse(to_json(record))), std::vector<std::string>());
+  EXPECT_EQ(schema.unused_properties(), std::vector<std::string>());
 }
 
 TEST(RecordSchema, HoldsForTheBaseline) {
