@@ -170,9 +170,9 @@ std::string number_columns(const PageTable& table) {
   for (std::size_t column = 0; column < table.header.size(); ++column) {
     bool any = false;
     const bool all = std::ranges::all_of(table.rows, [&](const PageTable::Row& row) {
-      if (column >= row.cells.size() || row.cells[column].empty() || row.cells[column] == "-") return true;
+      if (column >= row.cells.size() || row.cells[column].empty()) return true;
       any = true;
-      return is_number(row.cells[column]);
+      return row.cells[column] == "-" || is_number(row.cells[column]);
     });
     if (all && any) classes += fmt::format("{}n{}", classes.empty() ? "" : " ", column + 1);
   }

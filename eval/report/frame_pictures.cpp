@@ -73,7 +73,7 @@ std::optional<Choice> worst_of(const RunSeries& run) {
   }
   if (worst == nullptr || run.frames.empty()) return std::nullopt;
   return choice_of(run, frame_at(run, worst->timestamp_ns),
-                   fmt::format("largest error of {}, {:.1f} cm", run.label, 100 * worst->error_m));
+                   fmt::format("largest error of {}, {:.2f} cm", run.label, 100 * worst->error_m));
 }
 
 /// The first frame, and the worst of some runs.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
 #include <utility>
 
 #include "core/base/error.hpp"
@@ -14,12 +15,20 @@ namespace fusebench::cli::results {
 
 namespace {
 
-Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& data,
+Result<std::filesystem::path> folder_of(const record::RecordedRecording& recorded,
+                                        const std::filesystem::path& data,
+                                        const std::filesystem::path& runs) {
+  std::error_code ignored;
+  const std::filesystem::path simulated =
+      std::filesystem::weakly_canonical(runs, ignored).parent_path() / "simulated" / recorded.name;
+  if (recorded.data == "simulated" && std::filesystem::is_directory(simulated, ignored)) return simulated;
+  return suites::find_recording(recorded.name, data);
+}
+
+Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& folder,
                                             const record::RecordedRecording& recorded,
                                             std::span<const std::size_t> frames) {
-  const auto folder = suites::find_recording(recorded.name, data);
-  if (!folder) return tl::unexpected(folder.error());
-  auto recording = datasets::open_recording(*folder);
+  auto recording = datasets::open_recording(folder);
   if (!recording) return tl::unexpected(recording.error());
   const std::size_t end = recorded.first_frame + recorded.frames;
   if (end <= recording->frames.size()) {
@@ -28,7 +37,7 @@ Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& data,
   }
   if (recording->fingerprint != recorded.fingerprint) {
     return fail(ErrorCode::data_missing,
-                fmt::format("{} has another content than when it was run", folder->string()));
+                fmt::format("{} has another content than when it was run", folder.string()));
   }
   std::vector<ColorImage> images;
   for (const std::size_t frame : frames) {
@@ -41,9 +50,11 @@ Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& data,
 
 }  // namespace
 
-report::FrameReader recorded_frames(const std::filesystem::path& data) {
-  return [data](const record::RecordedRecording& recording, std::span<const std::size_t> frames) {
-    return read_frames(data, recording, frames);
+report::FrameReader recorded_frames(const std::filesystem::path& data, const std::filesystem::path& runs) {
+  return [data, runs](const record::RecordedRecording& recording, std::span<const std::size_t> frames) {
+    return folder_of(recording, data, runs).and_then([&](const std::filesystem::path& folder) {
+      return read_frames(folder, recording, frames);
+    });
   };
 }
 

@@ -36,7 +36,7 @@ Result<int> report(const ReportOptions& options) {
   std::string title = options.title;
   if (title.empty())
     title = "Results of " + std::filesystem::weakly_canonical(options.runs).filename().string();
-  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data));
+  report::ResultsPage page = report::results_page(*runs, title, recorded_frames(options.data, options.runs));
   const auto rows = aggregate::read_run_rows(options.runs, Workers(1));
   if (!rows) return tl::unexpected(rows.error());
   auto sweep = report::sweep_sections(*rows);

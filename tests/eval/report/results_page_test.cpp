@@ -206,7 +206,7 @@ TEST_F(ResultsPageTest, PicturesShowTheFirstFrameAndTheWorst) {
   ASSERT_EQ(sections.size(), 2U);
   const auto& scene = std::get<std::vector<PageImage>>(sections[0].content);
   ASSERT_EQ(scene.size(), 2U);
-  EXPECT_EQ(scene[1].caption, "largest error of full, 7.0 cm, frame 40");
+  EXPECT_EQ(scene[1].caption, "largest error of full, 7.00 cm, frame 40");
   EXPECT_NEAR(*scene[1].time_s, 40 * 0.033, 1e-6);
   EXPECT_TRUE(sections[1].strip);
 
