@@ -45,7 +45,10 @@ mkdir -p "$lost"
 sed -e 's/"status": "ok"/"status": "failed"/' -e 's/"reason": ""/"reason": "<b>no \& such<\/b> thing"/' \
   -e 's/"variant": "full"/"variant": "planar"/' runs/recording/full/*/record.json >"$lost/record.json"
 
-"$binary" report runs --out report.html 2>stderr || failed "no report: $(cat stderr)"
+# From where the recording is not, since it is looked for by its name.
+mkdir elsewhere
+report_from_elsewhere() { (cd elsewhere && "$binary" report ../runs "$@") 2>stderr; }
+report_from_elsewhere --out ../report.html || failed "no report: $(cat stderr)"
 (($(stat -c %s report.html) < 15000000)) || failed "the report is larger than 15 MB"
 # Pictures are letters too, among which there may be any three by chance.
 grep -q 'NaN\|>nan<\|>inf<' <(sed -e '/<script/,/<\/script>/d' -e 's/data:image[^"]*"/"/g' report.html) && failed "the report shows what is no number"
@@ -78,7 +81,7 @@ while IFS= read -r row; do
 done <systems_rows
 if command -v gnuplot >/dev/null; then
   for format in svg pdf; do
-    "$binary" report runs --out again.html --figures figures --figure-format "$format" 2>stderr ||
+    report_from_elsewhere --out ../again.html --figures ../figures --figure-format "$format" ||
       failed "no figures: $(cat stderr)"
     for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error \
       time_of_the_stages_over_the_frames_no_imu x_z_view_with_loops_full candidates_for_loops_full \

@@ -39,7 +39,7 @@ TEST(Page, PartsHaveAnElementAndTheirChartsKnowIt) {
   testing::expect_contains(html, "<p>a &lt; b</p>");
   testing::expect_contains(html, "<section class=\"part timeline\" id=\"part-1\">");
   EXPECT_EQ(html.find("id=\"part-2\""), std::string::npos) << "a section of level 3 begins no part";
-  testing::expect_contains(html, "\"yRange\":[0,5],\"part\":1");
+  testing::expect_contains(html, "\"yRange\":[0.0,5.0],\"part\":1");
   testing::expect_contains(html, "\\u003ca>");
   testing::expect_contains(html, "<div class=\"strip\"");
   testing::expect_contains(html, "<figure data-time=\"1.5\">");
