@@ -9,8 +9,17 @@
 #include <vector>
 
 #include "core/base/nearest_name.hpp"
+#include "datasets/formats/bonn/bonn_rgbd.hpp"
 #include "datasets/formats/eth3d/eth3d_slam.hpp"
+#include "datasets/formats/euroc/euroc_folder.hpp"
 #include "datasets/formats/icl/icl_nuim.hpp"
+#include "datasets/formats/open3d/open3d_folder.hpp"
+#include "datasets/formats/open_loris/open_loris.hpp"
+#include "datasets/formats/record3d/record3d_export.hpp"
+#include "datasets/formats/rosbag/rosbag_recording.hpp"
+#include "datasets/formats/sens/sens_recording.hpp"
+#include "datasets/formats/seven_scenes/seven_scenes.hpp"
+#include "datasets/formats/stray/stray_scanner.hpp"
 #include "datasets/formats/tum/tum_rgbd.hpp"
 #include "datasets/formats/zr300/zr300.hpp"
 #include "datasets/reading/side_files.hpp"
@@ -19,33 +28,46 @@ namespace fusebench::datasets {
 
 namespace {
 
-/// A row per format; the first that fits a folder is taken. Formats whose folders may also hold TUM's lists
-/// come before TUM.
+/// A row per format; the first that fits a folder or file is taken. Formats whose folders may also hold TUM's
+/// lists come before TUM.
 struct RecordingFormat {
   std::string_view name;
   std::vector<std::string_view> files;  ///< that a folder of this format must hold
-  Result<recording::Recording> (*open)(const std::filesystem::path& folder,
+  Result<recording::Recording> (*open)(const std::filesystem::path& place,
                                        const recording::ReadOptions& options);
   /// Replaces the list of files where names alone do not tell; the files are then for messages.
-  bool (*recognise)(const std::filesystem::path& folder) = nullptr;
+  bool (*recognise)(const std::filesystem::path& place) = nullptr;
 };
 
 const std::vector<RecordingFormat>& formats() {
+  using namespace formats;
   static const std::vector<RecordingFormat> kFormats = {
-      {"eth3d", {"associated.txt", "calibration.txt"}, formats::eth3d::open_eth3d_slam},
-      {"icl", {"associations.txt or scene_*.depth"}, formats::icl::open_icl_nuim, formats::icl::is_icl_nuim},
-      {"tum", {"rgb.txt", "depth.txt"}, formats::tum::open_tum_rgbd},
-      {"zr300", {"TIMESTAMP.txt"}, formats::zr300::open_zr300},
-      {"zr300_raw", {"COLOR.txt", "DEPTH.txt"}, formats::zr300::open_zr300_raw},
+      {"eth3d", {"associated.txt", "calibration.txt"}, eth3d::open_eth3d_slam},
+      {"icl", {"associations.txt or scene_*.depth"}, icl::open_icl_nuim, icl::is_icl_nuim},
+      {"bonn", {"rgb.txt", "depth.txt in rgbd_bonn_*"}, bonn::open_bonn_rgbd, bonn::is_bonn},
+      {"tum", {"rgb.txt", "depth.txt"}, tum::open_tum_rgbd},
+      {"openloris", {"color.txt", "aligned_depth.txt", "sensors.yaml"}, open_loris::open_open_loris},
+      {"zr300", {"TIMESTAMP.txt"}, zr300::open_zr300},
+      {"zr300_raw", {"COLOR.txt", "DEPTH.txt"}, zr300::open_zr300_raw},
+      {"7scenes",
+       {"frame-*.color.png", "frame-*.depth.png"},
+       seven_scenes::open_seven_scenes,
+       seven_scenes::is_seven_scenes},
+      {"euroc", {"mav0/cam0/data.csv", "mav0/depth0/data.csv"}, euroc::open_euroc, euroc::is_euroc},
+      {"sens", {"*.sens"}, sens::open_sens, sens::is_sens},
+      {"stray", {"odometry.csv", "camera_matrix.csv"}, stray::open_stray, stray::is_stray},
+      {"record3d", {"metadata.json", "rgb/", "depth/"}, record3d::open_record3d, record3d::is_record3d},
+      {"open3d", {"intrinsic.json", "color/", "depth/"}, open3d::open_open3d, open3d::is_open3d},
+      {"rosbag", {"*.bag"}, rosbag::open_rosbag, rosbag::is_rosbag},
   };
   return kFormats;
 }
 
-bool fits(const RecordingFormat& format, const std::filesystem::path& folder) {
-  if (format.recognise != nullptr) return format.recognise(folder);
+bool fits(const RecordingFormat& format, const std::filesystem::path& place) {
+  if (format.recognise != nullptr) return format.recognise(place);
   return std::ranges::all_of(format.files, [&](std::string_view file) {
     std::error_code ignored;
-    return std::filesystem::exists(folder / file, ignored);
+    return std::filesystem::exists(place / file, ignored);
   });
 }
 
@@ -56,15 +78,22 @@ tl::unexpected<Error> unknown_format(std::string_view name) {
               fmt::format("did you mean {}?", nearest_name(name, names)));
 }
 
-tl::unexpected<Error> unrecognised(const std::filesystem::path& folder) {
-  std::vector<std::string> wanted;
-  for (const RecordingFormat& format : formats()) {
-    wanted.push_back(fmt::format("{} (files {})", format.name, fmt::join(format.files, ", ")));
-  }
-  return fail(ErrorCode::data_missing,
-              fmt::format("{}: not a recording of a known format; looked for {}", folder.string(),
-                          fmt::join(wanted, "; ")),
-              "name the folder that holds these files, or say --format");
+Error unrecognised(const std::filesystem::path& place) {
+  if (formats::rosbag::is_rosbag2(place)) return formats::rosbag::refusal_of_rosbag2(place);
+  std::vector<std::string> known;
+  for (const RecordingFormat& format : formats())
+    known.push_back(fmt::format("{} (files {})", format.name, fmt::join(format.files, ", ")));
+  return {ErrorCode::data_missing,
+          fmt::format("{}: not a recording of a known format; known are {}", place.string(),
+                      fmt::join(known, "; ")),
+          "name the folder that holds these files, or say --format; docs/datasets.md has each of them, and "
+          "docs/own-camera.md how to make one of your own images"};
+}
+
+/// Files that may lie beside a recording are in its folder.
+std::filesystem::path folder_of(const std::filesystem::path& place) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(place, ignored) ? place : place.parent_path();
 }
 
 void note_ground_truth_offset(recording::Recording& recording) {
@@ -78,31 +107,32 @@ void note_ground_truth_offset(recording::Recording& recording) {
 
 }  // namespace
 
-std::optional<std::string_view> recognise_format(const std::filesystem::path& folder) {
+std::optional<std::string_view> recognise_format(const std::filesystem::path& place) {
   for (const RecordingFormat& format : formats()) {
-    if (fits(format, folder)) return format.name;
+    if (fits(format, place)) return format.name;
   }
   return std::nullopt;
 }
 
-Result<recording::Recording> open_recording(const std::filesystem::path& folder, const OpenOptions& options) {
+Result<recording::Recording> open_recording(const std::filesystem::path& place, const OpenOptions& options) {
   std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    return fail(ErrorCode::data_missing, fmt::format("{}: no such folder", folder.string()));
+  if (!std::filesystem::exists(place, ignored)) {
+    return fail(ErrorCode::data_missing, fmt::format("{}: no such folder or file", place.string()));
   }
   for (const RecordingFormat& format : formats()) {
-    if (options.format.empty() ? fits(format, folder) : format.name == options.format) {
-      auto recording = format.open(folder, options.read);
+    if (options.format.empty() ? fits(format, place) : format.name == options.format) {
+      auto recording = format.open(place, options.read);
       if (!recording) return recording;
-      reading::note_simulation(folder, *recording);
+      reading::note_simulation(folder_of(place), *recording);
       note_ground_truth_offset(*recording);
-      if (const auto read = reading::read_exact_truth_beside(folder, *recording); !read) {
+      if (const auto read = reading::read_exact_truth_beside(folder_of(place), *recording); !read) {
         return tl::unexpected(read.error());
       }
       return recording;
     }
   }
-  return options.format.empty() ? unrecognised(folder) : unknown_format(options.format);
+  if (!options.format.empty()) return unknown_format(options.format);
+  return tl::unexpected(unrecognised(place));
 }
 
 }  // namespace fusebench::datasets

@@ -45,6 +45,7 @@ class LittleEndianReader {
   /// Records data_corrupt with the file and the position, unless there is an error already.
   void complain(std::string_view what);
 
+  [[nodiscard]] std::uint64_t position() const { return position_; }
   [[nodiscard]] std::uint64_t left() const { return size_ - position_; }
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
 

@@ -18,6 +18,7 @@ constexpr std::uint32_t kVersion = 4;
 constexpr std::int64_t kNanosecondsPerMicrosecond = 1000;
 constexpr std::uint32_t kMostPixelsASide = 16384;
 constexpr std::size_t kMatrixSize = 16;
+constexpr std::uint64_t kImuFrameBytes = 16 * 8;
 using Floats16 = std::array<float, kMatrixSize>;
 
 constexpr Floats16 kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -79,6 +80,23 @@ Codec take_codec(LittleEndianReader& reader, std::string_view what) {
   return static_cast<Codec>(value);
 }
 
+/// Of a camera in the rig; the identity where the matrix is left empty.
+std::optional<SE3> take_rig_pose(LittleEndianReader& reader, std::string_view what) {
+  const Floats16 rows = take_matrix(reader, what);
+  if (std::ranges::all_of(rows, [](float value) { return value == 0; })) return SE3{};
+  if (!std::ranges::all_of(rows, [](float value) { return std::isfinite(value); })) return std::nullopt;
+  std::array<double, 12> upper{};
+  std::copy_n(rows.begin(), upper.size(), upper.begin());
+  return calibration::rigid_transform(upper);
+}
+
+Vector3d take_vector(LittleEndianReader& reader) {
+  const double x = reader.number<double>("an inertial frame");
+  const double y = reader.number<double>("an inertial frame");
+  const double z = reader.number<double>("an inertial frame");
+  return {x, y, z};
+}
+
 /// Nothing for a frame without a pose.
 std::optional<SE3> take_pose(LittleEndianReader& reader) {
   const Floats16 rows = take_matrix(reader, "the pose");
@@ -93,15 +111,21 @@ std::optional<SE3> take_pose(LittleEndianReader& reader) {
 
 }  // namespace
 
+std::optional<Image<std::uint16_t>> sens_depth(const SensHeader& header, std::string_view bytes) {
+  if (header.depth_codec == SensDepthCodec::occipital) return std::nullopt;
+  const auto unpack = header.depth_codec == SensDepthCodec::plain ? plain_depth : unpacked_depth;
+  return unpack(bytes, header.depth.width_px, header.depth.height_px);
+}
+
 std::string sens_bytes(const SensHeader& header) {
   std::string bytes;
   append_number(bytes, kVersion);
   append_number<std::uint64_t>(bytes, header.sensor_name.size());
   bytes += header.sensor_name;
-  for (const PinholeCamera* camera : {&header.color, &header.depth}) {
-    append_matrix(bytes, intrinsic_rows(*camera));
-    append_matrix(bytes, kIdentity);
-  }
+  append_matrix(bytes, intrinsic_rows(header.color));
+  append_matrix(bytes, pose_rows(header.T_rig_color.value_or(SE3{})));
+  append_matrix(bytes, intrinsic_rows(header.depth));
+  append_matrix(bytes, pose_rows(header.T_rig_depth.value_or(SE3{})));
   append_number(bytes, static_cast<std::int32_t>(header.color_codec));
   append_number(bytes, static_cast<std::int32_t>(header.depth_codec));
   for (const PinholeCamera* camera : {&header.color, &header.depth}) {
@@ -136,9 +160,9 @@ Result<SensReader> SensReader::open(const std::filesystem::path& file) {
   SensHeader header;
   header.sensor_name = reader.bytes(reader.number<std::uint64_t>("the name's length"), "the sensor's name");
   header.color = take_intrinsics(reader, "K of colour");
-  static_cast<void>(take_matrix(reader, "pose of colour"));
+  header.T_rig_color = take_rig_pose(reader, "pose of colour");
   header.depth = take_intrinsics(reader, "K of depth");
-  static_cast<void>(take_matrix(reader, "pose of depth"));
+  header.T_rig_depth = take_rig_pose(reader, "pose of depth");
   header.color_codec = take_codec<SensColorCodec>(reader, "codec of colour");
   header.depth_codec = take_codec<SensDepthCodec>(reader, "codec of depth");
   take_size(reader, "size of colour", header.color);
@@ -169,8 +193,7 @@ Result<std::optional<SensFrame>> SensReader::next() {
   if (reader_.error()) return tl::unexpected(*reader_.error());
   if (header_.depth_codec == SensDepthCodec::occipital)
     reader_.complain("depth is in the occipital codec, which is not read");
-  const auto unpack = header_.depth_codec == SensDepthCodec::plain ? plain_depth : unpacked_depth;
-  auto values = unpack(depth, header_.depth.width_px, header_.depth.height_px);
+  auto values = sens_depth(header_, depth);
   if (!values)
     reader_.complain(fmt::format("frame {}: depth is damaged, or not of {}x{} pixels", read_,
                                  header_.depth.width_px, header_.depth.height_px));
@@ -188,6 +211,47 @@ Result<std::optional<SensFrame>> SensReader::next_pose() {
   if (reader_.error()) return tl::unexpected(*reader_.error());
   ++read_;
   return std::move(head.frame);
+}
+
+Result<std::optional<SensFrameParts>> SensReader::next_parts() {
+  if (read_ >= header_.frames) return std::nullopt;
+  const FrameHead head = take_head();
+  SensFrameParts parts{head.frame.T_world_camera, head.frame.color_timestamp_us,
+                       head.frame.depth_timestamp_us};
+  parts.color_position = reader_.position();
+  parts.color_bytes = head.color_bytes;
+  reader_.skip(head.color_bytes, "colour");
+  parts.depth_position = reader_.position();
+  parts.depth_bytes = head.depth_bytes;
+  reader_.skip(head.depth_bytes, "depth");
+  if (reader_.error()) return tl::unexpected(*reader_.error());
+  ++read_;
+  return parts;
+}
+
+Result<std::vector<SensImuFrame>> SensReader::imu_frames() {
+  check(read_ == header_.frames, "all frames were read");
+  if (reader_.left() == 0) return std::vector<SensImuFrame>();
+  const auto count = reader_.number<std::uint64_t>("the number of inertial frames");
+  if (count > reader_.left() / kImuFrameBytes)
+    reader_.complain(fmt::format("{} inertial frames in {} bytes", count, reader_.left()));
+  if (reader_.error()) return tl::unexpected(*reader_.error());
+  std::vector<SensImuFrame> frames;
+  frames.reserve(count);
+  for (std::uint64_t k = 0; k < count; ++k) {
+    SensImuFrame frame;
+    frame.rotation_rate = take_vector(reader_);
+    frame.acceleration = take_vector(reader_);
+    static_cast<void>(take_vector(reader_));  // magnetic field
+    static_cast<void>(take_vector(reader_));  // attitude
+    frame.gravity = take_vector(reader_);
+    frame.timestamp = reader_.number<std::uint64_t>("an inertial frame");
+    if (!(frame.rotation_rate.allFinite() && frame.acceleration.allFinite() && frame.gravity.allFinite()))
+      reader_.complain(fmt::format("inertial frame {} has a number that is not finite", k));
+    if (reader_.error()) return tl::unexpected(*reader_.error());
+    frames.push_back(frame);
+  }
+  return frames;
 }
 
 Result<Trajectory> read_sens_trajectory(const std::filesystem::path& file) {

@@ -9,7 +9,8 @@
 //     of each frame        float32[16] camera to world, row-major, all -inf: none; uint64 x 2 stamps of
 //     colour
 //                          and depth; uint64 x 2 bytes of colour and depth; colour; depth
-//     uint64 IMU frames    of 15 float64 and an uint64 stamp each
+//     uint64 IMU frames    of 15 float64 and an uint64 stamp each: rate of rotation, acceleration, magnetic
+//                          field, attitude, gravity (x, y, z each)
 #pragma once
 
 #include <array>
@@ -17,6 +18,8 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
@@ -31,6 +34,8 @@ struct SensHeader {
   std::string sensor_name;
   PinholeCamera color;
   PinholeCamera depth;
+  std::optional<SE3> T_rig_color = SE3{};  ///< nothing: what the file has is no rigid transform
+  std::optional<SE3> T_rig_depth = SE3{};
   SensColorCodec color_codec = SensColorCodec::jpeg;
   SensDepthCodec depth_codec = SensDepthCodec::zlib;
   float depth_units_per_metre = 1000;
@@ -44,6 +49,30 @@ struct SensFrame {
   std::string color;           ///< as it is stored: see SensHeader::color_codec
   Image<std::uint16_t> depth;  ///< in units of the format, 0 = no measurement
 };
+
+/// Where the images of a frame are stored.
+struct SensFrameParts {
+  std::optional<SE3> T_world_camera;
+  std::uint64_t color_timestamp = 0;  ///< in the unit of who wrote the file
+  std::uint64_t depth_timestamp = 0;
+  std::uint64_t color_position = 0;  ///< in the file
+  std::uint64_t color_bytes = 0;
+  std::uint64_t depth_position = 0;
+  std::uint64_t depth_bytes = 0;
+};
+
+/// As the program of an iOS device wrote it.
+struct SensImuFrame {
+  Vector3d rotation_rate = Vector3d::Zero();
+  Vector3d acceleration = Vector3d::Zero();
+  Vector3d gravity = Vector3d::Zero();
+  std::uint64_t timestamp = 0;
+};
+
+/// The depth image of stored bytes; nothing if they are damaged, of another number of pixels or in the
+/// occipital codec.
+[[nodiscard]] std::optional<Image<std::uint16_t>> sens_depth(const SensHeader& header,
+                                                             std::string_view bytes);
 
 /// The bytes of a header and of a frame with depth as a zlib stream.
 [[nodiscard]] std::string sens_bytes(const SensHeader& header);
@@ -61,6 +90,11 @@ class SensReader {
   [[nodiscard]] Result<std::optional<SensFrame>> next();
   /// The same without images.
   [[nodiscard]] Result<std::optional<SensFrame>> next_pose();
+  /// The same with the places of the images.
+  [[nodiscard]] Result<std::optional<SensFrameParts>> next_parts();
+  /// The inertial frames, when all others have been read (checked). A file may end without them. Errors:
+  /// data_corrupt (more frames than there are bytes, a number that is not finite).
+  [[nodiscard]] Result<std::vector<SensImuFrame>> imu_frames();
 
  private:
   struct FrameHead {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,8 +26,8 @@ std::string library_reason(std::string reason) {
   return reason.empty() ? "no reason given" : reason;
 }
 
-tl::unexpected<Error> corrupt(const std::filesystem::path& file, std::string_view what) {
-  return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), what));
+tl::unexpected<Error> corrupt(const std::string& image, std::string_view what) {
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", image, what));
 }
 
 /// The error of a library that cannot be loaded, with what it is needed for.
@@ -37,14 +38,20 @@ tl::unexpected<Error> no_library(const std::string& image, Error error) {
 
 /// A header may claim any size. PNG's compression makes at most 1032 bytes of one, and JPEG's less in
 /// practice, so that memory stays in proportion to the file.
-Result<void> check_claim(const std::filesystem::path& file, const ImageHeader& header) {
+Result<void> check_claim(const std::string& image, const ImageHeader& header, std::uintmax_t bytes) {
   constexpr std::uintmax_t kMaxPerByte = 1032;
-  std::error_code ignored;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, ignored);
   if (header.pixel_bytes / kMaxPerByte <= bytes) return {};
-  return corrupt(file, fmt::format("damaged image (its header claims {}x{} "
-                                   "pixels, too many for {} bytes)",
-                                   header.width_px, header.height_px, bytes));
+  return corrupt(image, fmt::format("damaged image (its header claims {}x{} "
+                                    "pixels, too many for {} bytes)",
+                                    header.width_px, header.height_px, bytes));
+}
+
+Result<OpenedImage> sound_image(const std::string& image, LibraryResult<OpenedImage> opened,
+                                std::uintmax_t bytes) {
+  if (!opened) return corrupt(image, fmt::format("unreadable image: {}", library_reason(opened.error())));
+  if (const auto sound = check_claim(image, opened->header, bytes); !sound)
+    return tl::unexpected(sound.error());
+  return std::move(*opened);
 }
 
 Result<OpenedImage> open_image(const std::filesystem::path& file) {
@@ -52,13 +59,22 @@ Result<OpenedImage> open_image(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, ignored)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such image", file.string()));
   }
-  if (const std::string damage = png_damage(file); !damage.empty()) return corrupt(file, damage);
+  if (const std::string damage = png_damage(file); !damage.empty()) return corrupt(file.string(), damage);
   const Result<const ImageLibrary*>& library = image_library();
   if (!library) return no_library(file.string(), library.error());
-  auto opened = (*library)->open(file.string());
-  if (!opened) return corrupt(file, fmt::format("unreadable image: {}", library_reason(opened.error())));
-  if (const auto sound = check_claim(file, opened->header); !sound) return tl::unexpected(sound.error());
-  return std::move(*opened);
+  return sound_image(file.string(), (*library)->open(file.string()),
+                     std::filesystem::file_size(file, ignored));
+}
+
+/// The bytes must stay as long as the image.
+Result<OpenedImage> open_bytes(const std::string& name, std::string_view bytes) {
+  const Result<const ImageLibrary*>& library = image_library();
+  if (!library) return no_library(name, library.error());
+  const bool is_png = bytes.starts_with("\x89PNG");
+  return sound_image(name,
+                     (*library)->open_bytes(is_png ? "memory.png" : "memory.jpg",
+                                            std::as_bytes(std::span(bytes.data(), bytes.size()))),
+                     bytes.size());
 }
 
 /// Requirements of the caller on the file.
@@ -68,24 +84,61 @@ struct Layout {
   std::string_view name;
 };
 
+tl::unexpected<Error> damaged_pixels(const std::string& image, const std::string& reason) {
+  return corrupt(image, fmt::format("truncated or damaged image: {}", library_reason(reason)));
+}
+
+Result<void> check_size(const std::string& image, const ImageHeader& header,
+                        std::optional<ImageSize> expected) {
+  if (!expected || *expected == ImageSize{header.width_px, header.height_px}) return {};
+  return corrupt(image, fmt::format("expected {}x{} pixels, got {}x{}", expected->width_px,
+                                    expected->height_px, header.width_px, header.height_px));
+}
+
+template <class Pixel>
+Result<Image<Pixel>> pixels_of(const std::string& name, const OpenedImage& opened, const Layout& layout,
+                               std::optional<ImageSize> expected) {
+  const ImageHeader& header = opened.header;
+  if (header.channels != layout.channels || header.type != layout.type) {
+    return corrupt(name, fmt::format("expected {}, got {} channel(s) of {}", layout.name, header.channels,
+                                     header.type_name));
+  }
+  if (const auto fits = check_size(name, header, expected); !fits) return tl::unexpected(fits.error());
+  Image<Pixel> image(header.width_px, header.height_px);
+  if (const auto read = opened.read_pixels(std::as_writable_bytes(std::span(image.data))); !read)
+    return damaged_pixels(name, read.error());
+  return image;
+}
+
 template <class Pixel>
 Result<Image<Pixel>> read_image(const std::filesystem::path& file, const Layout& layout,
                                 std::optional<ImageSize> expected) {
   const auto opened = open_image(file);
   if (!opened) return tl::unexpected(opened.error());
-  const ImageHeader& header = opened->header;
-  if (header.channels != layout.channels || header.type != layout.type) {
-    return corrupt(file, fmt::format("expected {}, got {} channel(s) of {}", layout.name, header.channels,
-                                     header.type_name));
-  }
-  if (expected && *expected != ImageSize{header.width_px, header.height_px}) {
-    return corrupt(file, fmt::format("expected {}x{} pixels, got {}x{}", expected->width_px,
-                                     expected->height_px, header.width_px, header.height_px));
-  }
-  Image<Pixel> image(header.width_px, header.height_px);
-  if (const auto read = opened->read_pixels(std::as_writable_bytes(std::span(image.data))); !read)
-    return corrupt(file, fmt::format("truncated or damaged image: {}", library_reason(read.error())));
-  return image;
+  return pixels_of<Pixel>(file.string(), *opened, layout, expected);
+}
+
+constexpr Layout kColor{3, SampleType::uint8, "an RGB image with 8 bits a channel"};
+constexpr Layout kGrey{1, SampleType::uint8, "a grey image with 8 bits"};
+constexpr Layout kDepth{1, SampleType::uint16, "a grey image with 16 bits"};
+
+/// A missing file is the library's to report.
+Result<void> check_file_unchanged(const std::filesystem::path& file,
+                                  const std::optional<io::ContentHash>& opened) {
+  std::error_code ignored;
+  if (!opened || !std::filesystem::exists(file, ignored)) return {};
+  return check_unchanged(file, content_of(file).text(), opened);
+}
+
+template <class Pixel, class Decode>
+Result<Image<Pixel>> decode_image(const Decode& decode_plain, const std::string& name, std::string_view bytes,
+                                  const Layout& layout) {
+  ByteBuffer content(bytes.size());
+  std::ranges::copy(bytes, content.bytes.get());
+  if (auto plain = decode_plain(std::move(content))) return std::move(*plain);
+  const auto opened = open_bytes(name, bytes);
+  if (!opened) return tl::unexpected(opened.error());
+  return pixels_of<Pixel>(name, *opened, layout, std::nullopt);
 }
 
 /// Plain PNGs of recordings take the fast decoder; every other or damaged file is left to the library, which
@@ -129,19 +182,60 @@ Result<ImageSize> read_image_size(const std::filesystem::path& file) {
 
 Result<ColorImage> read_color(const std::filesystem::path& file, std::optional<ImageSize> expected,
                               const std::optional<io::ContentHash>& opened) {
-  return plain_or_any<Rgb>(decode_plain_png_color, file,
-                           {3, SampleType::uint8, "an RGB image with 8 bits a channel"}, expected, opened);
+  return plain_or_any<Rgb>(decode_plain_png_color, file, kColor, expected, opened);
+}
+
+Result<ColorImage> read_color_or_grey(const std::filesystem::path& file, std::optional<ImageSize> expected,
+                                      const std::optional<io::ContentHash>& opened) {
+  if (const auto same = check_file_unchanged(file, opened); !same) return tl::unexpected(same.error());
+  const auto image = open_image(file);
+  if (!image) return tl::unexpected(image.error());
+  if (image->header.channels != 1) return read_color(file, expected, opened);
+  const auto grey = pixels_of<std::uint8_t>(file.string(), *image, kGrey, expected);
+  if (!grey) return tl::unexpected(grey.error());
+  ColorImage color(grey->width, grey->height);
+  std::ranges::transform(grey->data, color.data.begin(), [](std::uint8_t g) { return Rgb{g, g, g}; });
+  return color;
 }
 
 Result<GreyImage> read_grey(const std::filesystem::path& file, std::optional<ImageSize> expected) {
-  return read_image<std::uint8_t>(file, {1, SampleType::uint8, "a grey image with 8 bits"}, expected);
+  return read_image<std::uint8_t>(file, kGrey, expected);
 }
 
 Result<Image<std::uint16_t>> read_depth16(const std::filesystem::path& file,
                                           std::optional<ImageSize> expected,
                                           const std::optional<io::ContentHash>& opened) {
-  return plain_or_any<std::uint16_t>(decode_plain_png_grey16, file,
-                                     {1, SampleType::uint16, "a grey image with 16 bits"}, expected, opened);
+  return plain_or_any<std::uint16_t>(decode_plain_png_grey16, file, kDepth, expected, opened);
+}
+
+Result<Image<float>> read_float(const std::filesystem::path& file, std::optional<ImageSize> expected,
+                                const std::optional<io::ContentHash>& opened) {
+  if (const auto same = check_file_unchanged(file, opened); !same) return tl::unexpected(same.error());
+  const auto image = open_image(file);
+  if (!image) return tl::unexpected(image.error());
+  const ImageHeader& header = image->header;
+  if (header.type != SampleType::float32 || header.channels < 1) {
+    return corrupt(file.string(),
+                   fmt::format("expected an image of floating-point numbers, got {} channel(s) of {}",
+                               header.channels, header.type_name));
+  }
+  if (const auto fits = check_size(file.string(), header, expected); !fits)
+    return tl::unexpected(fits.error());
+  const auto channels = static_cast<std::size_t>(header.channels);
+  Image<float> first(header.width_px, header.height_px);
+  std::vector<float> samples(first.data.size() * channels);
+  if (const auto read = image->read_pixels(std::as_writable_bytes(std::span(samples))); !read)
+    return damaged_pixels(file.string(), read.error());
+  for (std::size_t i = 0; i < first.data.size(); ++i) first.data[i] = samples[i * channels];
+  return first;
+}
+
+Result<ColorImage> decode_color(const std::string& name, std::string_view bytes) {
+  return decode_image<Rgb>(decode_plain_png_color, name, bytes, kColor);
+}
+
+Result<Image<std::uint16_t>> decode_depth16(const std::string& name, std::string_view bytes) {
+  return decode_image<std::uint16_t>(decode_plain_png_grey16, name, bytes, kDepth);
 }
 
 Result<void> write_png(const std::filesystem::path& file, const ColorImage& image) {

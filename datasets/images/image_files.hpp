@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -39,6 +41,22 @@ struct ImageSize {
 [[nodiscard]] Result<Image<std::uint16_t>> read_depth16(
     const std::filesystem::path& file, std::optional<ImageSize> expected = std::nullopt,
     const std::optional<io::ContentHash>& opened = std::nullopt);
+
+/// Reads a colour image, or a grey one of 8 bits as colour with three equal channels. Errors as read_color().
+[[nodiscard]] Result<ColorImage> read_color_or_grey(
+    const std::filesystem::path& file, std::optional<ImageSize> expected = std::nullopt,
+    const std::optional<io::ContentHash>& opened = std::nullopt);
+
+/// Reads the first channel of an image of floating-point numbers (OpenEXR), raw values. Errors as
+/// read_color().
+[[nodiscard]] Result<Image<float>> read_float(const std::filesystem::path& file,
+                                              std::optional<ImageSize> expected = std::nullopt,
+                                              const std::optional<io::ContentHash>& opened = std::nullopt);
+
+/// Decodes an image in memory, a PNG or JPEG with three channels of 8 bits, or a PNG with one of 16. name:
+/// says in messages where it is from. Errors: data_corrupt, io as read_color().
+[[nodiscard]] Result<ColorImage> decode_color(const std::string& name, std::string_view bytes);
+[[nodiscard]] Result<Image<std::uint16_t>> decode_depth16(const std::string& name, std::string_view bytes);
 
 /// A JPEG file in memory. quality: 1 to 100. Errors: io.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const ColorImage& image, int quality);

@@ -35,14 +35,19 @@ struct OpenedImage {
 /// May be used by several threads at once. Not a class with virtual functions: a module that is loaded late
 /// has type information of its own, which a sanitizer takes for that of another class.
 struct ImageLibrary {
+  /// Samples that are half floats are read as float32.
   LibraryResult<OpenedImage> (*open)(const std::string& file) = nullptr;
+  /// name: as a file of these bytes would be called, which tells the format. The bytes must stay as long as
+  /// the image is open.
+  LibraryResult<OpenedImage> (*open_bytes)(const std::string& name,
+                                           std::span<const std::byte> bytes) = nullptr;
   /// quality: 1 to 100.
   LibraryResult<std::vector<std::uint8_t>> (*encode_jpeg)(const PixelView& image, int quality) = nullptr;
 };
 
 /// Equal in a program and a module that fit together: what is above is laid out by the compiler. The number
 /// counts the changes of this file.
-inline constexpr const char* kImageLibraryBuild = "images 1, compiler " __VERSION__;
+inline constexpr const char* kImageLibraryBuild = "images 2, compiler " __VERSION__;
 
 /// All that the module exports.
 inline constexpr const char* kImageLibraryFunction = "fusebench_image_library";

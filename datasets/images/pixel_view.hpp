@@ -6,7 +6,7 @@
 
 namespace fusebench::images {
 
-enum class SampleType { uint8, uint16, other };
+enum class SampleType { uint8, uint16, float32, other };
 
 /// Rows from the top without padding, the channels of a pixel beside each other, samples of the machine's
 /// byte order.

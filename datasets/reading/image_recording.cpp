@@ -15,23 +15,17 @@ namespace fusebench::reading {
 
 namespace {
 
-/// Of a frame's two files.
-struct ImageHashes {
-  io::ContentHash color;
-  io::ContentHash depth;
-};
-
 /// Data for loading frames; shared by all copies of the recording.
 struct FrameLoader {
   std::vector<recording::FrameEntry> frames;
   std::vector<ImageHashes> opened;  ///< of each frame's images, as the fingerprint has them
   calibration::Undistortion undistortion;
   std::optional<calibration::DepthRegistration> registration;
-  DepthReader read_depth;
+  ImageSource images;
 
   [[nodiscard]] Result<DepthImage> load_depth(std::size_t index) const {
     const PinholeCamera& own = registration ? registration->depth_camera() : undistortion.camera();
-    auto depth = read_depth(frames[index].depth_file, {own.width_px, own.height_px}, opened[index].depth);
+    auto depth = images.read_depth(index, {own.width_px, own.height_px}, opened[index].depth);
     if (!depth) return depth;
     return registration ? registration->register_depth(*depth) : undistortion.undistort_depth(*depth);
   }
@@ -40,8 +34,7 @@ struct FrameLoader {
     check(index < frames.size(), "the frame exists");
     const recording::FrameEntry& entry = frames[index];
     const PinholeCamera& camera = undistortion.camera();
-    const auto color = images::read_color(
-        entry.color_file, images::ImageSize{camera.width_px, camera.height_px}, opened[index].color);
+    const auto color = images.read_color(index, {camera.width_px, camera.height_px}, opened[index].color);
     if (!color) return tl::unexpected(color.error());
     auto depth = load_depth(index);
     if (!depth) return tl::unexpected(depth.error());
@@ -58,8 +51,9 @@ struct FrameLoader {
 
 /// The camera with the images' size; a calibration of another size is an error.
 Result<calibration::CalibratedCamera> camera_of_images(calibration::CalibratedCamera camera,
-                                                       const std::filesystem::path& first_image) {
-  const auto size = images::read_image_size(first_image);
+                                                       const ImageSource& images,
+                                                       const std::string& first_image) {
+  const auto size = images.color_size();
   if (!size) return tl::unexpected(size.error());
   PinholeCamera& pinhole = camera.pinhole;
   if (pinhole.width_px == 0) {
@@ -67,11 +61,11 @@ Result<calibration::CalibratedCamera> camera_of_images(calibration::CalibratedCa
     pinhole.height_px = size->height_px;
   }
   if (*size != images::ImageSize{pinhole.width_px, pinhole.height_px}) {
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{}: image of {}x{} pixels, but the camera's calibration is for {}x{}",
-                            first_image.string(), size->width_px, size->height_px, pinhole.width_px,
-                            pinhole.height_px),
-                "give the intrinsics of these images: --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]");
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}: image of {}x{} pixels, but the camera's calibration is for {}x{}", first_image,
+                    size->width_px, size->height_px, pinhole.width_px, pinhole.height_px),
+        "give the intrinsics of these images: --camera fx,fy,cx,cy[,k1,k2,p1,p2,k3]");
   }
   return camera;
 }
@@ -88,10 +82,11 @@ std::string text_of(const PinholeCamera& p) {
 }
 
 void add_sensors(io::Fingerprint& fingerprint, const recording::Recording& recording,
-                 const ImageDecoding& decoding, const calibration::CalibratedCamera& camera) {
+                 const calibration::RigCalibration& calibration, const std::string& identity,
+                 const calibration::CalibratedCamera& camera) {
   const calibration::BrownConrady& d = camera.distortion;
   const SensorTiming& timing = camera.timing;
-  fingerprint.add(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", recording.format, decoding.identity,
+  fingerprint.add(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", recording.format, identity,
                               text_of(camera.pinhole), d.k1, d.k2, d.p1, d.p2, d.k3, timing.color_readout_s,
                               timing.depth_readout_s, timing.depth_delay_s));
   if (timing.color_readout_sigma_s > 0 || timing.depth_readout_sigma_s > 0 ||
@@ -101,7 +96,7 @@ void add_sensors(io::Fingerprint& fingerprint, const recording::Recording& recor
   }
   if (!camera.ground_truth_offset_m.isZero(0))
     fingerprint.add(fmt::format("ground truth offset {}", text_of(camera.ground_truth_offset_m)));
-  if (const auto& depth = decoding.calibration.depth) {
+  if (const auto& depth = calibration.depth) {
     fingerprint.add(
         fmt::format("depth camera {} {}", text_of(depth->pinhole), text_of(depth->T_color_depth)));
   }
@@ -134,21 +129,18 @@ struct Identity {
 
 /// The values that are used, not the text around them: a comment or a line ending does not make another
 /// recording.
-Result<Identity> identity_of(const recording::Recording& recording, const ImageDecoding& decoding,
-                             const calibration::CalibratedCamera& camera) {
-  io::Fingerprint fingerprint;
+Result<Identity> identity_of(const recording::Recording& recording, io::Fingerprint fingerprint,
+                             const ImageSource& images) {
   Identity identity;
   identity.images.reserve(recording.frames.size());
-  add_sensors(fingerprint, recording, decoding, camera);
   add_samples(fingerprint, recording);
-  for (const recording::FrameEntry& frame : recording.frames) {
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    const recording::FrameEntry& frame = recording.frames[k];
     fingerprint.add(fmt::format("frame {} {} {} {}", frame.timestamp_ns, frame.depth_timestamp_ns,
                                 frame.capture_ns, frame.depth_capture_ns));
-    const auto color = fingerprint.add_file(frame.color_file);
-    if (!color) return tl::unexpected(color.error());
-    const auto depth = fingerprint.add_file(frame.depth_file);
-    if (!depth) return tl::unexpected(depth.error());
-    identity.images.push_back({*color, *depth});
+    const auto hashes = images.add_to(k, fingerprint);
+    if (!hashes) return tl::unexpected(hashes.error());
+    identity.images.push_back(*hashes);
   }
   identity.fingerprint = fingerprint.hex();
   return identity;
@@ -204,47 +196,19 @@ Result<void> calibrate_imu(recording::Recording& recording,
   return recording.imu.empty() ? Result<void>{} : check_imu_overlap(recording);
 }
 
-template <class Number>
-void divide(const std::vector<std::uint16_t>& values, Number divisor, std::vector<float>& quotients) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    quotients[i] = static_cast<float>(static_cast<Number>(values[i]) / divisor);
-  }
-}
-
-/// Some cameras write the largest value where they measured nothing, and no format has it as a depth.
-constexpr std::uint16_t kSaturated = 65535;
-
-/// The quotients in double precision, rounded. Where single precision holds the divisor, a division in it
-/// gives the same in a third of the time: double precision has more than twice its digits, so that the first
-/// of two roundings never decides the second.
-DepthImage in_metres(const Image<std::uint16_t>& values, double units_per_metre) {
-  DepthImage depth_m(values.width, values.height);
-  const auto single = static_cast<float>(units_per_metre);
-  if (static_cast<double>(single) == units_per_metre) {
-    divide(values.data, single, depth_m.data);
-  } else {
-    divide(values.data, units_per_metre, depth_m.data);
-  }
-  for (std::size_t i = 0; i < values.data.size(); ++i)
-    depth_m.data[i] = values.data[i] == kSaturated ? 0.0F : depth_m.data[i];
-  return depth_m;
-}
-
 }  // namespace
 
-DepthReader png_depth(double units_per_metre) {
-  return [units_per_metre](const std::filesystem::path& file, const images::ImageSize& expected,
-                           const std::optional<io::ContentHash>& opened) -> Result<DepthImage> {
-    const auto values = images::read_depth16(file, expected, opened);
-    if (!values) return tl::unexpected(values.error());
-    return in_metres(*values, units_per_metre);
-  };
+Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding) {
+  return attach_images(recording, decoding.calibration, decoding.identity,
+                       image_files(recording.frames, decoding.read_color, decoding.read_depth));
 }
 
-Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding) {
+Result<void> attach_images(recording::Recording& recording, const calibration::RigCalibration& calibration,
+                           const std::string& identity, const ImageSource& source) {
   check(!recording.frames.empty(), "a recording has frames");
-  const calibration::RigCalibration& calibration = decoding.calibration;
-  const auto camera = camera_of_images(calibration.color, recording.frames.front().color_file);
+  const std::filesystem::path& first_image = recording.frames.front().color_file;
+  const auto camera = camera_of_images(calibration.color, source,
+                                       first_image.empty() ? recording.name : first_image.string());
   if (!camera) return tl::unexpected(camera.error());
   const std::int64_t depth_delay_ns = std::llround(1e9 * camera->timing.depth_delay_s);
   for (recording::FrameEntry& frame : recording.frames) frame.depth_capture_ns += depth_delay_ns;
@@ -253,16 +217,18 @@ Result<void> attach_images(recording::Recording& recording, const ImageDecoding&
   recording.calibration->color = *camera;
   recording.rig.camera = camera->pinhole;
   recording.rig.timing = camera->timing;
-  auto identity = identity_of(recording, decoding, *camera);
-  if (!identity) return tl::unexpected(identity.error());
-  recording.fingerprint = std::move(identity->fingerprint);
+  io::Fingerprint fingerprint;
+  add_sensors(fingerprint, recording, calibration, identity, *camera);
+  auto data = identity_of(recording, std::move(fingerprint), source);
+  if (!data) return tl::unexpected(data.error());
+  recording.fingerprint = std::move(data->fingerprint);
   std::optional<calibration::DepthRegistration> registration;
   if (calibration.depth) {
     registration.emplace(calibration.depth->pinhole, camera->pinhole, calibration.depth->T_color_depth);
   }
   const auto loader = std::make_shared<const FrameLoader>(
-      FrameLoader{recording.frames, std::move(identity->images), calibration::Undistortion(*camera),
-                  std::move(registration), decoding.read_depth});
+      FrameLoader{recording.frames, std::move(data->images), calibration::Undistortion(*camera),
+                  std::move(registration), source});
   recording.load_frame = [loader](std::size_t frame) { return loader->load(frame); };
   return {};
 }

@@ -1,27 +1,15 @@
 // From lists of image files to frames: what all formats that store images have in common.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <optional>
 #include <string>
 
 #include "core/base/error.hpp"
-#include "core/io/fingerprint.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/images/image_files.hpp"
+#include "datasets/reading/image_source.hpp"
 #include "datasets/recording/recording.hpp"
 
 namespace fusebench::reading {
-
-/// Reads one depth image of the given size: z-depth in metres, 0 = no measurement, not yet undistorted or
-/// registered. opened: the bytes that the file must have. Called from several threads.
-using DepthReader =
-    std::function<Result<DepthImage>(const std::filesystem::path& file, const images::ImageSize& expected,
-                                     const std::optional<io::ContentHash>& opened)>;
-
-/// 16-bit grey PNGs; units_per_metre: the value of one metre. 0 and 65535 are no measurement.
-[[nodiscard]] DepthReader png_depth(double units_per_metre);
 
 /// How the files of a recording become frames.
 struct ImageDecoding {
@@ -30,6 +18,7 @@ struct ImageDecoding {
   calibration::RigCalibration calibration;
   DepthReader read_depth;
   std::string identity;  ///< names the way depth is read ("png 5000"), for the fingerprint
+  ColorReader read_color = images::read_color;
 };
 
 /// Completes a recording whose frames, truth and inertial samples are in place: checks the size of the first
@@ -38,6 +27,11 @@ struct ImageDecoding {
 /// which refuses an image whose bytes are no longer those of the fingerprint. Errors: data_missing,
 /// data_corrupt.
 [[nodiscard]] Result<void> attach_images(recording::Recording& recording, const ImageDecoding& decoding);
+
+/// The same for images that come from `source`; calibration and identity as above.
+[[nodiscard]] Result<void> attach_images(recording::Recording& recording,
+                                         const calibration::RigCalibration& calibration,
+                                         const std::string& identity, const ImageSource& source);
 
 /// The same for colour and depth in PNGs. published_units_per_metre: of the format, where the calibration
 /// says nothing.

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/printable.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/trajectory/trajectory.hpp"
@@ -19,6 +20,8 @@
 namespace fusebench::reading {
 
 namespace {
+
+constexpr std::size_t kLongestLabel = 200;
 
 /// Positions of the truth are used in double precision only, but they must leave room for squares.
 Result<void> check_positions(const Trajectory& truth, const std::filesystem::path& source) {
@@ -65,6 +68,12 @@ Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
   return {};
 }
 
+void label_truth(std::string_view label, recording::Recording& recording) {
+  check(label.starts_with(recording::kPseudoTruthBeginning), "the label says that it is no truth");
+  recording.truth_label = label;
+  recording.notes.push_back(fmt::format("ground truth: {}", label));
+}
+
 Result<void> read_ground_truth_beside(const std::filesystem::path& folder, recording::Recording& recording) {
   const std::filesystem::path file = folder / "groundtruth.txt";
   if (!io::is_named(file)) return {};
@@ -73,9 +82,9 @@ Result<void> read_ground_truth_beside(const std::filesystem::path& folder, recor
       trajectory::read_tum_trajectory(file, recording.warnings, trajectory::Duplicates::last_in_order);
   if (!truth) return tl::unexpected(truth.error());
   if (std::string first; std::getline(io::input_file(file), first) && first.starts_with("# ") &&
-                         first.substr(2).starts_with(recording::kPseudoGroundTruth)) {
-    recording.truth_label = recording::kPseudoGroundTruth;
-    recording.notes.push_back(fmt::format("ground truth: {}", recording::kPseudoGroundTruth));
+                         first.substr(2).starts_with(recording::kPseudoTruthBeginning)) {
+    while (first.ends_with('\r')) first.pop_back();
+    label_truth(printable(first.substr(2), kLongestLabel), recording);
   }
   return set_ground_truth(recording, std::move(*truth), file);
 }

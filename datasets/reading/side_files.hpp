@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -23,6 +24,10 @@ namespace fusebench::reading {
 [[nodiscard]] Result<void> set_ground_truth(recording::Recording& recording, Trajectory truth,
                                             const std::filesystem::path& source,
                                             std::size_t published_without = 0);
+
+/// Marks the ground truth, which is set apart, as estimated from the recording itself, and notes it. label:
+/// begins with kPseudoTruthBeginning, and says by whom.
+void label_truth(std::string_view label, recording::Recording& recording);
 
 /// Inertial samples as text: "timestamp wx wy wz ax ay az", rad/s and m/s^2, on the IMU's clock. Errors:
 /// data_missing, data_corrupt (a row, the order in time, a value beyond the limits of sensor_columns.hpp).

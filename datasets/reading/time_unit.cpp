@@ -46,6 +46,15 @@ std::string DetectedUnit::note(std::string_view list) const {
                      1e3 * spacing_s);
 }
 
+std::optional<DetectedUnit> unit_of_spacing(double spacing, const SpacingRange& plausible) {
+  for (const io::TimeUnit unit : kUnits) {
+    const double spacing_s =
+        spacing * std::pow(10.0, static_cast<int>(unit) - static_cast<int>(io::TimeUnit::seconds));
+    if (spacing_s >= plausible.least_s && spacing_s <= plausible.most_s) return DetectedUnit{unit, spacing_s};
+  }
+  return std::nullopt;
+}
+
 Result<DetectedUnit> detect_time_unit(const std::filesystem::path& file, std::string_view columns,
                                       const SpacingRange& plausible) {
   const auto stamps = raw_stamps(file, columns);
@@ -55,11 +64,7 @@ Result<DetectedUnit> detect_time_unit(const std::filesystem::path& file, std::st
                                                      file.string(), stamps->size()));
   }
   const double spacing = median_spacing(*stamps);
-  for (const io::TimeUnit unit : kUnits) {
-    const double spacing_s =
-        spacing * std::pow(10.0, static_cast<int>(unit) - static_cast<int>(io::TimeUnit::seconds));
-    if (spacing_s >= plausible.least_s && spacing_s <= plausible.most_s) return DetectedUnit{unit, spacing_s};
-  }
+  if (const auto unit = unit_of_spacing(spacing, plausible)) return *unit;
   return fail(ErrorCode::data_corrupt,
               fmt::format("{}: rows are {} apart in time (median), which is {} to {} ms in none of the units "
                           "s, ms, us, ns",

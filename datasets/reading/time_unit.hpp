@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,9 @@ struct DetectedUnit {
   /// "COLOR.txt: times are in microseconds (a row every 33.3 ms)", for notes.
   [[nodiscard]] std::string note(std::string_view list) const;
 };
+
+/// The unit in which that spacing, counted in it, is plausible; nothing if there is none.
+[[nodiscard]] std::optional<DetectedUnit> unit_of_spacing(double spacing, const SpacingRange& plausible);
 
 /// The unit in which the median spacing of the first column is plausible, looking at the first 10 000 rows.
 /// columns: as for TextTable. Errors: data_missing, data_corrupt (a row, fewer than two rows, a spacing that

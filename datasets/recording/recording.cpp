@@ -29,8 +29,7 @@ Recording named_recording(const std::filesystem::path& folder, std::string_view 
 }
 
 Vector3d ground_truth_offset_m(const Recording& recording) {
-  const bool of_camera =
-      !recording.calibration || recording.simulated || recording.truth_label == kPseudoGroundTruth;
+  const bool of_camera = !recording.calibration || recording.simulated || !recording.truth_label.empty();
   return of_camera ? Vector3d::Zero() : recording.calibration->color.ground_truth_offset_m;
 }
 

@@ -44,7 +44,7 @@ struct AccelerometerSample {
 /// demand.
 struct Recording {
   std::string name;         ///< folder name
-  std::string format;       ///< "tum", "icl", "zr300", "eth3d"
+  std::string format;       ///< as datasets/open_recording.cpp names it: "tum", "icl"
   std::string fingerprint;  ///< content hash of all lists and image files that are used (hex)
   bool simulated = false;   ///< made by a simulator: its truth and IMU are, too
   SensorRig rig;            ///< of the undistorted images
@@ -56,7 +56,8 @@ struct Recording {
       accelerometer;  ///< TUM's Kinect; not an IMU (no gyroscope), no estimator uses it
   std::vector<StampedPose>
       ground_truth;         ///< T_groundtruth_camera: colour camera in the truth's own world; may be empty
-  std::string truth_label;  ///< kPseudoGroundTruth if that is what ground_truth is; else empty
+  std::string truth_label;  ///< begins with "pseudo ground truth" and says whose estimate ground_truth is,
+                            ///< e.g. kPseudoGroundTruth; empty where it is independent of the images
   std::optional<calibration::RigCalibration> calibration;  ///< as read, before undistortion; of what files
                                                            ///< say, not of a synthetic IMU
   std::vector<std::string> notes;     ///< what was done to the data on reading, for the run's log

@@ -335,7 +335,7 @@ Result<std::vector<fs::path>> find_recordings(const std::string& name, const fs:
 
 Result<fs::path> find_recording(const std::string& name, const fs::path& data) {
   std::error_code ignored;
-  if (fs::is_directory(name, ignored)) {
+  if (fs::is_directory(name, ignored) || fs::is_regular_file(name, ignored)) {
     // "folder/" and "." have no last name.
     const fs::path folder = fs::weakly_canonical(name, ignored);
     return ignored ? fs::path(name) : folder;
@@ -348,7 +348,7 @@ Result<fs::path> find_recording(const std::string& name, const fs::path& data) {
                     : fmt::format("{} is a known recording, but no folder of recordings is given", name),
                 "--data or FUSEBENCH_DATA names the folder of recordings");
   }
-  if (fs::is_directory(data / name, ignored)) return data / name;
+  if (fs::is_directory(data / name, ignored) || fs::is_regular_file(data / name, ignored)) return data / name;
   if (entry != nullptr) {
     const auto folder = calibration::catalogue_folder(*entry, data);
     if (folder) return *folder;

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "core/config/toml_document.hpp"
-#include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/image_list.hpp"
 #include "datasets/reading/side_files.hpp"
 #include "tests/datasets/images/child_process.hpp"
 #include "tests/datasets/malformed_text.hpp"
@@ -14,7 +14,6 @@ namespace fusebench {
 using namespace config;
 using namespace recording;
 using namespace reading;
-using namespace formats::tum;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include "datasets/formats/tum/tum_lists.hpp"
 #include "datasets/formats/zr300/zr300_lists.hpp"
 #include "datasets/reading/associated_row.hpp"
+#include "datasets/reading/image_list.hpp"
 #include "datasets/reading/side_files.hpp"
 #include "tests/datasets/malformed_text.hpp"
 

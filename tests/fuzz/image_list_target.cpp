@@ -1,11 +1,13 @@
 // The lists of a TUM folder: images and accelerometer.
 #include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/image_list.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/properties.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace fusebench::fuzz {
 
+using namespace reading;
 using namespace formats::tum;
 
 namespace {

@@ -1,5 +1,6 @@
 // Files of BundleFusion and ScanNet: frames, and the poses alone.
 #include "core/base/error.hpp"
+#include "datasets/image_logs/file_part.hpp"
 #include "datasets/image_logs/sens_log.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/fuzz/targets.hpp"
@@ -39,12 +40,35 @@ void check_frames(const MemoryFile& file) {
   check(read == with_images->header().frames, "a file has as many frames as it says");
 }
 
+/// The places of images are those of the bytes that the reader takes.
+void check_parts(const MemoryFile& file) {
+  auto parts_alone = SensReader::open(file.path());
+  auto with_images = SensReader::open(file.path());
+  if (!parts_alone) return;
+  while (true) {
+    const auto parts = parts_alone->next_parts();
+    if (!parts) return;
+    if (!*parts) break;
+    const auto color = bytes_of_file(file.path(), (*parts)->color_position, (*parts)->color_bytes);
+    const auto depth = bytes_of_file(file.path(), (*parts)->depth_position, (*parts)->depth_bytes);
+    check(color.has_value() && depth.has_value(), "images lie in the file");
+    const auto frame = with_images->next();
+    if (!frame) return;  // its depth is damaged
+    check((*frame)->color == *color, "the same colour");
+    check((*frame)->depth.data == sens_depth(parts_alone->header(), *depth).value().data, "the same depth");
+  }
+  const auto imu = parts_alone->imu_frames();
+  if (!imu)
+    check(imu.error().code == ErrorCode::data_corrupt, "damage of inertial frames is an error of its own");
+}
+
 }  // namespace
 
 void sens(std::string_view bytes) {
   static const MemoryFile file("room.sens");
   file.write(bytes);
   check_frames(file);
+  check_parts(file);
   const auto trajectory = read_sens_trajectory(file.path());
   if (!trajectory) {
     check(trajectory.error().code == ErrorCode::data_corrupt, "what is read can only be corrupt");

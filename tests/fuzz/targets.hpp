@@ -22,6 +22,9 @@ void icl(std::string_view bytes);
 void klg(std::string_view bytes);
 void sens(std::string_view bytes);
 void zip_archive(std::string_view bytes);
+void sensor_files(std::string_view bytes);
+void stray(std::string_view bytes);
+void rosbag(std::string_view bytes);
 
 struct Target {
   std::string_view name;  ///< also its folder below tests/fuzz/corpus
@@ -43,6 +46,9 @@ inline constexpr std::array kTargets = {
     Target{"klg", klg},
     Target{"sens", sens},
     Target{"zip_archive", zip_archive},
+    Target{"sensor_files", sensor_files},
+    Target{"stray", stray},
+    Target{"rosbag", rosbag},
 };
 
 }  // namespace fusebench::fuzz

@@ -16,6 +16,7 @@
 #include "datasets/formats/icl/icl_povray.hpp"
 #include "datasets/reading/associated_row.hpp"
 #include "datasets/reading/image_recording.hpp"
+#include "datasets/reading/numbered_frames.hpp"
 #include "datasets/reading/side_files.hpp"
 
 namespace fusebench::formats::icl {
@@ -28,7 +29,7 @@ constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 /// The number in an image's name, where the name is one.
 std::optional<std::int64_t> index_in_name(const std::filesystem::path& file) {
-  return icl_index(file.stem().string());
+  return reading::frame_number(file.stem().string());
 }
 
 std::vector<std::filesystem::path> truth_files(const std::filesystem::path& folder) {
@@ -42,8 +43,8 @@ std::vector<std::filesystem::path> truth_files(const std::filesystem::path& fold
 }
 
 bool counts_frames(const reading::AssociatedRow& row) {
-  const auto color = icl_index(row.color_stamp);
-  const auto depth = icl_index(row.depth_stamp);
+  const auto color = reading::frame_number(row.color_stamp);
+  const auto depth = reading::frame_number(row.depth_stamp);
   return color && depth && index_in_name(row.color_file) == color && index_in_name(row.depth_file) == depth;
 }
 
@@ -56,15 +57,15 @@ bool is_tum_compatible(const std::filesystem::path& folder) {
   return row && counts_frames(*row);
 }
 
-Result<IclFrame> frame_of(const io::TextTable& table, const reading::AssociatedRow& row) {
+Result<reading::NumberedFrame> frame_of(const io::TextTable& table, const reading::AssociatedRow& row) {
   for (const std::string& stamp : {row.color_stamp, row.depth_stamp}) {
-    if (!icl_index(stamp)) {
+    if (!reading::frame_number(stamp)) {
       return table.fail_here(fmt::format("expected the number of a frame (0, 1, 2, ...), got '{}'", stamp),
                              "a list with times is not ICL-NUIM's; open it with --format tum");
     }
   }
-  const std::int64_t index = *icl_index(row.color_stamp);
-  if (*icl_index(row.depth_stamp) != index) {
+  const std::int64_t index = *reading::frame_number(row.color_stamp);
+  if (*reading::frame_number(row.depth_stamp) != index) {
     return table.fail_here(
         fmt::format("colour image {} is paired with depth image {}", row.color_stamp, row.depth_stamp),
         "rendered images belong together by their number");
@@ -75,11 +76,11 @@ Result<IclFrame> frame_of(const io::TextTable& table, const reading::AssociatedR
                              "poses are matched by number, so the list and the names must agree");
     }
   }
-  return IclFrame{index, row.color_file, row.depth_file};
+  return reading::NumberedFrame{index, row.color_file, row.depth_file};
 }
 
-Result<std::vector<IclFrame>> read_frames(const std::filesystem::path& folder) {
-  std::vector<IclFrame> frames;
+Result<std::vector<reading::NumberedFrame>> read_frames(const std::filesystem::path& folder) {
+  std::vector<reading::NumberedFrame> frames;
   const auto take = [&](const io::TextTable& table, const reading::AssociatedRow& row) -> Result<void> {
     const auto frame = frame_of(table, row);
     if (!frame) return tl::unexpected(frame.error());
@@ -132,7 +133,8 @@ Result<void> read_truth(const std::filesystem::path& folder, const recording::Re
                               trajectory::stamp_text(pose.timestamp_ns)),
                   "the first column of an ICL-NUIM trajectory counts frames; it is not a time");
     }
-    pose.timestamp_ns = icl_time_ns(pose.timestamp_ns / kNanosecondsPerSecond, options.frame_rate_hz);
+    pose.timestamp_ns =
+        reading::frame_time_ns(pose.timestamp_ns / kNanosecondsPerSecond, options.frame_rate_hz);
     pose.T_world_camera = icl_reflect(pose.T_world_camera);
   }
   return reading::set_ground_truth(recording, std::move(*poses), **file, kFramesWithoutPose);
@@ -154,7 +156,7 @@ Result<recording::Recording> open_icl_nuim(const std::filesystem::path& folder,
   if (!calibration) return tl::unexpected(calibration.error());
   const auto frames = read_frames(folder);
   if (!frames) return tl::unexpected(frames.error());
-  add_icl_frames(*frames, options, recording);
+  reading::add_numbered_frames(*frames, "ICL-NUIM", options, recording);
   if (const auto read = read_truth(folder, options, recording); !read) return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)
     return tl::unexpected(read.error());

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "datasets/formats/icl/icl_conventions.hpp"
 #include "datasets/formats/icl/icl_povray_files.hpp"
 #include "datasets/reading/image_recording.hpp"
+#include "datasets/reading/numbered_frames.hpp"
 #include "datasets/reading/side_files.hpp"
 
 namespace fusebench::formats::icl {
@@ -29,15 +28,15 @@ std::optional<std::int64_t> index_of(const std::filesystem::path& file) {
   const std::size_t last = stem.rfind('_');
   if (!stem.starts_with("scene_") || last <= 5) return std::nullopt;
   const std::string_view text = stem;
-  if (!icl_index(text.substr(6, last - 6))) return std::nullopt;
-  return icl_index(text.substr(last + 1));
+  if (!reading::frame_number(text.substr(6, last - 6))) return std::nullopt;
+  return reading::frame_number(text.substr(last + 1));
 }
 
 /// By kind of file and index. Two scenes in one folder would repeat indices, which is an error.
 struct SceneFiles {
-  std::map<std::int64_t, std::filesystem::path> color;
-  std::map<std::int64_t, std::filesystem::path> depth;
-  std::map<std::int64_t, std::filesystem::path> camera;
+  reading::NumberedFiles color;
+  reading::NumberedFiles depth;
+  reading::NumberedFiles camera;
 };
 
 Result<SceneFiles> list_files(const std::filesystem::path& folder) {
@@ -57,25 +56,6 @@ Result<SceneFiles> list_files(const std::filesystem::path& folder) {
                 "a folder holds one scene");
   }
   return files;
-}
-
-Result<std::vector<IclFrame>> pair_files(const SceneFiles& files, recording::Recording& recording) {
-  std::vector<IclFrame> frames;
-  for (const auto& [index, depth] : files.depth) {
-    const auto color = files.color.find(index);
-    if (color != files.color.end()) frames.push_back({index, color->second, depth});
-  }
-  if (frames.empty()) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("{}: no frame has both scene_<nn>_<k>.png and .depth", recording.name));
-  }
-  if (frames.size() < files.depth.size() || frames.size() < files.color.size()) {
-    recording.warnings.push_back(
-        fmt::format("{}: {} of {} colour and {} of {} depth images have no partner and are not used",
-                    recording.name, files.color.size() - frames.size(), files.color.size(),
-                    files.depth.size() - frames.size(), files.depth.size()));
-  }
-  return frames;
 }
 
 /// Warns if a camera file does not fit the intrinsics in use, or if its unit seems wrong.
@@ -106,7 +86,7 @@ Result<void> read_truth(const SceneFiles& files, const calibration::RigCalibrati
     if (!camera) return tl::unexpected(camera.error());
     const SE3 pose = pose_of(*camera, units);
     if (truth.empty()) compare(*camera, pose, calibration.color.pinhole, recording);
-    truth.push_back({icl_time_ns(index, options.frame_rate_hz), pose});
+    truth.push_back({reading::frame_time_ns(index, options.frame_rate_hz), pose});
   }
   if (truth.empty()) return {};
   return reading::set_ground_truth(recording, std::move(truth),
@@ -142,9 +122,10 @@ Result<recording::Recording> open_icl_povray(const std::filesystem::path& folder
   if (!calibration) return tl::unexpected(calibration.error());
   const auto files = list_files(folder);
   if (!files) return tl::unexpected(files.error());
-  const auto frames = pair_files(*files, recording);
+  const auto frames =
+      reading::pair_numbered(files->color, files->depth, "scene_<nn>_<k>.png and .depth", recording);
   if (!frames) return tl::unexpected(frames.error());
-  add_icl_frames(*frames, options, recording);
+  reading::add_numbered_frames(*frames, "ICL-NUIM", options, recording);
   if (const auto read = read_truth(*files, *calibration, options, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)

@@ -1,34 +1,9 @@
 #include "datasets/formats/tum/tum_lists.hpp"
 
-#include <fmt/format.h>
-
-#include <system_error>
-
-#include "core/base/printable.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "datasets/recording/sensor_columns.hpp"
 
 namespace fusebench::formats::tum {
-
-Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list) {
-  std::vector<ListedImage> images;
-  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-    const std::filesystem::path file = list.parent_path() / table.text(1);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
-      return fail(ErrorCode::data_missing,
-                  fmt::format("{}:{}: image {} does not exist", list.string(), table.line(),
-                              printable(table.text(1), 200)),
-                  "unpack the whole recording; names are relative to the list's folder");
-    }
-    images.push_back({time_ns, file});
-    return {};
-  };
-  const Result<void> done =
-      io::for_each_stamped_row(list, "timestamp filename", io::TimeOrder::increasing, row);
-  if (!done) return tl::unexpected(done.error());
-  return images;
-}
 
 Result<std::vector<recording::AccelerometerSample>> read_tum_accelerometer(
     const std::filesystem::path& file) {

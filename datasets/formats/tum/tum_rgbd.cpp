@@ -5,8 +5,9 @@
 
 #include "core/io/input_file.hpp"
 #include "datasets/calibration/camera_presets.hpp"
-#include "datasets/formats/tum/image_pairs.hpp"
 #include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/image_list.hpp"
+#include "datasets/reading/image_pairs.hpp"
 #include "datasets/reading/image_recording.hpp"
 #include "datasets/reading/side_files.hpp"
 
@@ -34,11 +35,11 @@ Result<calibration::RigCalibration> camera_of_folder(const std::string& name) {
 
 Result<void> read_lists(const std::filesystem::path& folder, const recording::ReadOptions& options,
                         recording::Recording& recording) {
-  const auto color = read_image_list(folder / "rgb.txt");
+  const auto color = reading::read_image_list(folder / "rgb.txt");
   if (!color) return tl::unexpected(color.error());
-  const auto depth = read_image_list(folder / "depth.txt");
+  const auto depth = reading::read_image_list(folder / "depth.txt");
   if (!depth) return tl::unexpected(depth.error());
-  return pair_images({"rgb.txt", *color}, {"depth.txt", *depth}, options, recording);
+  return reading::pair_images({"rgb.txt", *color}, {"depth.txt", *depth}, options, recording);
 }
 
 Result<void> read_accelerometer(const std::filesystem::path& folder, recording::Recording& recording) {

@@ -11,8 +11,8 @@
 #include "core/trajectory/trajectory_file.hpp"
 #include "datasets/calibration/infinitam_calibration.hpp"
 #include "datasets/calibration/recording_catalogue.hpp"
-#include "datasets/formats/tum/image_pairs.hpp"
 #include "datasets/formats/zr300/zr300_lists.hpp"
+#include "datasets/reading/image_pairs.hpp"
 #include "datasets/reading/image_recording.hpp"
 #include "datasets/reading/side_files.hpp"
 
@@ -87,8 +87,8 @@ Result<recording::Recording> open_with(ImageLists read_lists, const fs::path& fo
   if (!calibration) return tl::unexpected(calibration.error());
   const auto images = read_lists(folder, options.filtered_depth, recording);
   if (!images) return tl::unexpected(images.error());
-  const auto paired =
-      tum::pair_images({"colour images", images->color}, {"depth images", images->depth}, options, recording);
+  const auto paired = reading::pair_images({"colour images", images->color}, {"depth images", images->depth},
+                                           options, recording);
   if (!paired) return tl::unexpected(paired.error());
   if (const auto read = reading::read_ground_truth_beside(folder, recording); !read)
     return tl::unexpected(read.error());

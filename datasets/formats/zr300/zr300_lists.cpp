@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "core/io/stamped_rows.hpp"
+#include "datasets/reading/inertial_samples.hpp"
 #include "datasets/reading/time_unit.hpp"
 #include "datasets/recording/sensor_columns.hpp"
 
@@ -21,15 +21,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Over a longer pause (12 samples of the 250 Hz accelerometer) a straight line is no measurement.
-constexpr std::int64_t kMaxAccelerometerGap_ns = 50'000'000;
 // Names are cut to whole microseconds, or to 15 digits.
 constexpr std::int64_t kNameTolerance_ns = 1000;
 
 constexpr std::string_view kTimestampColumns = "timestamp color depth";
 constexpr std::string_view kImageColumns = "timestamp filename";
 constexpr std::string_view kGyroColumns = "timestamp gx gy gz [ax ay az]";
-constexpr std::string_view kAccelColumns = "timestamp ax ay az";
 
 /// The file of column `column`, which must exist.
 Result<fs::path> image_file(const io::TextTable& table, std::size_t column, const fs::path& recording,
@@ -50,13 +47,13 @@ Result<fs::path> depth_file(const io::TextTable& table, std::size_t column, cons
   return image_file(table, column, recording, filtered ? "filtered" : "depth", filtered);
 }
 
-Result<std::vector<tum::ListedImage>> read_one_list(
+Result<std::vector<reading::ListedImage>> read_one_list(
     const fs::path& list, recording::Recording& recording,
     const std::function<Result<fs::path>(const io::TextTable& table)>& file_of) {
   const auto unit = reading::detect_time_unit(list, kImageColumns, reading::kImageSpacing);
   if (!unit) return tl::unexpected(unit.error());
   recording.notes.push_back(unit->note(list.filename().string()));
-  std::vector<tum::ListedImage> images;
+  std::vector<reading::ListedImage> images;
   const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
     auto file = file_of(table);
     if (!file) return tl::unexpected(file.error());
@@ -75,8 +72,10 @@ std::optional<std::int64_t> time_in_name(const fs::path& file, io::TimeUnit unit
 }
 
 /// Rows that repeat a depth image give it once.
-void drop_repeated(std::vector<tum::ListedImage>& images) {
-  const auto same = [](const tum::ListedImage& a, const tum::ListedImage& b) { return a.file == b.file; };
+void drop_repeated(std::vector<reading::ListedImage>& images) {
+  const auto same = [](const reading::ListedImage& a, const reading::ListedImage& b) {
+    return a.file == b.file;
+  };
   images.erase(std::unique(images.begin(), images.end(), same), images.end());
 }
 
@@ -107,62 +106,6 @@ Result<void> take_depth_times(const fs::path& list, io::TimeUnit unit, Zr300Imag
                                           list.filename().string(), differ, depth_ns.size()));
   }
   return {};
-}
-
-/// Rows of "timestamp x y z [...]"; `keep` sees each row whose stamp is new. The device repeats a sample now
-/// and then, which is counted and left out.
-Result<void> read_sensor(const fs::path& file, std::string_view columns, recording::Recording& recording,
-                         const io::StampedRow& keep) {
-  const auto unit = reading::detect_time_unit(file, columns, reading::kImuSpacing);
-  if (!unit) return tl::unexpected(unit.error());
-  recording.notes.push_back(unit->note(file.filename().string()));
-  std::optional<std::int64_t> last_ns;
-  std::size_t repeated = 0;
-  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-    const bool again = last_ns == time_ns;
-    last_ns = time_ns;
-    if (again) ++repeated;
-    return again ? Result<void>{} : keep(table, time_ns);
-  };
-  const auto done = io::for_each_stamped_row(file, columns, io::TimeOrder::not_backwards, row, unit->unit);
-  if (done && repeated > 0) {
-    recording.warnings.push_back(fmt::format(
-        "{}: {} rows repeat the stamp of the row before and are not used", file.string(), repeated));
-  }
-  return done;
-}
-
-/// Joins both sensors and notes which samples were interpolated or dropped.
-Result<void> set_imu(const fs::path& file, std::span<const GyroscopeSample> gyroscope,
-                     std::span<const recording::AccelerometerSample> accelerometer,
-                     recording::Recording& recording) {
-  recording.imu = interpolate_accelerometer(gyroscope, accelerometer);
-  if (recording.imu.empty()) {
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{}: no gyroscope sample lies between two accelerometer samples", file.string()),
-                "both sensors must be of one recording and clock");
-  }
-  recording.imu_source = recording::ImuSource::recorded;
-  const std::size_t dropped = gyroscope.size() - recording.imu.size();
-  if (dropped > 0) {
-    recording.warnings.push_back(
-        fmt::format("{}: {} of {} gyroscope samples have no accelerometer around them and are not used",
-                    file.string(), dropped, gyroscope.size()));
-  }
-  return {};
-}
-
-Result<GyroscopeSample> gyroscope_sample(const io::TextTable& table, std::int64_t time_ns) {
-  const auto rate_radps = recording::read_angular_velocity(table, 1, "g");
-  if (!rate_radps) return tl::unexpected(rate_radps.error());
-  return GyroscopeSample{time_ns, *rate_radps};
-}
-
-Result<recording::AccelerometerSample> accelerometer_sample(const io::TextTable& table, std::int64_t time_ns,
-                                                            std::size_t column) {
-  const auto force_mps2 = recording::read_specific_force(table, column, "a");
-  if (!force_mps2) return tl::unexpected(force_mps2.error());
-  return recording::AccelerometerSample{time_ns, *force_mps2};
 }
 
 }  // namespace
@@ -207,74 +150,28 @@ Result<Zr300Images> read_zr300_image_lists(const fs::path& folder, bool filtered
 
 Result<void> read_zr300_imu(const fs::path& folder, recording::Recording& recording) {
   const fs::path file = folder / "IMU.txt";
-  std::vector<GyroscopeSample> gyroscope;
+  std::vector<reading::GyroscopeSample> gyroscope;
   std::vector<recording::AccelerometerSample> accelerometer;
   const auto keep = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-    const auto gyro = gyroscope_sample(table, time_ns);
+    const auto gyro = reading::gyroscope_sample(table, time_ns);
     if (!gyro) return tl::unexpected(gyro.error());
     gyroscope.push_back(*gyro);
     if (!table.has(4)) return {};
-    const auto accel = accelerometer_sample(table, time_ns, 4);
+    const auto accel = reading::accelerometer_sample(table, time_ns, 4);
     if (!accel) return tl::unexpected(accel.error());
     accelerometer.push_back(*accel);
     return {};
   };
-  if (const auto read = read_sensor(file, kGyroColumns, recording, keep); !read) return read;
+  if (const auto read = reading::for_each_new_sample(file, kGyroColumns, recording, keep); !read) return read;
   if (const std::size_t rows = gyroscope.size(), whole = accelerometer.size(); whole < rows) {
     recording.notes.push_back(fmt::format(
         "IMU.txt: {} of {} rows have no accelerometer, which is interpolated", rows - whole, rows));
   }
-  return set_imu(file, gyroscope, accelerometer, recording);
+  return reading::set_imu(file.string(), gyroscope, accelerometer, recording);
 }
 
 Result<void> read_zr300_gyro_and_accel(const fs::path& folder, recording::Recording& recording) {
-  const fs::path file = folder / "GYRO.txt";
-  std::vector<GyroscopeSample> gyroscope;
-  const auto keep_gyro = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-    const auto sample = gyroscope_sample(table, time_ns);
-    if (!sample) return tl::unexpected(sample.error());
-    gyroscope.push_back(*sample);
-    return {};
-  };
-  if (const auto read = read_sensor(file, kGyroColumns, recording, keep_gyro); !read) return read;
-  std::vector<recording::AccelerometerSample> accelerometer;
-  const auto keep_accel = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
-    const auto sample = accelerometer_sample(table, time_ns, 1);
-    if (!sample) return tl::unexpected(sample.error());
-    accelerometer.push_back(*sample);
-    return {};
-  };
-  if (const auto read = read_sensor(folder / "ACCEL.txt", kAccelColumns, recording, keep_accel); !read)
-    return read;
-  recording.notes.push_back(
-      fmt::format("ACCEL.txt: {} accelerometer samples are interpolated to {} gyroscope times",
-                  accelerometer.size(), gyroscope.size()));
-  return set_imu(file, gyroscope, accelerometer, recording);
-}
-
-std::vector<ImuSample> interpolate_accelerometer(
-    std::span<const GyroscopeSample> gyroscope,
-    std::span<const recording::AccelerometerSample> accelerometer) {
-  std::vector<ImuSample> samples;
-  samples.reserve(gyroscope.size());
-  auto after = accelerometer.begin();
-  for (const GyroscopeSample& gyro : gyroscope) {
-    const std::int64_t time_ns = gyro.timestamp_ns;
-    while (after != accelerometer.end() && after->timestamp_ns < time_ns) ++after;
-    if (after == accelerometer.end()) break;
-    if (after->timestamp_ns == time_ns) {
-      samples.push_back({time_ns, gyro.angular_velocity_radps, after->specific_force_mps2});
-      continue;
-    }
-    if (after == accelerometer.begin()) continue;
-    const recording::AccelerometerSample& before = *std::prev(after);
-    if (after->timestamp_ns - before.timestamp_ns > kMaxAccelerometerGap_ns) continue;
-    const double fraction = seconds_between(before.timestamp_ns, time_ns) /
-                            seconds_between(before.timestamp_ns, after->timestamp_ns);
-    samples.push_back({time_ns, gyro.angular_velocity_radps,
-                       (1 - fraction) * before.specific_force_mps2 + fraction * after->specific_force_mps2});
-  }
-  return samples;
+  return reading::read_gyroscope_and_accelerometer(folder / "GYRO.txt", folder / "ACCEL.txt", recording);
 }
 
 }  // namespace fusebench::formats::zr300

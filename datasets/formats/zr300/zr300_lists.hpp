@@ -4,20 +4,18 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
-#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/image_list.hpp"
 #include "datasets/recording/recording.hpp"
 
 namespace fusebench::formats::zr300 {
 
 /// Images of both sensors, each in strictly increasing time, paths complete.
 struct Zr300Images {
-  std::vector<tum::ListedImage> color;
-  std::vector<tum::ListedImage> depth;
+  std::vector<reading::ListedImage> color;
+  std::vector<reading::ListedImage> depth;
 };
 
 /// TIMESTAMP.txt: "timestamp colour-name depth-name". The stamp is the colour image's. Images are named by
@@ -42,18 +40,5 @@ struct Zr300Images {
 /// "timestamp ax ay az": the same.
 [[nodiscard]] Result<void> read_zr300_gyro_and_accel(const std::filesystem::path& folder,
                                                      recording::Recording& recording);
-
-/// A sample of a gyroscope alone.
-struct GyroscopeSample {
-  std::int64_t timestamp_ns = 0;
-  Vector3d angular_velocity_radps = Vector3d::Zero();
-};
-
-/// One inertial sample per gyroscope sample: the accelerometer, linear between its neighbours in time, exact
-/// where it has the same stamp. Gyroscope samples without an accelerometer sample on both sides, or between
-/// two that are more than 50 ms apart, are left out. Both lists strictly increase in time.
-[[nodiscard]] std::vector<ImuSample> interpolate_accelerometer(
-    std::span<const GyroscopeSample> gyroscope,
-    std::span<const recording::AccelerometerSample> accelerometer);
 
 }  // namespace fusebench::formats::zr300

@@ -11,29 +11,52 @@ namespace fusebench::images {
 
 namespace {
 
+/// The type that samples are read as: half floats become floats.
+OIIO::TypeDesc read_type_of(const OIIO::ImageSpec& spec) {
+  return spec.format == OIIO::TypeDesc::HALF ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT) : spec.format;
+}
+
 SampleType sample_type_of(const OIIO::TypeDesc& type) {
   if (type == OIIO::TypeDesc::UINT8) return SampleType::uint8;
   if (type == OIIO::TypeDesc::UINT16) return SampleType::uint16;
+  if (type == OIIO::TypeDesc::FLOAT) return SampleType::float32;
   return SampleType::other;
+}
+
+/// Of all pixels, in that type.
+std::uint64_t pixel_bytes_of(const OIIO::ImageSpec& spec) {
+  return spec.image_bytes() / spec.format.size() * read_type_of(spec).size();
 }
 
 LibraryResult<void> read_pixels(OIIO::ImageInput& input, std::span<std::byte> pixels) {
   const OIIO::ImageSpec& spec = input.spec();
   // An image may have a depth besides width and height.
-  if (pixels.size() != spec.image_bytes())
+  if (pixels.size() != pixel_bytes_of(spec))
     return tl::unexpected(std::string("it has other pixels than its width and height say"));
-  if (!input.read_image(0, 0, 0, spec.nchannels, spec.format, pixels.data()))
+  if (!input.read_image(0, 0, 0, spec.nchannels, read_type_of(spec), pixels.data()))
     return tl::unexpected(input.geterror());
   return {};
 }
 
-LibraryResult<OpenedImage> open_image(const std::string& file) {
-  const std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file);
+/// owned: what the input reads from, and needs as long as it is there.
+template <class Owned>
+LibraryResult<OpenedImage> opened(std::shared_ptr<OIIO::ImageInput> input, Owned owned) {
   if (!input) return tl::unexpected(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
-  return OpenedImage{{spec.width, spec.height, spec.nchannels, sample_type_of(spec.format),
-                      spec.format.c_str(), spec.image_bytes()},
-                     [input](std::span<std::byte> pixels) { return read_pixels(*input, pixels); }};
+  const OIIO::TypeDesc type = read_type_of(spec);
+  return OpenedImage{
+      {spec.width, spec.height, spec.nchannels, sample_type_of(type), type.c_str(), pixel_bytes_of(spec)},
+      [owned, input](std::span<std::byte> pixels) { return read_pixels(*input, pixels); }};
+}
+
+LibraryResult<OpenedImage> open_image(const std::string& file) {
+  return opened(OIIO::ImageInput::open(file), nullptr);
+}
+
+LibraryResult<OpenedImage> open_bytes(const std::string& name, std::span<const std::byte> bytes) {
+  const auto memory =
+      std::make_shared<OIIO::Filesystem::IOMemReader>(const_cast<std::byte*>(bytes.data()), bytes.size());
+  return opened(OIIO::ImageInput::open(name, nullptr, memory.get()), memory);
 }
 
 LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int quality) {
@@ -50,7 +73,7 @@ LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int
   return bytes;
 }
 
-constexpr ImageLibrary kLibrary{open_image, encode_jpeg};
+constexpr ImageLibrary kLibrary{open_image, open_bytes, encode_jpeg};
 
 }  // namespace
 

@@ -10,12 +10,11 @@
 #include <numbers>
 #include <random>
 
-#include "datasets/formats/tum/tum_lists.hpp"
+#include "datasets/reading/image_list.hpp"
 
 namespace fusebench {
 
 using namespace reading;
-using namespace formats::tum;
 
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/formats/icl/icl_conventions.hpp"
+#include "datasets/reading/numbered_frames.hpp"
 #include "tests/datasets/formats/icl/icl_folder.hpp"
 #include "tests/datasets/formats/tum/tum_folder.hpp"
 
@@ -53,14 +54,14 @@ TEST(IclConventions, BothConventionsSeeTheSamePixels) {
 }
 
 TEST(IclConventions, IndicesAndTimes) {
-  EXPECT_EQ(icl_index("0"), 0);
-  EXPECT_EQ(icl_index("0001508"), 1508);
+  EXPECT_EQ(reading::frame_number("0"), 0);
+  EXPECT_EQ(reading::frame_number("0001508"), 1508);
   for (const char* bad : {"", "-1", "1.0", "+1", " 1", "1e3", "1234567890", "1305031229.5"})
-    EXPECT_FALSE(icl_index(bad)) << bad;
-  EXPECT_EQ(icl_time_ns(0, 30), 0);
-  EXPECT_EQ(icl_time_ns(1, 30), kPeriod_ns);
-  EXPECT_EQ(icl_time_ns(2, 30), 66'666'667);
-  EXPECT_EQ(icl_time_ns(1500, 25), 60'000'000'000);
+    EXPECT_FALSE(reading::frame_number(bad)) << bad;
+  EXPECT_EQ(reading::frame_time_ns(0, 30), 0);
+  EXPECT_EQ(reading::frame_time_ns(1, 30), kPeriod_ns);
+  EXPECT_EQ(reading::frame_time_ns(2, 30), 66'666'667);
+  EXPECT_EQ(reading::frame_time_ns(1500, 25), 60'000'000'000);
 }
 
 TEST(IclNuim, OpensAndMatchesByIndex) {

@@ -9,6 +9,7 @@
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/formats/zr300/zr300_lists.hpp"
 #include "datasets/open_recording.hpp"
+#include "datasets/reading/inertial_samples.hpp"
 #include "tests/datasets/formats/zr300/zr300_folder.hpp"
 #include "tests/support/expect_text.hpp"
 
@@ -16,6 +17,7 @@ namespace fusebench {
 
 using namespace calibration;
 using namespace recording;
+using namespace reading;
 using namespace formats::zr300;
 using namespace datasets;
 

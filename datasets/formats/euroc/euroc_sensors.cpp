@@ -1,0 +1,147 @@
+#include "datasets/formats/euroc/euroc_sensors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "datasets/reading/sensor_yaml.hpp"
+
+namespace fusebench::formats::euroc {
+
+namespace {
+
+using reading::SensorYaml;
+
+constexpr double kMostPixels = 16384;
+constexpr double kSameTransform = 1e-6;
+
+/// A camera and where it is.
+struct Camera {
+  calibration::CalibratedCamera camera;
+  SE3 T_body_camera;
+};
+
+Result<SE3> pose_in_body(const SensorYaml& yaml) {
+  const auto rows = yaml.numbers("T_BS.data", 16);
+  if (!rows) return tl::unexpected(rows.error());
+  const auto T = calibration::rigid_transform(std::span(*rows).first<12>());
+  if (T) return *T;
+  return yaml.fail_at("T_BS.data",
+                      fmt::format("T_BS is no rigid transform ({})", calibration::kRigidTransformRule));
+}
+
+Result<calibration::BrownConrady> distortion_of(const SensorYaml& yaml) {
+  if (!yaml.has("distortion_coefficients")) return calibration::BrownConrady{};
+  const auto four = yaml.numbers("distortion_coefficients", 4);
+  const auto d = four ? four : yaml.numbers("distortion_coefficients", 5);
+  if (!d)
+    return yaml.fail_at("distortion_coefficients",
+                        "distortion_coefficients must be a list of 4 or 5 finite numbers");
+  const calibration::BrownConrady distortion{(*d)[0], (*d)[1], (*d)[2], (*d)[3], d->size() > 4 ? (*d)[4] : 0};
+  const std::string model = yaml.text("distortion_model").value_or("radial-tangential");
+  if (model == "radial-tangential" || distortion.is_zero()) return distortion;
+  return yaml.fail_at("distortion_model",
+                      "the distortion must be radial-tangential: undistort the images with the program "
+                      "that calibrated them");
+}
+
+Result<Camera> read_camera(const std::filesystem::path& file) {
+  const auto yaml = SensorYaml::read(file);
+  if (!yaml) return tl::unexpected(yaml.error());
+  const auto T_body_camera = pose_in_body(*yaml);
+  if (!T_body_camera) return tl::unexpected(T_body_camera.error());
+  const auto k = yaml->numbers("intrinsics", 4);
+  if (!k) return tl::unexpected(k.error());
+  if (!((*k)[0] > 0 && (*k)[1] > 0))
+    return yaml->fail_at("intrinsics", "focal lengths must be above 0 (fu, fv, cu, cv)");
+  const auto size = yaml->numbers("resolution", 2);
+  if (!size) return tl::unexpected(size.error());
+  if (!std::ranges::all_of(*size, [](double side) { return side >= 1 && side <= kMostPixels; }))
+    return yaml->fail_at("resolution", fmt::format("a side must be 1 to {} pixels", kMostPixels));
+  const auto distortion = distortion_of(*yaml);
+  if (!distortion) return tl::unexpected(distortion.error());
+  return Camera{
+      {{static_cast<int>((*size)[0]), static_cast<int>((*size)[1]), (*k)[0], (*k)[1], (*k)[2], (*k)[3]},
+       *distortion,
+       calibration::kUnknownTiming},
+      *T_body_camera};
+}
+
+bool same(const Camera& a, const Camera& b) {
+  const PinholeCamera& p = a.camera.pinhole;
+  const PinholeCamera& q = b.camera.pinhole;
+  return p.width_px == q.width_px && p.height_px == q.height_px && p.fx_px == q.fx_px && p.fy_px == q.fy_px &&
+         p.cx_px == q.cx_px && p.cy_px == q.cy_px &&
+         pose_minus(a.T_body_camera, b.T_body_camera).norm() < kSameTransform;
+}
+
+/// Fills the depth camera, if it is another one than that of colour, and the value of one metre.
+Result<void> read_depth(const std::filesystem::path& file, const Camera& color,
+                        calibration::RigCalibration& calibration) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return {};
+  const auto yaml = SensorYaml::read(file);
+  if (!yaml) return tl::unexpected(yaml.error());
+  if (yaml->has("depth_units_per_metre")) {
+    const auto units = yaml->number("depth_units_per_metre");
+    if (!units) return tl::unexpected(units.error());
+    if (!(*units > 0)) return yaml->fail_at("depth_units_per_metre", "depth_units_per_metre must be above 0");
+    calibration.depth_units_per_metre = *units;
+  }
+  const auto depth = read_camera(file);
+  if (!depth) return tl::unexpected(depth.error());
+  if (same(color, *depth)) return {};
+  if (!depth->camera.distortion.is_zero())
+    return yaml->fail_at("distortion_coefficients", "depth of a camera of its own must have no distortion");
+  calibration.depth =
+      calibration::DepthCamera{depth->camera.pinhole, color.T_body_camera.inverse() * depth->T_body_camera};
+  return {};
+}
+
+/// T_body_imu; nothing if there is no IMU.
+Result<std::optional<SE3>> read_imu(const std::filesystem::path& file, const Camera& color,
+                                    calibration::RigCalibration& calibration) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
+  const auto yaml = SensorYaml::read(file);
+  if (!yaml) return tl::unexpected(yaml.error());
+  const auto T_body_imu = pose_in_body(*yaml);
+  if (!T_body_imu) return tl::unexpected(T_body_imu.error());
+  std::vector<double> densities;
+  for (const std::string_view key : {"gyroscope_noise_density", "accelerometer_noise_density",
+                                     "gyroscope_random_walk", "accelerometer_random_walk"}) {
+    const auto density = yaml->number(key);
+    if (!density) return tl::unexpected(density.error());
+    if (!(*density >= (key.ends_with("density") ? 1e-9 : 0) && *density <= 100))
+      return yaml->fail_at(key, fmt::format("{} must be a density above 0 and at most 100", key));
+    densities.push_back(*density);
+  }
+  calibration.imu = calibration::ImuCalibration{T_body_imu->inverse() * color.T_body_camera,
+                                                {densities[0], densities[1], densities[2], densities[3]}};
+  return std::optional<SE3>(*T_body_imu);
+}
+
+}  // namespace
+
+Result<EurocRig> read_euroc_rig(const std::filesystem::path& mav0) {
+  const auto color = read_camera(mav0 / "cam0" / "sensor.yaml");
+  if (!color) return tl::unexpected(color.error());
+  EurocRig rig;
+  rig.calibration.color = color->camera;
+  rig.calibration.source = "sensor.yaml of each sensor";
+  rig.T_body_color = color->T_body_camera;
+  if (const auto read = read_depth(mav0 / "depth0" / "sensor.yaml", *color, rig.calibration); !read)
+    return tl::unexpected(read.error());
+  const auto T_body_imu = read_imu(mav0 / "imu0" / "sensor.yaml", *color, rig.calibration);
+  if (!T_body_imu) return tl::unexpected(T_body_imu.error());
+  rig.imu_is_body = *T_body_imu && pose_minus(**T_body_imu, SE3{}).norm() < kSameTransform;
+  return rig;
+}
+
+}  // namespace fusebench::formats::euroc

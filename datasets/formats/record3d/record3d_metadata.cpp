@@ -1,0 +1,91 @@
+#include "datasets/formats/record3d/record3d_metadata.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "datasets/reading/json_file.hpp"
+
+namespace fusebench::formats::record3d {
+
+namespace {
+
+constexpr double kMost_m = 1e7;
+constexpr double kMost_s = 1e9;
+
+tl::unexpected<Error> wrong(const std::filesystem::path& file, const std::string& what) {
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), what));
+}
+
+/// ARKit's camera has y up and looks along -z.
+SE3 with_y_down(const SE3& T_world_arkit) {
+  return T_world_arkit * SE3{Quaterniond(0, 1, 0, 0), Vector3d::Zero()};
+}
+
+Result<std::vector<SE3>> read_poses(const nlohmann::json& document, const std::filesystem::path& file) {
+  std::vector<SE3> poses;
+  const auto found = document.find("poses");
+  if (found == document.end()) return poses;
+  if (!found->is_array()) return wrong(file, "poses must be a list");
+  bool moves = false;
+  for (std::size_t k = 0; k < found->size(); ++k) {
+    const std::string key = fmt::format("poses[{}]", k);
+    const auto p = reading::json_numbers({{key, (*found)[k]}}, key, 7, file);
+    if (!p) return tl::unexpected(p.error());
+    const Quaterniond q((*p)[3], (*p)[0], (*p)[1], (*p)[2]);
+    const Vector3d t_m((*p)[4], (*p)[5], (*p)[6]);
+    if (!(q.norm() > 0.5 && q.norm() < 2 && t_m.cwiseAbs().maxCoeff() <= kMost_m))
+      return wrong(file, fmt::format("{}: its quaternion (x, y, z, w) is not of unit length, or its position "
+                                     "is beyond {:g} m",
+                                     key, kMost_m));
+    poses.push_back(with_y_down({q.normalized(), t_m}));
+    moves = moves || pose_minus(poses.back(), poses.front()).norm() > 1e-9;
+  }
+  if (!moves) poses.clear();
+  return poses;
+}
+
+Result<std::vector<std::int64_t>> read_times(const nlohmann::json& document,
+                                             const std::filesystem::path& file) {
+  std::vector<std::int64_t> times_ns;
+  const auto found = document.find("frameTimestamps");
+  if (found == document.end()) return times_ns;
+  const auto times_s = reading::json_numbers(document, "frameTimestamps", found->size(), file);
+  if (!times_s) return tl::unexpected(times_s.error());
+  for (const double time_s : *times_s) {
+    if (!(std::abs(time_s) <= kMost_s))
+      return wrong(file, fmt::format("frameTimestamps: {} s (allowed up to {:g} s)", time_s, kMost_s));
+    times_ns.push_back(std::llround(1e9 * time_s));
+    if (times_ns.size() > 1 && times_ns.back() <= times_ns[times_ns.size() - 2])
+      return wrong(file, fmt::format("frameTimestamps do not rise at frame {}", times_ns.size() - 1));
+  }
+  return times_ns;
+}
+
+}  // namespace
+
+Result<Record3dMetadata> read_record3d_metadata(const std::filesystem::path& file) {
+  const auto document = reading::read_json(file);
+  if (!document) return tl::unexpected(document.error());
+  const auto camera = reading::json_camera(*document, {"w", "h", "K"}, file);
+  if (!camera) return tl::unexpected(camera.error());
+  Record3dMetadata metadata;
+  metadata.camera = *camera;
+  if (document->contains("fps")) {
+    const auto fps = reading::json_number(*document, "fps", file);
+    if (!fps) return tl::unexpected(fps.error());
+    if (!(*fps >= 1 && *fps <= 1000)) return wrong(file, fmt::format("fps = {} (allowed 1 .. 1000)", *fps));
+    metadata.fps = *fps;
+  }
+  auto times_ns = read_times(*document, file);
+  if (!times_ns) return tl::unexpected(times_ns.error());
+  metadata.timestamps_ns = std::move(*times_ns);
+  auto poses = read_poses(*document, file);
+  if (!poses) return tl::unexpected(poses.error());
+  metadata.T_world_camera = std::move(*poses);
+  return metadata;
+}
+
+}  // namespace fusebench::formats::record3d

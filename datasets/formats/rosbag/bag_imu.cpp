@@ -1,0 +1,114 @@
+#include "datasets/formats/rosbag/bag_imu.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "core/base/printable.hpp"
+#include "datasets/reading/inertial_samples.hpp"
+#include "datasets/recording/sensor_columns.hpp"
+
+namespace fusebench::formats::rosbag {
+
+namespace {
+
+using Imus = std::map<std::string, ImuTopic>;
+
+Imus::const_iterator topic_with(const Imus& imus, std::string_view part) {
+  return std::ranges::find_if(imus, [&](const auto& entry) {
+    std::string name = entry.first;
+    for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return name.find(part) != std::string::npos;
+  });
+}
+
+Result<void> check_ranges(const std::string& source, const ImuTopic& imu) {
+  for (const ImuMessage& sample : imu.samples) {
+    if (sample.angular_velocity_radps.cwiseAbs().maxCoeff() <= recording::kMaxAngularVelocity_radps &&
+        sample.specific_force_mps2.cwiseAbs().maxCoeff() <= recording::kMaxSpecificForce_mps2)
+      continue;
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: the message at {} ns has values that no sensor measures", source,
+                            sample.header.timestamp_ns));
+  }
+  return {};
+}
+
+/// Samples whose stamp is new, and, if only_new, whose value is new and not zero.
+template <class Sample>
+std::vector<Sample> samples_of(const ImuTopic& imu, Vector3d ImuMessage::*value, bool only_new) {
+  std::vector<Sample> samples;
+  Vector3d last = Vector3d::Zero();
+  for (const ImuMessage& message : imu.samples) {
+    const Vector3d& now = message.*value;
+    if (only_new && (now == last || now.isZero(0))) continue;
+    if (!samples.empty() && message.header.timestamp_ns <= samples.back().timestamp_ns) continue;
+    last = now;
+    samples.push_back({message.header.timestamp_ns, now});
+  }
+  return samples;
+}
+
+/// Of one of the sensors: that a message has the value of the one before, or none.
+std::size_t repeats_of(const ImuTopic& imu, Vector3d ImuMessage::*value) {
+  std::size_t repeats = 0;
+  for (std::size_t k = 1; k < imu.samples.size(); ++k) {
+    const Vector3d& now = imu.samples[k].*value;
+    if (now == imu.samples[k - 1].*value || now.isZero(0)) ++repeats;
+  }
+  return repeats;
+}
+
+Result<void> join(const std::string& source, const ImuTopic& gyroscope, const ImuTopic& accelerometer,
+                  bool only_new, recording::Recording& recording) {
+  const auto rates =
+      samples_of<reading::GyroscopeSample>(gyroscope, &ImuMessage::angular_velocity_radps, only_new);
+  const auto forces =
+      samples_of<recording::AccelerometerSample>(accelerometer, &ImuMessage::specific_force_mps2, only_new);
+  recording.notes.push_back(fmt::format("{}: {} accelerometer samples are interpolated to {} gyroscope times",
+                                        source, forces.size(), rates.size()));
+  return reading::set_imu(source, rates, forces, recording);
+}
+
+Result<void> take_united(const std::string& source, const ImuTopic& imu, recording::Recording& recording) {
+  const std::size_t many = imu.samples.size() / 5 + 1;  // noise does not repeat that often
+  if (repeats_of(imu, &ImuMessage::angular_velocity_radps) > many ||
+      repeats_of(imu, &ImuMessage::specific_force_mps2) > many)
+    return join(source, imu, imu, true, recording);
+  for (const ImuMessage& sample : imu.samples) {
+    const std::int64_t time_ns = sample.header.timestamp_ns;
+    if (!recording.imu.empty() && time_ns <= recording.imu.back().timestamp_ns) continue;
+    recording.imu.push_back({time_ns, sample.angular_velocity_radps, sample.specific_force_mps2});
+  }
+  recording.imu_source = recording::ImuSource::recorded;
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> take_imu(const BagTopics& topics, const std::filesystem::path& file,
+                             recording::Recording& recording) {
+  const Imus& imus = topics.imus;
+  if (imus.empty()) return std::string();
+  const auto source = [&](const std::string& topic) {
+    return fmt::format("{}: {}", file.string(), printable(topic, 100));
+  };
+  for (const auto& [topic, imu] : imus) {
+    if (const auto possible = check_ranges(source(topic), imu); !possible)
+      return tl::unexpected(possible.error());
+  }
+  const auto gyroscope = topic_with(imus, "gyro");
+  const auto accelerometer = topic_with(imus, "accel");
+  const bool apart = gyroscope != imus.end() && accelerometer != imus.end() && gyroscope != accelerometer;
+  const auto united = topic_with(imus, "imu") == imus.end() ? imus.begin() : topic_with(imus, "imu");
+  const auto used = apart ? gyroscope : united;
+  const auto taken =
+      apart ? join(source(gyroscope->first), gyroscope->second, accelerometer->second, false, recording)
+            : take_united(source(united->first), united->second, recording);
+  if (!taken) return tl::unexpected(taken.error());
+  return used->second.frame_id;
+}
+
+}  // namespace fusebench::formats::rosbag

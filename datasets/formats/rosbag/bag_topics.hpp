@@ -1,0 +1,62 @@
+// What a bag holds of a camera: its topics by what their messages are.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "datasets/calibration/frame_tree.hpp"
+#include "datasets/formats/rosbag/bag_file.hpp"
+#include "datasets/formats/rosbag/ros_messages.hpp"
+
+namespace fusebench::formats::rosbag {
+
+struct StoredMessage {
+  std::int64_t timestamp_ns = 0;  ///< of the header; where that is 0, when the message was recorded
+  MessagePlace place;
+};
+
+struct ImageTopic {
+  ImageKind kind = ImageKind::other;
+  bool is_compressed = false;
+  std::string frame_id;
+  std::vector<StoredMessage> images;  ///< in strictly increasing time
+  std::size_t repeated = 0;           ///< images with the stamp of another, which are left out
+};
+
+struct ImuTopic {
+  std::string frame_id;
+  std::vector<ImuMessage> samples;  ///< in the order of time; stamps may repeat
+};
+
+/// By topic.
+struct BagTopics {
+  std::map<std::string, ImageTopic> images;
+  std::map<std::string, calibration::CalibratedCamera> cameras;  ///< the first camera_info of each
+  std::map<std::string, ImuTopic> imus;
+  std::map<std::string, SE3> extrinsics;
+  calibration::FrameTree frames;  ///< of /tf_static
+  bool ends_early = false;
+};
+
+/// Errors: those of read_bag; data_corrupt (a message that is not of its type).
+[[nodiscard]] Result<BagTopics> read_topics(const std::filesystem::path& file);
+
+/// The topic of colour, and of depth: aligned to colour before others, pictures of infrared cameras never.
+/// Error data_missing: there is none; the message lists what there is.
+struct ChosenTopics {
+  std::string color;
+  std::string depth;
+};
+[[nodiscard]] Result<ChosenTopics> choose_topics(const BagTopics& topics, const std::filesystem::path& file);
+
+/// The camera_info beside an image topic; nothing if there is none.
+[[nodiscard]] std::optional<calibration::CalibratedCamera> camera_of_topic(const BagTopics& topics,
+                                                                           std::string_view image_topic);
+
+}  // namespace fusebench::formats::rosbag

@@ -1,0 +1,108 @@
+#include "datasets/formats/seven_scenes/seven_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "datasets/calibration/recording_catalogue.hpp"
+#include "datasets/reading/image_recording.hpp"
+#include "datasets/reading/numbered_frames.hpp"
+#include "datasets/reading/side_files.hpp"
+#include "datasets/reading/text_matrix.hpp"
+
+namespace fusebench::formats::seven_scenes {
+
+namespace {
+
+constexpr double kUnitsPerMetre = 1000;
+constexpr std::array<reading::NumberedName, 2> kColor = {
+    {{"frame-", ".color.png"}, {"frame-", ".color.jpg"}}};
+constexpr std::array<reading::NumberedName, 1> kDepth = {{{"frame-", ".depth.png"}}};
+constexpr std::array<reading::NumberedName, 1> kPose = {{{"frame-", ".pose.txt"}}};
+constexpr std::string_view kTruthLabel =
+    "pseudo ground truth: tracked by KinectFusion in the same depth, not independent";
+
+calibration::RigCalibration published_calibration() {
+  auto calibration = calibration::catalogue_calibration("seven_scenes");
+  check(calibration.has_value(), "the catalogue holds the calibration of 7-Scenes");
+  return *std::move(calibration);
+}
+
+bool same_camera(const PinholeCamera& a, const PinholeCamera& b) {
+  return a.fx_px == b.fx_px && a.fy_px == b.fy_px && a.cx_px == b.cx_px && a.cy_px == b.cy_px;
+}
+
+Result<calibration::RigCalibration> calibration_of(const std::filesystem::path& folder) {
+  calibration::RigCalibration published = published_calibration();
+  const std::filesystem::path file = folder / "camera-intrinsics.txt";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return published;
+  const auto camera = reading::read_camera_matrix(file);
+  if (!camera) return tl::unexpected(camera.error());
+  if (same_camera(*camera, published.depth->pinhole)) return published;
+  calibration::RigCalibration one_camera;
+  one_camera.color.pinhole = *camera;
+  one_camera.color.timing = calibration::kUnknownTiming;
+  one_camera.source = "camera-intrinsics.txt of the recording: one camera for colour and depth";
+  return one_camera;
+}
+
+/// Poses are the depth camera's.
+Result<void> read_truth(const std::filesystem::path& folder, const calibration::RigCalibration& calibration,
+                        const recording::ReadOptions& options, recording::Recording& recording) {
+  const auto files = reading::numbered_files(folder, kPose);
+  if (!files) return tl::unexpected(files.error());
+  const SE3 T_depth_color = calibration.depth ? calibration.depth->T_color_depth.inverse() : SE3{};
+  Trajectory truth;
+  std::size_t lost = 0;
+  for (const auto& [index, file] : *files) {
+    const auto T_world_depth = reading::read_pose_matrix(file);
+    if (!T_world_depth) return tl::unexpected(T_world_depth.error());
+    if (!*T_world_depth) ++lost;
+    if (*T_world_depth)
+      truth.push_back(
+          {reading::frame_time_ns(index, options.frame_rate_hz), **T_world_depth * T_depth_color});
+  }
+  if (lost > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} of {} poses are no numbers: their frames were lost by who tracked them",
+                    recording.name, lost, files->size()));
+  }
+  if (truth.empty()) return reading::read_ground_truth_beside(folder, recording);
+  reading::label_truth(kTruthLabel, recording);
+  return reading::set_ground_truth(recording, std::move(truth), folder / "frame-*.pose.txt");
+}
+
+}  // namespace
+
+bool is_seven_scenes(const std::filesystem::path& folder) {
+  return reading::has_numbered_file(folder, kDepth.front());
+}
+
+Result<recording::Recording> open_seven_scenes(const std::filesystem::path& folder,
+                                               const recording::ReadOptions& options) {
+  recording::Recording recording = recording::named_recording(folder, "7scenes");
+  if (const auto valid = recording::check_read_options(options); !valid) return tl::unexpected(valid.error());
+  auto calibration = recording::choose_calibration(
+      folder, options, [&] { return calibration_of(folder); }, recording);
+  if (!calibration) return tl::unexpected(calibration.error());
+  const auto color = reading::numbered_files(folder, kColor);
+  if (!color) return tl::unexpected(color.error());
+  const auto depth = reading::numbered_files(folder, kDepth);
+  if (!depth) return tl::unexpected(depth.error());
+  const auto frames = reading::pair_numbered(
+      *color, *depth, "frame-<k>.color.png (or .jpg) and frame-<k>.depth.png", recording);
+  if (!frames) return tl::unexpected(frames.error());
+  reading::add_numbered_frames(*frames, "7-Scenes", options, recording);
+  if (const auto read = read_truth(folder, *calibration, options, recording); !read)
+    return tl::unexpected(read.error());
+  if (const auto read = reading::read_imu_beside(folder, recording); !read)
+    return tl::unexpected(read.error());
+  return reading::with_png_images(std::move(recording), std::move(*calibration), kUnitsPerMetre);
+}
+
+}  // namespace fusebench::formats::seven_scenes

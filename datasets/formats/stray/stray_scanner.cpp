@@ -1,0 +1,220 @@
+#include "datasets/formats/stray/stray_scanner.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "datasets/calibration/scaled_camera.hpp"
+#include "datasets/formats/stray/stray_tables.hpp"
+#include "datasets/images/file_content.hpp"
+#include "datasets/images/image_files.hpp"
+#include "datasets/reading/image_recording.hpp"
+#include "datasets/reading/numbered_frames.hpp"
+#include "datasets/reading/side_files.hpp"
+#include "datasets/reading/text_matrix.hpp"
+
+namespace fusebench::formats::stray {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUnitsPerMetre = 1000;
+constexpr int kVideoWidth_px = 1920;  // of the camera that camera_matrix.csv is of
+constexpr double kCentreTolerance = 0.1;
+constexpr std::string_view kTruthLabel =
+    "pseudo ground truth: ARKit's odometry of the same recording, not independent";
+constexpr std::string_view kExtract =
+    "extract the frames, in the folder, with: mkdir rgb && ffmpeg -noautorotate -i rgb.mp4 -vsync 0 "
+    "-vf scale=640:-1 -start_number 0 rgb/%06d.png";
+constexpr std::array<reading::NumberedName, 2> kColor = {{{"", ".png"}, {"", ".jpg"}}};
+constexpr std::array<reading::NumberedName, 1> kDepth = {{{"", ".png"}}};
+
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored);
+}
+
+/// Images of all frames, by number.
+struct StrayImages {
+  reading::NumberedFiles color;
+  reading::NumberedFiles depth;
+  images::ImageSize color_size;
+  images::ImageSize depth_size;
+};
+
+Result<StrayImages> list_images(const fs::path& folder) {
+  if (!is_there(folder / "rgb"))
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: videos are not decoded, and the folder rgb of its frames is not there",
+                            (folder / "rgb.mp4").string()),
+                std::string(kExtract));
+  const auto color = reading::numbered_files(folder / "rgb", kColor);
+  if (!color) return tl::unexpected(color.error());
+  const auto depth = reading::numbered_files(folder / "depth", kDepth);
+  if (!depth) return tl::unexpected(depth.error());
+  if (color->empty() || depth->empty())
+    return fail(ErrorCode::data_missing,
+                fmt::format("{}: no images in {}", folder.string(), color->empty() ? "rgb" : "depth"),
+                std::string(kExtract));
+  // ffmpeg counts from 1 unless told otherwise, which would shift colour by a frame.
+  if (depth->begin()->first == 0 && color->begin()->first == 1)
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: colour is numbered from 1, but depth from 0, so they would be a frame apart",
+                            folder.string()),
+                std::string(kExtract));
+  const auto color_size = images::read_image_size(color->begin()->second);
+  if (!color_size) return tl::unexpected(color_size.error());
+  const auto depth_size = images::read_depth16(depth->begin()->second);
+  if (!depth_size) return tl::unexpected(depth_size.error());
+  return StrayImages{*color, *depth, *color_size, {depth_size->width, depth_size->height}};
+}
+
+/// K of the video, scaled to the size of the extracted images.
+Result<calibration::RigCalibration> published_calibration(const fs::path& folder, const StrayImages& images) {
+  const fs::path file = folder / "camera_matrix.csv";
+  auto camera = reading::read_camera_matrix(file);
+  if (!camera) return tl::unexpected(camera.error());
+  const images::ImageSize size = images.color_size;
+  const double aspect = static_cast<double>(size.height_px) / size.width_px;
+  camera->width_px = kVideoWidth_px;
+  camera->height_px = static_cast<int>(std::lround(kVideoWidth_px * aspect));
+  const auto off_centre = [](double centre, int side) {
+    return std::abs(centre / side - 0.5) > kCentreTolerance;
+  };
+  if (off_centre(camera->cx_px, camera->width_px) || off_centre(camera->cy_px, camera->height_px))
+    return fail(
+        ErrorCode::data_corrupt,
+        fmt::format("{}: the centre ({}, {}) is not that of a video of {} pixels width whose images are "
+                    "{}x{}",
+                    file.string(), camera->cx_px, camera->cy_px, kVideoWidth_px, size.width_px,
+                    size.height_px),
+        "images must not be rotated (ffmpeg -noautorotate); else give --calibration");
+  calibration::RigCalibration calibration;
+  calibration.color.pinhole = calibration::scaled_camera(*camera, size.width_px, size.height_px);
+  calibration.color.timing = calibration::kUnknownTiming;
+  if (images.depth_size != size) {
+    calibration.depth = calibration::DepthCamera{
+        calibration::scaled_camera(*camera, images.depth_size.width_px, images.depth_size.height_px), SE3{}};
+  }
+  calibration.source = "camera_matrix.csv of the recording, scaled to the images";
+  return calibration;
+}
+
+/// Frames that have a time, both images and a pose.
+Result<void> add_frames(const std::vector<StrayFrame>& odometry, const StrayImages& images,
+                        recording::Recording& recording) {
+  Trajectory truth;
+  for (const StrayFrame& frame : odometry) {
+    truth.push_back({frame.timestamp_ns, frame.T_world_camera});
+    const auto color = images.color.find(frame.index);
+    const auto depth = images.depth.find(frame.index);
+    if (color == images.color.end() || depth == images.depth.end()) continue;
+    const std::int64_t t = frame.timestamp_ns;
+    recording.frames.push_back({t, t, t, t, color->second, depth->second});
+  }
+  if (recording.frames.empty())
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: no frame of odometry.csv has both rgb/<k> and depth/<k>", recording.name),
+                std::string(kExtract));
+  if (recording.frames.size() < odometry.size()) {
+    recording.warnings.push_back(fmt::format("{}: {} of the {} frames of odometry.csv lack an image",
+                                             recording.name, odometry.size() - recording.frames.size(),
+                                             odometry.size()));
+  }
+  reading::label_truth(kTruthLabel, recording);
+  return reading::set_ground_truth(recording, std::move(truth), "odometry.csv");
+}
+
+/// Depth without what the sensor calls uncertain.
+class ConfidentDepth {
+ public:
+  static Result<ConfidentDepth> read(const fs::path& folder, const recording::Recording& recording) {
+    ConfidentDepth confident;
+    io::Fingerprint fingerprint;
+    for (const recording::FrameEntry& frame : recording.frames) {
+      const fs::path file = folder / "confidence" / frame.depth_file.filename();
+      if (!is_there(file)) continue;
+      const auto hash = fingerprint.add_file(file);
+      if (!hash) return tl::unexpected(hash.error());
+      confident.files_->emplace(frame.depth_file, Confidence{file, *hash});
+    }
+    confident.identity_ = fingerprint.hex();
+    return confident;
+  }
+
+  [[nodiscard]] std::size_t count() const { return files_->size(); }
+  [[nodiscard]] const std::string& identity() const { return identity_; }
+
+  [[nodiscard]] reading::DepthReader reader(double units_per_metre) const {
+    return [files = files_, read = reading::png_depth(units_per_metre)](
+               const fs::path& file, const images::ImageSize& expected,
+               const std::optional<io::ContentHash>& opened) -> Result<DepthImage> {
+      auto depth_m = read(file, expected, opened);
+      const auto found = files->find(file);
+      if (!depth_m || found == files->end()) return depth_m;
+      const Confidence& confidence = found->second;
+      const images::ByteBuffer content = images::content_of(confidence.file);
+      if (const auto same = images::check_unchanged(confidence.file, content.text(), confidence.opened);
+          !same)
+        return tl::unexpected(same.error());
+      const auto levels = images::read_grey(confidence.file, expected);
+      if (!levels) return tl::unexpected(levels.error());
+      for (std::size_t i = 0; i < levels->data.size(); ++i)
+        depth_m->data[i] = levels->data[i] == 0 ? 0.0F : depth_m->data[i];
+      return depth_m;
+    };
+  }
+
+ private:
+  struct Confidence {
+    fs::path file;
+    io::ContentHash opened;
+  };
+  std::shared_ptr<std::map<fs::path, Confidence>> files_ = std::make_shared<std::map<fs::path, Confidence>>();
+  std::string identity_;
+};
+
+}  // namespace
+
+bool is_stray(const fs::path& folder) {
+  return is_there(folder / "odometry.csv") && is_there(folder / "camera_matrix.csv");
+}
+
+Result<recording::Recording> open_stray(const fs::path& folder, const recording::ReadOptions& options) {
+  recording::Recording recording = recording::named_recording(folder, "stray");
+  if (const auto valid = recording::check_read_options(options); !valid) return tl::unexpected(valid.error());
+  const auto odometry = read_stray_odometry(folder / "odometry.csv");
+  if (!odometry) return tl::unexpected(odometry.error());
+  const auto images = list_images(folder);
+  if (!images) return tl::unexpected(images.error());
+  const auto calibration = recording::choose_calibration(
+      folder, options, [&] { return published_calibration(folder, *images); }, recording);
+  if (!calibration) return tl::unexpected(calibration.error());
+  if (const auto added = add_frames(*odometry, *images, recording); !added)
+    return tl::unexpected(added.error());
+  if (is_there(folder / "imu.csv")) {
+    if (const auto read = read_stray_imu(folder / "imu.csv", recording); !read)
+      return tl::unexpected(read.error());
+  }
+  const auto confident = ConfidentDepth::read(folder, recording);
+  if (!confident) return tl::unexpected(confident.error());
+  if (confident->count() > 0)
+    recording.notes.emplace_back("depth: measurements of confidence 0 (low) are left out");
+  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
+  const auto attached = reading::attach_images(
+      recording,
+      {*calibration, confident->reader(units), fmt::format("stray {} {}", units, confident->identity())});
+  if (!attached) return tl::unexpected(attached.error());
+  return recording;
+}
+
+}  // namespace fusebench::formats::stray

@@ -1,0 +1,139 @@
+#include "datasets/formats/stray/stray_tables.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/io/text_table.hpp"
+#include "datasets/reading/numbered_frames.hpp"
+#include "datasets/recording/sensor_columns.hpp"
+
+namespace fusebench::formats::stray {
+
+namespace {
+
+constexpr double kStandardGravity_mps2 = 9.80665;
+constexpr std::size_t kMostColumns = 64;
+
+/// The names of the first line, as columns of a table; empty if there is no such line.
+std::string column_names(const std::filesystem::path& file) {
+  std::string line(io::TextTable::kMaxLineLength, '\0');
+  std::ifstream stream(file);
+  stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
+  line.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 1)) - 1);
+  std::vector<std::string_view> fields;
+  io::split_fields(line, fields);
+  std::string names;
+  for (std::size_t column = 0; column < std::min(fields.size(), kMostColumns); ++column)
+    names += fmt::format("{}c{}", column == 0 ? "" : " ", column);
+  return names;
+}
+
+/// Calls use for each row after the line of names, whose first columns must be `columns`. Times rise, or rows
+/// that repeat the one before are left out.
+Result<void> for_each_row(const std::filesystem::path& file, std::span<const std::string_view> columns,
+                          const std::function<Result<void>(const io::TextTable&)>& use) {
+  const std::string names = column_names(file);
+  auto table = io::TextTable::open(file, names.empty() ? "timestamp" : names);
+  if (!table) return tl::unexpected(table.error());
+  const auto first = table->next();
+  if (!first) return tl::unexpected(first.error());
+  bool named = *first;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    named = named && table->has(k) && table->text(k) == columns[k];
+  if (!named)
+    return fail(ErrorCode::data_corrupt, fmt::format("{}:1: expected the line of names that begins with: {}",
+                                                     file.string(), fmt::join(columns, ", ")));
+  std::size_t rows = 0;
+  for (; true; ++rows) {
+    const auto got = table->next();
+    if (!got) return tl::unexpected(got.error());
+    if (!*got) break;
+    if (auto used = use(*table); !used) return used;
+  }
+  if (rows > 0) return {};
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: has no rows", file.string()));
+}
+
+/// What the accelerations have to be multiplied by; nothing if gravity is not in them.
+std::optional<double> specific_force_per_unit(const std::vector<ImuSample>& samples) {
+  std::vector<double> lengths;
+  for (const ImuSample& sample : samples) lengths.push_back(sample.specific_force_mps2.norm());
+  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  if (*middle > 0.8 && *middle < 1.25) return -kStandardGravity_mps2;
+  if (*middle > 0.8 * kStandardGravity_mps2 && *middle < 1.25 * kStandardGravity_mps2) return -1.0;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<std::vector<StrayFrame>> read_stray_odometry(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 9> kColumns = {"timestamp", "frame", "x",  "y", "z",
+                                                        "qx",        "qy",    "qz", "qw"};
+  std::vector<StrayFrame> frames;
+  const auto row = [&](const io::TextTable& table) -> Result<void> {
+    const auto time_ns = table.time_ns(0);
+    if (!time_ns) return tl::unexpected(time_ns.error());
+    const auto index = reading::frame_number(table.text(1));
+    if (!index)
+      return table.fail_here(fmt::format("expected the number of a frame, got '{}'", table.text(1)));
+    if (!frames.empty() && (*time_ns <= frames.back().timestamp_ns || *index <= frames.back().index))
+      return table.fail_here("times and numbers of frames must both rise from row to row");
+    const auto position_m = recording::read_position(table, 2, "");
+    if (!position_m) return tl::unexpected(position_m.error());
+    std::array<double, 4> q{};
+    if (auto read = table.numbers(5, q); !read) return read;
+    const Quaterniond rotation(q[3], q[0], q[1], q[2]);
+    if (!(rotation.norm() > 0.5 && rotation.norm() < 2))
+      return table.fail_here("the quaternion (qx, qy, qz, qw) is not of unit length");
+    frames.push_back({*index, *time_ns, {rotation.normalized(), *position_m}});
+    return {};
+  };
+  if (const auto read = for_each_row(file, kColumns, row); !read) return tl::unexpected(read.error());
+  return frames;
+}
+
+Result<void> read_stray_imu(const std::filesystem::path& file, recording::Recording& recording) {
+  constexpr std::array<std::string_view, 7> kColumns = {"timestamp", "a_x",     "a_y",    "a_z",
+                                                        "alpha_x",   "alpha_y", "alpha_z"};
+  std::vector<ImuSample> samples;
+  const auto row = [&](const io::TextTable& table) -> Result<void> {
+    const auto time_ns = table.time_ns(0);
+    if (!time_ns) return tl::unexpected(time_ns.error());
+    if (!samples.empty() && *time_ns < samples.back().timestamp_ns)
+      return table.fail_here("time runs backwards");
+    if (!samples.empty() && *time_ns == samples.back().timestamp_ns) return {};
+    const auto acceleration = recording::read_specific_force(table, 1, "a");
+    if (!acceleration) return tl::unexpected(acceleration.error());
+    const auto rate_radps = recording::read_angular_velocity(table, 4, "alpha");
+    if (!rate_radps) return tl::unexpected(rate_radps.error());
+    samples.push_back({*time_ns, *rate_radps, *acceleration});
+    return {};
+  };
+  if (auto read = for_each_row(file, kColumns, row); !read) return read;
+  const auto factor = specific_force_per_unit(samples);
+  if (!factor) {
+    recording.warnings.push_back(
+        fmt::format("{}: not used: the accelerations have neither the length of gravity in g nor in m/s^2",
+                    file.string()));
+    return {};
+  }
+  for (ImuSample& sample : samples) sample.specific_force_mps2 *= *factor;
+  recording.notes.push_back(fmt::format("imu.csv: accelerations are in {}, with Core Motion's sign",
+                                        *factor == -1.0 ? "m/s^2" : "g"));
+  recording.imu = std::move(samples);
+  recording.imu_source = recording::ImuSource::recorded;
+  return {};
+}
+
+}  // namespace fusebench::formats::stray

@@ -1,0 +1,38 @@
+#include "datasets/reading/image_list.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "core/base/printable.hpp"
+#include "core/io/stamped_rows.hpp"
+
+namespace fusebench::reading {
+
+Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
+                                                 const std::filesystem::path& images, io::TimeUnit unit) {
+  std::vector<ListedImage> listed;
+  const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    const std::filesystem::path file = images / table.text(1);
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("{}:{}: image {} does not exist", list.string(), table.line(),
+                              printable(table.text(1), 200)),
+                  fmt::format("unpack the whole recording; names are relative to {}",
+                              images == list.parent_path() ? "the list's folder" : images.string()));
+    }
+    listed.push_back({time_ns, file});
+    return {};
+  };
+  const Result<void> done =
+      io::for_each_stamped_row(list, "timestamp filename", io::TimeOrder::increasing, row, unit);
+  if (!done) return tl::unexpected(done.error());
+  return listed;
+}
+
+Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list) {
+  return read_image_list(list, list.parent_path());
+}
+
+}  // namespace fusebench::reading

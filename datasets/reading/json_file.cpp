@@ -1,0 +1,93 @@
+#include "datasets/reading/json_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+
+#include "datasets/reading/text_matrix.hpp"
+
+namespace fusebench::reading {
+
+namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
+constexpr double kMostPixels = 16384;
+
+std::optional<double> number_of(const nlohmann::json& value) {
+  if (!value.is_number()) return std::nullopt;
+  const auto number = value.get<double>();
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+tl::unexpected<Error> wrong(const std::filesystem::path& file, const std::string& what) {
+  return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), what));
+}
+
+Result<int> pixels(const nlohmann::json& object, const std::string& key, const std::filesystem::path& file) {
+  const auto number = json_number(object, key, file);
+  if (!number) return tl::unexpected(number.error());
+  if (*number >= 1 && *number <= kMostPixels && std::floor(*number) == *number)
+    return static_cast<int>(*number);
+  return wrong(file, fmt::format("{} = {} (allowed: whole numbers from 1 to {})", key, *number, kMostPixels));
+}
+
+}  // namespace
+
+Result<nlohmann::json> read_json(const std::filesystem::path& file) {
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (!is_file || !stream)
+    return fail(ErrorCode::data_missing, fmt::format("{}: no such file, or not readable", file.string()));
+  if (std::filesystem::file_size(file, error) > kMostBytes)
+    return wrong(file, fmt::format("larger than {} bytes", kMostBytes));
+  auto document = nlohmann::json::parse(stream, nullptr, false);
+  if (document.is_discarded()) return wrong(file, "is not JSON, or not all of it is there");
+  if (!document.is_object()) return wrong(file, "is no JSON object");
+  return document;
+}
+
+Result<double> json_number(const nlohmann::json& object, const std::string& key,
+                           const std::filesystem::path& file) {
+  const auto found = object.find(key);
+  const auto number = found == object.end() ? std::nullopt : number_of(*found);
+  if (number) return *number;
+  return wrong(file, fmt::format("needs the key {}, a finite number", key));
+}
+
+Result<std::vector<double>> json_numbers(const nlohmann::json& object, const std::string& key,
+                                         std::size_t count, const std::filesystem::path& file) {
+  std::vector<double> numbers;
+  const auto found = object.find(key);
+  if (found != object.end() && found->is_array() && found->size() == count) {
+    for (const nlohmann::json& value : *found) {
+      if (const auto number = number_of(value)) numbers.push_back(*number);
+    }
+    if (numbers.size() == count) return numbers;
+  }
+  return wrong(file, fmt::format("needs the key {}, a list of {} finite numbers", key, count));
+}
+
+Result<PinholeCamera> json_camera(const nlohmann::json& object, const JsonCameraKeys& keys,
+                                  const std::filesystem::path& file) {
+  const auto width = pixels(object, keys.width, file);
+  if (!width) return tl::unexpected(width.error());
+  const auto height = pixels(object, keys.height, file);
+  if (!height) return tl::unexpected(height.error());
+  const auto m = json_numbers(object, keys.matrix, 9, file);
+  if (!m) return tl::unexpected(m.error());
+  const std::array<double, 9> rows = {(*m)[0], (*m)[3], (*m)[6], (*m)[1], (*m)[4],
+                                      (*m)[7], (*m)[2], (*m)[5], (*m)[8]};
+  auto camera = camera_of_matrix(rows, fmt::format("{}: {}", file.string(), keys.matrix));
+  if (!camera) return camera;
+  camera->width_px = *width;
+  camera->height_px = *height;
+  return camera;
+}
+
+}  // namespace fusebench::reading

@@ -1,0 +1,103 @@
+#include "datasets/reading/numbered_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+namespace fusebench::reading {
+
+namespace {
+
+std::optional<std::int64_t> number_in(std::string_view file_name, const NumberedName& name) {
+  if (file_name.size() <= name.before.size() + name.after.size() || !file_name.starts_with(name.before) ||
+      !file_name.ends_with(name.after))
+    return std::nullopt;
+  file_name.remove_prefix(name.before.size());
+  file_name.remove_suffix(name.after.size());
+  return frame_number(file_name);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> frame_number(std::string_view text) {
+  const bool digits = !text.empty() && text.size() <= 9 &&
+                      std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+  std::int64_t index = 0;
+  if (!digits || std::from_chars(text.data(), text.data() + text.size(), index).ec != std::errc())
+    return std::nullopt;
+  return index;
+}
+
+std::int64_t frame_time_ns(std::int64_t index, double rate_hz) {
+  return std::llround(1e9 * static_cast<double>(index) / rate_hz);
+}
+
+Result<NumberedFiles> numbered_files(const std::filesystem::path& folder,
+                                     std::span<const NumberedName> names) {
+  NumberedFiles files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string file_name = entry.path().filename().string();
+    for (const NumberedName& name : names) {
+      const auto index = number_in(file_name, name);
+      if (!index) continue;
+      const auto [there, is_new] = files.emplace(*index, entry.path());
+      if (is_new) continue;
+      // The folder's order is the file system's; the message shall not depend on it.
+      const std::string other_name = there->second.filename().string();
+      const auto& [first, second] = std::minmax(other_name, file_name);
+      return fail(ErrorCode::data_corrupt,
+                  fmt::format("{}: two files of frame {}: {} and {}", folder.string(), *index, first, second),
+                  "a folder holds one recording");
+    }
+  }
+  return files;
+}
+
+bool has_numbered_file(const std::filesystem::path& folder, const NumberedName& name) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (number_in(entry.path().filename().string(), name)) return true;
+  }
+  return false;
+}
+
+Result<std::vector<NumberedFrame>> pair_numbered(const NumberedFiles& color, const NumberedFiles& depth,
+                                                 std::string_view expected, recording::Recording& recording) {
+  std::vector<NumberedFrame> frames;
+  for (const auto& [index, depth_file] : depth) {
+    const auto color_file = color.find(index);
+    if (color_file != color.end()) frames.push_back({index, color_file->second, depth_file});
+  }
+  if (frames.empty())
+    return fail(ErrorCode::data_missing, fmt::format("{}: no frame has both {}", recording.name, expected));
+  if (frames.size() < depth.size() || frames.size() < color.size()) {
+    recording.warnings.push_back(fmt::format(
+        "{}: {} of {} colour and {} of {} depth images have no partner and are not used", recording.name,
+        color.size() - frames.size(), color.size(), depth.size() - frames.size(), depth.size()));
+  }
+  return frames;
+}
+
+void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view publisher,
+                         const recording::ReadOptions& options, recording::Recording& recording) {
+  for (const NumberedFrame& frame : frames) {
+    const std::int64_t time_ns = frame_time_ns(frame.index, options.frame_rate_hz);
+    recording.frames.push_back({time_ns, time_ns, time_ns, time_ns, frame.color_file, frame.depth_file});
+  }
+  recording.notes.push_back(fmt::format("time: {} has no stamps; frame k is taken to be at k / {} s",
+                                        publisher, options.frame_rate_hz));
+  const std::int64_t span = frames.back().index - frames.front().index + 1;
+  const std::int64_t missing = span - static_cast<std::int64_t>(frames.size());
+  if (missing > 0) {
+    recording.warnings.push_back(fmt::format("{}: {} of the {} frames from {} to {} are not there",
+                                             recording.name, missing, span, frames.front().index,
+                                             frames.back().index));
+  }
+}
+
+}  // namespace fusebench::reading

@@ -1,0 +1,60 @@
+// Frames that have numbers and no times: rendered ones, and those of exports that keep no stamps.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "datasets/recording/read_options.hpp"
+#include "datasets/recording/recording.hpp"
+
+namespace fusebench::reading {
+
+/// Images of one frame. The number is what names its pose.
+struct NumberedFrame {
+  std::int64_t index = 0;
+  std::filesystem::path color_file;
+  std::filesystem::path depth_file;
+};
+
+/// A frame's number as a file writes it: digits only, below 10^9; nothing otherwise.
+[[nodiscard]] std::optional<std::int64_t> frame_number(std::string_view text);
+
+/// The time given to a frame: index / rate, to the nearest nanosecond.
+[[nodiscard]] std::int64_t frame_time_ns(std::int64_t index, double rate_hz);
+
+/// How files of frames are named: "frame-" and ".depth.png" around the number.
+struct NumberedName {
+  std::string_view before;
+  std::string_view after;
+};
+
+using NumberedFiles = std::map<std::int64_t, std::filesystem::path>;
+
+/// The files of a folder that have such a name (any of `names`), by number. Error data_corrupt: two of one
+/// number.
+[[nodiscard]] Result<NumberedFiles> numbered_files(const std::filesystem::path& folder,
+                                                   std::span<const NumberedName> names);
+
+/// Some file of the folder has such a name.
+[[nodiscard]] bool has_numbered_file(const std::filesystem::path& folder, const NumberedName& name);
+
+/// The frames that have both images; what has no partner is counted in a warning. Error data_missing: no
+/// frame has both; expected: how its files are called, for the message.
+[[nodiscard]] Result<std::vector<NumberedFrame>> pair_numbered(const NumberedFiles& color,
+                                                               const NumberedFiles& depth,
+                                                               std::string_view expected,
+                                                               recording::Recording& recording);
+
+/// Fills recording.frames from frames in the order of their index, and notes how they got their time.
+/// Missing indices between the first and the last are counted in a warning. frames must not be empty.
+/// publisher: who gives no stamps, for the note.
+void add_numbered_frames(std::span<const NumberedFrame> frames, std::string_view publisher,
+                         const recording::ReadOptions& options, recording::Recording& recording);
+
+}  // namespace fusebench::reading

@@ -1,0 +1,102 @@
+#include "datasets/formats/record3d/record3d_export.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "datasets/images/image_files.hpp"
+#include "datasets/open_recording.hpp"
+#include "tests/support/expect_text.hpp"
+#include "tests/support/repository.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fusebench {
+
+using namespace images;
+using namespace recording;
+using namespace datasets;
+
+namespace {
+
+using testing::expect_contains;
+
+/// Two frames: colour of 8x6 pixels, depth of 4x3 in floats of 32 and of 16 bits.
+class Record3d : public testing::InTemporaryFolder {
+ protected:
+  Record3d() {
+    const auto golden = testing::repository_root() / "tests" / "golden" / "record3d";
+    write("EXR_RGBD/depth/0.exr", testing::read_bytes(golden / "float.exr"));
+    write("EXR_RGBD/depth/1.exr", testing::read_bytes(golden / "half.exr"));
+    for (const char* name : {"0", "1"}) {
+      const auto jpeg = encode_jpeg(ColorImage(8, 6, Rgb{200, 100, 50}), 95);
+      EXPECT_TRUE(jpeg);
+      write(fmt::format("EXR_RGBD/rgb/{}.jpg", name),
+            {reinterpret_cast<const char*>(jpeg->data()), jpeg->size()});
+    }
+    write_metadata("[0, 0, 0, 1, 0, 0, 0], [0, 0, 0.70710678, 0.70710678, 1, 2, 3]", "");
+  }
+  void write_metadata(std::string_view poses, std::string_view more) const {
+    write("EXR_RGBD/metadata.json",
+          fmt::format(
+              R"({{"w": 8, "h": 6, "dw": 4, "dh": 3, "fps": 60, "K": [10, 0, 0, 0, 11, 0, 3.5, 2.5, 1], )"
+              R"("poses": [{}]{}}})",
+              poses, more));
+  }
+  [[nodiscard]] std::string refusal() const {
+    const auto opened = open_recording(folder_);
+    EXPECT_FALSE(opened);
+    return opened ? std::string() : opened.error().message;
+  }
+};
+
+TEST_F(Record3d, DepthInMetresAndPosesOfACameraWithYUp) {
+  EXPECT_EQ(recognise_format(folder_), "record3d");
+  EXPECT_EQ(recognise_format(folder_ / "EXR_RGBD"), "record3d");
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->frames[1].timestamp_ns, 16'666'667) << "fps";
+  EXPECT_EQ(recording->rig.camera.fy_px, 11);
+  EXPECT_EQ(recording->calibration->depth->pinhole.fx_px, 5);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto frame = recording->load_frame(k);
+    ASSERT_TRUE(frame) << frame.error().message;
+    EXPECT_EQ(frame->depth_m(0, 2), 0) << "-1 m is no measurement";
+    EXPECT_EQ(frame->depth_m(5, 2), 1);
+    EXPECT_EQ(frame->depth_m(7, 2), 2);
+  }
+  // ARKit's camera looks along -z, with y up: forwards is -z of the first frame, and down is -y.
+  const SE3& first = recording->ground_truth[0].T_world_camera;
+  EXPECT_LT((first.rotation * Vector3d(0, 0, 1) - Vector3d(0, 0, -1)).norm(), 1e-9);
+  EXPECT_LT((first.rotation * Vector3d(0, 1, 0) - Vector3d(0, -1, 0)).norm(), 1e-9);
+  const SE3& second = recording->ground_truth[1].T_world_camera;
+  EXPECT_LT((second * Vector3d(1, 0, 0) - Vector3d(1, 3, 3)).norm(), 1e-6) << "turned about z by 90 degrees";
+  EXPECT_TRUE(recording->truth_label.starts_with("pseudo ground truth: ARKit"));
+}
+
+TEST_F(Record3d, TheFrontCameraHasNoPosesAndStampsGoBeforeTheRate) {
+  write_metadata("[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0, 0]", R"(, "frameTimestamps": [10.5, 10.75])");
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording->ground_truth.empty());
+  EXPECT_EQ(recording->frames[1].timestamp_ns, 10'750'000'000);
+}
+
+TEST_F(Record3d, WhatIsWrongIsNamed) {
+  write_metadata("[0, 0, 0, 1, 0, 0, 0]", "");
+  EXPECT_TRUE(open_recording(folder_)) << "one pose does not move, and counts as none";
+  write_metadata("[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0]", "");
+  expect_contains(refusal(), "metadata.json: needs the key poses[1], a list of 7 finite numbers");
+  write_metadata("[0, 0, 0, 0, 0, 0, 0]", "");
+  expect_contains(refusal(), "metadata.json: poses[0]: its quaternion");
+  write_metadata("", R"(, "frameTimestamps": [2, 1])");
+  expect_contains(refusal(), "metadata.json: frameTimestamps do not rise at frame 1");
+  write_metadata("", R"(, "frameTimestamps": [2])");
+  expect_contains(refusal(), "metadata.json: frameTimestamps has 1 entries, but there is a frame 1");
+  write_metadata("", "");
+  write("EXR_RGBD/depth/0.exr", "no EXR");
+  expect_contains(refusal(), "depth/0.exr: ");
+  EXPECT_TRUE(write_png(folder_ / "EXR_RGBD" / "depth" / "0.exr", GreyImage(4, 3)));
+  expect_contains(refusal(), "depth/0.exr: ");
+}
+
+}  // namespace
+}  // namespace fusebench
