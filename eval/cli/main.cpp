@@ -80,6 +80,7 @@ int command_line(int given_count, const char* const* given) {
                                             recordings::add_simulate_verb(app),
                                             recordings::add_inspect_verb(app),
                                             recordings::add_export_verb(app),
+                                            recordings::add_convert_verb(app),
                                             recordings::add_calibrate_verb(app),
                                             recordings::add_smooth_verb(app),
                                             shell::add_completion_verb(app),

@@ -788,6 +788,23 @@ check_exports() {
   grep -q '"frames": 2' stdout || complain "--json does not tell the frames"
   diff -r -x groundtruth.txt exported/freiburg1_room.tum exported/again >stderr || complain "the export of an export differs"
 
+  # Whatever was exported as a recording opens, and `convert` writes the folder that `export --format tum` does.
+  for place in exported/freiburg1_room.sens exported/freiburg1_room.euroc exported/freiburg1_room.open3d; do
+    checks=$((checks + 1))
+    "$binary" convert "$place" --out "exported/converted_${place##*.}" >stdout 2>stderr || complain "convert $place: exit code $?"
+    grep -q "^  2 frames of 640x480 pixels from 'freiburg1_room" stdout || complain "convert $place does not say what"
+  done
+  checks=$((checks + 1))
+  "$binary" convert exported/freiburg1_room.tum --out exported/converted >stdout 2>stderr || complain "convert: exit code $?"
+  diff -r exported/again exported/converted >stderr || complain "convert writes another folder than export --format tum"
+  grep -q '^  next: fusebench inspect exported/converted$' stdout || complain "convert does not say what is next"
+  mkdir nothing
+  refused "nothing that is known" 3 'not a recording of a known format; known are eth3d (files associated.txt' 'hint:docs/own-camera.md' -- \
+    convert nothing --out out
+  refused "a file of no known format" 3 'stdout: not a recording of a known format' -- convert stdout --out out
+  mkdir ros2 && : >ros2/room_0.mcap
+  refused "a bag of ROS 2" 2 'ros2: bags of ROS 2 (.db3, .mcap) are not read' 'hint:rosbags-convert' -- convert ros2 --out out
+
   refused "no such format" 2 'format = euroq' 'hint:euroc' -- export freiburg1_copy --format euroq --out out
   refused "a place that is taken" 2 'exported: exists already' 'hint:--out' -- \
     export freiburg1_copy --format tum --out exported

@@ -24,7 +24,8 @@ void add_reading_options(CLI::App& verb, ReadingOptions& options, const std::str
           "Largest difference between a colour image and its depth image, where they are paired by time")
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option("--frame-rate", options.frame_rate_hz, "Images a second of recordings without stamps (icl)")
+  verb.add_option("--frame-rate", options.frame_rate_hz,
+                  "Images a second of recordings without stamps (icl, 7scenes)")
       ->type_name("HZ")
       ->capture_default_str();
   verb.add_flag("--published-stamps", options.published_stamps,

@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "datasets/exports/export_recording.hpp"
-#include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
-#include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/recordings/export_request.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
-#include "eval/suites/suite_file.hpp"
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::cli::recordings {
@@ -23,28 +21,10 @@ namespace fusebench::cli::recordings {
 namespace {
 
 struct ExportVerbOptions {
-  std::string recording;
+  ExportRequest request;
   std::string format;
-  std::filesystem::path out;
-  std::filesystem::path data;
-  console::ReadingOptions reading;
-  std::string frames;
   bool json = false;
 };
-
-Result<recording::Recording> open_for_export(const ExportVerbOptions& options) {
-  const auto window = console::parse_frames(options.frames);
-  if (!window) return tl::unexpected(window.error());
-  const auto how = console::open_options(options.reading);
-  if (!how) return tl::unexpected(how.error());
-  const auto folder = suites::find_recording(options.recording, options.data);
-  if (!folder) return tl::unexpected(folder.error());
-  auto recording = datasets::open_recording(*folder, *how);
-  if (!recording || !*window) return recording;
-  const auto selected = run::select_window(*recording, **window);
-  if (!selected) return tl::unexpected(selected.error());
-  return recording;
-}
 
 double lost_share(const exports::DepthCounts& depth) {
   if (depth.measured == 0) return 0;
@@ -95,22 +75,12 @@ std::string export_text(const exports::ExportSummary& summary, const recording::
 Result<int> write_export(const ExportVerbOptions& options) {
   const auto format = exports::parse_export_format(options.format);
   if (!format) return tl::unexpected(format.error());
-  auto recording = open_for_export(options);
-  if (!recording) return tl::unexpected(recording.error());
-  for (const std::string& warning : recording->warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
-  console::ProgressBar bar("exporting");
-  recording->load_frame = [&bar, count = recording->frames.size(),
-                           load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
-    if (console::stop_requested())
-      return fail(ErrorCode::run_failed, "the export was stopped; nothing was written");
-    bar.show(frame, count);
-    return load(frame);
-  };
-  const auto summary = exports::export_recording(*recording, *format, options.out);
-  bar.clear();
-  if (!summary) return tl::unexpected(summary.error());
-  console::print_output(options.json ? export_json(*summary, *recording) : export_text(*summary, *recording));
+  ExportRequest request = options.request;
+  request.format = *format;
+  const auto done = export_as_requested(request);
+  if (!done) return tl::unexpected(done.error());
+  console::print_output(options.json ? export_json(done->summary, done->recording)
+                                     : export_text(done->summary, done->recording));
   return 0;
 }
 
@@ -120,21 +90,14 @@ console::Verb add_export_verb(CLI::App& app) {
   auto options = std::make_shared<ExportVerbOptions>();
   CLI::App* verb = app.add_subcommand(
       "export", "Writes a recording in the format that another system's program reads (docs/exports.md)");
-  verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
-      ->required();
   verb->add_option("--format", options->format,
                    "tum (folder: ORB-SLAM3, fusebench), infinitam (folder), klg (file: "
                    "ElasticFusion; 640x480 only), sens (file: BundleFusion), open3d (folder: its "
                    "reconstruction system), euroc (folder: visual-inertial systems; grey)")
       ->type_name("NAME")
       ->required();
-  verb->add_option("--out", options->out, "What to write: a folder, for klg and sens a file; must not exist")
-      ->type_name("PATH")
-      ->required();
-  verb->add_option("--frames", options->frames, "Only frames A to B-1; A: takes all from A on")
-      ->type_name("A:B");
-  console::add_reading_options(*verb, options->reading, "--recording-format");
-  console::add_data_option(*verb, options->data);
+  add_export_request(*verb, options->request,
+                     "What to write: a folder, for klg and sens a file; must not exist");
   console::add_json_flag(*verb, options->json);
   verb->footer(
       "Colour is undistorted, and depth is that of colour's pixels: both are of one camera. Depth is rounded "

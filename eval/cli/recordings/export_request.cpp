@@ -1,0 +1,65 @@
+#include "eval/cli/recordings/export_request.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "datasets/exports/export_recording.hpp"
+#include "datasets/open_recording.hpp"
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/suites/suite_file.hpp"
+
+namespace fusebench::cli::recordings {
+
+namespace {
+
+Result<recording::Recording> open_for_export(const ExportRequest& request) {
+  const auto window = console::parse_frames(request.frames);
+  if (!window) return tl::unexpected(window.error());
+  const auto how = console::open_options(request.reading);
+  if (!how) return tl::unexpected(how.error());
+  const auto place = suites::find_recording(request.recording, request.data);
+  if (!place) return tl::unexpected(place.error());
+  auto recording = datasets::open_recording(*place, *how);
+  if (!recording || !*window) return recording;
+  const auto selected = run::select_window(*recording, **window);
+  if (!selected) return tl::unexpected(selected.error());
+  return recording;
+}
+
+}  // namespace
+
+void add_export_request(CLI::App& verb, ExportRequest& request, const std::string& out_text) {
+  verb.add_option("RECORDING", request.recording,
+                  "Folder or file of a recording, or the name of one under --data")
+      ->required();
+  verb.add_option("--out", request.out, out_text)->type_name("PATH")->required();
+  verb.add_option("--frames", request.frames, "Only frames A to B-1; A: takes all from A on")
+      ->type_name("A:B");
+  console::add_reading_options(verb, request.reading, "--recording-format");
+  console::add_data_option(verb, request.data);
+}
+
+Result<DoneExport> export_as_requested(const ExportRequest& request) {
+  auto recording = open_for_export(request);
+  if (!recording) return tl::unexpected(recording.error());
+  for (const std::string& warning : recording->warnings)
+    console::print_progress(fmt::format("warning: {}", warning));
+  console::ProgressBar bar("exporting");
+  recording->load_frame = [&bar, count = recording->frames.size(),
+                           load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {
+    if (console::stop_requested())
+      return fail(ErrorCode::run_failed, "the export was stopped; nothing was written");
+    bar.show(frame, count);
+    return load(frame);
+  };
+  auto summary = exports::export_recording(*recording, request.format, request.out);
+  bar.clear();
+  recording->load_frame = nullptr;  // it refers to the bar
+  if (!summary) return tl::unexpected(summary.error());
+  return DoneExport{std::move(*recording), std::move(*summary)};
+}
+
+}  // namespace fusebench::cli::recordings
