@@ -799,11 +799,11 @@ check_exports() {
   diff -r exported/again exported/converted >stderr || complain "convert writes another folder than export --format tum"
   grep -q '^  next: fusebench inspect exported/converted$' stdout || complain "convert does not say what is next"
   mkdir nothing
-  refused "nothing that is known" 3 'not a recording of a known format; known are eth3d (files associated.txt' 'hint:docs/own-camera.md' -- \
+  refused "nothing that is known" 3 'nothing: not a recording of a known format; known are eth3d ' 'hint:docs/own-camera.md' -- \
     convert nothing --out out
   refused "a file of no known format" 3 'stdout: not a recording of a known format' -- convert stdout --out out
   mkdir ros2 && : >ros2/room_0.mcap
-  refused "a bag of ROS 2" 2 'ros2: bags of ROS 2 (.db3, .mcap) are not read' 'hint:rosbags-convert' -- convert ros2 --out out
+  refused "a bag of ROS 2" 2 'ros2: bags of ROS 2 ' 'hint:rosbags-convert' -- convert ros2 --out out
 
   refused "no such format" 2 'format = euroq' 'hint:euroc' -- export freiburg1_copy --format euroq --out out
   refused "a place that is taken" 2 'exported: exists already' 'hint:--out' -- \
