@@ -74,6 +74,11 @@ Reading read_images(const fs::path& folder) {
   return print_rows(read_image_list(folder / "rgb.txt"), print_image);
 }
 
+Reading read_euroc_images(const fs::path& folder) {
+  return print_rows(read_image_list(folder / "data.csv", folder / "color", TimeUnit::nanoseconds),
+                    print_image);
+}
+
 Reading read_truth(const fs::path& folder) {
   Recording recording;
   recording.frames.resize(1);
@@ -143,6 +148,7 @@ std::vector<Table> tables() {
       {"accelerometer", "accelerometer.txt", kAcceleration, 1, false, false, read_accelerometer},
       {"imu_csv", "imu.csv", imu_rows(5'000'000), 1, false, true, imu},
       {"tum_images", "rgb.txt", image_rows("{0} color/{1}.png"), 2, false, false, read_images},
+      {"euroc_images", "data.csv", image_rows("{0} {1}.png"), 2, false, false, read_euroc_images},
       {"zr300_images", "TIMESTAMP.txt", image_rows("{0} {1}.png {1}.png"), 3, false, false, read_timestamps},
       {"zr300_imu", "IMU.txt", imu_rows(5000), 1, true, false, zr300_imu},
       {"associations", "associated.txt", image_rows("{0} color/{1}.png {0} depth/{1}.png"), 4, true, false,

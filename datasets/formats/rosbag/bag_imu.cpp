@@ -61,18 +61,25 @@ std::size_t repeats_of(const ImuTopic& imu, Vector3d ImuMessage::*value) {
   return repeats;
 }
 
-Result<void> join(const std::string& source, const ImuTopic& gyroscope, const ImuTopic& accelerometer,
+/// A topic, for messages.
+struct Source {
+  std::string file;
+  std::string topic;
+  [[nodiscard]] std::string text() const { return fmt::format("{}: {}", file, topic); }
+};
+
+Result<void> join(const Source& source, const ImuTopic& gyroscope, const ImuTopic& accelerometer,
                   bool only_new, recording::Recording& recording) {
   const auto rates =
       samples_of<reading::GyroscopeSample>(gyroscope, &ImuMessage::angular_velocity_radps, only_new);
   const auto forces =
       samples_of<recording::AccelerometerSample>(accelerometer, &ImuMessage::specific_force_mps2, only_new);
   recording.notes.push_back(fmt::format("{}: {} accelerometer samples are interpolated to {} gyroscope times",
-                                        source, forces.size(), rates.size()));
-  return reading::set_imu(source, rates, forces, recording);
+                                        source.topic, forces.size(), rates.size()));
+  return reading::set_imu(source.text(), rates, forces, recording);
 }
 
-Result<void> take_united(const std::string& source, const ImuTopic& imu, recording::Recording& recording) {
+Result<void> take_united(const Source& source, const ImuTopic& imu, recording::Recording& recording) {
   const std::size_t many = imu.samples.size() / 5 + 1;  // noise does not repeat that often
   if (repeats_of(imu, &ImuMessage::angular_velocity_radps) > many ||
       repeats_of(imu, &ImuMessage::specific_force_mps2) > many)
@@ -92,11 +99,9 @@ Result<std::string> take_imu(const BagTopics& topics, const std::filesystem::pat
                              recording::Recording& recording) {
   const Imus& imus = topics.imus;
   if (imus.empty()) return std::string();
-  const auto source = [&](const std::string& topic) {
-    return fmt::format("{}: {}", file.string(), printable(topic, 100));
-  };
+  const auto source = [&](const std::string& topic) { return Source{file.string(), printable(topic, 100)}; };
   for (const auto& [topic, imu] : imus) {
-    if (const auto possible = check_ranges(source(topic), imu); !possible)
+    if (const auto possible = check_ranges(source(topic).text(), imu); !possible)
       return tl::unexpected(possible.error());
   }
   const auto gyroscope = topic_with(imus, "gyro");

@@ -52,10 +52,6 @@ std::string conversion_text(const DoneExport& done) {
   auto out = std::back_inserter(text);
   fmt::format_to(out, "  {} frames of {}x{} pixels from '{}' ({})\n", done.summary.frames, camera.width_px,
                  camera.height_px, recording.name, recording.format);
-  fmt::format_to(out, "  calibration.toml: {}\n",
-                 recording.calibration && !recording.calibration->source.empty()
-                     ? recording.calibration->source
-                     : "as given");
   fmt::format_to(out, "  imu.csv: {}\n",
                  recording.imu.empty() ? "not written, there are no inertial samples that can be used"
                                        : fmt::format("{} samples", recording.imu.size()));
@@ -67,7 +63,9 @@ std::string conversion_text(const DoneExport& done) {
     fmt::format_to(out, "  depth: {} of {} measurements lie beyond {:.1f} m and are left out\n",
                    done.summary.depth.beyond_range, done.summary.depth.measured,
                    done.summary.depth_storage.farthest_m());
-  for (const std::string& note : recording.notes) fmt::format_to(out, "  {}\n", note);
+  for (const std::string& note : recording.notes) {
+    if (!note.starts_with("ground truth: pseudo")) fmt::format_to(out, "  {}\n", note);  // said above
+  }
   fmt::format_to(out, "  next: fusebench inspect {}\n", done.summary.out.string());
   return text;
 }
