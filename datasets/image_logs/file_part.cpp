@@ -5,13 +5,15 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/io/input_file.hpp"
+
 namespace fusebench::image_logs {
 
 Result<std::string> bytes_of_file(const std::filesystem::path& file, std::uint64_t position,
                                   std::uint64_t count) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (error || !stream)
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read as a file", file.string()));
   const bool inside = position <= size && count <= size - position;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/io/input_file.hpp"
 #include "datasets/reading/text_matrix.hpp"
 
 namespace fusebench::reading {
@@ -41,7 +42,7 @@ Result<int> pixels(const nlohmann::json& object, const std::string& key, const s
 Result<nlohmann::json> read_json(const std::filesystem::path& file) {
   std::error_code error;
   const bool is_file = std::filesystem::is_regular_file(file, error);
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (!is_file || !stream)
     return fail(ErrorCode::data_missing, fmt::format("{}: no such file, or not readable", file.string()));
   if (std::filesystem::file_size(file, error) > kMostBytes)

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
 namespace fusebench::reading {
@@ -218,7 +219,7 @@ class Parser {
 Result<SensorYaml> SensorYaml::read(const std::filesystem::path& file) {
   std::error_code error;
   const bool is_file = std::filesystem::is_regular_file(file, error);
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = io::input_file(file);
   if (!is_file || !stream)
     return fail(
         ErrorCode::data_missing,

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 #include "datasets/reading/numbered_frames.hpp"
 #include "datasets/recording/sensor_columns.hpp"
@@ -27,7 +28,7 @@ constexpr std::size_t kMostColumns = 64;
 /// The names of the first line, as columns of a table; empty if there is no such line.
 std::string column_names(const std::filesystem::path& file) {
   std::string line(io::TextTable::kMaxLineLength, '\0');
-  std::ifstream stream(file);
+  std::ifstream stream = io::input_file(file);
   stream.getline(line.data(), static_cast<std::streamsize>(line.size()));
   line.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 1)) - 1);
   std::vector<std::string_view> fields;
