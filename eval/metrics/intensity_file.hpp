@@ -32,7 +32,8 @@ class IntensityWriter {
   [[nodiscard]] Result<void> finish();
 
  private:
-  explicit IntensityWriter(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::binary) {}
+  explicit IntensityWriter(const std::filesystem::path& file)
+      : file_(file), stream_(file, std::ios::binary) {}
   [[nodiscard]] Result<void> state() const;
 
   std::filesystem::path file_;
