@@ -89,6 +89,7 @@ if [[ ! -x $root/usr/bin/apt-get ]]; then
 fi
 mount --bind "$root" "$root"
 mount -t proc proc "$root/proc"
+mount -t devpts devpts "$root/dev/pts" -o newinstance,ptmxmode=0666  # zsh completes on a terminal
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 cp "$deb" "$root/tmp/fusebench.deb"
 rm -rf "$root/tmp/user"
@@ -127,12 +128,15 @@ as_user 'source /usr/share/bash-completion/completions/fusebench
 cat >"$root/tmp/user/complete.zsh" <<'ZSH'
 # Types a line and Tab in a shell of its own, and prints what is then on the line.
 zmodload zsh/zpty
-zpty shell zsh -f
-zpty -w shell 'PS1=; autoload -U compinit; compinit -u -d /tmp/user/zcompdump; echo rea''dy'
+zpty shell zsh -f -i
+sleep 2  # until its line editor reads keys, here and below
+zpty -w shell 'autoload -U compinit; compinit -u -d /tmp/user/zcompdump; PS1=""; echo rea""dy'
 local line
-while zpty -r shell line; do [[ $line == *ready* ]] && break; done
-zpty -n -w shell $'fusebench completion b\t; echo en''d\n'
-while zpty -r shell line; do print -r -- $line; [[ $line == *complete\ -F* || $line == *end* ]] && break; done
+zpty -r -m shell line '*ready*'
+sleep 2
+zpty -n -w shell $'fusebench completion b\t\n'
+zpty -r -m shell line '*written by*'
+print -r -- "$line"
 zpty -d shell
 ZSH
 as_user 'timeout 60 zsh -f complete.zsh | grep -a "fusebench completion bash"' || failed "zsh does not complete"
