@@ -23,13 +23,14 @@ std::size_t width_of(const LatexTable& table, std::size_t column) {
 
 /// The columns of numbers of each part.
 std::vector<std::vector<std::size_t>> parts_of(const LatexTable& table, std::size_t room) {
+  constexpr std::size_t kLeastNumbers = 3;  // of a part, also where the names alone are too wide
   std::size_t names = 0;
   for (std::size_t column = 0; column < table.text_columns; ++column) names += width_of(table, column);
   std::vector<std::vector<std::size_t>> parts = {{}};
   std::size_t used = names;
   for (std::size_t column = table.text_columns; column < table.heading.size(); ++column) {
     const std::size_t width = width_of(table, column);
-    if (used + width > room && !parts.back().empty()) {
+    if (used + width > room && parts.back().size() >= kLeastNumbers) {
       parts.emplace_back();
       used = names;
     }
