@@ -100,17 +100,17 @@ TEST_F(EurocFolder, StereoAloneIsRefusedWithWhatIsMissing) {
 TEST_F(EurocFolder, WhatIsWrongIsNamed) {
   export_made(true);
   replace("mav0/cam0/sensor.yaml", "intrinsics: [525.0, ", "intrinsics: [-525.0, ");
-  expect_contains(refusal(), "cam0/sensor.yaml:13: focal lengths must be above 0");
+  expect_contains(refusal(), "cam0/sensor.yaml:15: focal lengths must be above 0");
   replace("mav0/cam0/sensor.yaml", "intrinsics: [-525.0, ", "intrinsics: [525.0, 1, ");
-  expect_contains(refusal(), "cam0/sensor.yaml:13: intrinsics must be a list of 4 finite numbers");
+  expect_contains(refusal(), "cam0/sensor.yaml:15: intrinsics must be a list of 4 finite numbers");
   replace("mav0/cam0/sensor.yaml", "intrinsics: [525.0, 1, ", "intrinsics: [525.0, ");
   replace("mav0/cam0/sensor.yaml", "radial-tangential", "equidistant");
   EXPECT_TRUE(open_recording(place_)) << "without a distortion the model does not matter";
   replace("mav0/cam0/sensor.yaml", "distortion_coefficients: [0.0,", "distortion_coefficients: [0.1,");
-  expect_contains(refusal(), "cam0/sensor.yaml:14: the distortion must be radial-tangential");
+  expect_contains(refusal(), "cam0/sensor.yaml:16: the distortion must be radial-tangential");
   replace("mav0/cam0/sensor.yaml", "equidistant", "radial-tangential");
   replace("mav0/imu0/sensor.yaml", "gyroscope_noise_density: 0.001", "gyroscope_noise_density: 0");
-  expect_contains(refusal(), "imu0/sensor.yaml:11: gyroscope_noise_density must be a density above 0");
+  expect_contains(refusal(), "imu0/sensor.yaml:13: gyroscope_noise_density must be a density above 0");
   replace("mav0/imu0/sensor.yaml", "gyroscope_noise_density: 0", "gyroscope_noise_density: 0.001");
   replace("mav0/cam0/data.csv", "1000040000000,1000040000000.png", "1000040000000,none.png");
   expect_contains(refusal(), "cam0/data.csv:3: image none.png does not exist");

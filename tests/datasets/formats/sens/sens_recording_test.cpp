@@ -180,7 +180,7 @@ TEST_F(SensRecording, ImagesThatChangedAreRefused) {
   EXPECT_TRUE(read->load_frame(0));
   const auto frame = read->load_frame(2);
   ASSERT_FALSE(frame);
-  expect_contains(frame.error().message, "depth of frame 2: has changed since the recording was opened");
+  expect_contains(frame.error().message, "of frame 2: has changed since the recording was opened");
 }
 
 }  // namespace

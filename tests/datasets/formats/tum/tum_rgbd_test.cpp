@@ -246,7 +246,7 @@ TEST(TumRgbd, MissingFolderAndUnknownFormat) {
   const auto unknown = open_recording(golden_tum_folder(), {"tmu", {}});
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().code, ErrorCode::configuration);
-  expect_contains(unknown.error().message, "format = tmu (allowed eth3d, icl, tum");
+  expect_contains(unknown.error().message, "format = tmu (allowed eth3d, icl, bonn, tum, ");
 }
 
 TEST(TumRgbd, TruthAndAccelerometerAreOptional) {
