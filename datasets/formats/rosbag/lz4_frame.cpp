@@ -6,7 +6,7 @@ namespace fusebench::formats::rosbag {
 
 namespace {
 
-constexpr std::uint32_t kMagic = 0x184D2204;
+constexpr std::uint32_t kFrameMagic = 0x184D2204;
 constexpr std::uint32_t kStoredBlock = 0x80000000;
 constexpr std::size_t kShortestMatch = 4;
 constexpr std::size_t kLongToken = 15;
@@ -76,7 +76,7 @@ bool append_block(std::string_view block, std::size_t most, std::string& content
 
 std::optional<std::string> lz4_content(std::string_view frame, std::size_t size) {
   Input input(frame);
-  if (input.number() != kMagic) return std::nullopt;
+  if (input.number() != kFrameMagic) return std::nullopt;
   const std::size_t flags = input.byte();
   const bool has_block_checksum = (flags & 0x10) != 0;
   const bool has_content_size = (flags & 0x08) != 0;

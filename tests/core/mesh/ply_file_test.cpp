@@ -93,7 +93,7 @@ TEST_F(PlyFile, CountsAreWholeNumbers) {
   for (const std::string count : {"1e9", "1.5", "3x", "-3"}) {
     std::string header = kAsciiHeader;
     header.replace(header.find("vertex 3"), 8, "vertex " + count);
-    const auto read = read_ply(write("mesh.ply", header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
+    const auto read = read_ply(write(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
     ASSERT_FALSE(read) << count;
     EXPECT_NE(read.error().message.find("'" + count + "'"), std::string::npos) << read.error().message;
   }
