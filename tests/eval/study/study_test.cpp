@@ -378,9 +378,10 @@ TEST_F(SharedPixelsTest, TheSummaryHasRowsAndCurves) {
   const nlohmann::json motion = charts_of(page)[0].at("series");
   ASSERT_EQ(motion.size(), 3U);
   EXPECT_EQ(motion[2].at("label"), "dm / full");
-  EXPECT_EQ(motion[0].at("colour"), 0);  // full and dm as in all charts, and their ratio as no variant
-  EXPECT_EQ(motion[1].at("colour"), 1);
-  EXPECT_EQ(motion[2].at("colour"), 3);
+  EXPECT_EQ(motion[0].at("colour"),
+            1);  // full and dm as on all pages, and their ratio in grey, as no variant
+  EXPECT_EQ(motion[1].at("colour"), 2);
+  EXPECT_EQ(motion[2].at("colour"), 7);
   EXPECT_EQ(page.find("https://"), page.find("https://www.chartjs.org"));  // nothing is loaded from elsewhere
 }
 
