@@ -166,6 +166,7 @@ class Reader:
             if self.driver.execute_script(PICTURE, views[0]) == before:
                 self.complain("a mesh does not turn")
             for choice in scene.find_elements(By.CSS_SELECTOR, "input"):
+                self.show(choice)
                 choice.click()
                 settle(self.driver)
             turned = self.driver.execute_script(PICTURE, views[0])

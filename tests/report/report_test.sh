@@ -34,7 +34,7 @@ for variant in full dm no-imu infinitam; do
   if [[ $variant == no-imu ]]; then options=(--profile); fi
   # The camera has no time to return anywhere: loops are taken that depth would refuse.
   if [[ $variant == full ]]; then
-    for option in mode=final least_age_s=0.5 query_every=2 max_violating_share=1; do options+=(--set "loops.$option"); done
+    for option in mode=final least_age_s=0.5 query_every=2 max_violating_share=1 max_features=800; do options+=(--set "loops.$option"); done
   fi
   "$binary" run recording --variant "$variant" --out runs "${options[@]}" >/dev/null 2>&1 || failed "the run $variant fails"
 done
