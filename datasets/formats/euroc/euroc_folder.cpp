@@ -4,10 +4,10 @@
 
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "datasets/formats/euroc/euroc_sensors.hpp"
 #include "datasets/images/image_files.hpp"
@@ -28,19 +28,14 @@ constexpr double kUnitsPerMetre = 1000;
 constexpr std::string_view kPoseColumns = "timestamp px py pz qw qx qy qz [vx vy vz bwx bwy bwz bax bay baz]";
 constexpr std::size_t kColumnsOfStates = 17;
 
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
 /// The folder of the sensors' folders.
 fs::path sensors_folder(const fs::path& folder) {
-  return is_there(folder / "mav0") ? folder / "mav0" : folder;
+  return io::is_named(folder / "mav0") ? folder / "mav0" : folder;
 }
 
 Result<void> read_frames(const fs::path& mav0, const recording::ReadOptions& options,
                          recording::Recording& recording) {
-  if (!is_there(mav0 / "depth0" / "data.csv")) {
+  if (!io::is_named(mav0 / "depth0" / "data.csv")) {
     return fail(
         ErrorCode::data_missing, fmt::format("{}: there is no depth0/data.csv beside cam0", mav0.string()),
         "depth images are needed: EuRoC's own recordings are stereo, and a program that computes depth "
@@ -87,7 +82,7 @@ Result<BodyTruth> read_body_poses(const fs::path& file) {
 Result<void> read_truth(const fs::path& mav0, const std::optional<EurocRig>& rig,
                         recording::Recording& recording) {
   const fs::path file = mav0 / "state_groundtruth_estimate0" / "data.csv";
-  if (!is_there(file)) return {};
+  if (!io::is_named(file)) return {};
   if (!rig) {
     recording.warnings.push_back(
         fmt::format("{}: not used, since it is of the body and cam0/sensor.yaml, which says where the camera "
@@ -109,7 +104,7 @@ Result<void> read_truth(const fs::path& mav0, const std::optional<EurocRig>& rig
 
 Result<void> read_imu(const fs::path& mav0, recording::Recording& recording) {
   const fs::path file = mav0 / "imu0" / "data.csv";
-  if (!is_there(file)) return {};
+  if (!io::is_named(file)) return {};
   auto samples = reading::read_imu_table(file, io::TimeUnit::nanoseconds);
   if (!samples) return tl::unexpected(samples.error());
   recording.imu = std::move(*samples);
@@ -119,7 +114,7 @@ Result<void> read_imu(const fs::path& mav0, recording::Recording& recording) {
 
 }  // namespace
 
-bool is_euroc(const fs::path& folder) { return is_there(sensors_folder(folder) / "cam0" / "data.csv"); }
+bool is_euroc(const fs::path& folder) { return io::is_named(sensors_folder(folder) / "cam0" / "data.csv"); }
 
 Result<recording::Recording> open_euroc(const fs::path& folder, const recording::ReadOptions& options) {
   recording::Recording recording = recording::named_recording(folder, "euroc");

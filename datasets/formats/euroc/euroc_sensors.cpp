@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "datasets/reading/sensor_yaml.hpp"
 
 namespace fusebench::formats::euroc {
@@ -84,8 +84,7 @@ bool same(const Camera& a, const Camera& b) {
 /// Fills the depth camera, if it is another one than that of colour, and the value of one metre.
 Result<void> read_depth(const std::filesystem::path& file, const Camera& color,
                         calibration::RigCalibration& calibration) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return {};
+  if (!io::is_named(file)) return {};
   const auto yaml = SensorYaml::read(file);
   if (!yaml) return tl::unexpected(yaml.error());
   if (yaml->has("depth_units_per_metre")) {
@@ -107,8 +106,7 @@ Result<void> read_depth(const std::filesystem::path& file, const Camera& color,
 /// T_body_imu; nothing if there is no IMU.
 Result<std::optional<SE3>> read_imu(const std::filesystem::path& file, const Camera& color,
                                     calibration::RigCalibration& calibration) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
+  if (!io::is_named(file)) return std::nullopt;
   const auto yaml = SensorYaml::read(file);
   if (!yaml) return tl::unexpected(yaml.error());
   const auto T_body_imu = pose_in_body(*yaml);

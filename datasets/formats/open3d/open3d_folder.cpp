@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "datasets/reading/image_recording.hpp"
 #include "datasets/reading/json_file.hpp"
@@ -29,14 +30,9 @@ constexpr std::array<std::string_view, 2> kIntrinsics = {"intrinsic.json", "came
 constexpr std::array<reading::NumberedName, 2> kColor = {{{"", ".jpg"}, {"", ".png"}}};
 constexpr std::array<reading::NumberedName, 1> kDepth = {{{"", ".png"}}};
 
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
 std::optional<fs::path> intrinsics_file(const fs::path& folder) {
   for (const std::string_view name : kIntrinsics) {
-    if (is_there(folder / name)) return folder / name;
+    if (io::is_named(folder / name)) return folder / name;
   }
   return std::nullopt;
 }
@@ -56,7 +52,7 @@ Result<calibration::RigCalibration> published_calibration(const fs::path& folder
 
 Result<double> published_units(const fs::path& folder) {
   const fs::path file = folder / "config.json";
-  if (!is_there(file)) return kUnitsPerMetre;
+  if (!io::is_named(file)) return kUnitsPerMetre;
   const auto document = reading::read_json(file);
   if (!document) return tl::unexpected(document.error());
   if (!document->contains("depth_scale")) return kUnitsPerMetre;
@@ -96,7 +92,7 @@ Result<void> add_frames(const fs::path& folder, const recording::ReadOptions& op
       reading::pair_numbered(*color, *depth, "color/<k>.jpg (or .png) and depth/<k>.png", recording);
   if (!frames) return tl::unexpected(frames.error());
   const fs::path times = folder / "frame_times.txt";
-  if (!is_there(times)) {
+  if (!io::is_named(times)) {
     reading::add_numbered_frames(*frames, "Open3D's folder", options, recording);
     return {};
   }

@@ -4,9 +4,9 @@
 
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "datasets/formats/open_loris/transforms.hpp"
 #include "datasets/reading/image_list.hpp"
 #include "datasets/reading/image_pairs.hpp"
@@ -24,11 +24,6 @@ constexpr double kUnitsPerMetre = 1000;
 constexpr std::string_view kColor = "d400_color_optical_frame";
 constexpr std::string_view kBase = "base_link";
 constexpr std::string_view kImu = "d400_gyroscope";  // both sensors are in one place
-
-bool is_there(const std::filesystem::path& file) {
-  std::error_code ignored;
-  return std::filesystem::exists(file, ignored);
-}
 
 /// The order of the four intrinsics is fx, cx, fy, cy: that of the rows of a camera matrix.
 Result<calibration::CalibratedCamera> color_camera(const reading::SensorYaml& yaml) {
@@ -64,7 +59,7 @@ Result<calibration::RigCalibration> published_calibration(const std::filesystem:
   calibration::RigCalibration calibration;
   calibration.color = *color;
   calibration.source = "sensors.yaml and trans_matrix.yaml of the recording";
-  if (is_there(folder / "trans_matrix.yaml")) {
+  if (io::is_named(folder / "trans_matrix.yaml")) {
     const auto frames = read_transforms(folder / "trans_matrix.yaml");
     if (!frames) return tl::unexpected(frames.error());
     if (const auto T_imu_color = frames->transform(kImu, kColor)) {
@@ -105,7 +100,8 @@ Result<void> read_truth(const std::filesystem::path& folder, recording::Recordin
 Result<void> read_imu(const std::filesystem::path& folder, recording::Recording& recording) {
   const std::filesystem::path gyroscope = folder / "d400_gyroscope.txt";
   const std::filesystem::path accelerometer = folder / "d400_accelerometer.txt";
-  if (!is_there(gyroscope) || !is_there(accelerometer)) return reading::read_imu_beside(folder, recording);
+  if (!io::is_named(gyroscope) || !io::is_named(accelerometer))
+    return reading::read_imu_beside(folder, recording);
   return reading::read_gyroscope_and_accelerometer(gyroscope, accelerometer, recording);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "datasets/calibration/scaled_camera.hpp"
 #include "datasets/formats/record3d/record3d_metadata.hpp"
 #include "datasets/images/image_files.hpp"
@@ -28,14 +29,9 @@ constexpr std::string_view kTruthLabel =
 constexpr std::array<reading::NumberedName, 2> kColor = {{{"", ".jpg"}, {"", ".png"}}};
 constexpr std::array<reading::NumberedName, 1> kDepth = {{{"", ".exr"}}};
 
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
 /// The folder of metadata.json.
 fs::path export_folder(const fs::path& folder) {
-  return is_there(folder / "EXR_RGBD" / "metadata.json") ? folder / "EXR_RGBD" : folder;
+  return io::is_named(folder / "EXR_RGBD" / "metadata.json") ? folder / "EXR_RGBD" : folder;
 }
 
 Result<std::vector<reading::NumberedFrame>> list_frames(const fs::path& folder,
@@ -106,7 +102,7 @@ Result<DepthImage> read_depth(const fs::path& file, const images::ImageSize& exp
 bool is_record3d(const fs::path& folder) {
   const fs::path place = export_folder(folder);
   std::error_code ignored;
-  return is_there(place / "metadata.json") && fs::is_directory(place / "rgb", ignored) &&
+  return io::is_named(place / "metadata.json") && fs::is_directory(place / "rgb", ignored) &&
          fs::is_directory(place / "depth", ignored);
 }
 

@@ -4,10 +4,10 @@
 
 #include <array>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/reading/image_recording.hpp"
 #include "datasets/reading/numbered_frames.hpp"
@@ -39,8 +39,7 @@ bool same_camera(const PinholeCamera& a, const PinholeCamera& b) {
 Result<calibration::RigCalibration> calibration_of(const std::filesystem::path& folder) {
   calibration::RigCalibration published = published_calibration();
   const std::filesystem::path file = folder / "camera-intrinsics.txt";
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return published;
+  if (!io::is_named(file)) return published;
   const auto camera = reading::read_camera_matrix(file);
   if (!camera) return tl::unexpected(camera.error());
   if (same_camera(*camera, published.depth->pinhole)) return published;

@@ -8,10 +8,10 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "core/io/input_file.hpp"
 #include "datasets/calibration/scaled_camera.hpp"
 #include "datasets/formats/stray/stray_tables.hpp"
 #include "datasets/images/file_content.hpp"
@@ -38,11 +38,6 @@ constexpr std::string_view kExtract =
 constexpr std::array<reading::NumberedName, 2> kColor = {{{"", ".png"}, {"", ".jpg"}}};
 constexpr std::array<reading::NumberedName, 1> kDepth = {{{"", ".png"}}};
 
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
 /// Images of all frames, by number.
 struct StrayImages {
   reading::NumberedFiles color;
@@ -52,7 +47,7 @@ struct StrayImages {
 };
 
 Result<StrayImages> list_images(const fs::path& folder) {
-  if (!is_there(folder / "rgb"))
+  if (!io::is_named(folder / "rgb"))
     return fail(ErrorCode::data_missing,
                 fmt::format("{}: videos are not decoded, and the folder rgb of its frames is not there",
                             (folder / "rgb.mp4").string()),
@@ -142,7 +137,7 @@ class ConfidentDepth {
     io::Fingerprint fingerprint;
     for (const recording::FrameEntry& frame : recording.frames) {
       const fs::path file = folder / "confidence" / frame.depth_file.filename();
-      if (!is_there(file)) continue;
+      if (!io::is_named(file)) continue;
       const auto hash = fingerprint.add_file(file);
       if (!hash) return tl::unexpected(hash.error());
       confident.files_->emplace(frame.depth_file, Confidence{file, *hash});
@@ -186,7 +181,7 @@ class ConfidentDepth {
 }  // namespace
 
 bool is_stray(const fs::path& folder) {
-  return is_there(folder / "odometry.csv") && is_there(folder / "camera_matrix.csv");
+  return io::is_named(folder / "odometry.csv") && io::is_named(folder / "camera_matrix.csv");
 }
 
 Result<recording::Recording> open_stray(const fs::path& folder, const recording::ReadOptions& options) {
@@ -201,7 +196,7 @@ Result<recording::Recording> open_stray(const fs::path& folder, const recording:
   if (!calibration) return tl::unexpected(calibration.error());
   if (const auto added = add_frames(*odometry, *images, recording); !added)
     return tl::unexpected(added.error());
-  if (is_there(folder / "imu.csv")) {
+  if (io::is_named(folder / "imu.csv")) {
     if (const auto read = read_stray_imu(folder / "imu.csv", recording); !read)
       return tl::unexpected(read.error());
   }
