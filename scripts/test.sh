@@ -42,18 +42,22 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 started=$SECONDS
 failures=0
 summary=()
+failed=()
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
 
 # step NAME COMMAND...: runs the command, remembers how it went. 77: something optional is not installed.
 step() {
   local name=$1 result=passed before=$SECONDS status=0
   shift
   printf '\n== %s\n' "$name"
-  "$@" || status=$?
+  { "$@" 2>&1 | tee "$logs/$name"; status=${PIPESTATUS[0]}; } || true
   if ((status == 77)); then
     result=skipped
   elif ((status != 0)); then
     result=FAILED
     failures=$((failures + 1))
+    failed+=("$name")
   fi
   summary+=("$(printf '%-20s %-7s %4d s' "$name" "$result" $((SECONDS - before)))")
 }
@@ -84,7 +88,13 @@ check_tidy() {
     xargs -0 -r -n 1 -P "$(nproc)" clang-tidy-19 -p build/ci --quiet --warnings-as-errors='*'
 }
 
+# What the checks that failed said last, then the summary: the end of a log tells what is wrong.
 finish() {
+  local name
+  for name in "${failed[@]}"; do
+    printf '\n== %s FAILED; its last lines:\n' "$name"
+    tail -n 40 "$logs/$name"
+  done
   printf '\n== summary\n'
   printf '%s\n' "${summary[@]}"
   if ((failures > 0)); then

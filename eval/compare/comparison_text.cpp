@@ -141,6 +141,8 @@ std::string comparison_text(const RunComparison& comparison, bool all) {
   const std::size_t unchanged = comparison.count(GateVerdict::unchanged);
   if (!all && unchanged > 0)
     text += fmt::format("\n{} unchanged (--all shows them)\n", counted(unchanged, "gate"));
+  // Who reads the end of a log alone must not take the gates that are unchanged for the verdict.
+  if (!comparison.passed()) text += "\n" + comparison_summary(comparison) + "\n";
   return text;
 }
 

@@ -207,6 +207,7 @@ TEST_F(ComparisonTest, AMissingRunFailsAndANewOneDoesNot) {
   EXPECT_EQ(comparison.failures(), 1U);
   EXPECT_EQ(gate(comparison, "run")->message, "new, no baseline: ok");
   EXPECT_NE(comparison_text(comparison, false).find("fr1_xyz/full"), std::string::npos);
+  EXPECT_TRUE(comparison_text(comparison, false).ends_with(comparison_summary(comparison) + "\n"));
 }
 
 TEST_F(ComparisonTest, ARunThatNeverBeganPairsAlthoughItKnowsNoFrames) {
