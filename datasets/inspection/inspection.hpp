@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/inspection/finding.hpp"
 #include "datasets/recording/recording.hpp"
 
@@ -66,15 +67,15 @@ struct DepthMeasurement {
 inline constexpr double kDepthBin_m = 0.1;
 inline constexpr std::size_t kDepthBins = 121;
 
-/// Where edges of depth lie best on edges of colour.
+/// How far edges of depth lie from edges of colour (measures/registration_fit.hpp).
 struct RegistrationMeasurement {
-  int shift_x_px = 0;  ///< of depth to colour
-  int shift_y_px = 0;
-  bool at_border = false;   ///< of the shifts that are tried: the best one may lie beyond
-  double gain = 1;          ///< mean gradient under the edges there, divided by that without a shift
-  double contrast = 0;      ///< the same, divided by the mean over all shifts
-  double peak_at_rest = 0;  ///< best alignment within a few pixels of no shift, divided by the mean around it
-  std::size_t edges = 0;    ///< pixels
+  std::size_t edges = 0;                  ///< pixels; 0: too few to measure
+  double moved_px = 0;                    ///< rms, by the camera whose depth fits best
+  double spread_px = 0;                   ///< between the fits to every other frame
+  double better_share = 0;                ///< of frames that the fit makes better
+  double strength_as_read = 0;            ///< of colour's edges under those of depth
+  double strength_moved = 0;              ///< the same, moved
+  calibration::DepthCamera depth_camera;  ///< that fits best
 };
 
 struct ExposureMeasurement {

@@ -159,12 +159,20 @@ std::string to_json(const inspection::Inspection& i) {
                                {"repeated_depth", i.association.frozen}};
     document["exposure"] = json_of(i.exposure);
     document["depth"] = json_of(i.depth);
-    Json shift_px = {i.registration.shift_x_px, i.registration.shift_y_px};
-    if (i.registration.at_border) shift_px = nullptr;
-    document["registration"] = {{"shift_px", shift_px},
-                                {"gain", i.registration.gain},
-                                {"contrast", i.registration.contrast},
-                                {"peak_at_rest", i.registration.peak_at_rest},
+    const inspection::RegistrationMeasurement& r = i.registration;
+    const calibration::DepthCamera& camera = r.depth_camera;
+    document["registration"] = {{"moved_px", r.moved_px},
+                                {"spread_px", r.spread_px},
+                                {"better_share", r.better_share},
+                                {"strength_as_read", r.strength_as_read},
+                                {"strength_moved", r.strength_moved},
+                                {"depth_camera",
+                                 {{"fx_px", camera.pinhole.fx_px},
+                                  {"fy_px", camera.pinhole.fy_px},
+                                  {"cx_px", camera.pinhole.cx_px},
+                                  {"cy_px", camera.pinhole.cy_px},
+                                  {"x_m", camera.T_color_depth.translation.x()},
+                                  {"y_m", camera.T_color_depth.translation.y()}}},
                                 {"edge_pixels", i.registration.edges}};
     document["motion"] = json_of(i.motion);
     document["truth"] = nullptr;

@@ -58,10 +58,10 @@ void image_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
                                  d.max_m, d.median_m, 100 * d.beyond_10m_share));
   if (i.registration.edges > 0) {
     const inspection::RegistrationMeasurement& r = i.registration;
-    depth.add("edges on colour",
-              r.at_border ? "best beyond the shifts that are tried"
-                          : fmt::format("best when shifted by ({}, {}) px, {:.2f} times as well as unshifted",
-                                        r.shift_x_px, r.shift_y_px, r.gain));
+    depth.add(
+        "edges on colour",
+        fmt::format("best when moved by {:.1f} px (uncertain by {:.1f} px), better in {:.0f} % of frames",
+                    r.moved_px, r.spread_px, 100 * r.better_share));
   }
   depth.append_to(all);
 }

@@ -157,9 +157,9 @@ std::string script_safe(const Json& json) {
   return safe;
 }
 
-/// A number, a share such as 12/34, a number with its range or uncertainty, "1 to 2".
+/// A number, a share such as 12/34, a number with its range or uncertainty, "1 to 2", or several, one a line.
 bool is_number(std::string_view cell) {
-  constexpr std::string_view kOthers = "0123456789.,+-/%e ()to";
+  constexpr std::string_view kOthers = "0123456789.,+-/%e ()to\n";
   return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
          cell.find_first_of("(/%e,to") != 0 && cell.find_first_not_of(kOthers) == std::string_view::npos;
 }

@@ -102,6 +102,25 @@ function tooltipTitle(chart, items) {
   return chart.x + ": " + shortNumber(items[0].parsed.x);
 }
 
+/** Dots are round in a legend, too, whose other symbols are wide. */
+function legendLabels(made) {
+  const labels = Chart.defaults.plugins.legend.labels.generateLabels(made);
+  for (const label of labels) {
+    if (label.pointStyle === "circle") label.pointStyle = dotOf(label.fillStyle);
+  }
+  return labels;
+}
+
+function dotOf(fill) {
+  const dot = document.createElement("canvas");
+  dot.width = dot.height = 8;
+  const context = dot.getContext("2d");
+  context.fillStyle = fill;
+  context.arc(4, 4, 3, 0, 2 * Math.PI);
+  context.fill();
+  return dot;
+}
+
 function drawChart(chart, index) {
   const bars = chart.categories.length > 0;
   const made = new Chart(document.getElementById("chart-" + index), {
@@ -121,7 +140,7 @@ function drawChart(chart, index) {
       plugins: {
         cut: { y: rangesOf(chart).y, equal: chart.equal },
         legend: {
-          labels: { color: colour("--text"), sort: (a, b) => a.datasetIndex - b.datasetIndex, usePointStyle: true, pointStyleWidth: 26, boxHeight: 5 },
+          labels: { color: colour("--text"), sort: (a, b) => a.datasetIndex - b.datasetIndex, usePointStyle: true, pointStyleWidth: 26, boxHeight: 5, generateLabels: legendLabels },
           onClick: (event, item) => showRun(chart.part, item.text, !made.isDatasetVisible(item.datasetIndex)),
         },
         tooltip: { callbacks: { title: (items) => tooltipTitle(chart, items) } },

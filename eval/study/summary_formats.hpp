@@ -14,6 +14,8 @@ namespace fusebench::study {
 
 /// Markdown: the criteria, then a table a split, then AIE against motion.
 [[nodiscard]] std::string summary_text(const StudySummary& summary);
+/// How many criteria passed, in a sentence.
+[[nodiscard]] std::string criteria_verdict(const std::vector<CriterionResult>& criteria);
 /// The criteria alone.
 [[nodiscard]] std::string criteria_text(const std::vector<CriterionResult>& criteria);
 

@@ -23,6 +23,18 @@ page::PageTable page_table(const SummaryTable& table) {
   return page;
 }
 
+/// "1.20 / 1.18 / 1.90" one below the other: a dozen of such columns are wider than a page.
+page::PageTable stacked_table(const SummaryTable& table) {
+  page::PageTable page = page_table(table);
+  for (page::PageTable::Row& row : page.rows) {
+    for (std::string& cell : row.cells) {
+      for (auto at = cell.find(" / "); at != std::string::npos; at = cell.find(" / "))
+        cell.replace(at, 3, "\n");
+    }
+  }
+  return page;
+}
+
 /// Where a bin is drawn; the open one stands a bin's width behind its edge.
 double place_px(const MotionBin& bin) {
   return std::isfinite(bin.to_px) ? (bin.from_px + bin.to_px) / 2 : bin.from_px + 5;
@@ -131,6 +143,7 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
       "{} of {} runs ok. The tuning split is for choosing parameters, the held-out split for judging them.",
       ok, study.runs.size());
   if (!summary.criteria.empty()) {
+    page.subtitle += " " + criteria_verdict(summary.criteria);
     SummaryTable criteria = criteria_table(summary.criteria);
     page.sections.push_back({criteria.title, "", page_table(criteria)});
   }
@@ -142,9 +155,10 @@ std::string summary_page(const StudySummary& summary, const Study& study) {
     page.sections.push_back({"AIE against image motion, held-out split", "", std::move(motion)});
   std::vector<page::Chart> charts = value_charts(summary, study);
   if (!charts.empty()) page.sections.push_back({"Each recording", "", std::move(charts)});
-  for (const auto& tables : {value_tables(summary), motion_tables(summary)}) {
-    for (const SummaryTable& table : tables) page.sections.push_back({table.title, "", page_table(table)});
-  }
+  for (const SummaryTable& table : value_tables(summary))
+    page.sections.push_back({table.title, "", stacked_table(table)});
+  for (const SummaryTable& table : motion_tables(summary))
+    page.sections.push_back({table.title, "", page_table(table)});
   if (!summary.notes.empty()) {
     page::PageTable notes;
     for (const std::string& note : summary.notes) notes.rows.push_back({{note}, ""});

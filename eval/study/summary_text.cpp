@@ -29,17 +29,19 @@ std::string markdown(const SummaryTable& table) {
 
 }  // namespace
 
-std::string criteria_text(const std::vector<CriterionResult>& criteria) {
+std::string criteria_verdict(const std::vector<CriterionResult>& criteria) {
   const auto count = [&](Verdict verdict) {
     return std::count_if(criteria.begin(), criteria.end(),
                          [&](const CriterionResult& result) { return result.decided.verdict == verdict; });
   };
-  return markdown(criteria_table(criteria)) + fmt::format(
-                                                  "{} of {} criteria passed ({} by less than their noise: a "
-                                                  "tie), {} failed, {} not applicable.\n\n",
-                                                  count(Verdict::passed) + count(Verdict::tied),
-                                                  criteria.size(), count(Verdict::tied),
-                                                  count(Verdict::failed), count(Verdict::not_applicable));
+  return fmt::format(
+      "{} of {} criteria passed ({} by less than their noise: a tie), {} failed, {} not applicable.",
+      count(Verdict::passed) + count(Verdict::tied), criteria.size(), count(Verdict::tied),
+      count(Verdict::failed), count(Verdict::not_applicable));
+}
+
+std::string criteria_text(const std::vector<CriterionResult>& criteria) {
+  return markdown(criteria_table(criteria)) + criteria_verdict(criteria) + "\n\n";
 }
 
 std::string summary_text(const StudySummary& summary) {

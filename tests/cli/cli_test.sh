@@ -267,6 +267,16 @@ check_recordings() {
   "$binary" config --config dm.toml >again.toml 2>stderr || complain "config of a printed one: exit code $?"
   [[ $(grep '^# hash' dm.toml) == "$(grep '^# hash' again.toml)" ]] || complain "config: not the values that were printed"
 
+  # The depth camera needs no IMU, and what is written is a calibration.
+  checks=$((checks + 1))
+  "$binary" calibrate fr1_rpy --data data --depth-camera --out depth.toml >stdout 2>stderr ||
+    complain "calibrate --depth-camera: exit code $?"
+  grep -Eq '^  fitted  .* px, centre ' stdout || complain "calibrate --depth-camera does not say what it fitted"
+  "$binary" run fr1_rpy --data data --calibration depth.toml --variant no-imu --frames 0:2 --out out >stdout 2>stderr ||
+    complain "a run with the fitted depth camera: exit code $?"
+  refused "too few frames for a depth camera" 4 'too few edges' 'hint:near and far' -- \
+    calibrate fr1_rpy --data data --depth-camera --frames 0:3
+
   # Suites go by name from any folder; of two values for one key either counts.
   checks=$((checks + 1))
   "$binary" bench quickstart --data data --only variant=full --only variant=no-imu --only recording=walk --dry-run \

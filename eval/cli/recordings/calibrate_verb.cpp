@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "core/config/variants.hpp"
+#include "datasets/open_recording.hpp"
 #include "eval/batch_estimation/calibration.hpp"
+#include "eval/batch_estimation/depth_camera_report.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
@@ -25,8 +27,41 @@ struct CalibrateVerbOptions {
   double offset_prior_ms = 50;
   double scale_prior_percent = 3;
   int rounds = 4;
+  bool depth_camera = false;
   bool json = false;
 };
+
+Result<void> write_calibration(const std::filesystem::path& out, const calibration::RigCalibration& rig) {
+  if (out.empty()) return {};
+  return text::write_text_file(out, calibration::to_toml(rig));
+}
+
+void print_warnings(const recording::Recording& recording) {
+  for (const std::string& warning : recording.warnings)
+    console::print_progress(fmt::format("warning: {}", warning));
+}
+
+/// Of the images alone: no estimator runs, and no IMU is needed.
+Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
+  const auto spec = console::spec_of(options.request);
+  if (!spec) return tl::unexpected(spec.error());
+  auto recording = datasets::open_recording(spec->recording, spec->open);
+  if (!recording) return tl::unexpected(recording.error());
+  if (spec->frames) {
+    const auto selected = run::select_window(*recording, *spec->frames);
+    if (!selected) return tl::unexpected(selected.error());
+  }
+  print_warnings(*recording);
+  const Workers workers(options.request.threads);
+  const auto estimate = batch_estimation::estimate_depth_camera(*recording, workers);
+  if (!estimate) return tl::unexpected(estimate.error());
+  const auto written =
+      write_calibration(options.out, batch_estimation::rig_with_depth_camera(*recording, *estimate));
+  if (!written) return tl::unexpected(written.error());
+  console::print_output(options.json ? batch_estimation::to_json(*estimate, *recording)
+                                     : batch_estimation::to_text(*estimate, *recording));
+  return 0;
+}
 
 Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
   auto spec = console::spec_of(options.request);
@@ -46,6 +81,7 @@ Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
 }
 
 Result<int> run(const CalibrateVerbOptions& options) {
+  if (options.depth_camera) return run_depth_camera(options);
   const auto prepared = prepare(options);
   if (!prepared) return tl::unexpected(prepared.error());
   const recording::Recording& recording = prepared->recording;
@@ -56,8 +92,7 @@ Result<int> run(const CalibrateVerbOptions& options) {
                             recording.name),
                 "a calibration needs recorded inertial samples; without --out the result is only shown");
   }
-  for (const std::string& warning : recording.warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
+  print_warnings(recording);
   console::ProgressBar bar(recording.name + " calibrate");
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
@@ -72,11 +107,9 @@ Result<int> run(const CalibrateVerbOptions& options) {
       batch_estimation::calibrate(recording, prepared->spec.config.values, how, workers, control);
   bar.clear();
   if (!calibration) return tl::unexpected(calibration.error());
-  if (!options.out.empty()) {
-    const auto written = text::write_text_file(
-        options.out, calibration::to_toml(batch_estimation::calibrated_rig(recording, *calibration)));
-    if (!written) return tl::unexpected(written.error());
-  }
+  const auto written =
+      write_calibration(options.out, batch_estimation::calibrated_rig(recording, *calibration));
+  if (!written) return tl::unexpected(written.error());
   console::print_output(options.json ? batch_estimation::to_json(*calibration, recording)
                                      : batch_estimation::to_text(*calibration, recording));
   return 0;
@@ -89,7 +122,11 @@ console::Verb add_calibrate_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "calibrate",
       "Estimates from a recording the camera-IMU extrinsics, the offset of their clocks, the "
-      "scales of the IMU's axes, and read-outs and delay of the images");
+      "scales of the IMU's axes, and read-outs and delay of the images; or its depth camera");
+  verb->add_flag(
+      "--depth-camera", options->depth_camera,
+      "Estimates instead focal length, centre and place of the depth camera, by where edges of depth lie on "
+      "those of colour; needs no IMU");
   console::add_run_request(*verb, options->request);
   verb->add_option("--out", options->out,
                    "Writes the calibration of all sensors, for --calibration of other verbs or as the "
