@@ -1,5 +1,7 @@
 #include "eval/tables/table.hpp"
+#include "eval/tables/latex_table.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 #include <sstream>
 
 #include "eval/metrics/intensity_file.hpp"
+#include "eval/tables/latex_table.hpp"
 #include "eval/text/plain_table.hpp"
 #include "tests/support/collected_table.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -242,6 +245,30 @@ TEST_F(TableTest, LatexOfOneColumnIsSplitAndNamesItsRowsInEachPart) {
   const std::string rotated = render_table(*table, TableFormat::latex, {2, true});
   EXPECT_NE(rotated.find("\\begin{sidewaystable*}"), std::string::npos);
   EXPECT_EQ(occurrences(rotated, "\\begin{tabular}"), 1U);
+}
+
+TEST(LatexTable, WhatIsLongerThanAPageIsSeveralFloatsOfOneNumber) {
+  LatexTable table;
+  table.caption = "Runs";
+  table.label = "runs";
+  table.heading = {"recording", "a"};
+  table.footnotes = {"said once"};
+  for (int i = 0; i < 150; ++i)
+    table.lines.push_back({.cells = {fmt::format("r{:03}", i), "1"}, .rule_before = i % 10 == 0});
+  const std::string text = latex_table(table, {});
+  EXPECT_EQ(occurrences(text, "\\begin{table*}"), 3U);
+  EXPECT_EQ(occurrences(text, "\\end{table*}"), 3U);
+  EXPECT_EQ(occurrences(text, " (continued)}"), 2U);
+  EXPECT_EQ(occurrences(text, "\\addtocounter{table}{-1}"), 2U);
+  EXPECT_EQ(occurrences(text, "\\label{"), 1U);
+  EXPECT_EQ(occurrences(text, "said once"), 1U);
+  for (int i = 0; i < 150; ++i) EXPECT_EQ(occurrences(text, fmt::format("r{:03} &", i)), 1U) << i;
+  // Recordings stay together.
+  for (std::size_t at = text.find("\\end{table*}"); at != std::string::npos;
+       at = text.find("\\end{table*}", at + 1)) {
+    const std::size_t last = text.rfind("r", text.rfind(" & 1", at));
+    EXPECT_EQ(text[last + 3], '9') << text.substr(last, 4);
+  }
 }
 
 TEST_F(TableTest, LatexEscapesNames) {
