@@ -11,6 +11,7 @@
 #include "core/base/parallel.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/inspection/finding.hpp"
+#include "datasets/inspection/measures/registration_fit.hpp"
 #include "datasets/recording/recording.hpp"
 
 namespace fusebench::inspection {
@@ -67,14 +68,9 @@ struct DepthMeasurement {
 inline constexpr double kDepthBin_m = 0.1;
 inline constexpr std::size_t kDepthBins = 121;
 
-/// How far edges of depth lie from edges of colour (measures/registration_fit.hpp).
+/// How far edges of depth lie from edges of colour.
 struct RegistrationMeasurement {
-  std::size_t edges = 0;                  ///< pixels; 0: too few to measure
-  double moved_px = 0;                    ///< rms, by the camera whose depth fits best
-  double spread_px = 0;                   ///< between the fits to every other frame
-  double better_share = 0;                ///< of frames that the fit makes better
-  double strength_as_read = 0;            ///< of colour's edges under those of depth
-  double strength_moved = 0;              ///< the same, moved
+  measures::RegistrationFit fit;
   calibration::DepthCamera depth_camera;  ///< that fits best
 };
 
@@ -205,7 +201,7 @@ struct Inspection {
   std::vector<FrameStatistics> images;  ///< the sampled frames
   ExposureMeasurement exposure;
   DepthMeasurement depth;
-  RegistrationMeasurement registration;
+  std::optional<RegistrationMeasurement> registration;  ///< nothing where depth has too few edges
   std::optional<TruthMeasurement> truth;
   MotionMeasurement motion;
   std::optional<ImuMeasurement> imu;

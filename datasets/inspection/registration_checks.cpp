@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "datasets/inspection/checks.hpp"
-#include "datasets/inspection/measures/registration_fit.hpp"
 
 namespace fusebench::inspection {
 
@@ -33,17 +32,16 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   if (out.images.empty() || out.has("depth-range") || out.has("depth-scale")) return;
   const auto fit = measures::fit_registration(recording, workers);
   if (!fit) return;
-  RegistrationMeasurement& measured = out.registration;
-  measured.edges = fit->edges;
-  measured.moved_px = fit->moved_px;
-  measured.spread_px = fit->spread_px;
-  measured.better_share = fit->better_share;
-  measured.strength_as_read = fit->strength_as_read;
-  measured.strength_moved = fit->strength_moved;
   const calibration::DepthCamera camera = measures::fitted_depth_camera(fit->model, recording);
-  measured.depth_camera = camera;
+  out.registration = {*fit, camera};
   if (fit->moved_px < kMinMoved_px || fit->better_share < kMinBetterShare) return;
   const bool one_camera = fit->spread_px <= kMaxSpread * fit->moved_px;
+  // Points of one frame that are warped into another have the depth camera's focal length as well.
+  for (Finding& finding : out.findings) {
+    if (finding.code == "focal-length")
+      finding.hint =
+          "correct the depth camera first (depth-misregistered): it may be its focal length that is wrong";
+  }
   out.add("depth-misregistered", Severity::warning,
           one_camera
               ? fmt::format("edges of depth lie {:.0f} px from those of colour; {} would bring them there",

@@ -159,8 +159,8 @@ std::string to_json(const inspection::Inspection& i) {
                                {"repeated_depth", i.association.frozen}};
     document["exposure"] = json_of(i.exposure);
     document["depth"] = json_of(i.depth);
-    const inspection::RegistrationMeasurement& r = i.registration;
-    const calibration::DepthCamera& camera = r.depth_camera;
+    const inspection::measures::RegistrationFit& r = i.registration->fit;
+    const calibration::DepthCamera& camera = i.registration->depth_camera;
     document["registration"] = {{"moved_px", r.moved_px},
                                 {"spread_px", r.spread_px},
                                 {"better_share", r.better_share},
@@ -173,7 +173,7 @@ std::string to_json(const inspection::Inspection& i) {
                                   {"cy_px", camera.pinhole.cy_px},
                                   {"x_m", camera.T_color_depth.translation.x()},
                                   {"y_m", camera.T_color_depth.translation.y()}}},
-                                {"edge_pixels", i.registration.edges}};
+                                {"edge_pixels", r.edges}};
     document["motion"] = json_of(i.motion);
     document["truth"] = nullptr;
     if (i.truth) {

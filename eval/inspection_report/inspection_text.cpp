@@ -56,12 +56,12 @@ void image_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
                                     100 * d.coverage_median, 100 * d.coverage_min));
   depth.add("range", fmt::format("{:.2f} to {:.2f} m, median {:.2f} m, {:.1f} % beyond 10 m", d.min_m,
                                  d.max_m, d.median_m, 100 * d.beyond_10m_share));
-  if (i.registration.edges > 0) {
-    const inspection::RegistrationMeasurement& r = i.registration;
+  if (i.registration) {
+    const inspection::measures::RegistrationFit& fit = i.registration->fit;
     depth.add(
         "edges on colour",
         fmt::format("best when moved by {:.1f} px (uncertain by {:.1f} px), better in {:.0f} % of frames",
-                    r.moved_px, r.spread_px, 100 * r.better_share));
+                    fit.moved_px, fit.spread_px, 100 * fit.better_share));
   }
   depth.append_to(all);
 }

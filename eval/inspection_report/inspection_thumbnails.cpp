@@ -45,6 +45,32 @@ std::string side_by_side(const RgbdFrame& frame, double far_m) {
   return page::jpeg_source(both, kQuality);
 }
 
+/// Half of the image's brightness, and a pixel for each edge, over those that were drawn before.
+void draw_edges(const std::vector<inspection::measures::DepthEdge>& edges,
+                const inspection::measures::RegistrationModel& model, const PinholeCamera& camera, Rgb color,
+                ColorImage& picture) {
+  for (const inspection::measures::DepthEdge& edge : edges) {
+    const Eigen::Vector2d at = model.move(edge, camera).array().round();
+    if (at.x() < 0 || at.y() < 0 || at.x() >= picture.width || at.y() >= picture.height) continue;
+    picture(static_cast<int>(at.x()), static_cast<int>(at.y())) = color;
+  }
+}
+
+std::string edges_on_grey(const RgbdFrame& frame, const inspection::measures::RegistrationModel& model,
+                          const PinholeCamera& camera) {
+  ColorImage picture(frame.grey.width, frame.grey.height);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const auto grey = static_cast<std::uint8_t>(0.6F * static_cast<float>(frame.grey(x, y)));
+      picture(x, y) = {grey, grey, grey};
+    }
+  }
+  const auto edges = inspection::measures::depth_edges(frame.depth_m);
+  draw_edges(edges, {}, camera, {255, 255, 255}, picture);
+  draw_edges(edges, model, camera, {255, 60, 60}, picture);
+  return page::jpeg_source(picture, kQuality);
+}
+
 struct Choice {
   std::size_t frame;
   std::string why;
@@ -90,6 +116,20 @@ std::vector<page::PageImage> inspection_thumbnails(const inspection::Inspection&
     result.push_back({fmt::format("frame {} at {:.2f} s{}{}", choice.frame, time_s,
                                   choice.why.empty() ? "" : "; ", choice.why),
                       side_by_side(*frame, far_m)});
+  }
+  return result;
+}
+
+std::vector<page::PageImage> registration_pictures(const inspection::Inspection& inspection,
+                                                   const recording::Recording& recording) {
+  std::vector<page::PageImage> result;
+  if (!inspection.registration) return result;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t k = (2 * i + 1) * recording.frames.size() / 8;
+    const auto frame = recording.load_frame(k);
+    if (!frame) continue;
+    result.push_back({fmt::format("frame {}", k),
+                      edges_on_grey(*frame, inspection.registration->fit.model, recording.rig.camera)});
   }
   return result;
 }

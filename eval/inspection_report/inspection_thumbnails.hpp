@@ -13,4 +13,9 @@ namespace fusebench::inspection_report {
 [[nodiscard]] std::vector<page::PageImage> inspection_thumbnails(const inspection::Inspection& inspection,
                                                                  const recording::Recording& recording);
 
+/// Grey images of four frames with the borders of what is nearer in depth: white as read, and red where the
+/// depth camera that fits best would have them. None where the registration was not measured.
+[[nodiscard]] std::vector<page::PageImage> registration_pictures(const inspection::Inspection& inspection,
+                                                                 const recording::Recording& recording);
+
 }  // namespace fusebench::inspection_report

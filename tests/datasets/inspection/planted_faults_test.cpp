@@ -406,8 +406,9 @@ TEST(PlantedFaults, DepthThatIsNotRegistered) {
   shift_depth(recording, 16);
   const Inspection result = inspected(recording);
   EXPECT_THAT(faults(result), ElementsAre("depth-misregistered"));
-  EXPECT_NEAR(result.registration.moved_px, 16, 1);
-  EXPECT_NEAR(result.registration.depth_camera.pinhole.cx_px, cx_px + 16, 4);
+  ASSERT_TRUE(result.registration);
+  EXPECT_NEAR(result.registration->fit.moved_px, 16, 1);
+  EXPECT_NEAR(result.registration->depth_camera.pinhole.cx_px, cx_px + 16, 4);
 }
 
 TEST(PlantedFaults, APartOfARecording) {
