@@ -17,8 +17,9 @@ namespace {
 
 constexpr double kRelative = 1e-9;
 
-constexpr std::array<std::string_view, 7> kTopKeys = {
-    "improvements", "changed_defaults", "divergence", "tolerance", "metrics", "timing", "overrides"};
+constexpr std::array<std::string_view, 8> kTopKeys = {
+    "improvements", "changed_defaults", "changed_simulation", "divergence", "tolerance",
+    "metrics",      "timing",           "overrides"};
 constexpr std::array<std::string_view, 2> kToleranceKeys = {"relative", "absolute"};
 constexpr std::array<std::string_view, 3> kMetricKeys = {"relative", "absolute", "better"};
 constexpr std::array<std::string_view, 3> kTimingKeys = {"alpha", "min_repetitions", "factors"};
@@ -144,6 +145,7 @@ Result<void> read_entry(const config::TomlEntry& entry, Gates& gates) {
   const std::string& key = entry.key;
   if (key == "improvements") return store_fails(entry, gates.improvements_fail);
   if (key == "changed_defaults") return store_fails(entry, gates.changed_defaults_fail);
+  if (key == "changed_simulation") return store_fails(entry, gates.changed_simulation_fails);
   if (key == "divergence") return store_fails(entry, gates.divergence_fails);
   const auto dot = key.find('.');
   const std::string table = key.substr(0, dot);

@@ -35,9 +35,10 @@ struct GateOverride {
 
 /// Starts with the values of configs/gates.toml.
 struct Gates {
-  bool improvements_fail = true;      ///< a baseline that is too bad hides what gets worse later
-  bool changed_defaults_fail = true;  ///< options that nobody set and that are not what they were
-  bool divergence_fails = false;      ///< a trajectory that differs while every number keeps its tolerance
+  bool improvements_fail = true;         ///< a baseline that is too bad hides what gets worse later
+  bool changed_defaults_fail = true;     ///< options that nobody set and that are not what they were
+  bool changed_simulation_fails = true;  ///< a simulated recording of as many frames that has other bytes
+  bool divergence_fails = false;         ///< a trajectory that differs while every number keeps its tolerance
   std::vector<MetricTolerance> tolerances;  ///< of gated_metrics(), in their order
   std::vector<double> factors;              ///< of timed_quantities(), in their order
   double alpha = 0.01;                      ///< a slower run fails where the rank test's p is below

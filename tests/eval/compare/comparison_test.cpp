@@ -236,6 +236,25 @@ TEST_F(ComparisonTest, OtherDataIsSaidInsteadOfMetrics) {
   }
 }
 
+TEST_F(ComparisonTest, ASimulationMadeAnewIsComparedWhereTheGatesLetIt) {
+  Gates gates;
+  gates.changed_simulation_fails = false;
+  for (const char* data : {"simulated", "recorded"}) {
+    const auto made = [&](RunRecord record, const char* fingerprint) {
+      record.recording.data = data;
+      record.recording.fingerprint = fingerprint;
+      return record;
+    };
+    add("base", made(good_record(data), "one"));
+    add("new", made(good_record(data), "other"));
+  }
+  const RunComparison comparison = compare(gates);
+  EXPECT_EQ(comparison.failures(), 1U) << "what was recorded cannot be made anew";
+  ASSERT_EQ(comparison.runs.size(), 2U);
+  for (const ComparedRun& run : comparison.runs)
+    EXPECT_EQ(run.gates.size() > 3, run.runs.key.recording == "simulated") << run.runs.label;
+}
+
 TEST_F(ComparisonTest, DivergencesAreNamedTheEarliestFirst) {
   for (const char* name : {"a", "b", "c"}) add("base", good_record(name));
   add("new", good_record("a"), trajectory(12, 0.001));

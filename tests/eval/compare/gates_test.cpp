@@ -33,6 +33,7 @@ TEST(GatesTest, TheShippedFileHasTheDefaults) {
   const Gates defaults;
   EXPECT_EQ(shipped->improvements_fail, defaults.improvements_fail);
   EXPECT_EQ(shipped->changed_defaults_fail, defaults.changed_defaults_fail);
+  EXPECT_EQ(shipped->changed_simulation_fails, defaults.changed_simulation_fails);
   EXPECT_EQ(shipped->divergence_fails, defaults.divergence_fails);
   EXPECT_EQ(shipped->alpha, defaults.alpha);
   EXPECT_EQ(shipped->min_repetitions, defaults.min_repetitions);
