@@ -9,11 +9,21 @@
 
 namespace fusebench::images {
 
+Result<void> check_image_bytes(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error || size <= kMostImageBytes) return {};
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}: {} bytes are too many for an image (allowed: up to {})", file.string(), size,
+                          kMostImageBytes),
+              "is it another file by that name, or one that was not copied completely?");
+}
+
 ByteBuffer content_of(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return ByteBuffer(0);
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) return ByteBuffer(0);
+  if (error || size > kMostImageBytes) return ByteBuffer(0);
   ByteBuffer content(size);
   std::ifstream stream(file, std::ios::binary);
   stream.read(reinterpret_cast<char*>(content.bytes.get()), static_cast<std::streamsize>(size));

@@ -23,7 +23,15 @@ struct ByteBuffer {
   [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.get()), size}; }
 };
 
-/// Empty if it cannot be read; folders and devices have no content of a known size.
+/// Of an image file: more are refused before they are read, as a file can be as long as its disk, and one
+/// with holes longer.
+inline constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{1} << 29;
+
+/// Error data_corrupt: the file has more than kMostImageBytes. A file that is not there has none.
+[[nodiscard]] Result<void> check_image_bytes(const std::filesystem::path& file);
+
+/// Empty if it cannot be read, or has more than kMostImageBytes; folders and devices have no content of a
+/// known size.
 [[nodiscard]] ByteBuffer content_of(const std::filesystem::path& file);
 
 /// Compares the bytes that were read now with those of the opening; no `opened`: nothing to compare with.

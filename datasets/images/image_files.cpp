@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "core/io/input_file.hpp"
 #include "datasets/images/file_content.hpp"
 #include "datasets/images/image_library_loader.hpp"
 #include "datasets/images/plain_png.hpp"
@@ -36,14 +38,32 @@ tl::unexpected<Error> no_library(const std::string& image, Error error) {
   return tl::unexpected(std::move(error));
 }
 
+/// Of one image: those of any camera are a tenth of it.
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
+
 /// A header may claim any size. PNG's compression makes at most 1032 bytes of one, and JPEG's less in
-/// practice, so that memory stays in proportion to the file.
+/// practice, so that memory stays in proportion to the file; a file of one colour needs the other limit.
 Result<void> check_claim(const std::string& image, const ImageHeader& header, std::uintmax_t bytes) {
   constexpr std::uintmax_t kMaxPerByte = 1032;
+  const auto width = static_cast<std::uint64_t>(std::max(header.width_px, 0));
+  const auto height = static_cast<std::uint64_t>(std::max(header.height_px, 0));
+  if (width * height > kMostPixels) {
+    return corrupt(image, fmt::format("its header claims {}x{} pixels (allowed: up to {} of them)",
+                                      header.width_px, header.height_px, kMostPixels));
+  }
   if (header.pixel_bytes / kMaxPerByte <= bytes) return {};
   return corrupt(image, fmt::format("damaged image (its header claims {}x{} "
                                     "pixels, too many for {} bytes)",
                                     header.width_px, header.height_px, bytes));
+}
+
+/// The library knows an image by its content, whatever its name says, and makes room for all of a GIF when it
+/// opens one, of which a header of a few bytes may claim 17 GB.
+Result<void> check_kind(const std::filesystem::path& file) {
+  std::string beginning(4, '\0');
+  io::input_file(file).read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  if (beginning != "GIF8") return {};
+  return corrupt(file.string(), "a GIF (images are PNG, JPEG or OpenEXR)");
 }
 
 Result<OpenedImage> sound_image(const std::string& image, LibraryResult<OpenedImage> opened,
@@ -59,6 +79,8 @@ Result<OpenedImage> open_image(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, ignored)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such image", file.string()));
   }
+  if (const auto sized = check_image_bytes(file); !sized) return tl::unexpected(sized.error());
+  if (const auto known = check_kind(file); !known) return tl::unexpected(known.error());
   if (const std::string damage = png_damage(file); !damage.empty()) return corrupt(file.string(), damage);
   const Result<const ImageLibrary*>& library = image_library();
   if (!library) return no_library(file.string(), library.error());
@@ -130,12 +152,26 @@ Result<void> check_file_unchanged(const std::filesystem::path& file,
   return check_unchanged(file, content_of(file).text(), opened);
 }
 
+/// Whether a decoder may see it: not if it claims another size than the expected one, or one that no image
+/// has. The library is then asked for its header only, and gives the reason.
+bool has_usual_size(std::string_view bytes, std::optional<ImageSize> expected) {
+  const std::optional<ClaimedSize> claim = png_claim(bytes);
+  if (!claim) return true;
+  const auto side = [](int px) { return static_cast<std::uint32_t>(px); };
+  if (expected &&
+      (side(expected->width_px) != claim->width_px || side(expected->height_px) != claim->height_px))
+    return false;
+  return std::uint64_t{claim->width_px} * claim->height_px <= kMostPixels;
+}
+
 template <class Pixel, class Decode>
 Result<Image<Pixel>> decode_image(const Decode& decode_plain, const std::string& name, std::string_view bytes,
                                   const Layout& layout) {
-  ByteBuffer content(bytes.size());
-  std::ranges::copy(bytes, content.bytes.get());
-  if (auto plain = decode_plain(std::move(content))) return std::move(*plain);
+  if (has_usual_size(bytes, std::nullopt)) {
+    ByteBuffer content(bytes.size());
+    std::ranges::copy(bytes, content.bytes.get());
+    if (auto plain = decode_plain(std::move(content))) return std::move(*plain);
+  }
   const auto opened = open_bytes(name, bytes);
   if (!opened) return tl::unexpected(opened.error());
   return pixels_of<Pixel>(name, *opened, layout, std::nullopt);
@@ -147,15 +183,16 @@ template <class Pixel, class Decode>
 Result<Image<Pixel>> plain_or_any(const Decode& decode_plain, const std::filesystem::path& file,
                                   const Layout& layout, std::optional<ImageSize> expected,
                                   const std::optional<io::ContentHash>& opened) {
+  if (const auto sized = check_image_bytes(file); !sized) return tl::unexpected(sized.error());
   ByteBuffer content = content_of(file);
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored)) {  // else the missing library is the error
     if (const auto same = check_unchanged(file, content.text(), opened); !same)
       return tl::unexpected(same.error());
   }
-  std::optional<Image<Pixel>> plain = decode_plain(std::move(content));
-  const bool good = plain && (!expected || *expected == ImageSize{plain->width, plain->height});
-  return good ? Result<Image<Pixel>>(std::move(*plain)) : read_image<Pixel>(file, layout, expected);
+  std::optional<Image<Pixel>> plain;
+  if (has_usual_size(content.text(), expected)) plain = decode_plain(std::move(content));
+  return plain ? Result<Image<Pixel>>(std::move(*plain)) : read_image<Pixel>(file, layout, expected);
 }
 
 template <class Pixel>
@@ -174,7 +211,11 @@ Result<void> write_image(const std::filesystem::path& file, const PixelView& ima
 
 Result<ImageSize> read_image_size(const std::filesystem::path& file) {
   // Decoding a whole plain PNG is less work than loading the library.
-  if (const auto plain = read_plain_png_color(file)) return ImageSize{plain->width, plain->height};
+  ByteBuffer content = content_of(file);
+  if (has_usual_size(content.text(), std::nullopt)) {
+    if (const auto plain = decode_plain_png_color(std::move(content)))
+      return ImageSize{plain->width, plain->height};
+  }
   const auto opened = open_image(file);
   if (!opened) return tl::unexpected(opened.error());
   return ImageSize{opened->header.width_px, opened->header.height_px};

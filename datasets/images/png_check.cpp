@@ -29,6 +29,14 @@ std::uint32_t checksum(std::string_view bytes) {
 
 }  // namespace
 
+std::optional<ClaimedSize> png_claim(std::string_view bytes) {
+  constexpr std::size_t kWidth = 16;  // behind the signature, the length of the first chunk and its type
+  constexpr std::size_t kHeight = kWidth + 4;
+  if (bytes.size() < kHeight + 4 || !bytes.starts_with(kSignature) || bytes.substr(12, 4) != "IHDR")
+    return std::nullopt;
+  return ClaimedSize{big_endian(bytes.substr(kWidth)), big_endian(bytes.substr(kHeight))};
+}
+
 // The decoder ignores checksums and fills the rest of a truncated image with black, and what it does notice
 // it prints on standard error.
 std::string png_damage(const std::filesystem::path& file) {

@@ -35,6 +35,11 @@ Result<Decoded> decode_unchanged(const Result<StoredImage>& stored, const images
                           expected.height_px, image->width, image->height));
 }
 
+Result<io::ContentHash> add_image(const std::filesystem::path& file, io::Fingerprint& fingerprint) {
+  if (const auto sized = images::check_image_bytes(file); !sized) return tl::unexpected(sized.error());
+  return fingerprint.add_file(file);
+}
+
 }  // namespace
 
 /// The quotients in double precision, rounded. Where single precision holds the divisor, a division in it
@@ -68,9 +73,9 @@ ImageSource image_files(std::vector<recording::FrameEntry> frames, ColorReader r
   ImageSource source;
   source.color_size = [listed] { return images::read_image_size(listed->front().color_file); };
   source.add_to = [listed](std::size_t frame, io::Fingerprint& fingerprint) -> Result<ImageHashes> {
-    const auto color = fingerprint.add_file((*listed)[frame].color_file);
+    const auto color = add_image((*listed)[frame].color_file, fingerprint);
     if (!color) return tl::unexpected(color.error());
-    const auto depth = fingerprint.add_file((*listed)[frame].depth_file);
+    const auto depth = add_image((*listed)[frame].depth_file, fingerprint);
     if (!depth) return tl::unexpected(depth.error());
     return ImageHashes{*color, *depth};
   };

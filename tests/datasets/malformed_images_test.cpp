@@ -1,6 +1,7 @@
 // PNG files that are broken, or are not what a recording needs: nothing may crash or take memory that
 // the file cannot justify.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -173,6 +174,54 @@ TEST_F(MalformedImage, AHeaderAloneTakesNoMemory) {
     if (!kMemoryIsMeasured) continue;
     EXPECT_LT(result.peak_bytes, std::size_t{256} << 20);
   }
+}
+
+// All of one colour, so that the file justifies what its header claims: 384 MB from 370 kB.
+TEST_F(MalformedImage, TheSizeIsJudgedBeforePixelsAreDecoded) {
+  const auto file = folder_ / "wide.png";
+  ASSERT_TRUE(write_png(file, ColorImage(4000, 3000, Rgb{})));
+  const ChildResult expected = run_in_child(std::size_t{512} << 20, [&] {
+    const auto image = read_color(file, ImageSize{640, 480});
+    return image ? "accepted" : image.error().message;
+  });
+  EXPECT_NE(expected.text.find("wide.png: expected 640x480 pixels, got 4000x3000"), std::string::npos)
+      << expected.text;
+  const ChildResult before = run_in_child(std::size_t{512} << 20, [] { return ""; });
+  if (kMemoryIsMeasured) EXPECT_LT(expected.peak_bytes, before.peak_bytes + (std::size_t{24} << 20));
+
+  std::string row(1 + 3 * 16'384, '\0');
+  std::string rows;
+  for (int y = 0; y < 5000; ++y) rows += row;
+  uLongf size = compressBound(rows.size());
+  std::string packed(size, '\0');
+  ASSERT_EQ(compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                      reinterpret_cast<const Bytef*>(rows.data()), rows.size(), 1),
+            Z_OK);
+  packed.resize(size);
+  const std::string huge = with_pixels(with_size(color_, 16'384, 5000), packed);
+  const std::string part = "its header claims 16384x5000 pixels (allowed: up to 67108864 of them)";
+  EXPECT_NE(read_color(write("huge.png", huge)).error().message.find(part), std::string::npos);
+  EXPECT_NE(read_image_size(write("huge.png", huge)).error().message.find(part), std::string::npos);
+  EXPECT_NE(decode_color("huge", huge).error().message.find(part), std::string::npos);
+}
+
+TEST_F(MalformedImage, AFileLongerThanAnyImageIsNotRead) {
+  const auto file = write("holes.png", color_);
+  std::filesystem::resize_file(file, std::uintmax_t{60'000'000'000});  // takes no room on the disk
+  const std::string part =
+      "holes.png: 60000000000 bytes are too many for an image (allowed: up to 536870912)";
+  EXPECT_NE(read_color(file).error().message.find(part), std::string::npos);
+  EXPECT_NE(read_depth16(file).error().message.find(part), std::string::npos);
+  EXPECT_NE(read_image_size(file).error().message.find(part), std::string::npos);
+}
+
+TEST_F(MalformedImage, AGifIsNotOpened) {
+  // 65535 x 65535 pixels, a table of two colours, and one image of one pixel.
+  const std::string gif("GIF89a\xFF\xFF\xFF\xFF\x80\0\0\0\0\0\xFF\xFF\xFF,\0\0\0\0\1\0\1\0\0\2\2D\1\0;", 35);
+  const auto image = read_color(write("moving.png", gif));
+  ASSERT_FALSE(image);
+  EXPECT_EQ(image.error().code, ErrorCode::data_corrupt);
+  EXPECT_NE(image.error().message.find("moving.png: a GIF"), std::string::npos) << image.error().message;
 }
 
 }  // namespace

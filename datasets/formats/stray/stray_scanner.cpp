@@ -138,6 +138,7 @@ class ConfidentDepth {
     for (const recording::FrameEntry& frame : recording.frames) {
       const fs::path file = folder / "confidence" / frame.depth_file.filename();
       if (!io::is_named(file)) continue;
+      if (const auto sized = images::check_image_bytes(file); !sized) return tl::unexpected(sized.error());
       const auto hash = fingerprint.add_file(file);
       if (!hash) return tl::unexpected(hash.error());
       confident.files_->emplace(frame.depth_file, Confidence{file, *hash});
