@@ -211,8 +211,9 @@ Result<RpeResult> relative_pose_error(const Trajectory& ground_truth, const Traj
   result.unit = options.unit;
   result.max_difference_s = poses.limit_ns * 1e-9;
   if (options.all_pairs && estimate.size() > options.listing.most / estimate.size()) {
-    if (auto listed = check_listing(options.listing, estimate.size() * estimate.size()); !listed)
-      return tl::unexpected(listed.error());
+    const std::size_t motions = estimate.size() * estimate.size();
+    if (auto usual = check_compared(options.listing, motions); !usual) return tl::unexpected(usual.error());
+    if (auto listed = check_listing(options.listing, motions); !listed) return tl::unexpected(listed.error());
     stream_errors(std::move(poses), !options.skip_gaps, result);
   } else {
     const std::vector<std::int64_t> estimate_ns = trajectory_files::stamps_of(estimate);

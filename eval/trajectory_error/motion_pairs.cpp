@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -40,6 +41,14 @@ std::vector<double> turned_rad(const Trajectory& trajectory) {
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     sums[i] = sums[i - 1] + angle_between(trajectory[i - 1], trajectory[i]);
   return sums;
+}
+
+/// The first index from `begin` on at which `sorted` reaches a value; it is looked for near `begin`.
+std::size_t first_at_least(std::span<const double> sorted, std::size_t begin, double value) {
+  std::size_t step = 1;
+  while (begin + step < sorted.size() && sorted[begin + step] < value) step *= 2;
+  const std::span<const double> near = sorted.subspan(begin, std::min(step + 1, sorted.size() - begin));
+  return begin + static_cast<std::size_t>(std::ranges::lower_bound(near, value) - near.begin());
 }
 
 std::vector<double> times_s(const Trajectory& trajectory) {
@@ -146,6 +155,14 @@ Result<DeltaUnit> parse_delta_unit(std::string_view text) {
               "units are f (frames), m (metres), d (degrees), r (radians) and s (seconds)");
 }
 
+Result<void> check_compared(const MotionListing& listing, std::size_t compared) {
+  if (compared <= listing.most_compared) return {};
+  return fail(ErrorCode::usage,
+              fmt::format("at least {} pairs of poses would have to be looked at (allowed: up to {})",
+                          compared, listing.most_compared),
+              "take fewer poses (--downsample N or --motion_filter D A), or leave out --all_pairs");
+}
+
 Result<void> check_listing(const MotionListing& listing, std::size_t motions) {
   if (!listing.needed || motions <= listing.most) return {};
   constexpr double kBytesEach = 75;
@@ -154,7 +171,7 @@ Result<void> check_listing(const MotionListing& listing, std::size_t motions) {
       fmt::format("{} motions are too many to list each error, which would take {:.1f} GB (allowed: up "
                   "to {} motions)",
                   motions, kBytesEach * 1e-9 * static_cast<double>(motions), listing.most),
-      "leave out --all_pairs or take fewer poses (--downsample N); without --errors, any number is "
+      "leave out --all_pairs or take fewer poses (--downsample N); without --errors, more are "
       "compared");
 }
 
@@ -201,7 +218,7 @@ IndexPairs all_motions(const Trajectory& trajectory, const Delta& delta, double 
   }
   if (is_angle(delta.unit)) {
     IndexPairs pairs;
-    visit_turns(trajectory, delta, tolerance,
+    visit_turns(trajectory, delta, tolerance, std::numeric_limits<std::size_t>::max(),
                 [&](std::size_t i, std::size_t j) { pairs.emplace_back(i, j); });
     return pairs;
   }
@@ -209,16 +226,29 @@ IndexPairs all_motions(const Trajectory& trajectory, const Delta& delta, double 
   return nearest_later(along, delta.value, tolerance * delta.value);
 }
 
-void visit_turns(const Trajectory& trajectory, const Delta& delta, double tolerance,
-                 const MotionVisitor& visit) {
+// A direct angle changes by no more than the angles from pose to pose in between: where it misses the wanted
+// ones by a gap, so do all poses until they have turned through it.
+std::size_t visit_turns(const Trajectory& trajectory, const Delta& delta, double tolerance,
+                        std::size_t most_compared, const MotionVisitor& visit) {
+  constexpr double kRounding_rad = 1e-6;
   const double delta_rad = in_radians(delta);
-  const double tolerance_rad = tolerance * delta_rad;
+  const double least_rad = delta_rad - tolerance * delta_rad;
+  const double most_rad = delta_rad + tolerance * delta_rad;
+  const std::vector<double> turned = turned_rad(trajectory);
+  std::size_t compared = 0;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    for (std::size_t j = i + 1; j < trajectory.size(); ++j) {
+    for (std::size_t j = i + 1; j < trajectory.size();) {
+      if (++compared > most_compared) return compared;
       const double angle_rad = angle_between(trajectory[i], trajectory[j]);
-      if (angle_rad >= delta_rad - tolerance_rad && angle_rad <= delta_rad + tolerance_rad) visit(i, j);
+      if (angle_rad >= least_rad && angle_rad <= most_rad) {
+        visit(i, j++);
+        continue;
+      }
+      const double gap_rad = std::max(least_rad - angle_rad, angle_rad - most_rad) - kRounding_rad;
+      j = first_at_least(turned, j + 1, turned[j] + gap_rad);
     }
   }
+  return compared;
 }
 
 IndexPairs tum_motions(const Trajectory& trajectory, const Delta& delta) {
@@ -245,29 +275,30 @@ IndexPairs rpg_motions(const Trajectory& trajectory, double length_m, bool as_pu
   const std::vector<double> along = path_lengths(trajectory);
   IndexPairs pairs;
   for (std::size_t i = 0; i < along.size(); ++i) {
-    double least = kTolerance * length_m;
-    std::optional<std::size_t> best;
     const double wanted = along[i] + length_m;
-    auto j = static_cast<std::size_t>(std::ranges::lower_bound(along, wanted - least) - along.begin());
-    for (j = std::max(i, j > 0 ? j - 1 : 0); j < along.size() && along[j] - wanted < least; ++j) {
-      if (std::abs(along[j] - wanted) < least) {
-        least = std::abs(along[j] - wanted);
-        best = j;
-      }
+    const auto later = std::span(along).subspan(i);
+    const auto miss = [&](auto place) { return std::abs(*place - wanted); };
+    // Of paths that differ as little the script takes the first, and there the first pose.
+    auto best = std::ranges::lower_bound(later, wanted);
+    if (best == later.end() || (best != later.begin() && miss(best - 1) <= miss(best)))
+      best = std::ranges::lower_bound(later.begin(), best, *(best - 1));
+    if (miss(best) < kTolerance * length_m) {
+      const std::size_t begin = as_published ? pairs.size() : i;
+      pairs.emplace_back(begin, i + static_cast<std::size_t>(best - later.begin()));
     }
-    if (best) pairs.emplace_back(as_published ? pairs.size() : i, *best);
   }
   return pairs;
 }
 
 Result<void> check_delta(const Delta& delta) {
   const bool frames = delta.unit == DeltaUnit::frames;
-  const bool forwards = delta.value >= (frames ? 1.0 : 0.0) && std::isfinite(delta.value);
+  constexpr double kMost = 1e9;
+  const bool forwards = delta.value >= (frames ? 1.0 : 0.0) && delta.value <= kMost;
   const bool whole = !frames || std::floor(delta.value) == delta.value;
   const bool half_turn = !is_angle(delta.unit) || in_radians(delta) <= std::numbers::pi;
   if (forwards && whole && half_turn) return {};
   return fail(ErrorCode::configuration,
-              fmt::format("delta = {} {} (allowed: not negative, whole frames, at most 180 degrees)",
+              fmt::format("delta = {} {} (allowed: 0 to 1e9, whole frames from 1 on, at most 180 degrees)",
                           delta.value, to_string(delta.unit)));
 }
 

@@ -33,8 +33,11 @@ using MotionVisitor = std::function<void(std::size_t i, std::size_t j)>;
 /// more, errors are computed again for each pass over them (see streamed_statistics()).
 struct MotionListing {
   std::size_t most = std::size_t{1} << 22;
-  bool needed = false;  ///< somebody wants to see each error: more are refused
+  bool needed = false;                               ///< somebody wants to see each error: more are refused
+  std::size_t most_compared = std::size_t{1} << 28;  ///< pairs of poses to look at, which takes minutes
 };
+/// Error usage: so many pairs of poses would have to be looked at.
+[[nodiscard]] Result<void> check_compared(const MotionListing& listing, std::size_t compared);
 /// Error usage: a list is needed and would be too long.
 [[nodiscard]] Result<void> check_listing(const MotionListing& listing, std::size_t motions);
 
@@ -48,13 +51,14 @@ struct MotionListing {
 /// Motions from every pose, as evo's --all_pairs:
 ///   frames   (i, i + d)
 ///   metres   of all later poses that whose path from i is nearest d; none if it is further than tolerance *
-///   d degrees, radians   every later pose whose direct angle to i is within tolerance * d of d. O(n^2)
+///   d degrees, radians   every later pose whose direct angle to i is within tolerance * d of d
 ///   seconds  (ours) as metres
 [[nodiscard]] IndexPairs all_motions(const Trajectory& trajectory, const Delta& delta, double tolerance);
 
-/// all_motions() of degrees or radians one by one, in their order, without a list of them.
-void visit_turns(const Trajectory& trajectory, const Delta& delta, double tolerance,
-                 const MotionVisitor& visit);
+/// all_motions() of degrees or radians one by one, in their order, without a list of them. Returns how many
+/// pairs of poses were compared for that; ends before the motions do where these are more than most_compared.
+std::size_t visit_turns(const Trajectory& trajectory, const Delta& delta, double tolerance,
+                        std::size_t most_compared, const MotionVisitor& visit);
 
 [[nodiscard]] bool is_angle(DeltaUnit unit);  ///< degrees or radians
 
@@ -74,7 +78,8 @@ void visit_turns(const Trajectory& trajectory, const Delta& delta, double tolera
 /// Path from the first pose to each (metres).
 [[nodiscard]] std::vector<double> path_lengths(const Trajectory& trajectory);
 
-/// Error configuration: a negative delta, frames that are not whole or none, more than half a turn.
+/// Error configuration: a negative delta or more than 1e9, frames that are not whole or none, more than half
+/// a turn.
 [[nodiscard]] Result<void> check_delta(const Delta& delta);
 
 }  // namespace fusebench::trajectory_error

@@ -111,9 +111,10 @@ Result<TrajectoryError> errors_of_turns(Compared sides, Trajectory selecting, co
   const auto both = std::make_shared<const Compared>(std::move(sides));
   const auto turning = std::make_shared<const Trajectory>(std::move(selecting));
   result.streamed = [both, turning, options](const ValueVisitor& visit) {
-    visit_turns(*turning, options.delta, options.tolerance, [&](std::size_t i, std::size_t j) {
-      if (const auto error = error_of_motion(options.relation, *both, i, j)) visit(*error);
-    });
+    visit_turns(*turning, options.delta, options.tolerance, options.listing.most_compared,
+                [&](std::size_t i, std::size_t j) {
+                  if (const auto error = error_of_motion(options.relation, *both, i, j)) visit(*error);
+                });
   };
   result.stats = streamed_statistics(result.streamed);
   if (result.stats.count == 0) return without_errors(turning->size(), options, turns);
@@ -121,12 +122,15 @@ Result<TrajectoryError> errors_of_turns(Compared sides, Trajectory selecting, co
 }
 
 /// How many turns there are, where all pairs of poses could be more than are listed; 0 elsewhere.
-std::size_t count_turns(const Trajectory& selecting, const RelativeOptions& options) {
+Result<std::size_t> count_turns(const Trajectory& selecting, const RelativeOptions& options) {
   const std::size_t poses = selecting.size();
   const bool few = poses < 2 || (poses - 1) / 2 < options.listing.most / poses;
   if (options.selection != MotionSelection::all || !is_angle(options.delta.unit) || few) return 0;
   std::size_t turns = 0;
-  visit_turns(selecting, options.delta, options.tolerance, [&](std::size_t, std::size_t) { ++turns; });
+  const std::size_t compared =
+      visit_turns(selecting, options.delta, options.tolerance, options.listing.most_compared,
+                  [&](std::size_t, std::size_t) { ++turns; });
+  if (auto usual = check_compared(options.listing, compared); !usual) return tl::unexpected(usual.error());
   return turns;
 }
 
@@ -177,10 +181,11 @@ Result<TrajectoryError> relative_error(const trajectory_files::TrajectoryPair& p
   if (!sides) return tl::unexpected(sides.error());
   Trajectory selecting = options.from_reference ? with_poses(pair.reference, sides->reference)
                                                 : with_poses(pair.estimate, sides->estimate);
-  const std::size_t turns = count_turns(selecting, options);
-  if (auto listed = check_listing(options.listing, turns); !listed) return tl::unexpected(listed.error());
-  if (turns > options.listing.most)
-    return errors_of_turns(std::move(*sides), std::move(selecting), options, turns);
+  const Result<std::size_t> turns = count_turns(selecting, options);
+  if (!turns) return tl::unexpected(turns.error());
+  if (auto listed = check_listing(options.listing, *turns); !listed) return tl::unexpected(listed.error());
+  if (*turns > options.listing.most)
+    return errors_of_turns(std::move(*sides), std::move(selecting), options, *turns);
   const IndexPairs motions = options.selection == MotionSelection::all
                                  ? all_motions(selecting, options.delta, options.tolerance)
                                  : consecutive_motions(selecting, options.delta);

@@ -168,5 +168,77 @@ TEST(ManyMotions, TakeLittleMemory) {
   }
 }
 
+// The definitions, pose by pose.
+IndexPairs every_turn(const Trajectory& trajectory, double least_rad, double most_rad) {
+  IndexPairs pairs;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    for (std::size_t j = i + 1; j < trajectory.size(); ++j) {
+      const double angle_rad =
+          rotation_angle_rad(trajectory[i].T_world_camera.rotation, trajectory[j].T_world_camera.rotation);
+      if (angle_rad >= least_rad && angle_rad <= most_rad) pairs.emplace_back(i, j);
+    }
+  }
+  return pairs;
+}
+
+IndexPairs every_rpg_segment(const Trajectory& trajectory, double length_m) {
+  const std::vector<double> path_m = path_lengths(trajectory);
+  IndexPairs pairs;
+  for (std::size_t i = 0; i < path_m.size(); ++i) {
+    double least_m = 0.2 * length_m;
+    std::size_t best = path_m.size();
+    for (std::size_t j = i; j < path_m.size(); ++j) {
+      const double miss_m = std::abs(path_m[j] - (path_m[i] + length_m));
+      if (miss_m < least_m) {
+        least_m = miss_m;
+        best = j;
+      }
+    }
+    if (best < path_m.size()) pairs.emplace_back(i, best);
+  }
+  return pairs;
+}
+
+TEST(ManyMotions, AreFoundWithoutLookingAtAllPairs) {
+  Trajectory trajectory = wandering(1500).estimate;
+  // It stands still for a while: many poses of one path and one direction.
+  for (std::size_t i = 200; i < 260; ++i) trajectory[i].T_world_camera = trajectory[200].T_world_camera;
+  for (const double delta_deg : {0.5, 10.0, 60.0, 170.0}) {
+    for (const double tolerance : {0.01, 0.1, 1.0}) {
+      const double delta_rad = radians(delta_deg);
+      const IndexPairs wanted =
+          every_turn(trajectory, delta_rad - tolerance * delta_rad, delta_rad + tolerance * delta_rad);
+      IndexPairs found;
+      const std::size_t compared =
+          visit_turns(trajectory, {delta_deg, DeltaUnit::degrees}, tolerance, 10'000'000,
+                      [&](std::size_t i, std::size_t j) { found.emplace_back(i, j); });
+      EXPECT_EQ(found, wanted) << delta_deg << " deg, " << tolerance;
+      EXPECT_LT(compared, 1500U * 1499U / 2) << delta_deg << " deg, " << tolerance;
+    }
+  }
+  for (const double length_m : {0.001, 0.5, 4.0, 30.0, 70.0, 1000.0})
+    EXPECT_EQ(rpg_motions(trajectory, length_m, false), every_rpg_segment(trajectory, length_m)) << length_m;
+}
+
+TEST(ManyMotions, OfMorePairsThanCanBeLookedAtAreRefused) {
+  const Pair pair = wandering(150);
+  for (TrajectoryRequest request : {every_pose_to_every_pose(), all_turns(PoseRelation::translation)}) {
+    request.listing = {.most = 10, .needed = false, .most_compared = 2000};
+    const auto refused = evaluate(pair.truth, pair.estimate, request);
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, ErrorCode::usage);
+    EXPECT_NE(refused.error().message.find("(allowed: up to 2000)"), std::string::npos)
+        << refused.error().message;
+  }
+}
+
+TEST(MotionDelta, HasAnUpperLimit) {
+  for (const DeltaUnit unit : {DeltaUnit::frames, DeltaUnit::metres, DeltaUnit::seconds}) {
+    EXPECT_TRUE(check_delta({1e9, unit}));
+    EXPECT_FALSE(check_delta({1e10, unit}));
+    EXPECT_FALSE(check_delta({1e308, unit}));
+  }
+}
+
 }  // namespace
 }  // namespace fusebench
