@@ -195,19 +195,21 @@ void BandBlocks::find(const DepthImage& depth_m, const PinholeCamera& camera, co
   const double block_px = block_m * std::min(camera.fx_px, camera.fy_px) / depth.max_m;
   const int stride = block_px >= kFinePixels ? 4 : (block_px >= kFinePixels / 2 ? 2 : 1);
   const auto rows = static_cast<std::size_t>(depth_m.height);
+  const auto most = static_cast<std::size_t>(tsdf.max_blocks);
   chunks_.resize((rows + kRowsPerChunk - 1) / kRowsPerChunk);
   workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
     OrderedBlocks& blocks = chunks_[begin / kRowsPerChunk];
     blocks.clear();
     PixelSegments segments(camera, T_world_camera, block_m, tsdf, depth);
-    for (int y = static_cast<int>(begin) + taken_of(stride, frame_number); y < static_cast<int>(end);
-         y += stride) {
+    for (int y = static_cast<int>(begin) + taken_of(stride, frame_number);
+         y < static_cast<int>(end) && blocks.blocks().size() <= most; y += stride) {
       const int first = taken_of(stride, static_cast<std::uint32_t>(y / stride) + frame_number);
       segments.add_row(&depth_m.data[depth_m.index(0, y)], depth_m.width, y, first, stride, blocks);
     }
   });
   found_.clear();
   for (const OrderedBlocks& chunk : chunks_) {
+    if (found_.blocks().size() > most) break;
     for (const BlockIndex& index : chunk.blocks()) found_.add(index);
   }
 }

@@ -56,7 +56,8 @@ class BandBlocks {
   /// for its neighbours, every second one where it is half as wide: of a surface they may miss corners, half
   /// a block wide. Which pixels these are changes from row to row and with the number of the frame, so that a
   /// thin structure is not missed systematically. Single precision from the camera on: a ray that misses a
-  /// corner of a block by less than a micrometre may count as a hit.
+  /// corner of a block by less than a micrometre may count as a hit. Ends soon after more than
+  /// tsdf.max_blocks are found, which is more than the model can take.
   void find(const DepthImage& depth_m, const PinholeCamera& camera, const SE3& T_world_camera, double block_m,
             const config::TsdfConfig& tsdf, const config::DepthConfig& depth, std::uint32_t frame_number,
             const Workers& workers);

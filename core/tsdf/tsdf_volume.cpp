@@ -65,11 +65,13 @@ Result<void> TsdfVolume::allocate() {
     touched_slots_[i] = table_.find(touched[i]);
     if (touched_slots_[i] < 0) ++added;
   }
-  if (block_count() + added > static_cast<std::size_t>(config_.max_blocks)) {
+  const auto most = static_cast<std::size_t>(config_.max_blocks);
+  if (block_count() + added > most) {
+    const bool all_found = touched.size() <= most;
     return fail(ErrorCode::run_failed,
                 fmt::format("the model is full: tsdf.max_blocks = {}, and this "
-                            "frame needs {} more than the {} in use",
-                            config_.max_blocks, added, block_count()),
+                            "frame needs {}{} more than the {} in use",
+                            config_.max_blocks, all_found ? "" : "at least ", added, block_count()),
                 "raise tsdf.max_blocks (about 4 kB each), enlarge "
                 "tsdf.voxel_m, or lower depth.max_m");
   }

@@ -111,5 +111,21 @@ TEST(BandBlocks, AreTheSameForEveryNumberOfThreads) {
   EXPECT_EQ(first.blocks(), second.blocks());
 }
 
+TEST(BandBlocks, AreNotListedMuchBeyondWhatTheModelTakes) {
+  // A band of a metre of blocks of 8 mm: 200 of them along each ray.
+  TsdfConfig tsdf{.voxel_m = 0.001, .truncation_m = 0.8};
+  const DepthImage depth_m = step_and_wall();
+  const double block_m = 8 * tsdf.voxel_m;
+  const auto found = [&](int most) {
+    tsdf.max_blocks = most;
+    return found_blocks(depth_m, block_m, tsdf, DepthConfig{}).size();
+  };
+  const std::size_t all = found(4'000'000);
+  EXPECT_GT(all, 100'000U);
+  EXPECT_EQ(found(static_cast<int>(all)), all);
+  EXPECT_GT(found(1), 1U) << "too many, so that the model refuses the frame";
+  EXPECT_LT(found(1), all / 5) << "the rest of a row, and of the first rows";
+}
+
 }  // namespace
 }  // namespace fusebench
