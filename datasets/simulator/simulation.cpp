@@ -257,6 +257,8 @@ void remove_noise(SimulationOptions& options) {
   options.depth_errors = {};
 }
 
+Result<void> check_simulation(const SimulationOptions& options) { return check_options(options); }
+
 Result<SimulationReport> simulate(const SimulationOptions& options, const fs::path& out,
                                   const Workers& workers, const SimulationControl& control) {
   if (const auto valid = check_options(options); !valid) return tl::unexpected(valid.error());

@@ -102,6 +102,9 @@ struct SimulationControl {
   const std::atomic<bool>* stop = nullptr;  ///< leave early, with an error
 };
 
+/// What can be said against options before anything is read or made. Error configuration.
+[[nodiscard]] Result<void> check_simulation(const SimulationOptions& options);
+
 /// Writes a recording atomically. The same options make the same bytes, with any number of threads. A folder
 /// that exists is left alone if its simulation.toml has the same identity (reused), and is an error
 /// otherwise. Errors: configuration (an option out of range), data_missing and data_corrupt (scene or

@@ -6,7 +6,11 @@ namespace fusebench::engine {
 
 BatchLedger::BatchLedger(std::span<const BatchJob> jobs, const EngineOptions& options,
                          const EngineControl& control)
-    : jobs_(jobs), options_(options), control_(control), outcomes_(jobs.size()) {
+    : jobs_(jobs),
+      options_(options),
+      control_(control),
+      outcomes_(jobs.size()),
+      opened_(options.limits, control.stop) {
   state_.jobs = jobs.size();
 }
 
@@ -16,6 +20,7 @@ Result<std::optional<run::PreparedRun>> BatchLedger::unfinished_run(std::size_t 
   const BatchJob& job = jobs_[index];
   const Result<recording::Recording>& recording = opened_.of(job.spec);
   if (!recording) {
+    if (is_stopped()) return std::nullopt;  // it may have been the opening that was
     if (auto ended = end_unopened(index, recording.error()); !ended) return tl::unexpected(ended.error());
     return std::nullopt;
   }

@@ -299,6 +299,25 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
   return {};
 }
 
+/// Before the runs are made: each holds its whole configuration.
+Result<void> check_count(const Common& common, const std::vector<Planned>& recordings) {
+  const suites::Suite& suite = common.suite;
+  const auto many = [](std::size_t count) { return static_cast<double>(count); };
+  double runs = 0;
+  for (const Planned& recording : recordings) {
+    const auto wanted_variants = std::ranges::count_if(recording.variants, [&](const std::string& variant) {
+      return variant_may_be_wanted(common.options.only, variant);
+    });
+    runs += static_cast<double>(wanted_variants) * many(common.points.size()) + many(common.programs.size());
+  }
+  runs *= many(std::max<std::size_t>(1, suite.windows.size())) * static_cast<double>(suite.repetitions);
+  if (runs <= many(suites::kMostRuns)) return {};
+  return fail(
+      ErrorCode::configuration,
+      fmt::format("suite '{}' has {:.0f} runs (allowed: up to {})", suite.name, runs, suites::kMostRuns),
+      "take fewer points, windows, variants or repetitions, or a part of it at a time (--only)");
+}
+
 /// In the order of the plan: windows, then repetitions, then the runs.
 void multiply(const Common& common, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
   const suites::Suite& suite = common.suite;
@@ -346,6 +365,7 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
 
   const auto recordings = recordings_of(suite, options);
   if (!recordings) return tl::unexpected(recordings.error());
+  if (auto few = check_count(common, *recordings); !few) return tl::unexpected(few.error());
   BatchPlan plan;
   for (const auto& program : common.programs) {
     if (!program->absent.empty()) plan.absent.push_back(program->name + ": " + program->absent);

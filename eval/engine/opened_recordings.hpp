@@ -1,26 +1,40 @@
 // Recordings that several runs share.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/base/error.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/run/run.hpp"
+#include "eval/suites/run_selection.hpp"
 
 namespace fusebench::engine {
 
-/// The recording that was asked for last, in each form in which runs see it (window, IMU): jobs over one
-/// recording stand together, and reading its lists and fingerprinting its images once is enough.
+/// The recording that was asked for last, as it is and in each form in which runs over the window that was
+/// asked for last see it: jobs over one recording stand together, those over one window as well, and reading
+/// its lists and fingerprinting its images once is enough.
 class OpenedRecordings {
  public:
-  /// As open_for_run(). Valid until another recording is asked for.
+  /// Each recording is first tried in a child within these limits (try_opening()).
+  explicit OpenedRecordings(const suites::RunLimits& limits, const std::atomic<bool>* stop = nullptr)
+      : limits_(limits), stop_(stop) {}
+
+  /// As open_for_run(), with the errors of try_opening() as well. Valid until the next call.
   [[nodiscard]] const Result<recording::Recording>& of(const run::RunSpec& spec);
 
  private:
+  void open(const run::RunSpec& spec);
+
+  suites::RunLimits limits_;
+  const std::atomic<bool>* stop_;
   std::filesystem::path recording_;
-  std::map<std::string, Result<recording::Recording>> opened_;
+  std::optional<Result<recording::Recording>> whole_;
+  std::string window_;
+  std::map<std::string, Result<recording::Recording>> views_;  ///< by the IMU that is wanted
 };
 
 }  // namespace fusebench::engine

@@ -95,7 +95,7 @@ std::string summary(const PlanPreview& preview, const BatchPlan& plan, int at_on
 PlanPreview preview_of(const BatchPlan& plan) {
   PlanPreview preview;
   KnownTimes times;
-  OpenedRecordings opened;
+  OpenedRecordings opened(suites::RunLimits{});
   std::vector<std::size_t> frames;
   for (const BatchJob& job : plan.jobs) {
     Seen seen = look_at(job, opened, times);

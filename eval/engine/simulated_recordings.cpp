@@ -71,6 +71,19 @@ process::JobEnd wait_for(process::ForkedJob& process, const SimulatingControl& c
 
 }  // namespace
 
+Result<void> check_simulations(const std::vector<BatchJob>& jobs) {
+  for (const BatchJob* job : recordings_of(jobs)) {
+    const auto checked = suites::simulation_options(*job->simulation).and_then(simulator::check_simulation);
+    if (!checked) {
+      return fail(
+          checked.error().code,
+          fmt::format("recording '{}': {}", job->recording.filename().string(), checked.error().message),
+          checked.error().hint);
+    }
+  }
+  return {};
+}
+
 Result<void> make_simulated_recordings(const std::vector<BatchJob>& jobs, int threads,
                                        const SimulatingControl& control) {
   const std::vector<const BatchJob*> recordings = recordings_of(jobs);

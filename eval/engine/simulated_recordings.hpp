@@ -21,6 +21,10 @@ struct SimulatingControl {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// What can be said against the simulations of these jobs before anything is made. Error configuration, with
+/// the recording's name.
+[[nodiscard]] Result<void> check_simulations(const std::vector<BatchJob>& jobs);
+
 /// Each recording once, in the order of the jobs; one that is there is left as it is. Each is made in a
 /// process of its own, so that this one keeps its single thread. Errors: those of simulate(), with the
 /// recording's name; the recordings before it stay.

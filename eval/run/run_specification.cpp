@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <utility>
 
 #include "core/config/variants.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
@@ -65,19 +66,21 @@ Result<void> select_window(recording::Recording& recording, const FrameWindow& w
   return recording::select_frames(recording, window.begin, window.end.value_or(recording.frames.size()));
 }
 
-Result<recording::Recording> open_for_run(const RunSpec& spec) {
-  auto recording = datasets::open_recording(spec.recording, spec.open);
-  if (!recording) return recording;
+Result<recording::Recording> view_for_run(recording::Recording whole, const RunSpec& spec) {
   if (spec.frames) {
-    if (auto cut = select_window(*recording, *spec.frames); !cut) {
-      return tl::unexpected(cut.error());
-    }
+    if (auto cut = select_window(whole, *spec.frames); !cut) return tl::unexpected(cut.error());
   }
-  if (recording->frames.empty()) {
-    return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
+  if (whole.frames.empty()) {
+    return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", whole.name));
   }
-  if (auto provided = provide_imu(*recording, spec); !provided) return tl::unexpected(provided.error());
-  return recording;
+  if (auto provided = provide_imu(whole, spec); !provided) return tl::unexpected(provided.error());
+  return whole;
+}
+
+Result<recording::Recording> open_for_run(const RunSpec& spec) {
+  auto whole = datasets::open_recording(spec.recording, spec.open);
+  if (!whole) return whole;
+  return view_for_run(std::move(*whole), spec);
 }
 
 }  // namespace fusebench::run

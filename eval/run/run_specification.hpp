@@ -61,9 +61,11 @@ struct RunSpec {
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);
 
-/// The recording as a run of that specification sees it: opened, cut to the window, with its IMU. Errors:
-/// those of open_recording, select_frames and add_synthetic_imu; usage if the variant needs an IMU and there
-/// is none.
+/// An opened recording as a run of that specification sees it: cut to the window, with its IMU. Errors: those
+/// of select_frames and add_synthetic_imu; usage if the variant needs an IMU and there is none.
+[[nodiscard]] Result<recording::Recording> view_for_run(recording::Recording whole, const RunSpec& spec);
+
+/// open_recording() and view_for_run().
 [[nodiscard]] Result<recording::Recording> open_for_run(const RunSpec& spec);
 
 }  // namespace fusebench::run

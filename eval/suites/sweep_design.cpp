@@ -16,7 +16,7 @@ namespace fusebench::suites {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1'000'000;
+constexpr std::size_t kMostPoints = kMostRuns;
 constexpr std::array<std::pair<std::string_view, SweepDesign>, 4> kDesigns = {
     {{"grid", SweepDesign::grid},
      {"zip", SweepDesign::zip},
@@ -172,8 +172,8 @@ double rounded(double value) {
   return result;
 }
 
-/// The value of an axis at a share (0 to 1) of its range or list.
-config::OptionValue value_at(const SweepAxis& axis, double share) {
+/// The value of an axis at a share (0 to 1) of its range or list; whole: its option is an integer.
+config::OptionValue value_at(const SweepAxis& axis, bool whole, double share) {
   if (!axis.range) {
     const auto size = static_cast<double>(axis.values.size());
     return axis.values[std::min(static_cast<std::size_t>(share * size), axis.values.size() - 1)];
@@ -181,15 +181,17 @@ config::OptionValue value_at(const SweepAxis& axis, double share) {
   const SweepAxis::Range& range = *axis.range;
   const double value = range.log ? range.from * std::pow(range.to / range.from, share)
                                  : range.from + share * (range.to - range.from);
-  if (is_integer_option(axis.key)) return static_cast<std::int64_t>(std::llround(value));
+  if (whole) return static_cast<std::int64_t>(std::llround(value));
   return rounded(value);
 }
 
 std::vector<config::OptionValue> values_of(const SweepAxis& axis) {
   if (!axis.range) return axis.values;
   std::vector<config::OptionValue> values;
+  const bool whole = is_integer_option(axis.key);
   for (std::size_t i = 0; i < axis.range->steps; ++i)
-    values.push_back(value_at(axis, static_cast<double>(i) / static_cast<double>(axis.range->steps - 1)));
+    values.push_back(
+        value_at(axis, whole, static_cast<double>(i) / static_cast<double>(axis.range->steps - 1)));
   return values;
 }
 
@@ -221,6 +223,7 @@ std::vector<SweepPoint> drawn_points(const SweepBlock& block) {
   std::mt19937_64 random(block.seed);
   std::vector<SweepPoint> points(block.samples);
   for (const SweepAxis& axis : block.axes) {
+    const bool whole = is_integer_option(axis.key);
     std::vector<std::size_t> parts(block.samples);
     for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = i;
     for (std::size_t i = parts.size(); i > 1; --i) std::swap(parts[i - 1], parts[random() % i]);
@@ -229,7 +232,7 @@ std::vector<SweepPoint> drawn_points(const SweepBlock& block) {
           block.design == SweepDesign::random
               ? unit(random)
               : (static_cast<double>(parts[i]) + unit(random)) / static_cast<double>(block.samples);
-      points[i].emplace_back(axis.key, value_at(axis, share));
+      points[i].emplace_back(axis.key, value_at(axis, whole, share));
     }
   }
   return points;
@@ -299,7 +302,7 @@ Result<std::vector<SweepPoint>> sweep_points(const std::vector<SweepBlock>& bloc
   for (const SweepBlock& block : blocks) count *= count_of(block);
   if (count > static_cast<double>(kMostPoints)) {
     return fail(ErrorCode::configuration,
-                fmt::format("the sweep has {:.3g} points (allowed: up to {})", count, kMostPoints),
+                fmt::format("the sweep has {:.0f} points (allowed: up to {})", count, kMostPoints),
                 "a latin-hypercube design covers many options with few points");
   }
   std::vector<SweepPoint> points = {{}};

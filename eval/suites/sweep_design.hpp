@@ -17,6 +17,9 @@
 
 namespace fusebench::suites {
 
+/// Of one plan, and so points of its sweeps. A plan is held in memory and looked through as a whole.
+inline constexpr std::size_t kMostRuns = 100'000;
+
 /// One option of a sweep: the values that are tried, or the range that they are drawn from.
 struct SweepAxis {
   struct Range {
@@ -66,7 +69,7 @@ using SweepPoint = std::vector<std::pair<std::string, config::OptionValue>>;
 
 /// All points, the same for the same blocks on every machine. A single empty point without blocks. Numbers
 /// that are computed have six significant digits; those of integer options are rounded. Points that are then
-/// equal appear once. Error configuration for more than a million.
+/// equal appear once. Error configuration for more than kMostRuns.
 [[nodiscard]] Result<std::vector<SweepPoint>> sweep_points(const std::vector<SweepBlock>& blocks);
 
 /// "iekf.max_iterations=4 tsdf.voxel_m=0.01"; empty of the empty point.

@@ -10,6 +10,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/engine_console.hpp"
 #include "eval/cli/running/suite_conclusion.hpp"
+#include "eval/engine/simulated_recordings.hpp"
 #include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::running {
@@ -85,6 +86,8 @@ Result<int> run_suite(BenchOptions options) {
   if (auto sensible = set_executor(options); !sensible) return tl::unexpected(sensible.error());
   const auto plan = engine::plan_batch(*suite, batch);
   if (!plan) return tl::unexpected(plan.error());
+  if (auto sensible = engine::check_simulations(plan->jobs); !sensible)
+    return tl::unexpected(sensible.error());
   for (const std::string& warning : plan->warnings) console::print_progress("warning: " + warning);
   if (options.controls.dry_run) {
     print_preview(*plan, options.controls);

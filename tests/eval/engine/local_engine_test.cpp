@@ -135,6 +135,35 @@ TEST_F(LocalEngineTest, ImagesThatChangeDuringASweepEndRunsAsFailedAndAreRunAgai
   }
 }
 
+TEST_F(LocalEngineTest, ARecordingIsOpenedOnceForAllItsWindows) {
+  BatchPlan planned = plan();
+  planned.jobs.push_back(planned.jobs[0]);
+  planned.jobs.back().spec.frames = FrameWindow{2, 4};
+  EngineControl control;
+  control.finished = [&](std::size_t index, const BatchOutcome&) {
+    if (index == 0) fs::remove(folder_ / "data" / "freiburg1_walk" / "rgb.txt");
+  };
+  const auto outcomes = run_locally(planned.jobs, {}, control);
+  ASSERT_TRUE(outcomes.has_value());
+  for (const BatchOutcome& outcome : *outcomes) EXPECT_EQ(outcome.status, RunStatus::ok) << outcome.reason;
+}
+
+TEST_F(LocalEngineTest, APlanOfTooManyRunsIsRefusedBeforeItIsMade) {
+  const fs::path file =
+      write("many.toml",
+            "name = \"many\"\nrecordings = [\"freiburg1_walk\"]\nvariants = [\"full\", \"dm\"]\n"
+            "repetitions = 100\n[[sweep]]\niekf.max_iterations = [1, 2, 3, 4, 5, 6]\n"
+            "[[sweep]]\ndesign = \"random\"\nsamples = 90\n"
+            "tsdf.voxel_m = { from = 0.01, to = 0.02 }\n");
+  static_cast<void>(plan());  // makes the recording
+  BatchOptions options;
+  options.data = folder_ / "data";
+  const auto refused = plan_batch(*read_suite(file), options);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::configuration);
+  EXPECT_EQ(refused.error().message, "suite 'many' has 108000 runs (allowed: up to 100000)");
+}
+
 TEST_F(LocalEngineTest, OnlyFailedRunsLeavesTheRestAlone) {
   const BatchPlan three = plan(kThree);
   const std::vector<BatchJob> first(three.jobs.begin(), three.jobs.begin() + 1);

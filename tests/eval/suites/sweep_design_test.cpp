@@ -134,10 +134,10 @@ TEST(SweepDesign, WhatMakesNoSenseIsRefusedWithItsLine) {
       "[[sweep]]\ndesign = \"random\"\nsamples = 3\ntsdf.voxel_m = { from = 0.01, to = 0.02, steps = 3 }\n",
       "has steps");
   expect_refused("[[sweep]]\ntsdf.voxel_m = [0.01, 99.0]\n", "s.toml:2");
-  const auto blocks =
-      read_sweep("[[sweep]]\ndesign = \"random\"\nsamples = 10000000\ntsdf.voxel_m = [0.01]\n");
+  const auto blocks = read_sweep("[[sweep]]\ndesign = \"random\"\nsamples = 100001\ntsdf.voxel_m = [0.01]\n");
   ASSERT_TRUE(blocks.has_value());
   EXPECT_EQ(sweep_points(*blocks).error().code, ErrorCode::configuration);
+  EXPECT_EQ(sweep_points(*blocks).error().message, "the sweep has 100001 points (allowed: up to 100000)");
 }
 
 }  // namespace
