@@ -102,9 +102,9 @@ class Blocks {
     for (double& value : rows) value = number(name);
     const auto T = rigid_transform(rows);
     if (!T) complain(fmt::format("{} is no rigid transform ({})", name, kRigidTransformRule));
-    if (T && T->translation.cwiseAbs().maxCoeff() > 1000)
-      complain(fmt::format("{} has a translation of {:g} m (allowed up to 1000 m)", name,
-                           T->translation.cwiseAbs().maxCoeff()));
+    if (T && T->translation.cwiseAbs().maxCoeff() > kMostLeverArm_m)
+      complain(fmt::format("{} has a translation of {:g} m (allowed up to {} m)", name,
+                           T->translation.cwiseAbs().maxCoeff(), kMostLeverArm_m));
     return T.value_or(SE3{});
   }
 

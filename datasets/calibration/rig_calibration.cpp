@@ -48,7 +48,6 @@ constexpr Range kWalk{0, 100};
 constexpr Range kReadout{0, 1};
 constexpr Range kOffset{-10, 10};
 constexpr Range kScale{0.5, 2};
-constexpr double kMaxTranslation_m = 1000;  // between sensors of one rig
 
 /// One of the three tables: its entries by key, and the first error.
 class Section {
@@ -124,9 +123,9 @@ class Section {
     const std::vector<double> xyz = numbers(key, 3);
     if (xyz.empty()) return Vector3d::Zero();
     const Vector3d offset_m(xyz[0], xyz[1], xyz[2]);
-    if (offset_m.cwiseAbs().maxCoeff() > kMaxTranslation_m) {
+    if (offset_m.cwiseAbs().maxCoeff() > kMostLeverArm_m) {
       report(fmt::format("{}: {} has a component of {:g} m (allowed up to {} m)", entries_.at(key)->place,
-                         entries_.at(key)->key, offset_m.cwiseAbs().maxCoeff(), kMaxTranslation_m),
+                         entries_.at(key)->key, offset_m.cwiseAbs().maxCoeff(), kMostLeverArm_m),
              "offsets are in metres");
     }
     return offset_m;
@@ -154,9 +153,9 @@ class Section {
       report(fmt::format("{}: {} is no rigid transform", entries_.at(key)->place, entries_.at(key)->key),
              fmt::format("a matrix is {}, translation in metres", kRigidTransformRule));
     }
-    if (T && T->translation.cwiseAbs().maxCoeff() > kMaxTranslation_m) {
+    if (T && T->translation.cwiseAbs().maxCoeff() > kMostLeverArm_m) {
       report(fmt::format("{}: {} has a translation of {:g} m (allowed up to {} m)", entries_.at(key)->place,
-                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMaxTranslation_m),
+                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMostLeverArm_m),
              "translations are in metres");
     }
     return T.value_or(SE3{});
@@ -245,8 +244,8 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
     section.complain("[imu] T_imu_depth needs a depth camera of its own ([depth] with T_color_depth)");
   } else {
     imu.T_imu_camera = section.transform("T_imu_depth") * depth->T_color_depth.inverse();
-    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMaxTranslation_m)
-      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMaxTranslation_m));
+    if (imu.T_imu_camera.translation.cwiseAbs().maxCoeff() > kMostLeverArm_m)
+      section.complain(fmt::format("the IMU lies more than {} m from the colour camera", kMostLeverArm_m));
   }
   imu.noise.gyroscope_radps_sqrthz = section.number("gyroscope_noise_radps_sqrthz", kWhiteNoise);
   imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);
@@ -265,6 +264,8 @@ std::optional<SE3> rigid_transform(std::span<const double, 12> rows) {
   R << rows[0], rows[1], rows[2], rows[4], rows[5], rows[6], rows[8], rows[9], rows[10];
   const double skew = (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(skew < 1e-3 && R.determinant() > 0)) return std::nullopt;
+  const double farthest_m = std::max({std::abs(rows[3]), std::abs(rows[7]), std::abs(rows[11])});
+  if (!(farthest_m <= kMostTranslation_m)) return std::nullopt;
   const Eigen::JacobiSVD<Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
   return SE3{Quaterniond(nearest).normalized(), {rows[3], rows[7], rows[11]}};

@@ -65,7 +65,13 @@ struct RigCalibration {
 };
 
 inline constexpr std::string_view kRigidTransformRule =
-    "[R | t] row by row, R orthonormal within 1e-3 with determinant +1";
+    "[R | t] row by row, R orthonormal within 1e-3 with determinant +1, t up to 1e8 m";
+
+/// Between sensors of one rig: more is another unit, or damaged.
+inline constexpr double kMostLeverArm_m = 1000;
+
+/// Of any pose in metres, also in the coordinates of a map: beyond, doubles no longer tell micrometres apart.
+inline constexpr double kMostTranslation_m = 1e8;
 
 /// A row-major 3x4 matrix as a rigid transform. Published matrices are rounded, so the nearest rotation is
 /// taken. Nothing if the matrix breaks kRigidTransformRule.

@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace fusebench::recording {
 
 Result<void> check_read_options(const ReadOptions& options) {
-  if (options.depth_units_per_metre &&
-      !(*options.depth_units_per_metre > 0 && std::isfinite(*options.depth_units_per_metre))) {
+  // As in calibration.toml.
+  if (const auto& units = options.depth_units_per_metre; units && !(*units >= 1e-3 && *units <= 1e6)) {
     return fail(ErrorCode::configuration,
-                fmt::format("depth_units_per_metre = {} (allowed: above 0)", *options.depth_units_per_metre));
+                fmt::format("depth_units_per_metre = {} (allowed: 0.001 to 1e6)", *units));
   }
   if (!(options.max_difference_s > 0 && options.max_difference_s <= 1)) {
     return fail(ErrorCode::configuration,

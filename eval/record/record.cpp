@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "core/io/input_file.hpp"
 #include "eval/record/histogram_json.hpp"
@@ -224,7 +227,9 @@ std::optional<PoseKind> parse_pose_kind(std::string_view text) {
   return std::nullopt;
 }
 
-std::string to_json(const RunRecord& record) {
+namespace {
+
+Json document_of(const RunRecord& record) {
   Json json = {
       {"schema", record.schema},
       {"status", to_string(record.status)},
@@ -254,7 +259,43 @@ std::string to_json(const RunRecord& record) {
                        {"version", record.program->version},
                        {"seed", record.program->seed}};
   }
-  return text::json_text(json) + "\n";
+  return json;
+}
+
+/// Metrics whose numbers are NaN where no frame has any, which is null in the document.
+constexpr std::array<std::string_view, 3> kMayHaveNone = {"aie", "intensity_readings", "residuals"};
+
+/// Place and value of the first number that is infinite, or NaN where that does not mean none
+/// ("metrics.ate.stats.rmse = nan"); empty if there is none.
+std::string not_finite(const Json& json, const std::string& place = {}, bool none_allowed = false) {
+  if (json.is_number_float()) {
+    const double value = json.get<double>();
+    const bool good = std::isfinite(value) || (none_allowed && std::isnan(value));
+    return good ? std::string() : fmt::format("{} = {}", place, value);
+  }
+  if (!json.is_structured()) return {};
+  for (const auto& [key, value] : json.items()) {
+    const bool allowed = none_allowed || std::ranges::find(kMayHaveNone, key) != kMayHaveNone.end();
+    const std::string found = not_finite(value, place.empty() ? key : place + "." + key, allowed);
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string to_json(const RunRecord& record) { return text::json_text(document_of(record)) + "\n"; }
+
+void fail_if_not_finite(RunRecord& record) {
+  const std::string number = not_finite(document_of(record));
+  if (number.empty()) return;
+  record.status = RunStatus::failed;
+  record.reason = fmt::format("{}{}{} is no finite number: the record is left without metrics", record.reason,
+                              record.reason.empty() ? "" : "; ", number);
+  record.metrics = {};
+  record.final_metrics.reset();
+  record.loops.reset();
+  record.sensors.clear();
 }
 
 std::string no_json(std::string_view text, std::size_t byte) {

@@ -213,6 +213,10 @@ struct RunRecord {
   RecordedProvenance provenance;
 };
 
+/// A record of a number that is NaN or infinite becomes that of a failed run without metrics, whose reason has
+/// the number's place ("metrics.ate.stats.rmse = nan"): JSON has no such numbers, and nobody could compare them.
+void fail_if_not_finite(RunRecord& record);
+
 /// JSON with two blanks of indentation. Everything outside `timing` and `provenance` depends on the inputs
 /// alone. Statistics are SI; numbers that do not exist are null, with a reason beside them.
 [[nodiscard]] std::string to_json(const RunRecord& record);

@@ -64,6 +64,7 @@ Result<void> commit_run(io::StagedFolder& folder, record::RunRecord& record, std
     const bool varies = file.name == "frames.csv" || file.name == profile::kTraceFile || file.name == varying;
     (varies ? record.timing.files : record.files).push_back(std::move(file));
   }
+  record::fail_if_not_finite(record);
   if (auto written = folder.write(kRecordName, record::to_json(record)); !written) return written;
   return folder.commit();
 }

@@ -31,6 +31,11 @@ Result<SE3> pose_in_body(const SensorYaml& yaml) {
   const auto rows = yaml.numbers("T_BS.data", 16);
   if (!rows) return tl::unexpected(rows.error());
   const auto T = calibration::rigid_transform(std::span(*rows).first<12>());
+  if (T && T->translation.cwiseAbs().maxCoeff() > calibration::kMostLeverArm_m) {
+    return yaml.fail_at("T_BS.data",
+                        fmt::format("T_BS has a translation of {:g} m (allowed up to {} m)",
+                                    T->translation.cwiseAbs().maxCoeff(), calibration::kMostLeverArm_m));
+  }
   if (T) return *T;
   return yaml.fail_at("T_BS.data",
                       fmt::format("T_BS is no rigid transform ({})", calibration::kRigidTransformRule));

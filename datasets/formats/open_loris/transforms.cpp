@@ -29,6 +29,12 @@ Result<calibration::FrameTree> read_transforms(const std::filesystem::path& file
       return yaml->fail_at(item + "matrix.data", fmt::format("the matrix is no rigid transform ({})",
                                                              calibration::kRigidTransformRule));
     }
+    if (T_parent_child->translation.cwiseAbs().maxCoeff() > calibration::kMostLeverArm_m) {
+      return yaml->fail_at(
+          item + "matrix.data",
+          fmt::format("the matrix has a translation of {:g} m (allowed up to {} m)",
+                      T_parent_child->translation.cwiseAbs().maxCoeff(), calibration::kMostLeverArm_m));
+    }
     tree.add(*parent, *child, *T_parent_child);
   }
   return tree;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -371,6 +372,33 @@ TEST(RecordSchema, FindsWhatDoesNotFit) {
   json without = whole;
   without["recording"].erase("fingerprint");
   EXPECT_EQ(schema.violations(without), Violations{"/recording: lacks fingerprint"});
+}
+
+TEST(Record, OfANumberThatIsNotFiniteIsThatOfAFailedRun) {
+  RunRecord sound = sample_record();
+  fail_if_not_finite(sound);
+  EXPECT_EQ(sound.status, RunStatus::ok) << sound.reason << "; AIE of no accepted patch is none";
+  EXPECT_EQ(to_json(sound), to_json(sample_record()));
+
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double wrong : {std::nan(""), inf, -inf}) {
+    RunRecord record = sample_record();
+    record.metrics.ate.value->stats.rmse = wrong;
+    fail_if_not_finite(record);
+    EXPECT_EQ(record.status, RunStatus::failed);
+    EXPECT_TRUE(record.reason.starts_with("metrics.ate.")) << record.reason;
+    EXPECT_NE(record.reason.find(fmt::format("rmse = {} is no finite number", wrong)), std::string::npos)
+        << record.reason;
+    EXPECT_FALSE(record.metrics.ate.value);
+    const auto again = parse_record(to_json(record), "record.json");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->reason, record.reason);
+  }
+  RunRecord scattered = sample_record();
+  scattered.metrics.residuals = {metrics::ResidualSummary{}, {}};
+  scattered.metrics.residuals.value->chi2_photometric = inf;
+  fail_if_not_finite(scattered);
+  EXPECT_TRUE(scattered.reason.starts_with("metrics.residuals.")) << scattered.reason;
 }
 
 }  // namespace
