@@ -6,13 +6,14 @@
 namespace fusebench::config {
 
 /// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures), and which intensity
-/// errors are recorded.
+/// errors are recorded; and when a run that went to its end has nothing to say.
 struct EvaluationConfig {
   double silent_interval_s = 1.0;
   double silent_translation_m = 0.05;
   double silent_rotation_deg = 3.0;
   bool intensity_readings = false;
   bool pose_intensity = false;
+  double min_tracked_share = 0.25;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
@@ -26,6 +27,9 @@ struct EvaluationConfig {
     v.flag("pose_intensity", self.pose_intensity,
            "also record the intensity error of the poses alone, which every system has (docs/metrics.md); "
            "the images are read once more");
+    v.number("min_tracked_share", self.min_tracked_share, 0.0, 1.0,
+             "a run that tracks a smaller share of its frames is lost, also where iekf.max_lost_frames never "
+             "ended it");
   }
 };
 

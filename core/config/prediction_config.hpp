@@ -76,9 +76,10 @@ struct InitialisationConfig {
     v.number("accelerometer_bias_sigma_mps2", self.accelerometer_bias_sigma_mps2, 0.0, 5.0,
              "accelerometer bias prior (the raw axes of a ZR300 are off by up to 0.3 m/s^2)");
     v.number(
-        "imu_time_offset_sigma_s", self.imu_time_offset_sigma_s, 0.0, 0.5,
+        "imu_time_offset_sigma_s", self.imu_time_offset_sigma_s, 0.0, 0.1,
         "prior of the offset between the clocks of IMU and camera (7 ms is typical of a ZR300); 0 trusts the "
-        "stamps");
+        "stamps; an offset of tenths of a second is for `fusebench calibrate` to find and for "
+        "calibration.toml to say");
     v.number("false_start_frames", self.false_start_frames, 1, 1000,
              "if no frame was tracked yet, a lost frame of sound images starts the run again after so many "
              "lost ones in all, since the first frame was of no use; a few, so that relocalisation has its "

@@ -87,6 +87,16 @@ void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOut
   }
 }
 
+/// A run that went to its end: a first frame alone is tracked in the dark, too.
+void end_if_hardly_tracked(RunProgress& progress, const config::EvaluationConfig& config) {
+  const record::RecordedFrames& frames = progress.frames;
+  const double least = config.min_tracked_share * static_cast<double>(frames.total);
+  if (progress.status != record::RunStatus::ok || static_cast<double>(frames.tracked) >= least) return;
+  progress.end(record::RunStatus::lost,
+               fmt::format("only {} of {} frames tracked (evaluation.min_tracked_share = {})", frames.tracked,
+                           frames.total, config.min_tracked_share));
+}
+
 bool is_bad_data(const Error& error) {
   return error.code == ErrorCode::data_missing || error.code == ErrorCode::data_corrupt;
 }
@@ -186,6 +196,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
   }
   if (progress.status == record::RunStatus::ok && progress.frames.tracked == 0)
     progress.end(record::RunStatus::lost, "no frame could be used as the first one (see log.txt)");
+  end_if_hardly_tracked(progress, run.spec.config.values.evaluation);
   if (*intensity) {
     if (auto finished = (*intensity)->finish(); !finished) return tl::unexpected(finished.error());
   }

@@ -452,6 +452,20 @@ TEST_F(RunTest, ARecordingWithoutAUsableFrameIsLost) {
   EXPECT_EQ(record->frames.lost, 5U);
 }
 
+TEST_F(RunTest, ARunThatHardlyTracksIsLost) {
+  auto prepared = prepare_run(spec("no-imu"));
+  ASSERT_TRUE(prepared.has_value());
+  darken_before(prepared->recording, 4);  // the last frame is a first frame, which is tracked for sure
+  const auto lost = execute_run(*prepared);
+  ASSERT_TRUE(lost.has_value());
+  EXPECT_EQ(lost->status, RunStatus::lost);
+  EXPECT_EQ(lost->reason, "only 1 of 5 frames tracked (evaluation.min_tracked_share = 0.25)");
+  prepared->spec.config.values.evaluation.min_tracked_share = 0.2;
+  const auto ok = execute_run(*prepared);
+  ASSERT_TRUE(ok.has_value());
+  EXPECT_EQ(ok->status, RunStatus::ok) << ok->reason;
+}
+
 /// While it lives, no file can grow beyond 8 kB.
 class FullDisk {
  public:
