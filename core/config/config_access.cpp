@@ -48,6 +48,15 @@ std::string choice_names() {
   return fmt::format("{}", fmt::join(names, " | "));
 }
 
+template <class Enum>
+std::string choice_text(const Enum& value) {
+  std::string_view current;
+  for (const auto& [name, candidate] : option_choices(Enum{})) {
+    if (candidate == value) current = name;
+  }
+  return to_toml(OptionValue{std::string(current)});
+}
+
 struct DescribeVisitor : GroupWalker<DescribeVisitor> {
   std::vector<OptionRow> rows;
 
@@ -62,12 +71,29 @@ struct DescribeVisitor : GroupWalker<DescribeVisitor> {
   }
   template <class Enum>
   void choice(std::string_view key, const Enum& value, std::string_view sentence) {
-    std::string_view current;
-    for (const auto& [name, candidate] : option_choices(Enum{})) {
-      if (candidate == value) current = name;
-    }
-    rows.push_back({full_key(key), "choice", to_toml(OptionValue{std::string(current)}), choice_names<Enum>(),
-                    std::string(sentence)});
+    rows.push_back(
+        {full_key(key), "choice", choice_text(value), choice_names<Enum>(), std::string(sentence)});
+  }
+};
+
+/// Keys and values as DescribeVisitor has them, without the rest: every run of a plan needs its hash.
+struct HashVisitor : GroupWalker<HashVisitor> {
+  io::Fingerprint fingerprint;
+
+  template <class Number>
+  void number(std::string_view key, const Number& value, std::type_identity_t<Number>,
+              std::type_identity_t<Number>, std::string_view) {
+    add(key, number_text(value));
+  }
+  void flag(std::string_view key, const bool& value, std::string_view) { add(key, value ? "true" : "false"); }
+  template <class Enum>
+  void choice(std::string_view key, const Enum& value, std::string_view) {
+    add(key, choice_text(value));
+  }
+
+ private:
+  void add(std::string_view key, std::string_view value) {
+    fingerprint.add(fmt::format("{}{}={}\n", prefix, key, value));
   }
 };
 
@@ -279,15 +305,18 @@ Result<void> apply_config_file(EffectiveConfig& config, const std::filesystem::p
       return fail(ErrorCode::configuration,
                   fmt::format("{}: {} takes one value, not a list", entry.place, entry.key));
     }
-    if (auto done = config.set(entry.key, *value, entry.place); !done) return done;
+    // A file of all options, as `fusebench config` prints it, edits those alone that it changes.
+    EffectiveConfig edited = config;
+    if (auto done = edited.set(entry.key, *value, entry.place); !done) return done;
+    if (config_hash(edited.values) != config_hash(config.values)) config = std::move(edited);
   }
   return {};
 }
 
 std::string config_hash(const Config& config) {
-  io::Fingerprint fingerprint;
-  for (const OptionRow& row : describe_options(config)) fingerprint.add(row.key + "=" + row.value + "\n");
-  return fingerprint.hex().substr(0, 16);
+  HashVisitor visitor;
+  Config::visit(config, visitor);
+  return visitor.fingerprint.hex().substr(0, 16);
 }
 
 }  // namespace fusebench::config

@@ -9,6 +9,7 @@
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
+#include "core/io/fingerprint.hpp"
 
 namespace fusebench {
 
@@ -238,6 +239,27 @@ TEST(Toml, ValuesReadBackTheSame) {
     ASSERT_TRUE(std::holds_alternative<double>(back)) << to_toml(value);
     EXPECT_EQ(std::get<double>(back), value);
   }
+}
+
+TEST(Options, TheHashIsOfAllKeysAndValues) {
+  for (const Variant& variant : all_variants()) {
+    const Config config = variant_config(variant).values;
+    io::Fingerprint text;
+    for (const OptionRow& row : describe_options(config)) text.add(row.key + "=" + row.value + "\n");
+    EXPECT_EQ(config_hash(config), text.hex().substr(0, 16)) << variant.name;
+  }
+}
+
+TEST_F(ConfigFile, EditsOnlyWhatItChanges) {
+  ASSERT_TRUE(config_.set("tsdf.voxel_m", 0.02, "variant x"));
+  const std::string hash = config_hash(config_.values);
+  ASSERT_TRUE(apply("[tsdf]\nvoxel_m = 0.02\nmax_weight = 64\ntruncation_m = 0.04\n"));
+  EXPECT_EQ(config_hash(config_.values), hash);
+  EXPECT_EQ(config_.origin("tsdf.voxel_m"), "variant x");
+  EXPECT_EQ(config_.origin("tsdf.max_weight"), "default");
+  ASSERT_TRUE(apply("[tsdf]\nvoxel_m = 0.01\nmax_weight = 64\n"));
+  EXPECT_EQ(config_.origin("tsdf.voxel_m"), place(2)) << "back to the default is an edit of the variant";
+  EXPECT_EQ(config_.origin("tsdf.max_weight"), "default");
 }
 
 }  // namespace
