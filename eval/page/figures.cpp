@@ -12,6 +12,7 @@
 #include <set>
 #include <thread>
 
+#include "core/io/fingerprint.hpp"
 #include "eval/process/child_processes.hpp"
 #include "eval/text/text_file.hpp"
 
@@ -305,6 +306,18 @@ std::string panels_script(const std::vector<Panel>& panels, std::size_t columns,
   return script + "unset multiplot\n";
 }
 
+namespace {
+
+/// A name that file systems take with its extension; the digits tell long names apart that begin alike.
+std::string shortened(const std::string& name) {
+  constexpr std::size_t kLongest = 200;  // of 255 bytes
+  constexpr std::size_t kKept = 180;
+  if (name.size() <= kLongest) return name;
+  return fmt::format("{}-{:016x}", name.substr(0, kKept), io::content_hash(name).xxh3);
+}
+
+}  // namespace
+
 Result<std::size_t> write_figures(const Page& page, const std::filesystem::path& folder,
                                   FigureFormat format) {
   std::string part;
@@ -314,9 +327,9 @@ Result<std::size_t> write_figures(const Page& page, const std::filesystem::path&
     const auto* charts = std::get_if<std::vector<Chart>>(&section.content);
     if (charts == nullptr) continue;
     for (const Chart& chart : *charts) {
-      std::string name = part + "-" + slug(chart.title);
+      std::string name = shortened(part + "-" + slug(chart.title));
       for (int copy = 2; !names.insert(name).second; ++copy)
-        name = fmt::format("{}-{}-{}", part, slug(chart.title), copy);
+        name = shortened(fmt::format("{}-{}-{}", part, slug(chart.title), copy));
       const std::string script = gnuplot_script(chart, figure_file(name, format), format);
       if (auto drawn = draw_figure(script, folder, name, format); !drawn)
         return tl::unexpected(drawn.error());

@@ -30,6 +30,7 @@ constexpr std::chrono::milliseconds kBetweenLooks(100);
                                  int output, int pipe, pid_t parent) {
   set_up_child(parent, output, limits.memory_bytes);
   std::signal(SIGPIPE, SIG_DFL);
+  std::signal(SIGXFSZ, SIG_DFL);
   std::vector<char*> arguments;
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);

@@ -45,6 +45,34 @@ void forget_results(record::RunRecord& record, std::string reason) {
   record.timing = {};
 }
 
+bool is_within(const fs::path& folder, const fs::path& outer) {
+  return std::mismatch(outer.begin(), outer.end(), folder.begin(), folder.end()).first == outer.end();
+}
+
+/// Folders that links lead to: each is looked through once, and none that leads back to where it is.
+class LinkedFolders {
+ public:
+  explicit LinkedFolders(const fs::path& root) { taken_.push_back(canonical(root)); }
+
+  /// False if that folder, one that holds it or one that it holds has been taken.
+  bool take(const fs::path& link) {
+    const fs::path folder = canonical(link);
+    const bool known = std::ranges::any_of(taken_, [&](const fs::path& taken) {
+      return folder.empty() || is_within(folder, taken) || is_within(taken, folder);
+    });
+    if (!known) taken_.push_back(folder);
+    return !known;
+  }
+
+ private:
+  static fs::path canonical(const fs::path& path) {
+    std::error_code ignored;
+    return fs::canonical(path, ignored);
+  }
+
+  std::vector<fs::path> taken_;
+};
+
 }  // namespace
 
 bool is_engine_folder(const fs::path& folder) {
@@ -89,11 +117,13 @@ std::optional<FoundRun> found_run(const fs::path& folder) {
 Result<std::vector<fs::path>> record_files(const fs::path& runs) {
   std::error_code error;
   std::vector<fs::path> files;
-  fs::recursive_directory_iterator entry(runs, error);
+  LinkedFolders linked(runs);
+  fs::recursive_directory_iterator entry(runs, fs::directory_options::follow_directory_symlink, error);
   for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error)) {
     std::error_code ignored;
     if (entry->is_directory(ignored)) {
-      if (io::is_staged_folder(entry->path()) || is_engine_folder(entry->path()))
+      const bool again = entry->is_symlink(ignored) && !linked.take(entry->path());
+      if (again || io::is_staged_folder(entry->path()) || is_engine_folder(entry->path()))
         entry.disable_recursion_pending();
     } else if (entry->path().filename() == "record.json") {
       files.push_back(entry->path());

@@ -3,10 +3,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 #include "eval/text/text_layout.hpp"
 
 namespace fusebench::text {
+
+namespace {
+
+/// Apostrophes count for nothing, so that those which are part of a text and those which are put before one
+/// are told apart.
+bool may_be_formula(std::string_view cell) {
+  const std::size_t first = cell.find_first_not_of('\'');
+  return first != std::string_view::npos &&
+         std::string_view("=+-@\t\r").find(cell[first]) != std::string_view::npos;
+}
+
+bool is_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc{} && read.ptr == text.data() + text.size();
+}
+
+}  // namespace
 
 std::string number_cell(const std::optional<double>& value, double factor, int decimals) {
   return value ? fmt::format("{:.{}f}", *value * factor, decimals) : "-";
@@ -78,9 +99,10 @@ std::string latex_begin(const TableCells& heading, std::size_t text_columns) {
 }
 
 std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  const std::string cell = may_be_formula(text) && !is_number(text) ? "'" + text : text;
+  if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
   std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  for (const char c : cell) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
 

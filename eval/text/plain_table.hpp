@@ -28,7 +28,10 @@ using TableCells = std::vector<std::string>;
 [[nodiscard]] std::string latex_begin(const TableCells& heading, std::size_t text_columns);
 inline constexpr std::string_view kLatexEnd = "\\bottomrule\n\\end{tabular}\n";
 
-/// As RFC 4180: quoted where it must be.
+/// As RFC 4180: quoted where it must be. A text that a spreadsheet would take for a formula, since it begins
+/// with = + - @, a tab or a carriage return and is no number, stands behind an apostrophe; so does one that
+/// begins with apostrophes before such a character, so that a reader can undo it (docs/experiments.md;
+/// scripts/python does).
 [[nodiscard]] std::string csv_cell(const std::string& text);
 
 }  // namespace fusebench::text

@@ -43,6 +43,13 @@ std::vector<std::size_t> least_widths(const std::vector<std::vector<std::string>
   return least;
 }
 
+std::vector<std::vector<std::string>> without_controls(std::vector<std::vector<std::string>> lines) {
+  for (auto& line : lines) {
+    for (std::string& cell : line) cell = text::without_controls(cell);
+  }
+  return lines;
+}
+
 /// The pieces of a cell, each of at most `width` characters.
 std::vector<std::string> broken(std::string_view cell, std::size_t width) {
   std::vector<std::string> pieces;
@@ -58,7 +65,26 @@ std::vector<std::string> broken(std::string_view cell, std::size_t width) {
 
 }  // namespace
 
-std::string aligned_columns(const std::vector<std::vector<std::string>>& lines) {
+std::string without_controls(std::string_view text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
+    // Those of ASCII, and those that are C2 80 to C2 9F in UTF-8.
+    if (byte < 0x20 || byte == 0x7F) {
+      shown += fmt::format("\\x{:02X}", byte);
+    } else if (byte == 0xC2 && next >= 0x80 && next <= 0x9F) {
+      shown += fmt::format("\\x{:02X}\\x{:02X}", byte, next);
+      ++i;
+    } else {
+      shown += text[i];
+    }
+  }
+  return shown;
+}
+
+std::string aligned_columns(const std::vector<std::vector<std::string>>& given) {
+  const std::vector<std::vector<std::string>> lines = without_controls(given);
   const std::vector<std::size_t> widths = natural_widths(lines);
   std::string text;
   for (const auto& line : lines) {
@@ -70,7 +96,8 @@ std::string aligned_columns(const std::vector<std::vector<std::string>>& lines) 
   return text;
 }
 
-std::string fitted_columns(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
+std::string fitted_columns(const std::vector<std::vector<std::string>>& given, std::size_t width) {
+  const std::vector<std::vector<std::string>> lines = without_controls(given);
   std::vector<std::size_t> widths = natural_widths(lines);
   const auto total = [&] {
     std::size_t sum = widths.empty() ? 0 : kGap * (widths.size() - 1);
@@ -109,7 +136,7 @@ std::string seven_digits(double value) { return fmt::format("{:.7g}", value); }
 
 std::string markdown_cell(std::string_view text) {
   std::string cell;
-  for (const char c : text) {
+  for (const char c : without_controls(text)) {
     if (c == '|') cell += '\\';
     cell += c;
   }

@@ -8,7 +8,12 @@
 
 namespace fusebench::text {
 
-/// Lines of cells in columns of equal width, two blanks between them; the last column is not padded.
+/// The text with \\xNN in place of every control character, line breaks among them: what is printed on a
+/// terminal must not steer it. Other bytes stay, so that names in UTF-8 do.
+[[nodiscard]] std::string without_controls(std::string_view text);
+
+/// Lines of cells, without_controls(), in columns of equal width, two blanks between them; the last column is
+/// not padded.
 [[nodiscard]] std::string aligned_columns(const std::vector<std::vector<std::string>>& lines);
 
 /// aligned_columns() in lines of at most `width` characters, as far as the words allow it: the widest columns
@@ -22,7 +27,7 @@ namespace fusebench::text {
 /// A number with seven significant digits, "0.01234568".
 [[nodiscard]] std::string seven_digits(double value);
 
-/// A text as a cell of a Markdown table.
+/// A text as a cell of a Markdown table, without_controls().
 [[nodiscard]] std::string markdown_cell(std::string_view text);
 
 }  // namespace fusebench::text

@@ -134,6 +134,10 @@ class Tables(unittest.TestCase):
             self.assertEqual(table["count"], [3, 4])
             self.assertTrue(math.isnan(table["share"][0]))
             self.assertEqual(table["why"], ["a, b", "c"])
+            file.write_text("run,ate\n'=1+1,1.5\n''=1,2\n'desk',-0.5\n", encoding="utf-8")
+            table = columns.read_csv(file, frames=False)
+            self.assertEqual(table["run"], ["=1+1", "'=1", "'desk'"])
+            self.assertEqual(table["ate"], [1.5, 2.0, -0.5])
             file.write_text("a,b\n1\n", encoding="utf-8")
             with self.assertRaisesRegex(ValueError, "table.csv:2: 1 cells, 2 columns"):
                 columns.read_csv(file)

@@ -11,6 +11,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "eval/text/text_layout.hpp"
+
 namespace fusebench::cli::console {
 
 namespace {
@@ -44,11 +46,12 @@ void prepare_standard_streams() {
     if (opened != stream) return;  // no /dev/null: as it was
   }
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of a shell is a write that fails
 }
 
 void print_error(const Error& error) {
-  print_status(fmt::format("error: {}\n", error.message));
-  if (!error.hint.empty()) print_status(fmt::format("  hint: {}\n", error.hint));
+  print_status(fmt::format("error: {}\n", text::without_controls(error.message)));
+  if (!error.hint.empty()) print_status(fmt::format("  hint: {}\n", text::without_controls(error.hint)));
 }
 
 void print_status(std::string_view text) {
@@ -70,7 +73,9 @@ bool output_arrived() {
   return false;
 }
 
-void print_progress(std::string_view line) { print_status(fmt::format("{}\n", line)); }
+void print_progress(std::string_view line) {
+  print_status(fmt::format("{}\n", text::without_controls(line)));
+}
 
 const std::atomic<bool>& stop_requested() { return stop_flag(); }
 

@@ -1,8 +1,10 @@
-// Ranges without an upper end, of which the parser's own messages would print all 309 digits.
+// Ranges of numbers, and ranges without an upper end, of which the parser's own messages would print all 309
+// digits.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <system_error>
 
@@ -29,6 +31,18 @@ template <class Allows>
 
 [[nodiscard]] inline CLI::Validator positive() {
   return detail::number_check("above 0", "POSITIVE", [](double value) { return value > 0; });
+}
+
+/// Both ends are allowed. CLI11's own check asks whether a number is beyond an end, which "nan" never is.
+[[nodiscard]] inline CLI::Validator number_range(double least, double most) {
+  const CLI::Range range(least, most);
+  CLI::Validator strict = range;
+  strict.operation([range](std::string& text) {
+    double value = 0;
+    const bool nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
+    return nan ? text + " (allowed: a number)" : range(text);
+  });
+  return strict;
 }
 
 }  // namespace fusebench::cli::console

@@ -110,11 +110,11 @@ void add_alignment_options(CLI::App& verb, MeshVerbOptions& options) {
   verb.add_option("--icp-kept", options.icp_kept,
                   fmt::format("Share of the points, nearest to the truth first, that icp uses [{}]",
                               mesh_error::RegistrationOptions{}.kept))
-      ->check(CLI::Range(0.01, 1.0))
+      ->check(console::number_range(0.01, 1.0))
       ->type_name("SHARE");
   verb.add_option("--scale", options.scale,
                   "Metres of a unit of the reconstruction (0.001: millimetres); given, no size is refused")
-      ->check(CLI::Range(1e-9, 1e9))
+      ->check(console::number_range(1e-9, 1e9))
       ->type_name("S");
 }
 
@@ -140,7 +140,7 @@ void add_culling_options(CLI::App& verb, MeshVerbOptions& options) {
       ->capture_default_str();
   verb.add_option("--min-observed", options.least_observed,
                   "Share of the truth that must be observed for completeness to be valid")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(console::number_range(0.0, 1.0))
       ->type_name("SHARE")
       ->capture_default_str();
   console::add_reading_options(verb, options.reading);

@@ -101,7 +101,7 @@ console::Verb add_eval_silent_verb(CLI::App& eval) {
       ->capture_default_str();
   verb->add_option("--t_offset", options->t_offset_s, "Added to the estimate's stamps")
       ->type_name("S")
-      ->check(CLI::Range(-1e6, 1e6))
+      ->check(console::number_range(-1e6, 1e6))
       ->capture_default_str();
   console::add_json_flag(*verb, options->json);
   verb->footer("docs/metrics.md defines the numbers. Exit code 3 for files that cannot be compared.");

@@ -9,6 +9,7 @@
 #include "eval/batch_estimation/calibration.hpp"
 #include "eval/batch_estimation/depth_camera_report.hpp"
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
@@ -135,20 +136,20 @@ console::Verb add_calibrate_verb(CLI::App& app) {
   verb->add_option(
           "--rotation-prior", options->rotation_prior_deg,
           "How far off the recording's calibration may be: standard deviation of the rotation, degrees")
-      ->check(CLI::Range(0.01, 90.0))
+      ->check(console::number_range(0.01, 90.0))
       ->type_name("DEG")
       ->capture_default_str();
   verb->add_option("--translation-prior", options->translation_prior_cm, "The same of the translation, cm")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(console::number_range(0.01, 1000.0))
       ->type_name("CM")
       ->capture_default_str();
   verb->add_option("--offset-prior", options->offset_prior_ms, "The same of the clocks' offset, ms")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(console::number_range(0.01, 1000.0))
       ->type_name("MS")
       ->capture_default_str();
   verb->add_option("--scale-prior", options->scale_prior_percent,
                    "The same of the scales of gyroscope and accelerometer, by axis, percent; 0 holds them")
-      ->check(CLI::Range(0.0, 20.0))
+      ->check(console::number_range(0.0, 20.0))
       ->type_name("PERCENT")
       ->capture_default_str();
   verb->add_option("--rounds", options->rounds,

@@ -27,7 +27,7 @@ void add_slurm_options(CLI::App& verb, BenchOptions& options) {
   verb.add_option("--slurm-silence", slurm.silence_s,
                   "With slurm: a running task without a heartbeat for this long is cancelled, and its runs "
                   "are submitted again")
-      ->check(CLI::Range(2.0, 86400.0))
+      ->check(console::number_range(2.0, 86400.0))
       ->type_name("S")
       ->capture_default_str();
   verb.add_option("--slurm-arg", slurm.arguments,

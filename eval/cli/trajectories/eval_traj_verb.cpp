@@ -2,6 +2,7 @@
 #include <memory>
 #include <utility>
 
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/trajectories/bundle_request.hpp"
 #include "eval/cli/trajectories/evo_spelling.hpp"
@@ -73,7 +74,7 @@ void add_bundle_options(CLI::App& verb, BundleOptions& options) {
   add_alignment_options(verb, options.alignment);
   verb.add_flag("--sync", options.sync, "Keeps of each the poses that the reference has a stamp for");
   verb.add_option("--t_max_diff", options.t_max_diff, "Largest difference of stamps")
-      ->check(CLI::NonNegativeNumber)
+      ->check(console::not_negative())
       ->type_name("S")
       ->capture_default_str();
   verb.add_option("--t_offset", options.t_offset, "Added to all stamps but the reference's")->type_name("S");

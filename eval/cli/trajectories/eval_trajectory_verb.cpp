@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
@@ -152,7 +153,7 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
   add_alignment_options(verb, options.alignment);
   verb.add_option("--t_max_diff", options.t_max_diff,
                   "Largest difference of stamps (evo 0.01, tum and rpg 0.02), or gap to interpolate")
-      ->check(CLI::NonNegativeNumber)
+      ->check(console::not_negative())
       ->type_name("S");
   verb.add_option("--t_offset", options.t_offset, "Added to the estimate's stamps")->type_name("S");
   verb.add_option("--t_start", options.t_start, "Uses the reference from this stamp on")->type_name("S");
@@ -200,7 +201,7 @@ void add_motion_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("-u,--delta_unit", options.delta_unit, "f (frames), m, d (degrees), r (radians) or s")
       ->type_name("UNIT");
   verb.add_option("-t,--delta_tol", options.delta_tol, "Tolerance of --all_pairs, as a share of delta")
-      ->check(CLI::NonNegativeNumber)
+      ->check(console::not_negative())
       ->capture_default_str();
   verb.add_flag("--all_pairs", options.all_pairs,
                 "Uses all pairs: from every pose; with --protocol tum, also to every pose");
@@ -221,7 +222,7 @@ void add_error_plot_options(CLI::App& verb, ErrorPlotOptions& options) {
       ->type_name("E");
   verb.add_option("--plot_colormap_max_percentile", options.colour_max_percentile,
                   "Percentile of the errors for the last colour, in place of --plot_colormap_max")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(console::number_range(0.0, 100.0))
       ->type_name("P");
   verb.add_flag("--plot_full_ref", options.full_reference,
                 "Draws all of the reference, not only what was compared");

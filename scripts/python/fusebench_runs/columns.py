@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 
 
 class Columns(dict):
@@ -50,6 +51,15 @@ def nanoseconds(seconds):
 _TEXTS = {"status", "health", "reason", "part", "verified_by", "decision", "why"}
 
 
+#: What fusebench puts an apostrophe before, so that no spreadsheet takes it for a formula.
+_SHIELDED = re.compile(r"'+[=+\-@\t\r]")
+
+
+def _words(cells):
+    """Cells as they were before they were kept from being formulas."""
+    return [cell[1:] if _SHIELDED.match(cell) else cell for cell in cells]
+
+
 def _numbers(cells):
     """Cells as numbers, empty ones as NaN; None if one is no number. Whole numbers stay whole."""
     try:
@@ -63,7 +73,7 @@ def _numbers(cells):
 
 
 def read_csv(file, frames=None):
-    """A table of a run. A column of stamps in seconds ("timestamp", "query_s") has one in nanoseconds beside it
+    """A table of a run, or one that `collect`, `table` or `best` prints as CSV. A column of stamps in seconds ("timestamp", "query_s") has one in nanoseconds beside it
     ("timestamp_ns", "query_ns"), which is exact."""
     with open(file, newline="", encoding="utf-8") as stream:
         names, *rows = csv.reader(stream)
@@ -75,7 +85,7 @@ def read_csv(file, frames=None):
     for index, name in enumerate(names):
         cells = [row[index] for row in rows]
         numbers = None if name in _TEXTS else _numbers(cells)
-        columns[name] = cells if numbers is None else numbers
+        columns[name] = _words(cells) if numbers is None else numbers
         if name in ("timestamp", "capture_timestamp", "timestamp_s", "query_s", "place_s"):
             columns[name.removesuffix("_s") + "_ns"] = [nanoseconds(cell) for cell in cells]
     return table_of(columns, frames)

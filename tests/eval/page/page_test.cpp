@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "eval/page/figures.hpp"
 #include "eval/page/series_colours.hpp"
 #include "tests/support/expect_text.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 
@@ -54,6 +57,25 @@ TEST(Page, FiguresAreCutAsChartsAreAndNameTheirPlaces) {
   testing::expect_contains(script, "set yrange [0:5]");
   testing::expect_contains(script, "\"fr1_xyz\" 1, \"fr1_rpy\" 2");
   EXPECT_LT(script.find("filledcurves y1=0"), script.find("with lines")) << "a band would hide the line";
+}
+
+TEST(Page, FiguresOfLongNamesHaveFilesOfTheirOwn) {
+  Chart chart;
+  chart.series = {{"full", {{0, 1}, {1, 2}}, SeriesStyle::line}};
+  std::vector<Chart> charts(2, chart);
+  charts[0].title = std::string(250, 'x') + "a";
+  charts[1].title = std::string(250, 'x') + "b";
+  const testing::TemporaryFolder folder;
+  const auto drawn = write_figures({"t", "", {{"desk", "", charts}}}, folder.path(), FigureFormat::svg);
+  if (!drawn && drawn.error().code == ErrorCode::usage) GTEST_SKIP() << drawn.error().message;
+  ASSERT_TRUE(drawn.has_value()) << drawn.error().message;
+  EXPECT_EQ(*drawn, 2U);
+  std::size_t figures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    EXPECT_LE(entry.path().filename().string().size(), 220U);
+    if (entry.path().extension() == ".svg") ++figures;
+  }
+  EXPECT_EQ(figures, 2U);
 }
 
 TEST(SeriesColours, AVariantHasItsOwnOnEveryPage) {

@@ -235,5 +235,23 @@ TEST_F(DamagedRunsTest, RecordingsWithHiddenNamesAreFound) {
   EXPECT_EQ(read_run_rows(folder_ / "runs", Workers(1))->size(), 4U);
 }
 
+TEST_F(DamagedRunsTest, LinkedFoldersAreLookedThroughOnceAndNeverInCircles) {
+  // As an engine finds them, which follows links.
+  fs::rename(folder_ / "runs/desk", folder_ / "elsewhere");
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "runs/desk");
+  ASSERT_TRUE(found_run(folder_ / "runs/desk/dm/dddddddd").has_value());
+  const auto files = record_files(folder_ / "runs");
+  ASSERT_TRUE(files.has_value()) << files.error().message;
+  EXPECT_EQ(files->size(), 2U);
+  fs::create_directory_symlink(folder_ / "elsewhere/dm", folder_ / "runs/again");
+  fs::create_directory_symlink(folder_ / "runs", folder_ / "elsewhere/back");
+  fs::create_directory_symlink(folder_, folder_ / "runs/up");
+  fs::create_directory_symlink("self", folder_ / "runs/self");
+  fs::create_directory_symlink("nowhere", folder_ / "runs/dangling");
+  const auto same = record_files(folder_ / "runs");
+  ASSERT_TRUE(same.has_value()) << same.error().message;
+  EXPECT_EQ(same->size(), 2U);
+}
+
 }  // namespace
 }  // namespace fusebench
