@@ -116,6 +116,14 @@ check_bad_data() {
   printf 'no image' >freiburg1_copy/depth/1305031229.664358.png
   refused "no image at all" 3 'depth/1305031229.664358.png' -- "${run[@]}"
 
+  # Longer than any image, though it takes no room; a GIF whose header claims 17 GB.
+  fresh_copy
+  truncate -s 60G freiburg1_copy/rgb/1305031229.628753.png
+  refused "a file with holes" 3 'rgb/1305031229.628753.png: 64424509440 bytes are too many for an image' -- "${run[@]}"
+  fresh_copy
+  printf 'GIF89a\xff\xff\xff\xff\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\1\0\1\0\0\2\2D\1\0;' >freiburg1_copy/rgb/1305031229.628753.png
+  refused "a GIF" 3 'frame 3' 'rgb/1305031229.628753.png: a GIF' -- "${run[@]}"
+
   # In a suite the same is a row of the table, and the rest goes on.
   fresh_copy
   truncate -s 60000 freiburg1_copy/rgb/1305031229.628753.png
@@ -167,6 +175,12 @@ check_bad_usage() {
   refused "one round" 2 'rounds' '2 (-|to) 20' -- calibrate freiburg1_copy --imu synthetic --rounds 1
   refused "frames backwards" 2 '4:2' -- "${run[@]}" --frames 4:2
   refused "frames beyond the end" 2 '3:9' -- "${run[@]}" --frames 3:9
+  local units
+  for units in 1e300 1e-300 nan; do
+    refused "depth units of $units" 2 'depth.units' 'allowed|above 0' -- "${run[@]}" --depth-units "$units"
+  done
+  refused "no clock is off by that much" 2 'imu_time_offset_sigma_s = 0.5 ' -- \
+    "${run[@]}" --set initialisation.imu_time_offset_sigma_s=0.5
   refused "unknown camera" 2 'freiburg9' -- "${run[@]}" --camera freiburg9
   refused "unknown option" 2 'frobnicate' -- "${run[@]}" --frobnicate
   refused "misspelt option" 2 'no option --varient \(nearest: --variant\)' 'hint:fusebench run --help' -- run freiburg1_copy --varient full
@@ -204,6 +218,19 @@ check_bad_usage() {
   refused "unknown preset of a suite" 2 'suite.toml:5' 'slow' -- bench suite.toml --out out
   printf 'name = "s"\nall = true\nvariants = ["full"]\n[[criteria]]\ntitle = "t"\nvariant = "full"\nmetric = "ate_rmse"\n' >suite.toml
   refused "unknown metric of a criterion" 2 'suite.toml:7' 'ate_rmse_m' -- bench suite.toml --data . --out out
+
+  # What cannot be simulated is refused before anything runs.
+  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\nsize = "0x0"\n' >suite.toml
+  refused "no pixels" 2 "recording 'a': image size = 0x0" -- bench suite.toml --out out --dry-run
+  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\nduration_s = 1e12\n' >suite.toml
+  refused "too long" 2 "recording 'a': duration_s = 1e\\+12" -- bench suite.toml --out out --dry-run
+  printf 'name = "s"\nall = true\nvariants = ["full"]\n' >suite.toml
+  refused "no silence" 2 'slurm-silence' 'nan' -- bench suite.toml --out out --slurm-silence nan
+  refused "delta without end" 2 'delta = 1e\+308 ' -- \
+    eval rpe freiburg1_copy/groundtruth.txt freiburg1_copy/groundtruth.txt -d 1e308
+  printf 'name = "s"\nrecordings = ["freiburg1_copy"]\nvariants = ["full"]\n[[sweep]]\ndesign = "latin-hypercube"\n' >many.toml
+  printf 'samples = 1000000\ntsdf.voxel_m = { from = 0.01, to = 0.02 }\n' >>many.toml
+  refused "more runs than a plan holds" 2 'has 1000000 points \(allowed: up to 100000\)' -- bench many.toml --data . --out out
 
   # An unwritable place; a file in the way serves root as well, who may write everywhere.
   printf 'in the way' >obstacle
@@ -261,11 +288,19 @@ check_recordings() {
   "$binary" list runs again >stdout 2>stderr || complain "list runs: exit code $?"
   grep -q 'no-imu iekf.max_iterations=3 ' stdout || complain "list runs: the options are not told"
 
+  # A file beyond the limit of the shell is a sentence, too.
+  checks=$((checks + 1))
+  (ulimit -f 8 && "$binary" run fr1_rpy --data data --variant no-imu --frames 0:2 --out limited) >stdout 2>stderr
+  [[ $? == 4 && $(grep -c '^error: .*File too large' stderr) == 1 ]] || complain "a limit of file sizes: $(cat stderr)"
+  [[ ! -e limited || -z $(find limited -type f) ]] || complain "a limit of file sizes: left $(find limited)"
+
   # A configuration that was printed is one that is read.
   checks=$((checks + 1))
   "$binary" config --variant dm --set tsdf.voxel_m=0.02 >dm.toml 2>stderr || complain "config: exit code $?"
   "$binary" config --config dm.toml >again.toml 2>stderr || complain "config of a printed one: exit code $?"
   [[ $(grep '^# hash' dm.toml) == "$(grep '^# hash' again.toml)" ]] || complain "config: not the values that were printed"
+  "$binary" config >full.toml 2>stderr && "$binary" config --config full.toml >again.toml 2>stderr
+  grep -q 'full.toml:' again.toml && complain "config: a file edits options that it leaves as they are"
 
   # The depth camera needs no IMU, and what is written is a calibration.
   checks=$((checks + 1))
