@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <system_error>
 #include <tuple>
@@ -49,29 +50,36 @@ bool is_within(const fs::path& folder, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), folder.begin(), folder.end()).first == outer.end();
 }
 
-/// Folders that links lead to: each is looked through once, and none that leads back to where it is.
+fs::path canonical(const fs::path& path) {
+  std::error_code ignored;
+  return fs::canonical(path, ignored);
+}
+
+/// Folders that links lead to: none is looked through again within itself, nor one that holds where it began.
 class LinkedFolders {
  public:
-  explicit LinkedFolders(const fs::path& root) { taken_.push_back(canonical(root)); }
+  explicit LinkedFolders(const fs::path& root) : taken_{canonical(root)} {}
 
-  /// False if that folder, one that holds it or one that it holds has been taken.
   bool take(const fs::path& link) {
     const fs::path folder = canonical(link);
-    const bool known = std::ranges::any_of(taken_, [&](const fs::path& taken) {
-      return folder.empty() || is_within(folder, taken) || is_within(taken, folder);
-    });
-    if (!known) taken_.push_back(folder);
-    return !known;
+    const bool circle =
+        folder.empty() || is_within(taken_.front(), folder) ||
+        std::ranges::any_of(taken_, [&](const fs::path& taken) { return is_within(folder, taken); });
+    if (!circle) taken_.push_back(folder);
+    return !circle;
   }
+  [[nodiscard]] bool any() const { return taken_.size() > 1; }
 
  private:
-  static fs::path canonical(const fs::path& path) {
-    std::error_code ignored;
-    return fs::canonical(path, ignored);
-  }
-
-  std::vector<fs::path> taken_;
+  std::vector<fs::path> taken_;  ///< the root first
 };
+
+/// Each file once, by the first of its names.
+void leave_each_once(std::vector<fs::path>& files) {
+  std::ranges::sort(files);
+  std::set<fs::path> met;
+  std::erase_if(files, [&](const fs::path& file) { return !met.insert(canonical(file)).second; });
+}
 
 }  // namespace
 
@@ -129,6 +137,7 @@ Result<std::vector<fs::path>> record_files(const fs::path& runs) {
       files.push_back(entry->path());
     }
   }
+  if (linked.any()) leave_each_once(files);
   if (!error) return files;
   return fail(ErrorCode::data_missing,
               fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));

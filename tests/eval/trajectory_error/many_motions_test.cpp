@@ -213,7 +213,10 @@ TEST(ManyMotions, AreFoundWithoutLookingAtAllPairs) {
           visit_turns(trajectory, {delta_deg, DeltaUnit::degrees}, tolerance, 10'000'000,
                       [&](std::size_t i, std::size_t j) { found.emplace_back(i, j); });
       EXPECT_EQ(found, wanted) << delta_deg << " deg, " << tolerance;
-      EXPECT_LT(compared, 1500U * 1499U / 2) << delta_deg << " deg, " << tolerance;
+      constexpr std::size_t kAll = 1500 * 1499 / 2;
+      EXPECT_LE(compared, kAll);
+      // Of a tolerance of all of delta, most pairs fit.
+      if (tolerance < 1) EXPECT_LT(compared, kAll) << delta_deg << " deg, " << tolerance;
     }
   }
   for (const double length_m : {0.001, 0.5, 4.0, 30.0, 70.0, 1000.0})
