@@ -50,7 +50,7 @@ bool is_within(const fs::path& folder, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), folder.begin(), folder.end()).first == outer.end();
 }
 
-fs::path canonical(const fs::path& path) {
+fs::path real_path(const fs::path& path) {
   std::error_code ignored;
   return fs::canonical(path, ignored);
 }
@@ -58,10 +58,10 @@ fs::path canonical(const fs::path& path) {
 /// Folders that links lead to: none is looked through again within itself, nor one that holds where it began.
 class LinkedFolders {
  public:
-  explicit LinkedFolders(const fs::path& root) : taken_{canonical(root)} {}
+  explicit LinkedFolders(const fs::path& root) : taken_{real_path(root)} {}
 
   bool take(const fs::path& link) {
-    const fs::path folder = canonical(link);
+    const fs::path folder = real_path(link);
     const bool circle =
         folder.empty() || is_within(taken_.front(), folder) ||
         std::ranges::any_of(taken_, [&](const fs::path& taken) { return is_within(folder, taken); });
@@ -78,7 +78,7 @@ class LinkedFolders {
 void leave_each_once(std::vector<fs::path>& files) {
   std::ranges::sort(files);
   std::set<fs::path> met;
-  std::erase_if(files, [&](const fs::path& file) { return !met.insert(canonical(file)).second; });
+  std::erase_if(files, [&](const fs::path& file) { return !met.insert(real_path(file)).second; });
 }
 
 }  // namespace

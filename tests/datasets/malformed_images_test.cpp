@@ -187,7 +187,9 @@ TEST_F(MalformedImage, TheSizeIsJudgedBeforePixelsAreDecoded) {
   EXPECT_NE(expected.text.find("wide.png: expected 640x480 pixels, got 4000x3000"), std::string::npos)
       << expected.text;
   const ChildResult before = run_in_child(std::size_t{512} << 20, [] { return ""; });
-  if (kMemoryIsMeasured) EXPECT_LT(expected.peak_bytes, before.peak_bytes + (std::size_t{24} << 20));
+  if (kMemoryIsMeasured) {
+    EXPECT_LT(expected.peak_bytes, before.peak_bytes + (std::size_t{24} << 20));
+  }
 
   std::string row(1 + 3 * 16'384, '\0');
   std::string rows;

@@ -216,7 +216,9 @@ TEST(ManyMotions, AreFoundWithoutLookingAtAllPairs) {
       constexpr std::size_t kAll = 1500 * 1499 / 2;
       EXPECT_LE(compared, kAll);
       // Of a tolerance of all of delta, most pairs fit.
-      if (tolerance < 1) EXPECT_LT(compared, kAll) << delta_deg << " deg, " << tolerance;
+      if (tolerance < 1) {
+        EXPECT_LT(compared, kAll) << delta_deg << " deg, " << tolerance;
+      }
     }
   }
   for (const double length_m : {0.001, 0.5, 4.0, 30.0, 70.0, 1000.0})
