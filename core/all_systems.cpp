@@ -5,6 +5,7 @@
 
 #include "core/paper_system.hpp"
 #include "core/systems/bundlefusion/bundlefusion_system.hpp"
+#include "core/systems/elasticfusion/elasticfusion_system.hpp"
 #include "core/systems/infinitam/infinitam_system.hpp"
 #include "core/systems/opencv_odometry/opencv_odometry_system.hpp"
 
@@ -23,6 +24,11 @@ template <class WithoutImu>
 MadeSystem make_without_imu(const config::Config& config, const SensorRig& rig,
                             std::span<const ImuSample> /*imu*/, const Workers& workers) {
   return std::make_unique<WithoutImu>(config, rig, workers);
+}
+
+MadeSystem make_elasticfusion(const config::Config& config, const SensorRig& rig,
+                              std::span<const ImuSample> imu, const Workers& workers) {
+  return std::make_unique<systems::elasticfusion::ElasticfusionSystem>(config, rig, imu, workers);
 }
 
 constexpr std::string_view kAnyThreads = "any number, with the same results";
@@ -44,6 +50,10 @@ constexpr std::array kSystems = {
         "BundleFusion's chunks of matched keypoints and depth, adjusted all together (Dai et al. 2017), "
         "fused at the end by this program's TSDF",
         "bundlefusion depth tsdf", kAnyThreads, &make_without_imu<systems::bundlefusion::BundlefusionSystem>},
+    SystemRow{config::SystemMethod::elasticfusion, "elasticfusion",
+              "ElasticFusion's surfels (Whelan et al. 2015), tracked by colour and depth together and bent "
+              "where places are seen again",
+              "elasticfusion depth", kAnyThreads, &make_elasticfusion},
 };
 
 }  // namespace

@@ -42,6 +42,7 @@ struct Config {
   InfinitamConfig infinitam;
   OpencvOdometryConfig opencv_odometry;
   BundlefusionConfig bundlefusion;
+  ElasticfusionConfig elasticfusion;
   EvaluationConfig evaluation;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -67,16 +68,18 @@ struct Config {
     v.group("infinitam", self.infinitam);
     v.group("opencv_odometry", self.opencv_odometry);
     v.group("bundlefusion", self.bundlefusion);
+    v.group("elasticfusion", self.elasticfusion);
     v.group("evaluation", self.evaluation);
   }
 };
 
-static_assert(options_cover_all_fields<
-                  SystemConfig, TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
-                  InitialisationConfig, SelfCalibrationConfig, PatchConfig, PhotometricConfig,
-                  GeometricConfig, AlignmentConfig, IekfConfig, ColorDriftConfig, HealthConfig,
-                  RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, LoopsConfig, TsdfConfig,
-                  InfinitamConfig, OpencvOdometryConfig, BundlefusionConfig, EvaluationConfig, Config>(),
-              "each field of a configuration struct needs its option in visit()");
+static_assert(
+    options_cover_all_fields<SystemConfig, TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
+                             InitialisationConfig, SelfCalibrationConfig, PatchConfig, PhotometricConfig,
+                             GeometricConfig, AlignmentConfig, IekfConfig, ColorDriftConfig, HealthConfig,
+                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, LoopsConfig,
+                             TsdfConfig, InfinitamConfig, OpencvOdometryConfig, BundlefusionConfig,
+                             ElasticfusionConfig, EvaluationConfig, Config>(),
+    "each field of a configuration struct needs its option in visit()");
 
 }  // namespace fusebench::config

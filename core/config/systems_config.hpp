@@ -6,12 +6,13 @@
 namespace fusebench::config {
 
 /// The method as a whole.
-enum class SystemMethod { filter, infinitam, opencv_odometry, bundlefusion };
+enum class SystemMethod { filter, infinitam, opencv_odometry, bundlefusion, elasticfusion };
 constexpr auto option_choices(SystemMethod) {
   return choices<SystemMethod>({{"filter", SystemMethod::filter},
                                 {"infinitam", SystemMethod::infinitam},
                                 {"opencv_odometry", SystemMethod::opencv_odometry},
-                                {"bundlefusion", SystemMethod::bundlefusion}});
+                                {"bundlefusion", SystemMethod::bundlefusion},
+                                {"elasticfusion", SystemMethod::elasticfusion}});
 }
 
 /// Which system runs.
@@ -23,7 +24,7 @@ struct SystemConfig {
              "the system that runs: the paper's filter, which all groups of options belong to that are not "
              "named after a system; InfiniTAM's method (Kaehler et al. 2015), OpenCV's odometries from frame "
              "to frame, or BundleFusion's method (Dai et al. 2017), all with the depth and tsdf options as "
-             "well");
+             "well; or ElasticFusion's method (Whelan et al. 2015), with depth.min_m and max_m as well");
   }
 };
 
@@ -166,6 +167,59 @@ struct BundlefusionConfig {
              "recordings");
     v.number("max_residual_m", self.max_residual_m, 0.001, 10.0,
              "the worst pair of chunks is dropped if its keypoints are further apart along an axis (metres)");
+  }
+};
+
+/// Which loops ElasticFusion closes.
+enum class ElasticfusionLoops { none, local, all };
+constexpr auto option_choices(ElasticfusionLoops) {
+  return choices<ElasticfusionLoops>({{"none", ElasticfusionLoops::none},
+                                      {"local", ElasticfusionLoops::local},
+                                      {"all", ElasticfusionLoops::all}});
+}
+
+/// ElasticFusion: tracking, surfels and loops. Defaults are the article's or, where it has none, the
+/// program's.
+struct ElasticfusionConfig {
+  double icp_weight = 10.0;
+  bool rotation_start = true;
+  double stable_confidence = 10.0;
+  int time_window = 200;
+  ElasticfusionLoops loops = ElasticfusionLoops::all;
+  double loop_min_inliers = 35000.0;
+  double loop_max_error_m = 5e-5;
+  double loop_max_variance = 1e-5;
+  bool relocalise = false;
+  bool use_imu = false;
+  PeerDefects defects = PeerDefects::fixed;
+
+  static constexpr void visit(auto& self, auto&& v) {
+    v.number("icp_weight", self.icp_weight, 0.0, 1000.0,
+             "factor on distances from planes (metres) beside differences of intensity (grey levels, each "
+             "divided by their deviation and its own size)");
+    v.flag("rotation_start", self.rotation_start,
+           "tracking starts from the rotation between the last two small images");
+    v.number("stable_confidence", self.stable_confidence, 0.0, 1000.0,
+             "surfels of more are stable: they are seen by tracking, and stay");
+    v.number("time_window", self.time_window, 1, 1000000,
+             "surfels not updated for so many frames are inactive: not tracked against, and fused no more");
+    v.choice("loops", self.loops,
+             "none; local: the active model is registered to the inactive one in view; all: places that "
+             "ferns recognise as well");
+    v.number("loop_min_inliers", self.loop_min_inliers, 0.0, 1e7,
+             "fewest matched pixels of a local loop, for an image of 640x480 (the program: 40000)");
+    v.number("loop_max_error_m", self.loop_max_error_m, 0.0, 1.0,
+             "most of the root of the summed squared distances of a local loop by the number of matches, for "
+             "640x480 (the program: 4e-5)");
+    v.number("loop_max_variance", self.loop_max_variance, 0.0, 1.0,
+             "most of any diagonal entry of the inverse normal equations of a local loop, for 640x480");
+    v.flag("relocalise", self.relocalise,
+           "a frame that fits badly is lost and not fused, and its place is looked for by ferns");
+    v.flag("use_imu", self.use_imu,
+           "tracking with the inertial term of Laidlow et al. 2017 and its prediction");
+    v.choice("defects", self.defects,
+             "as_published: intensities are weighed by the number of pixels in place of their deviation, "
+             "planes draw with a tenth of their weight, and blue weighs as red should");
   }
 };
 

@@ -89,6 +89,15 @@ constexpr std::array kVariants = {
         "system.method=bundlefusion depth.min_m=0.1 depth.max_m=3 depth.noise_floor_m=1e-5 "
         "depth.noise_quadratic_per_m=0 tsdf.voxel_m=0.01 tsdf.truncation_m=0.08 tsdf.truncation_sigmas=0 "
         "tsdf.max_weight=2048"},
+    Variant{"elasticfusion", "ElasticFusion",
+            "ElasticFusion's method: surfels, tracked by colour and depth together, with local and global "
+            "loops that deform them",
+            "system.method=elasticfusion depth.min_m=0.3 depth.max_m=3"},
+    Variant{"elasticfusion-open", "",
+            "elasticfusion without loops; surfels stay active for ever, as with the program's flag for it",
+            "elasticfusion.loops=none elasticfusion.time_window=1000000", "elasticfusion"},
+    Variant{"elasticfusion-imu", "", "elasticfusion with the inertial term of Laidlow et al. 2017",
+            "elasticfusion.use_imu=true", "elasticfusion"},
 };
 }  // namespace
 

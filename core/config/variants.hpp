@@ -28,7 +28,8 @@ struct Variant {
 
 /// True if the effective configuration cannot run without inertial samples.
 [[nodiscard]] inline bool needs_imu(const Config& config) {
-  return config.system.method == SystemMethod::filter && config.terms.prior == Prior::imu;
+  return (config.system.method == SystemMethod::filter && config.terms.prior == Prior::imu) ||
+         (config.system.method == SystemMethod::elasticfusion && config.elasticfusion.use_imu);
 }
 
 }  // namespace fusebench::config

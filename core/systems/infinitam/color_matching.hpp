@@ -3,7 +3,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/systems/infinitam/pose_sums.hpp"
+#include "core/systems/pose_sums.hpp"
 
 namespace fusebench::systems::infinitam {
 

@@ -70,17 +70,7 @@ class RenderedPoints {
   const PinholeCamera& camera_;
 };
 
-void put(PointMap& map, std::size_t pixel, const Vector3d& value) {
-  map.x.data[pixel] = static_cast<float>(value.x());
-  map.y.data[pixel] = static_cast<float>(value.y());
-  map.z.data[pixel] = static_cast<float>(value.z());
-}
-
 }  // namespace
-
-void PointMap::resize(int width_px, int height_px) {
-  for (Image<float>* const image : {&x, &y, &z}) image->resize(width_px, height_px);
-}
 
 ModelRenderer::ModelRenderer(const PinholeCamera& camera, const config::DepthConfig& depth)
     : camera_(camera), depth_(depth) {
@@ -112,12 +102,12 @@ void ModelRenderer::render(const tsdf::TsdfVolume& model, const SE3& T_world_cam
                            const std::size_t pixel = view.weight.index(x, y);
                            const auto normal = points.normal_at(x, y);
                            view.weight.data[pixel] = -1.0F;
-                           put(view.point, pixel, Vector3d::Zero());
-                           put(view.normal, pixel, Vector3d::Zero());
+                           view.point.put(pixel, Eigen::Vector3f::Zero());
+                           view.normal.put(pixel, Eigen::Vector3f::Zero());
                            if (!normal) continue;
                            const Vector3d point_world = T_world_camera * *points.at(x, y);
-                           put(view.point, pixel, point_world);
-                           put(view.normal, pixel, T_world_camera.rotation * *normal);
+                           view.point.put(pixel, point_world.cast<float>());
+                           view.normal.put(pixel, (T_world_camera.rotation * *normal).cast<float>());
                            view.weight.data[pixel] = with_weights ? weight_at(model, point_world) : 1.0F;
                          }
                        }

@@ -7,23 +7,15 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/raycast/raycast.hpp"
+#include "core/systems/point_map.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::systems::infinitam {
 
-/// Coordinates by axis, as lanes read them; world, metres.
-struct PointMap {
-  Image<float> x;
-  Image<float> y;
-  Image<float> z;
-
-  void resize(int width_px, int height_px);
-};
-
 struct ModelView {
   PinholeCamera camera;
   SE3 T_world_camera;
-  PointMap point;
+  PointMap point;       ///< world, metres
   PointMap normal;      ///< unit, towards the camera
   Image<float> weight;  ///< of the model at the point; negative where there is no point with a normal
 };

@@ -7,7 +7,7 @@
 #include "core/base/types.hpp"
 #include "core/simd/lane_points.hpp"
 
-namespace fusebench::systems::infinitam {
+namespace fusebench::systems {
 
 /// Of a motion d = (rotation in rad, translation in m) of points in world, p -> p + rotation x p +
 /// translation, which lowers the cost if it goes along `descent`.
@@ -38,4 +38,4 @@ class PoseSumLanes {
   simd::Float8 pixels_{};
 };
 
-}  // namespace fusebench::systems::infinitam
+}  // namespace fusebench::systems

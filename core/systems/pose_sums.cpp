@@ -1,6 +1,6 @@
-#include "core/systems/infinitam/pose_sums.hpp"
+#include "core/systems/pose_sums.hpp"
 
-namespace fusebench::systems::infinitam {
+namespace fusebench::systems {
 
 PoseSums& PoseSums::operator+=(const PoseSums& other) {
   information += other.information;
@@ -47,4 +47,4 @@ PoseSums PoseSumLanes::total() const {
   return sums;
 }
 
-}  // namespace fusebench::systems::infinitam
+}  // namespace fusebench::systems

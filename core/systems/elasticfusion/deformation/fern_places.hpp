@@ -1,0 +1,55 @@
+// Places that the camera has been at, by ferns on small images of colour and depth (Glocker et al. 2015).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/ferns/fern_code.hpp"
+#include "core/systems/elasticfusion/deformation/deformation_graph.hpp"
+#include "core/systems/elasticfusion/surfels/surfel_view.hpp"
+
+namespace fusebench::systems::elasticfusion::deformation {
+
+/// What the camera saw, at 80x60.
+struct FernPlace {
+  ferns::FernCode code{};
+  std::int32_t time = 0;
+  surfels::SurfelView view;
+};
+
+/// Of the model where a view sees it, of the frame elsewhere.
+[[nodiscard]] FernPlace fern_place(const surfels::LiveFrame& live, const surfels::SurfelView& view,
+                                   std::int32_t time);
+
+/// A place that is found again: the camera's pose by it.
+struct FoundPlace {
+  std::size_t place = 0;
+  SE3 T_place_camera;
+};
+
+class FernPlaces {
+ public:
+  /// workers must outlive it.
+  FernPlaces(const config::ElasticfusionConfig& config, const Workers& workers)
+      : config_(config), workers_(workers) {}
+
+  /// Stores the place if it differs in more than 0.3095 of its ferns from each that is there.
+  bool offer(const FernPlace& place);
+
+  /// The most similar place that is older than so many frames, if more than 0.3 of its ferns are alike and
+  /// the two views fit: distances of planes, so many matches at least, and colours.
+  [[nodiscard]] std::optional<FoundPlace> find(const FernPlace& query, std::int32_t min_age,
+                                               double min_matches) const;
+
+  [[nodiscard]] const FernPlace& operator[](std::size_t place) const { return places_[place]; }
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+  void deform(const DeformationGraph& graph);
+
+ private:
+  config::ElasticfusionConfig config_;
+  const Workers& workers_;
+  std::vector<FernPlace> places_;
+};
+
+}  // namespace fusebench::systems::elasticfusion::deformation

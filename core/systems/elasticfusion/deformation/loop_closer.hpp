@@ -1,0 +1,64 @@
+// Places seen again: the active model against the inactive one in view, and against places known by ferns.
+// What is found bends the map, the poses and the places (Whelan et al. 2015, Secs. 5 and 6).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/parallel.hpp"
+#include "core/config/config.hpp"
+#include "core/systems/elasticfusion/deformation/fern_places.hpp"
+#include "core/systems/elasticfusion/surfels/surfel_map.hpp"
+#include "core/systems/elasticfusion/surfels/surfel_view.hpp"
+
+namespace fusebench::systems::elasticfusion::deformation {
+
+/// The camera at a frame.
+struct TimedPose {
+  std::int64_t timestamp_ns = 0;
+  std::int32_t time = 0;
+  SE3 T_world_camera;
+};
+
+class LoopCloser {
+ public:
+  /// workers must outlive it.
+  LoopCloser(const config::ElasticfusionConfig& config, const PinholeCamera& camera, const Workers& workers);
+
+  /// After a frame was fused: looks for a loop, and if it is one bends the map and the poses (the last one is
+  /// the frame's own, which becomes what the loop says). `view` is of the stable active surfels from there.
+  /// True if it did.
+  bool close(const surfels::LiveFrame& live, const surfels::SurfelView& view, std::int32_t time,
+             surfels::SurfelMap& map, std::vector<TimedPose>& poses);
+
+  /// The pose of a lost camera by the places; nothing if it is at none of them.
+  [[nodiscard]] std::optional<SE3> relocate(const surfels::LiveFrame& live, const surfels::SurfelView& view,
+                                            std::int32_t time) const;
+
+  [[nodiscard]] int local_loops() const { return local_loops_; }
+  [[nodiscard]] int global_loops() const { return global_loops_; }
+
+ private:
+  [[nodiscard]] bool close_global(const FernPlace& here, surfels::SurfelMap& map,
+                                  std::vector<TimedPose>& poses);
+  [[nodiscard]] bool close_local(const surfels::SurfelView& view, std::int32_t time, surfels::SurfelMap& map,
+                                 std::vector<TimedPose>& poses);
+  void bend(const DeformationGraph& graph, const SE3& T_world_camera, surfels::SurfelMap& map,
+            std::vector<TimedPose>& poses);
+  void reactivate(const SE3& T_world_camera, std::int32_t time, surfels::SurfelMap& map);
+  const surfels::SurfelView& inactive_view(const SE3& T_world_camera, std::int32_t time,
+                                           const surfels::SurfelMap& map);
+
+  config::ElasticfusionConfig config_;
+  PinholeCamera camera_;
+  const Workers& workers_;
+  FernPlaces places_;
+  surfels::ViewRenderer renderer_;
+  surfels::SurfelView inactive_;
+  std::vector<PointConstraint> held_together_;  ///< by the global loops so far
+  int local_loops_ = 0;
+  int global_loops_ = 0;
+};
+
+}  // namespace fusebench::systems::elasticfusion::deformation

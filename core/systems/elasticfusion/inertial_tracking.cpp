@@ -1,0 +1,91 @@
+#include "core/systems/elasticfusion/inertial_tracking.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <optional>
+
+#include "core/prediction/initialisation.hpp"
+#include "core/prediction/motion_prior.hpp"
+
+namespace fusebench::systems::elasticfusion {
+
+namespace {
+
+// Pixels share their errors (blur, calibration, holes of the model): so many count as one measurement.
+constexpr double kPixelsPerMeasurement = 100;
+constexpr double kLeastVariance = 1e-12;  // of the predicted pose (rad^2, m^2)
+
+/// How a step of T_view_camera (on the left: rotation, then translation) follows from one of the pose of the
+/// IMU (rotation on the right, world position).
+Matrix6d step_by_pose(const SE3& T_world_view, const SE3& T_view_camera, const SE3& T_imu_camera) {
+  const Matrix3d R_view_world = T_world_view.rotation_matrix().transpose();
+  const Matrix3d R_view_imu = T_view_camera.rotation_matrix() * T_imu_camera.rotation_matrix().transpose();
+  Matrix6d jacobian = Matrix6d::Zero();
+  jacobian.topLeftCorner<3, 3>() = R_view_imu;
+  jacobian.bottomLeftCorner<3, 3>() =
+      hat(T_view_camera.translation) * R_view_imu - R_view_imu * hat(T_imu_camera.translation);
+  jacobian.bottomRightCorner<3, 3>() = R_view_world;
+  return jacobian;
+}
+
+Matrix6d pose_covariance(const filter::GaussianState& state) {
+  return state.covariance.topLeftCorner<6, 6>() + kLeastVariance * Matrix6d::Identity();
+}
+
+}  // namespace
+
+Result<void> InertialTracking::start(std::int64_t capture_ns) {
+  auto state = prediction::initial_state(samples_, capture_ns, rig_, config_, std::nullopt);
+  if (!state) return tl::unexpected(state.error());
+  state_ = *state;
+  capture_ns_ = capture_ns;
+  return {};
+}
+
+Result<void> InertialTracking::predict(std::int64_t capture_ns) {
+  auto state = prediction::predict_state(state_, {capture_ns_, capture_ns}, samples_, rig_, config_);
+  if (!state) return tl::unexpected(state.error());
+  state_ = *state;
+  capture_ns_ = capture_ns;
+  return {};
+}
+
+InertialTracking::Term::Term(const InertialTracking& inertial, const SE3& T_world_view)
+    : T_world_imu_(inertial.state_.mean.T_world_imu),
+      T_world_view_(T_world_view),
+      T_imu_camera_(inertial.rig_.T_imu_camera),
+      weight_(kPixelsPerMeasurement * pose_covariance(inertial.state_).inverse()) {}
+
+void InertialTracking::Term::add(const SE3& T_view_camera, Matrix6d& information, Vector6d& descent) const {
+  const SE3 T_world_imu = T_world_view_ * T_view_camera * T_imu_camera_.inverse();
+  const Matrix6d pose_by_step = step_by_pose(T_world_view_, T_view_camera, T_imu_camera_).inverse();
+  information += pose_by_step.transpose() * weight_ * pose_by_step;
+  descent -= pose_by_step.transpose() * weight_ * pose_minus(T_world_imu, T_world_imu_);
+}
+
+void InertialTracking::correct(const SE3& T_world_view, const SE3& T_view_camera,
+                               const Matrix6d& image_information) {
+  const SE3 T_world_imu = T_world_view * T_view_camera * rig_.T_imu_camera.inverse();
+  const Matrix6d jacobian = step_by_pose(T_world_view, T_view_camera, rig_.T_imu_camera);
+  const Matrix6d information = jacobian.transpose() * image_information * jacobian / kPixelsPerMeasurement;
+  const Matrix6d covariance = pose_covariance(state_);
+  const Eigen::Matrix<double, filter::kStateSize, 6> with_pose = state_.covariance.leftCols<6>();
+  const Vector6d error = pose_minus(T_world_imu, state_.mean.T_world_imu);
+  // The rest of the state follows the pose by its correlations.
+  const filter::StateVector change = with_pose * covariance.ldlt().solve(error);
+  // P - P H^T (H P H^T + R)^-1 H P, where R^-1 is the information, which may be singular.
+  const Matrix6d gain = (Matrix6d::Identity() + information * covariance).fullPivLu().solve(information);
+  state_.mean = filter::plus(state_.mean, change);
+  state_.mean.T_world_imu = T_world_imu;
+  state_.covariance = filter::symmetrised(state_.covariance - with_pose * gain * with_pose.transpose());
+}
+
+void InertialTracking::move_to(const SE3& T_world_camera) {
+  const SE3 T_world_imu = T_world_camera * rig_.T_imu_camera.inverse();
+  const Quaterniond turn = T_world_imu.rotation * state_.mean.T_world_imu.rotation.conjugate();
+  state_.mean.T_world_imu = T_world_imu;
+  state_.mean.velocity_world_mps = turn * state_.mean.velocity_world_mps;
+  state_.mean.gravity_direction_world = (turn * state_.mean.gravity_direction_world).normalized();
+}
+
+}  // namespace fusebench::systems::elasticfusion

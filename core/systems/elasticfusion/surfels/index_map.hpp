@@ -1,0 +1,58 @@
+// Which surfel lies where in an image, at four times its size: what measurements are compared with.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/base/parallel.hpp"
+#include "core/systems/elasticfusion/surfels/surfel_map.hpp"
+#include "core/systems/elasticfusion/surfels/visible_surfels.hpp"
+
+namespace fusebench::systems::elasticfusion::surfels {
+
+class IndexMap {
+ public:
+  static constexpr int kScale = 4;
+
+  /// Puts the middle of each surfel of the choice into its cell, the nearest one of several.
+  void build(const SurfelMap& map, const PinholeCamera& camera, const SE3& T_world_camera,
+             const SurfelChoice& choice, const Workers& workers);
+
+  /// What lies in the image, in the camera's frame.
+  [[nodiscard]] std::span<const CameraSurfel> surfels() const { return visible_.all(); }
+
+  /// Calls look(number) for the number in surfels() of each surfel within a pixel's width of the middle of
+  /// the pixel, row by row.
+  template <class Look>
+  void around_pixel(int x_px, int y_px, const Look& look) const {
+    around(kScale * x_px + kScale / 2, kScale * y_px + kScale / 2, look);
+  }
+
+  /// The same around the place where a surfel is seen (pixels).
+  template <class Look>
+  void around_place(const Vector2d& at_px, const Look& look) const {
+    around(cell_of(at_px.x()), cell_of(at_px.y()), look);
+  }
+
+ private:
+  static constexpr std::int32_t kEmpty = -1;
+
+  [[nodiscard]] static int cell_of(double at_px) { return static_cast<int>((at_px + 0.5) * kScale); }
+
+  /// The eight cells either way of a corner of cells.
+  template <class Look>
+  void around(int column, int row, const Look& look) const {
+    const int left = std::max(0, column - kScale), right = std::min(cells_.width, column + kScale);
+    for (int y = std::max(0, row - kScale); y < std::min(cells_.height, row + kScale); ++y) {
+      for (int x = left; x < right; ++x) {
+        if (const std::int32_t number = cells_(x, y); number != kEmpty)
+          look(static_cast<std::size_t>(number));
+      }
+    }
+  }
+
+  VisibleSurfels visible_;
+  Image<std::int32_t> cells_;
+};
+
+}  // namespace fusebench::systems::elasticfusion::surfels

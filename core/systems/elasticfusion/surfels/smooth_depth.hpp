@@ -1,0 +1,13 @@
+// Depth without noise that edges survive, for tracking and normals.
+#pragma once
+
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+
+namespace fusebench::systems::elasticfusion::surfels {
+
+/// Bilateral mean of the measured pixels within 6 px of each measured one (Gaussians of 4.5 px and 30 mm);
+/// 0 where nothing was measured.
+[[nodiscard]] DepthImage smooth_depth(const DepthImage& depth_m, const Workers& workers);
+
+}  // namespace fusebench::systems::elasticfusion::surfels

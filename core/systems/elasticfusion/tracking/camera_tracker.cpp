@@ -1,0 +1,59 @@
+#include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "core/systems/elasticfusion/tracking/intensity_matching.hpp"
+#include "core/systems/elasticfusion/tracking/plane_matching.hpp"
+
+namespace fusebench::systems::elasticfusion::tracking {
+
+namespace {
+
+constexpr std::array<int, kLevels> kSteps = {10, 5, 4};
+constexpr std::array<double, kLevels> kMinGradient = {5, 3, 1};
+constexpr double kLongestStep_m = 0.3;
+
+}  // namespace
+
+double TrackedMotion::variance() const {
+  const Eigen::FullPivLU<Matrix6d> factor(information);
+  if (!factor.isInvertible()) return std::numeric_limits<double>::infinity();
+  return factor.inverse().diagonal().maxCoeff();
+}
+
+TrackedMotion CameraTracker::track(const LivePyramid& live, const ViewPyramid& view, const SE3& T_view_start,
+                                   const PoseTerm* term) const {
+  TrackedMotion motion;
+  motion.T_view_camera = T_view_start;
+  const double weight = config_.icp_weight;
+  // The program weighs the pull of planes once and their stiffness twice.
+  const double pull = config_.defects == config::PeerDefects::as_published ? weight : weight * weight;
+  for (int number = kLevels - 1; number >= 0; --number) {
+    const auto level = static_cast<std::size_t>(number);
+    const auto pixels = telling_pixels(live[level], kMinGradient[level]);
+    for (int step = 0; step < kSteps[level]; ++step) {
+      const PoseSums planes = match_planes(live[level], view[level], motion.T_view_camera, workers_);
+      const PoseSums intensities = match_intensities(pixels, live[level].camera, view[level],
+                                                     motion.T_view_camera, config_.defects, workers_);
+      motion.information = intensities.information + weight * weight * planes.information;
+      motion.matches = planes.pixels;
+      motion.error_m = planes.pixels > 0 ? std::sqrt(planes.cost) / planes.pixels : 0;
+      Vector6d descent = intensities.descent + pull * planes.descent;
+      Matrix6d information = motion.information;
+      if (term != nullptr) term->add(motion.T_view_camera, information, descent);
+      const Vector6d change = information.ldlt().solve(descent);
+      if (!change.allFinite()) continue;
+      motion.T_view_camera = SE3{so3_exp(change.head<3>()), change.tail<3>()} * motion.T_view_camera;
+    }
+  }
+  if (motion.T_view_camera.translation.norm() > kLongestStep_m) {
+    motion.T_view_camera = SE3{};
+    motion.was_dropped = true;
+  }
+  return motion;
+}
+
+}  // namespace fusebench::systems::elasticfusion::tracking

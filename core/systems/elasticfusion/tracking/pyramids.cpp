@@ -1,0 +1,137 @@
+#include "core/systems/elasticfusion/tracking/pyramids.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fusebench::systems::elasticfusion::tracking {
+
+namespace {
+
+constexpr float kOneSurface_m = 0.09F;  // three deviations of the filter of depth
+constexpr std::array<float, 5> kBinomial = {1, 4, 6, 4, 1};
+
+Image<float> as_float(const GreyImage& grey) {
+  Image<float> image(grey.width, grey.height);
+  std::ranges::transform(grey.data, image.data.begin(),
+                         [](std::uint8_t value) { return static_cast<float>(value); });
+  return image;
+}
+
+/// Half the size: binomial means of the values at those pixels that have depth near that of the middle one.
+Image<float> half_of_surface(const Image<float>& values, const DepthImage& depth_m) {
+  Image<float> half((depth_m.width + 1) / 2, (depth_m.height + 1) / 2);
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      const float middle_m = depth_m(2 * x, 2 * y);
+      if (!(middle_m > 0)) continue;
+      float sum = 0, weights = 0;
+      for (int v = std::max(0, 2 * y - 2); v <= std::min(depth_m.height - 1, 2 * y + 2); ++v) {
+        for (int u = std::max(0, 2 * x - 2); u <= std::min(depth_m.width - 1, 2 * x + 2); ++u) {
+          const std::size_t pixel = depth_m.index(u, v);
+          const float there_m = depth_m.data[pixel];
+          if (!(there_m > 0) || std::abs(there_m - middle_m) > kOneSurface_m) continue;
+          const float weight = kBinomial[static_cast<std::size_t>(u - 2 * x + 2)] *
+                               kBinomial[static_cast<std::size_t>(v - 2 * y + 2)];
+          sum += weight * values.data[pixel];
+          weights += weight;
+        }
+      }
+      half(x, y) = sum / weights;
+    }
+  }
+  return half;
+}
+
+void put_gradient(LiveLevel& level) {
+  const Image<float>& image = level.intensity;
+  level.dx = Image<float>(image.width, image.height);
+  level.dy = Image<float>(image.width, image.height);
+  for (int y = 1; y + 1 < image.height; ++y) {
+    const float* const above = image.data.data() + image.index(0, y - 1);
+    const float* const here = image.data.data() + image.index(0, y);
+    const float* const below = image.data.data() + image.index(0, y + 1);
+    float* const dx = level.dx.data.data() + image.index(0, y);
+    float* const dy = level.dy.data.data() + image.index(0, y);
+    for (int x = 1; x + 1 < image.width; ++x) {
+      dx[x] =
+          ((above[x + 1] - above[x - 1]) + 2 * (here[x + 1] - here[x - 1]) + (below[x + 1] - below[x - 1])) *
+          0.125F;
+      dy[x] = ((below[x - 1] - above[x - 1]) + 2 * (below[x] - above[x]) + (below[x + 1] - above[x + 1])) *
+              0.125F;
+    }
+  }
+}
+
+/// The mean of four points, and of their normals.
+void halve_points(const ViewLevel& fine, ViewLevel& coarse) {
+  const int width = coarse.camera.width_px, height = coarse.camera.height_px;
+  coarse.point.resize(width, height);
+  coarse.normal.resize(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      // The last column or row of an image of odd size counts twice.
+      const int right = std::min(2 * x + 1, fine.camera.width_px - 1);
+      const int below = std::min(2 * y + 1, fine.camera.height_px - 1);
+      Eigen::Vector3f point = Eigen::Vector3f::Zero(), normal = point;
+      bool all = true;
+      for (const auto& [u, v] : {std::pair{2 * x, 2 * y}, {right, 2 * y}, {2 * x, below}, {right, below}}) {
+        const std::size_t pixel = fine.point.x.index(u, v);
+        all = all && fine.point.z.data[pixel] > 0;
+        point += fine.point.at(pixel);
+        normal += fine.normal.at(pixel);
+      }
+      const std::size_t target = coarse.point.x.index(x, y);
+      coarse.point.put(target, all ? Eigen::Vector3f(0.25F * point) : Eigen::Vector3f::Zero());
+      coarse.normal.put(target, all ? normal.normalized() : Eigen::Vector3f::Zero());
+    }
+  }
+}
+
+}  // namespace
+
+PinholeCamera camera_of_level(const PinholeCamera& camera, int level) {
+  const double scale = std::ldexp(1.0, -level);
+  PinholeCamera half = camera;
+  for (int i = 0; i < level; ++i) {
+    half.width_px = (half.width_px + 1) / 2;
+    half.height_px = (half.height_px + 1) / 2;
+  }
+  for (double* const number : {&half.fx_px, &half.fy_px, &half.cx_px, &half.cy_px}) *number *= scale;
+  return half;
+}
+
+DepthImage half_depth(const DepthImage& depth_m) { return half_of_surface(depth_m, depth_m); }
+
+LivePyramid live_pyramid(const surfels::LiveFrame& live, const PinholeCamera& camera,
+                         const Workers& workers) {
+  LivePyramid levels;
+  const std::vector<GreyImage> grey = build_pyramid(live.grey, kLevels);
+  for (int number = 0; number < kLevels; ++number) {
+    const auto at = static_cast<std::size_t>(number);
+    LiveLevel& level = levels[at];
+    level.camera = camera_of_level(camera, number);
+    level.depth_m = number == 0 ? live.smooth_m : half_depth(levels[at - 1].depth_m);
+    level.normal = number == 0 ? live.normal : surfels::normals_of(level.depth_m, level.camera, workers);
+    level.intensity = as_float(grey[at]);
+    put_gradient(level);
+  }
+  return levels;
+}
+
+ViewPyramid view_pyramid(const surfels::SurfelView& view, config::PeerDefects defects) {
+  ViewPyramid levels;
+  levels[0] = {view.camera, view.point, view.normal, as_float(surfels::intensity_of(view.color, defects)),
+               view.point.z};
+  for (std::size_t number = 1; number < levels.size(); ++number) {
+    const ViewLevel& fine = levels[number - 1];
+    ViewLevel& level = levels[number];
+    level.camera = camera_of_level(view.camera, static_cast<int>(number));
+    halve_points(fine, level);
+    level.depth_m = half_depth(fine.depth_m);
+    level.intensity = half_of_surface(fine.intensity, fine.depth_m);
+  }
+  return levels;
+}
+
+}  // namespace fusebench::systems::elasticfusion::tracking

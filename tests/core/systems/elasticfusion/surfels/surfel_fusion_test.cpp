@@ -1,0 +1,106 @@
+#include "core/systems/elasticfusion/surfels/surfel_fusion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace systems::elasticfusion::surfels;
+
+namespace {
+
+const PinholeCamera kCamera = {80, 60, 60, 60, 39.5, 29.5};
+
+/// A wall across the view.
+LiveFrame wall_at(float depth_m, const Workers& workers) {
+  RgbdFrame frame;
+  frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, depth_m);
+  frame.color = ColorImage(kCamera.width_px, kCamera.height_px, {10, 20, 30});
+  return make_live_frame(frame, kCamera, {}, config::PeerDefects::fixed, workers);
+}
+
+class Fusion : public ::testing::Test {
+ protected:
+  void fuse(float depth_m, int frames) {
+    const LiveFrame live = wall_at(depth_m, workers);
+    for (int i = 0; i < frames; ++i) {
+      if (now == 0)
+        fusion.start(live, {SE3{}, now, 1}, map);
+      else
+        fusion.fuse(live, {SE3{}, now, 1}, map);
+      ++now;
+    }
+  }
+  [[nodiscard]] long stable() const {
+    return std::ranges::count_if(map.confidence, [](float confidence) { return confidence > 10; });
+  }
+
+  Workers workers{2};
+  SurfelFusion fusion{kCamera, 10, 200, workers};
+  SurfelMap map;
+  std::int32_t now = 0;
+};
+
+TEST_F(Fusion, StartsWithASurfelForEachPixelThatHasANormal) {
+  fuse(2, 1);
+  EXPECT_EQ(map.size(), static_cast<std::size_t>((kCamera.width_px - 2) * (kCamera.height_px - 2)));
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(map.position[i].z()), 2, 1e-5);
+    EXPECT_NEAR(static_cast<double>(map.normal[i].z()), -1, 1e-5);
+  }
+}
+
+TEST_F(Fusion, TheSameWallAgainAddsNothingAndBecomesStable) {
+  fuse(2, 1);
+  const std::size_t first = map.size();
+  fuse(2, 30);
+  EXPECT_LE(map.size(), first);
+  EXPECT_GT(stable(), 500);
+  for (std::size_t i = 0; i < map.size(); ++i) EXPECT_NEAR(static_cast<double>(map.position[i].z()), 2, 1e-4);
+}
+
+TEST_F(Fusion, UnstableSurfelsDieWhenTheyAreNotSeenForTwentyFrames) {
+  fuse(2, 2);
+  const auto old = [&] { return std::ranges::count_if(map.created, [](auto time) { return time < 2; }); };
+  EXPECT_GT(old(), 1000);
+  fuse(1, 19);
+  EXPECT_GT(old(), 1000);
+  fuse(1, 3);
+  EXPECT_EQ(old(), 0);
+}
+
+TEST_F(Fusion, AWallFurtherAwayEndsWhatWasInFrontOfIt) {
+  fuse(2, 40);
+  const auto near = [&] {
+    return std::ranges::count_if(map.position, [](const auto& position) { return position.z() < 2.1F; });
+  };
+  EXPECT_GT(stable(), 500);
+  EXPECT_GT(near(), 1000);
+  fuse(2.5F, 60);  // once the new wall is stable itself
+  EXPECT_LT(near(), 50);
+  EXPECT_GT(stable(), 500);
+}
+
+TEST_F(Fusion, IsTheSameForAnyNumberOfThreads) {
+  fuse(2, 4);
+  fuse(2.02F, 4);
+  const Workers one(1);
+  SurfelFusion alone(kCamera, 10, 200, one);
+  SurfelMap other;
+  for (std::int32_t time = 0; time < 8; ++time) {
+    const LiveFrame live = wall_at(time < 4 ? 2.0F : 2.02F, one);
+    if (time == 0)
+      alone.start(live, {SE3{}, time, 1}, other);
+    else
+      alone.fuse(live, {SE3{}, time, 1}, other);
+  }
+  EXPECT_EQ(map.position, other.position);
+  EXPECT_EQ(map.confidence, other.confidence);
+  EXPECT_EQ(map.updated, other.updated);
+}
+
+}  // namespace
+}  // namespace fusebench

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
+#include "core/systems/elasticfusion/tracking/intensity_matching.hpp"
+#include "core/systems/elasticfusion/tracking/plane_matching.hpp"
+#include "core/systems/elasticfusion/tracking/rotation_start.hpp"
+#include "tests/support/textured_room.hpp"
+
+namespace fusebench {
+
+using namespace systems;
+using namespace systems::elasticfusion;
+using testing::small_camera;
+
+namespace {
+
+constexpr auto kFixed = config::PeerDefects::fixed;
+
+surfels::LiveFrame live_at(const SE3& T_world_camera, const Workers& workers) {
+  config::DepthConfig depth;
+  depth.max_m = 6;
+  return surfels::make_live_frame(testing::TexturedRoom{}.render(small_camera(), T_world_camera, 0),
+                                  small_camera(), depth, kFixed, workers);
+}
+
+/// As if the model were exactly what the camera saw.
+surfels::SurfelView view_of(const surfels::LiveFrame& live) {
+  surfels::SurfelView view;
+  view.camera = small_camera();
+  const int width = view.camera.width_px, height = view.camera.height_px;
+  view.point.resize(width, height);
+  view.normal.resize(width, height);
+  view.color = ColorImage(width, height);
+  view.surfel = Image<std::int32_t>(width, height, surfels::kNoSurfel);
+  fill_in(live, view);
+  return view;
+}
+
+SE3 stepped(const SE3& T_view_camera, const Vector6d& step) {
+  return SE3{so3_exp(step.head<3>()), step.tail<3>()} * T_view_camera;
+}
+
+class Tracking : public ::testing::Test {
+ protected:
+  Workers workers{2};
+  SE3 T_view_camera{so3_exp({0.004, -0.006, 0.003}), {0.006, -0.004, 0.008}};
+  surfels::LiveFrame before = live_at(SE3{}, workers);
+  surfels::LiveFrame now = live_at(T_view_camera, workers);
+  tracking::LivePyramid live = tracking::live_pyramid(now, small_camera(), workers);
+  tracking::ViewPyramid view = tracking::view_pyramid(view_of(before), kFixed);
+};
+
+TEST_F(Tracking, PlanesHaveTheSlopeOfTheirCost) {
+  // Without outliers that appear or go, the cost is smooth: a gate that nothing is near to.
+  const auto sums_at = [&](const SE3& pose) {
+    return tracking::match_planes(live[1], view[1], pose, workers);
+  };
+  const SE3 off =
+      stepped(T_view_camera, (Vector6d() << 0.002, 0.001, -0.002, 0.01, 0.008, -0.006).finished());
+  const PoseSums here = sums_at(off);
+  EXPECT_GT(here.pixels, 5000);
+  for (int axis = 0; axis < 6; ++axis) {
+    Vector6d step = Vector6d::Zero();
+    step[axis] = 1e-4;
+    const double slope = (sums_at(stepped(off, step)).cost - sums_at(stepped(off, -step)).cost) / 2e-4;
+    EXPECT_NEAR(-2 * here.descent[axis], slope, 0.15 * here.descent.norm()) << "axis " << axis;
+  }
+}
+
+TEST_F(Tracking, IntensitiesHaveTheSlopeOfTheirResiduals) {
+  // One pixel that looks at a known point of a view of one surface: the model's side is constant within half
+  // a pixel, and the frame's side is linear by its gradient.
+  const auto pixels = tracking::telling_pixels(live[0], 5);
+  ASSERT_GT(pixels.size(), 1000U);
+  const PinholeCamera& camera = live[0].camera;
+  int checked = 0;
+  for (std::size_t i = 0; i < pixels.size(); i += pixels.size() / 50) {
+    const std::vector<tracking::TellingPixel> one = {pixels[i]};
+    const auto sums = tracking::match_intensities(one, camera, view[0], T_view_camera, kFixed, workers);
+    if (sums.pixels == 0) continue;
+    const double residual = std::sqrt(sums.cost);
+    if (residual < 0.5) continue;
+    // What the point of the model gives in the frame, by the frame's linear image.
+    const Vector3d seen = T_view_camera * pixels[i].point.cast<double>();
+    const Vector2d at = camera.project(seen);
+    const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
+    const Vector3d model = camera.back_project(x, y, static_cast<double>(view[0].depth_m(x, y)));
+    const auto value_at = [&](const Vector6d& step) {
+      const Vector3d point = stepped(T_view_camera, step).inverse() * model;
+      return pixels[i].gradient.cast<double>().dot(camera.project(point));
+    };
+    Vector6d slope;
+    for (int axis = 0; axis < 6; ++axis) {
+      Vector6d step = Vector6d::Zero();
+      step[axis] = 1e-6;
+      slope[axis] = (value_at(step) - value_at(-step)) / 2e-6;
+    }
+    // A step of Gauss-Newton along the row: descent = -w^2 r slope, information = w^2 slope slope^T.
+    const double weight = 1 / (2 * residual);
+    const Matrix6d information = weight * weight * slope * slope.transpose();
+    EXPECT_LT((sums.information - information).norm(), 1e-3 * information.norm());
+    EXPECT_NEAR(std::abs(sums.descent.dot(slope)), weight * weight * residual * slope.squaredNorm(),
+                1e-3 * weight * weight * residual * slope.squaredNorm());
+    const double sign = static_cast<double>(pixels[i].intensity - view[0].intensity(x, y)) > 0 ? -1 : 1;
+    EXPECT_GT(sign * sums.descent.dot(slope), 0);
+    ++checked;
+  }
+  EXPECT_GT(checked, 10);
+}
+
+TEST_F(Tracking, WeightsAreByTheDeviationOrAsPublishedByTheNumber) {
+  const auto pixels = tracking::telling_pixels(live[0], 5);
+  const auto camera = live[0].camera;
+  const auto fixed = tracking::match_intensities(pixels, camera, view[0], T_view_camera, kFixed, workers);
+  const auto published = tracking::match_intensities(pixels, camera, view[0], T_view_camera,
+                                                     config::PeerDefects::as_published, workers);
+  EXPECT_EQ(fixed.pixels, published.pixels);
+  // Residuals of a few grey levels against the root of thousands of pixels.
+  EXPECT_LT(published.information.trace(), 0.1 * fixed.information.trace());
+}
+
+TEST_F(Tracking, FindsTheMotionBetweenTwoFrames) {
+  config::ElasticfusionConfig config;
+  for (const auto defects : {config::PeerDefects::fixed, config::PeerDefects::as_published}) {
+    config.defects = defects;
+    const auto motion = tracking::CameraTracker(config, workers).track(live, view, SE3{});
+    EXPECT_FALSE(motion.was_dropped);
+    EXPECT_LT((motion.T_view_camera.translation - T_view_camera.translation).norm(), 0.002);
+    EXPECT_LT(rotation_angle_rad(motion.T_view_camera.rotation, T_view_camera.rotation), 0.002);
+    EXPECT_GT(motion.matches, 10000);
+    EXPECT_LT(motion.variance(), 1e-3);
+  }
+}
+
+TEST_F(Tracking, IsTheSameForAnyNumberOfThreads) {
+  const config::ElasticfusionConfig config;
+  const Workers one(1), three(3);
+  const auto a = tracking::CameraTracker(config, one).track(live, view, SE3{});
+  const auto b = tracking::CameraTracker(config, three).track(live, view, SE3{});
+  EXPECT_EQ(a.T_view_camera.translation, b.T_view_camera.translation);
+  EXPECT_EQ(a.information, b.information);
+}
+
+TEST(RotationStart, FindsAPureRotation) {
+  const PinholeCamera camera = tracking::camera_of_level(small_camera(), 1);
+  const testing::TexturedRoom room;
+  const Quaterniond turn = so3_exp({0.03, -0.05, 0.04});
+  const GreyImage before = room.render(camera, SE3{}, 0).grey;
+  const GreyImage now = room.render(camera, {turn, Vector3d::Zero()}, 0).grey;
+  EXPECT_LT(rotation_angle_rad(tracking::rotation_between(before, now, camera), turn), 0.002);
+  const GreyImage blank(camera.width_px, camera.height_px, 90);
+  EXPECT_EQ(tracking::rotation_between(blank, blank, camera).coeffs(), Quaterniond::Identity().coeffs());
+}
+
+}  // namespace
+}  // namespace fusebench
