@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/systems/elasticfusion/surfels/disc_mesh.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_measure.hpp"
 #include "core/systems/elasticfusion/tracking/rotation_start.hpp"
 
@@ -178,15 +179,9 @@ Result<std::optional<Trajectory>> ElasticfusionSystem::revise() {
 }
 
 Surface ElasticfusionSystem::take_surface() {
-  Mesh cloud;
-  for (std::size_t i = 0; i < map_.size(); ++i) {
-    if (static_cast<double>(map_.confidence[i]) <= config_.elasticfusion.stable_confidence) continue;
-    cloud.vertices.push_back(map_.position[i]);
-    cloud.normals.push_back(map_.normal[i]);
-    cloud.colors.push_back(map_.color[i]);
-  }
+  Mesh mesh = surfels::disc_mesh(map_, static_cast<float>(config_.elasticfusion.stable_confidence));
   map_ = {};
-  return cloud;
+  return mesh;
 }
 
 }  // namespace fusebench::systems::elasticfusion

@@ -28,7 +28,7 @@ class ElasticfusionSystem final : public System {
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   /// The poses as loops have bent them, if there were any; the model is of these already.
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override;
-  /// The stable surfels as points with normals and colours.
+  /// The stable surfels, a triangle of each disc's area.
   [[nodiscard]] Surface take_surface() override;
 
  private:

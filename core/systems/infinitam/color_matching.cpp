@@ -61,23 +61,6 @@ void add_pixel(const ColorLevel& level, int x, int y, const SE3& T_world_camera,
 
 }  // namespace
 
-Gradient gradient_of(const Image<float>& image) {
-  Gradient gradient{Image<float>(image.width, image.height), Image<float>(image.width, image.height)};
-  for (int y = 1; y + 1 < image.height; ++y) {
-    for (int x = 1; x + 1 < image.width; ++x) {
-      float dx = 0, dy = 0;
-      for (const int side : {-1, 0, 1}) {
-        const float weight = side == 0 ? 2.0F : 1.0F;
-        dx += weight * (image(x + 1, y + side) - image(x - 1, y + side));
-        dy += weight * (image(x + side, y + 1) - image(x + side, y - 1));
-      }
-      gradient.dx(x, y) = dx / 8.0F;
-      gradient.dy(x, y) = dy / 8.0F;
-    }
-  }
-  return gradient;
-}
-
 PoseSums match_color(const ColorLevel& level, const SE3& T_world_camera, const SE3& T_world_before,
                      const ColorMatching& matching, const Workers& workers) {
   const SE3 T_before_world = T_world_before.inverse();

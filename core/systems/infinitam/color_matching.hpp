@@ -25,13 +25,6 @@ struct ColorLevel {
   PinholeCamera camera;
 };
 
-/// Gradient of an image by Sobel's filter, 0 at the border.
-struct Gradient {
-  Image<float> dx;
-  Image<float> dy;
-};
-[[nodiscard]] Gradient gradient_of(const Image<float>& image);
-
 /// Sums over all pixels of a level: each is moved into the world and seen from the camera of the frame
 /// before.
 [[nodiscard]] PoseSums match_color(const ColorLevel& level, const SE3& T_world_camera,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/simd/lane_points.hpp"
+
 namespace fusebench::systems::infinitam {
 
 namespace {

@@ -36,8 +36,8 @@ TrackedMotion CameraTracker::track(const LivePyramid& live, const ViewPyramid& v
     const auto pixels = telling_pixels(live[level], kMinGradient[level]);
     for (int step = 0; step < kSteps[level]; ++step) {
       const PoseSums planes = match_planes(live[level], view[level], motion.T_view_camera, workers_);
-      const PoseSums intensities = match_intensities(pixels, live[level].camera, view[level],
-                                                     motion.T_view_camera, config_.defects, workers_);
+      const PoseSums intensities =
+          match_intensities(pixels, view[level], motion.T_view_camera, config_.defects, workers_);
       motion.information = intensities.information + weight * weight * planes.information;
       motion.matches = planes.pixels;
       motion.error_m = planes.pixels > 0 ? std::sqrt(planes.cost) / planes.pixels : 0;

@@ -2,122 +2,152 @@
 
 #include <cmath>
 
+#include "core/simd/lane_points.hpp"
+
 namespace fusebench::systems::elasticfusion::tracking {
 
 namespace {
+
+using simd::Float8;
+using simd::Int8;
 
 constexpr std::size_t kPixelsAtOnce = 4096;
 constexpr float kMostDepth_m = 6;
 constexpr float kMostApart_m = 0.07F;
 
-using Vector6f = Eigen::Matrix<float, 6, 1>;
-
+/// Eight pixels and what the model has there.
 struct Match {
-  Vector6f direction;  ///< how the residual falls by a step
-  float residual;      ///< frame less model
+  Int8 valid;
+  Int8 column, row;  ///< of the nearest pixel of the view
+  Float8 depth_m;    ///< of the model
+  Float8 residual;   ///< frame less model
 };
 
 class IntensityMatcher {
  public:
-  IntensityMatcher(const PinholeCamera& camera, const ViewLevel& view, const SE3& T_view_camera)
-      : fx_(static_cast<float>(camera.fx_px)),
-        fy_(static_cast<float>(camera.fy_px)),
+  IntensityMatcher(const TellingPixels& pixels, const ViewLevel& view, const SE3& T_view_camera)
+      : pixels_(pixels),
+        view_(view),
+        fx_(static_cast<float>(pixels.camera.fx_px)),
+        fy_(static_cast<float>(pixels.camera.fy_px)),
         cx_(static_cast<float>(view.camera.cx_px)),
         cy_(static_cast<float>(view.camera.cy_px)),
-        view_(view),
         R_(T_view_camera.rotation_matrix().cast<float>()),
-        t_(T_view_camera.translation.cast<float>()) {}
+        t_(T_view_camera.translation.cast<float>()),
+        R_camera_view_(R_.transpose()),
+        t_camera_view_(-(R_camera_view_ * t_)) {}
 
-  [[nodiscard]] bool match(const TellingPixel& pixel, Match& match) const {
-    const Eigen::Vector3f seen = R_ * pixel.point + t_;
-    if (!(seen.z() > 0)) return false;
-    const float u = fx_ * seen.x() / seen.z() + cx_ + 0.5F, v = fy_ * seen.y() / seen.z() + cy_ + 0.5F;
-    if (!(u >= 0) || !(v >= 0) || !(u < static_cast<float>(view_.camera.width_px)) ||
-        !(v < static_cast<float>(view_.camera.height_px)))
-      return false;
-    const int x = static_cast<int>(u), y = static_cast<int>(v);
-    const std::size_t at = view_.depth_m.index(x, y);
-    const float depth_m = view_.depth_m.data[at];
-    if (!(depth_m > 0) || std::abs(depth_m - seen.z()) > kMostApart_m) return false;
-    const Eigen::Vector3f point((static_cast<float>(x) - cx_) / fx_ * depth_m,
-                                (static_cast<float>(y) - cy_) / fy_ * depth_m, depth_m);
-    const Eigen::Vector3f here = R_.transpose() * (point - t_);
-    if (!(here.z() > 0)) return false;
-    const float gx = pixel.gradient.x() * fx_ / here.z(), gy = pixel.gradient.y() * fy_ / here.z();
-    const Eigen::Vector3f slope = R_ * Eigen::Vector3f(gx, gy, -(gx * here.x() + gy * here.y()) / here.z());
-    match.direction << point.cross(slope), slope;
-    match.residual = pixel.intensity - view_.intensity.data[at];
-    return true;
+  [[nodiscard]] Match match(std::size_t first) const {
+    const simd::Points point = {simd::load(&pixels_.x[first]), simd::load(&pixels_.y[first]),
+                                simd::load(&pixels_.z[first])};
+    const simd::Points seen = simd::moved(R_, t_, point);
+    const auto width = static_cast<float>(view_.camera.width_px);
+    const auto height = static_cast<float>(view_.camera.height_px);
+    const Float8 u = fx_ * seen.x / seen.z + (cx_ + 0.5F), v = fy_ * seen.y / seen.z + (cy_ + 0.5F);
+    Match match{};
+    match.valid = (point.z > 0.0F) & (seen.z > 0.0F) & (u >= 0.0F) & (v >= 0.0F) & (u < width) & (v < height);
+    match.column = simd::to_int(simd::clamp(u, 0.0F, width - 1));
+    match.row = simd::to_int(simd::clamp(v, 0.0F, height - 1));
+    const Int8 at = match.row * view_.camera.width_px + match.column;
+    match.depth_m = simd::gather(view_.depth_m.data.data(), at);
+    match.valid &= (match.depth_m > 0.0F) & (simd::abs(match.depth_m - seen.z) <= kMostApart_m);
+    match.residual = simd::load(&pixels_.intensity[first]) - simd::gather(view_.intensity.data.data(), at);
+    return match;
+  }
+
+  /// Residuals that were matched: their squares, and how many.
+  void count(std::size_t first, Float8& squares, Float8& number) const {
+    const Match found = match(first);
+    const Float8 none{};
+    squares += found.valid ? found.residual * found.residual : none;
+    number += found.valid ? simd::all_lanes(1.0F) : none;
+  }
+
+  void add(std::size_t first, float sigma, PoseSumLanes& sums) const {
+    Match found = match(first);
+    if (!simd::any(found.valid)) return;
+    const simd::Points point = {(simd::to_float(found.column) - cx_) / fx_ * found.depth_m,
+                                (simd::to_float(found.row) - cy_) / fy_ * found.depth_m, found.depth_m};
+    const simd::Points here = simd::moved(R_camera_view_, t_camera_view_, point);
+    found.valid &= here.z > 0.0F;
+    const Float8 gx = simd::load(&pixels_.dx[first]) * fx_ / here.z;
+    const Float8 gy = simd::load(&pixels_.dy[first]) * fy_ / here.z;
+    const simd::Points slope = simd::rotated(R_, {gx, gy, -(gx * here.x + gy * here.y) / here.z});
+    const simd::Points arm = simd::cross(point, slope);
+    const Float8 divisor = sigma + simd::abs(found.residual);
+    const Float8 weight = divisor > 0.0F ? 1.0F / (divisor * divisor) : simd::all_lanes(1.0F);
+    sums.add({arm.x, arm.y, arm.z, slope.x, slope.y, slope.z}, weight * found.residual, weight,
+             found.residual * found.residual, found.valid);
   }
 
  private:
-  float fx_, fy_, cx_, cy_;
+  const TellingPixels& pixels_;
   const ViewLevel& view_;
+  float fx_, fy_, cx_, cy_;
   Eigen::Matrix3f R_;
   Eigen::Vector3f t_;
+  Eigen::Matrix3f R_camera_view_;
+  Eigen::Vector3f t_camera_view_;
 };
 
-PoseSums sums_of(const std::vector<Match>& matches, double sigma) {
-  PoseSums sums;
-  for (const Match& match : matches) {
-    const auto residual = static_cast<double>(match.residual);
-    const double divisor = sigma + std::abs(residual);
-    const double weight = divisor > 0 ? 1 / divisor : 1.0;
-    const Vector6d along = weight * match.direction.cast<double>();
-    sums.information.selfadjointView<Eigen::Lower>().rankUpdate(along);
-    sums.descent += weight * residual * along;
-    sums.cost += residual * residual;
-    sums.pixels += 1;
-  }
-  const Matrix6d lower = sums.information;
-  sums.information = lower.selfadjointView<Eigen::Lower>();
-  return sums;
-}
+struct ResidualCount {
+  double squares = 0;
+  double number = 0;
+};
 
 }  // namespace
 
-std::vector<TellingPixel> telling_pixels(const LiveLevel& live, double min_gradient) {
-  std::vector<TellingPixel> pixels;
+TellingPixels telling_pixels(const LiveLevel& live, double min_gradient) {
+  TellingPixels pixels;
+  pixels.camera = live.camera;
+  const auto add = [&](const Eigen::Vector3f& point, float dx, float dy, float intensity) {
+    pixels.x.push_back(point.x());
+    pixels.y.push_back(point.y());
+    pixels.z.push_back(point.z());
+    pixels.dx.push_back(dx);
+    pixels.dy.push_back(dy);
+    pixels.intensity.push_back(intensity);
+  };
   const auto least = static_cast<float>(min_gradient * min_gradient);
   for (int y = 0; y < live.depth_m.height; ++y) {
     for (int x = 0; x < live.depth_m.width; ++x) {
       const std::size_t at = live.depth_m.index(x, y);
-      const Eigen::Vector2f gradient(live.dx.data[at], live.dy.data[at]);
-      const float depth_m = live.depth_m.data[at];
-      if (!(depth_m > 0) || !(depth_m < kMostDepth_m) || !(gradient.squaredNorm() >= least)) continue;
-      pixels.push_back({live.intensity.data[at], gradient,
-                        live.camera.back_project(x, y, static_cast<double>(depth_m)).cast<float>()});
+      const float dx = live.gradient.dx.data[at], dy = live.gradient.dy.data[at],
+                  depth_m = live.depth_m.data[at];
+      if (!(depth_m > 0) || !(depth_m < kMostDepth_m) || !(dx * dx + dy * dy >= least)) continue;
+      add(live.camera.back_project(x, y, static_cast<double>(depth_m)).cast<float>(), dx, dy,
+          live.intensity.data[at]);
     }
   }
+  while (pixels.z.size() % simd::kLanes != 0) add(Eigen::Vector3f::Zero(), 0, 0, 0);
   return pixels;
 }
 
-PoseSums match_intensities(const std::vector<TellingPixel>& pixels, const PinholeCamera& camera,
-                           const ViewLevel& view, const SE3& T_view_camera, config::PeerDefects defects,
-                           const Workers& workers) {
-  const IntensityMatcher matcher(camera, view, T_view_camera);
-  const auto parts = workers.map_chunks<std::vector<Match>>(pixels.size(), kPixelsAtOnce,
-                                                            [&](std::size_t begin, std::size_t end) {
-                                                              std::vector<Match> matches;
-                                                              matches.reserve(end - begin);
-                                                              Match match;
-                                                              for (std::size_t i = begin; i < end; ++i) {
-                                                                if (matcher.match(pixels[i], match))
-                                                                  matches.push_back(match);
-                                                              }
-                                                              return matches;
-                                                            });
-  double squares = 0, count = 0;
-  for (const auto& matches : parts) {
-    for (const Match& match : matches) squares += static_cast<double>(match.residual * match.residual);
-    count += static_cast<double>(matches.size());
+PoseSums match_intensities(const TellingPixels& pixels, const ViewLevel& view, const SE3& T_view_camera,
+                           config::PeerDefects defects, const Workers& workers) {
+  const IntensityMatcher matcher(pixels, view, T_view_camera);
+  ResidualCount residuals;
+  for (const ResidualCount& part : workers.map_chunks<ResidualCount>(
+           pixels.z.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+             Float8 squares{}, number{};
+             for (std::size_t i = begin; i < end; i += simd::kLanes) matcher.count(i, squares, number);
+             return ResidualCount{simd::sum_of_lanes(squares), simd::sum_of_lanes(number)};
+           })) {
+    residuals.squares += part.squares;
+    residuals.number += part.number;
   }
-  if (count == 0) return {};
-  const double sigma = std::sqrt(defects == config::PeerDefects::as_published ? count : squares / count);
-  const auto sums = workers.map_chunks<PoseSums>(
-      parts.size(), 1, [&](std::size_t part, std::size_t /*end*/) { return sums_of(parts[part], sigma); });
+  if (residuals.number == 0) return {};
+  const bool slip = defects == config::PeerDefects::as_published;
+  const auto sigma =
+      static_cast<float>(std::sqrt(slip ? residuals.number : residuals.squares / residuals.number));
   PoseSums total;
-  for (const PoseSums& part : sums) total += part;
+  for (const PoseSums& part :
+       workers.map_chunks<PoseSums>(pixels.z.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+         PoseSumLanes sums;
+         for (std::size_t i = begin; i < end; i += simd::kLanes) matcher.add(i, sigma, sums);
+         return sums.total();
+       }))
+    total += part;
   return total;
 }
 

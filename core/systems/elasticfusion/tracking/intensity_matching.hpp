@@ -10,21 +10,26 @@
 
 namespace fusebench::systems::elasticfusion::tracking {
 
-/// A pixel of a frame that tells something: its gradient is large enough, and it has depth.
-struct TellingPixel {
-  float intensity;
-  Eigen::Vector2f gradient;  ///< per pixel
-  Eigen::Vector3f point;     ///< camera frame
+/// The pixels of a level that tell something: their gradient is large enough, and they have depth. One number
+/// of each a pixel, in rows of eight; those beyond the last pixel have no depth.
+struct TellingPixels {
+  PinholeCamera camera;
+  std::vector<float> x;  ///< of the point, camera frame
+  std::vector<float> y;
+  std::vector<float> z;
+  std::vector<float> dx;  ///< gradient, per pixel
+  std::vector<float> dy;
+  std::vector<float> intensity;
 };
 
-/// Those of a level whose gradient is at least so long (grey levels per pixel), nearer than 6 m.
-[[nodiscard]] std::vector<TellingPixel> telling_pixels(const LiveLevel& live, double min_gradient);
+/// Those whose gradient is at least so long (grey levels per pixel), nearer than 6 m.
+[[nodiscard]] TellingPixels telling_pixels(const LiveLevel& live, double min_gradient);
 
 /// Sums over the pixels that have a match: each is moved into the view's camera, and the model's point at the
 /// nearest pixel, if its depth is within 7 cm, is seen from the frame. Residuals weigh 1 / (s + |r|), where s
 /// is the root of their mean square, or as published of their number. Steps as of match_planes().
-[[nodiscard]] PoseSums match_intensities(const std::vector<TellingPixel>& pixels, const PinholeCamera& camera,
-                                         const ViewLevel& view, const SE3& T_view_camera,
-                                         config::PeerDefects defects, const Workers& workers);
+[[nodiscard]] PoseSums match_intensities(const TellingPixels& pixels, const ViewLevel& view,
+                                         const SE3& T_view_camera, config::PeerDefects defects,
+                                         const Workers& workers);
 
 }  // namespace fusebench::systems::elasticfusion::tracking

@@ -43,26 +43,6 @@ Image<float> half_of_surface(const Image<float>& values, const DepthImage& depth
   return half;
 }
 
-void put_gradient(LiveLevel& level) {
-  const Image<float>& image = level.intensity;
-  level.dx = Image<float>(image.width, image.height);
-  level.dy = Image<float>(image.width, image.height);
-  for (int y = 1; y + 1 < image.height; ++y) {
-    const float* const above = image.data.data() + image.index(0, y - 1);
-    const float* const here = image.data.data() + image.index(0, y);
-    const float* const below = image.data.data() + image.index(0, y + 1);
-    float* const dx = level.dx.data.data() + image.index(0, y);
-    float* const dy = level.dy.data.data() + image.index(0, y);
-    for (int x = 1; x + 1 < image.width; ++x) {
-      dx[x] =
-          ((above[x + 1] - above[x - 1]) + 2 * (here[x + 1] - here[x - 1]) + (below[x + 1] - below[x - 1])) *
-          0.125F;
-      dy[x] = ((below[x - 1] - above[x - 1]) + 2 * (below[x] - above[x]) + (below[x + 1] - above[x + 1])) *
-              0.125F;
-    }
-  }
-}
-
 /// The mean of four points, and of their normals.
 void halve_points(const ViewLevel& fine, ViewLevel& coarse) {
   const int width = coarse.camera.width_px, height = coarse.camera.height_px;
@@ -114,7 +94,7 @@ LivePyramid live_pyramid(const surfels::LiveFrame& live, const PinholeCamera& ca
     level.depth_m = number == 0 ? live.smooth_m : half_depth(levels[at - 1].depth_m);
     level.normal = number == 0 ? live.normal : surfels::normals_of(level.depth_m, level.camera, workers);
     level.intensity = as_float(grey[at]);
-    put_gradient(level);
+    level.gradient = gradient_of(level.intensity);
   }
   return levels;
 }

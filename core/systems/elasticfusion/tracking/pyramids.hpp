@@ -8,6 +8,7 @@
 #include "core/base/types.hpp"
 #include "core/systems/elasticfusion/surfels/live_frame.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_view.hpp"
+#include "core/systems/image_gradient.hpp"
 #include "core/systems/point_map.hpp"
 
 namespace fusebench::systems::elasticfusion::tracking {
@@ -25,8 +26,7 @@ struct LiveLevel {
   DepthImage depth_m;  ///< smooth
   PointMap normal;     ///< camera frame; 0 where there is none
   Image<float> intensity;
-  Image<float> dx;  ///< by Sobel's filter, per pixel; 0 at the border
-  Image<float> dy;
+  Gradient gradient;
 };
 using LivePyramid = std::array<LiveLevel, kLevels>;
 [[nodiscard]] LivePyramid live_pyramid(const surfels::LiveFrame& live, const PinholeCamera& camera,

@@ -23,10 +23,7 @@ TEST(ElasticfusionSystem, FollowsAHandHeldCamera) {
       EXPECT_EQ(tracked.outcomes[k].status, FrameStatus::tracked) << "frame " << k;
     // 20 cm of path.
     EXPECT_LT(testing::worst_position_error_m(run, tracked.outcomes), 0.03) << variant;
-    const Mesh& cloud = std::get<Mesh>(tracked.surface);
-    EXPECT_GT(cloud.vertices.size(), 1000U);
-    EXPECT_EQ(cloud.normals.size(), cloud.vertices.size());
-    EXPECT_EQ(cloud.colors.size(), cloud.vertices.size());
+    EXPECT_GT(std::get<Mesh>(tracked.surface).triangles.size(), 1000U);
   }
 }
 

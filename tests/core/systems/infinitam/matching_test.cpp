@@ -12,6 +12,7 @@
 
 namespace fusebench {
 
+using namespace systems;
 using namespace systems::infinitam;
 using testing::small_camera;
 

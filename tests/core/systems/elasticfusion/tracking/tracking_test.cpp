@@ -74,23 +74,27 @@ TEST_F(Tracking, IntensitiesHaveTheSlopeOfTheirResiduals) {
   // One pixel that looks at a known point of a view of one surface: the model's side is constant within half
   // a pixel, and the frame's side is linear by its gradient.
   const auto pixels = tracking::telling_pixels(live[0], 5);
-  ASSERT_GT(pixels.size(), 1000U);
+  ASSERT_GT(pixels.z.size(), 1000U);
   const PinholeCamera& camera = live[0].camera;
   int checked = 0;
-  for (std::size_t i = 0; i < pixels.size(); i += pixels.size() / 50) {
-    const std::vector<tracking::TellingPixel> one = {pixels[i]};
-    const auto sums = tracking::match_intensities(one, camera, view[0], T_view_camera, kFixed, workers);
+  for (std::size_t i = 0; i + 8 < pixels.z.size(); i += pixels.z.size() / 50) {
+    tracking::TellingPixels one = pixels;
+    for (std::size_t other = 0; other < one.z.size(); ++other) one.z[other] = other == i ? pixels.z[i] : 0;
+    const auto sums = tracking::match_intensities(one, view[0], T_view_camera, kFixed, workers);
+    const Vector3d seen_point(static_cast<double>(pixels.x[i]), static_cast<double>(pixels.y[i]),
+                              static_cast<double>(pixels.z[i]));
+    const Vector2d gradient(static_cast<double>(pixels.dx[i]), static_cast<double>(pixels.dy[i]));
     if (sums.pixels == 0) continue;
     const double residual = std::sqrt(sums.cost);
     if (residual < 0.5) continue;
     // What the point of the model gives in the frame, by the frame's linear image.
-    const Vector3d seen = T_view_camera * pixels[i].point.cast<double>();
+    const Vector3d seen = T_view_camera * seen_point;
     const Vector2d at = camera.project(seen);
     const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
     const Vector3d model = camera.back_project(x, y, static_cast<double>(view[0].depth_m(x, y)));
     const auto value_at = [&](const Vector6d& step) {
       const Vector3d point = stepped(T_view_camera, step).inverse() * model;
-      return pixels[i].gradient.cast<double>().dot(camera.project(point));
+      return gradient.dot(camera.project(point));
     };
     Vector6d slope;
     for (int axis = 0; axis < 6; ++axis) {
@@ -104,7 +108,7 @@ TEST_F(Tracking, IntensitiesHaveTheSlopeOfTheirResiduals) {
     EXPECT_LT((sums.information - information).norm(), 1e-3 * information.norm());
     EXPECT_NEAR(std::abs(sums.descent.dot(slope)), weight * weight * residual * slope.squaredNorm(),
                 1e-3 * weight * weight * residual * slope.squaredNorm());
-    const double sign = static_cast<double>(pixels[i].intensity - view[0].intensity(x, y)) > 0 ? -1 : 1;
+    const double sign = static_cast<double>(pixels.intensity[i] - view[0].intensity(x, y)) > 0 ? -1 : 1;
     EXPECT_GT(sign * sums.descent.dot(slope), 0);
     ++checked;
   }
@@ -113,10 +117,9 @@ TEST_F(Tracking, IntensitiesHaveTheSlopeOfTheirResiduals) {
 
 TEST_F(Tracking, WeightsAreByTheDeviationOrAsPublishedByTheNumber) {
   const auto pixels = tracking::telling_pixels(live[0], 5);
-  const auto camera = live[0].camera;
-  const auto fixed = tracking::match_intensities(pixels, camera, view[0], T_view_camera, kFixed, workers);
-  const auto published = tracking::match_intensities(pixels, camera, view[0], T_view_camera,
-                                                     config::PeerDefects::as_published, workers);
+  const auto fixed = tracking::match_intensities(pixels, view[0], T_view_camera, kFixed, workers);
+  const auto published =
+      tracking::match_intensities(pixels, view[0], T_view_camera, config::PeerDefects::as_published, workers);
   EXPECT_EQ(fixed.pixels, published.pixels);
   // Residuals of a few grey levels against the root of thousands of pixels.
   EXPECT_LT(published.information.trace(), 0.1 * fixed.information.trace());
