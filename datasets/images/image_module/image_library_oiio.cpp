@@ -81,8 +81,10 @@ constexpr ImageLibrary kLibrary{open_image, open_bytes, encode_jpeg};
 
 const fusebench::images::ImageLibrary* fusebench_image_library(const char* build) {
   if (std::string_view(build) != fusebench::images::kImageLibraryBuild) return nullptr;
-  // Decoding runs inside of our own parallel loops, so the library must not start threads of its own.
-  static const bool done = OIIO::attribute("threads", 1);
+  // Decoding runs inside of our own parallel loops, so the library must not start threads of its own. Nor may
+  // OpenEXR (-1: none): in a run, forked from an engine that has opened the recording, decoding would wait
+  // for them for ever.
+  static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
   static_cast<void>(done);
   return &fusebench::images::kLibrary;
 }

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "datasets/images/image_files.hpp"
 #include "datasets/open_recording.hpp"
+#include "tests/datasets/images/child_process.hpp"
 #include "tests/support/expect_text.hpp"
 #include "tests/support/repository.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -70,6 +72,21 @@ TEST_F(Record3d, DepthInMetresAndPosesOfACameraWithYUp) {
   const SE3& second = recording->ground_truth[1].T_world_camera;
   EXPECT_LT((second * Vector3d(1, 0, 0) - Vector3d(1, 3, 3)).norm(), 1e-6) << "turned about z by 90 degrees";
   EXPECT_TRUE(recording->truth_label.starts_with("pseudo ground truth: ARKit"));
+}
+
+/// A run is a process that is forked from the engine, which has opened the recording: threads that the
+/// decoder had there are none that it has here.
+TEST_F(Record3d, AForkedProcessDecodesAsItsParentDid) {
+  const auto recording = open_recording(folder_);
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_TRUE(recording->load_frame(0));
+  const testing::ChildResult result = testing::run_in_child(std::size_t{1} << 30, [&] {
+    alarm(60);  // it waited for ever
+    const auto frame = recording->load_frame(1);
+    return frame ? std::string("decoded") : frame.error().message;
+  });
+  EXPECT_TRUE(result.ended_well);
+  EXPECT_EQ(result.text, "decoded");
 }
 
 TEST_F(Record3d, TheFrontCameraHasNoPosesAndStampsGoBeforeTheRate) {
