@@ -6,6 +6,7 @@
 
 #include "core/base/printable.hpp"
 #include "core/io/stamped_rows.hpp"
+#include "datasets/reading/image_list.hpp"
 
 namespace fusebench::reading {
 
@@ -26,6 +27,10 @@ Result<AssociatedRow> associated_row(const io::TextTable& table, const std::file
   }
   if (table.text(0).empty() || table.text(2).empty())
     return table.fail_here("a time is empty", "remove the comma without a value before it");
+  for (const std::size_t name : {1U, 3U}) {
+    if (auto inside = check_stays_inside(table, table.text(name), folder); !inside)
+      return tl::unexpected(inside.error());
+  }
   const std::size_t depth = depth_first ? 0 : 2;
   const std::size_t color = 2 - depth;
   return AssociatedRow{std::string(table.text(color)), std::string(table.text(depth)),

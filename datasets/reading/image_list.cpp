@@ -9,10 +9,23 @@
 
 namespace fusebench::reading {
 
+Result<void> check_stays_inside(const io::TextTable& table, const std::filesystem::path& name,
+                                const std::filesystem::path& recording) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path folder = fs::absolute(recording / "x", ignored).lexically_normal().parent_path();
+  const fs::path way = (folder / name).lexically_normal().lexically_relative(folder);
+  if (!way.empty() && *way.begin() != "..") return {};
+  return table.fail_here(
+      fmt::format("image {} is outside of {}", printable(name.string(), 200), recording.string()),
+      "a recording names what lies in its folder: move the images there, or make a link");
+}
+
 Result<std::vector<ListedImage>> read_image_list(const std::filesystem::path& list,
                                                  const std::filesystem::path& images, io::TimeUnit unit) {
   std::vector<ListedImage> listed;
   const auto row = [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+    if (auto inside = check_stays_inside(table, table.text(1), images); !inside) return inside;
     const std::filesystem::path file = images / table.text(1);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored)) {

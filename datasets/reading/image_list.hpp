@@ -10,6 +10,12 @@
 
 namespace fusebench::reading {
 
+/// A name in the table's current row, relative to the folder of the recording, does not lead out of it: what
+/// a recording from a stranger can have read is its own. Links are followed, wherever they lead. Error
+/// data_corrupt.
+[[nodiscard]] Result<void> check_stays_inside(const io::TextTable& table, const std::filesystem::path& name,
+                                              const std::filesystem::path& recording);
+
 struct ListedImage {
   std::int64_t timestamp_ns = 0;
   std::filesystem::path file;

@@ -32,6 +32,8 @@ constexpr std::string_view kGyroColumns = "timestamp gx gy gz [ax ay az]";
 Result<fs::path> image_file(const io::TextTable& table, std::size_t column, const fs::path& recording,
                             std::string_view folder, bool always_there) {
   const fs::path name = table.text(column);
+  if (auto inside = reading::check_stays_inside(table, name, recording); !inside)
+    return tl::unexpected(inside.error());
   const fs::path file =
       always_there || !name.has_parent_path() ? recording / folder / name.filename() : recording / name;
   std::error_code ignored;
