@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/nearest_name.hpp"
+#include "core/base/printable.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
 
@@ -157,9 +158,9 @@ struct SetVisitor : GroupWalker<SetVisitor> {
     return std::nullopt;
   }
   void reject(const std::string& allowed) {
-    error =
-        Error{ErrorCode::configuration, fmt::format("{} = {} (allowed: {})", wanted, to_toml(value), allowed),
-              "`fusebench config` lists each option with its range"};
+    error = Error{ErrorCode::configuration,
+                  fmt::format("{} = {} (allowed: {})", wanted, printable(to_toml(value), 100), allowed),
+                  "`fusebench config` lists each option with its range"};
   }
 };
 

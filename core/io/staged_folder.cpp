@@ -7,7 +7,6 @@
 
 #include <cerrno>
 #include <chrono>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -86,8 +85,12 @@ std::error_code sync_file_system(const fs::path& folder) {
 std::error_code sync_tree(const fs::path& folder) {
   constexpr std::ptrdiff_t kManyFiles = 50;  // a run has ten, a recording hundreds
   std::error_code error;
-  const fs::recursive_directory_iterator first(folder, error);
-  if (!error && std::distance(begin(first), end(first)) > kManyFiles) return sync_file_system(folder);
+  std::ptrdiff_t count = 0;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    ++count;
+  if (error) return error;
+  if (count > kManyFiles) return sync_file_system(folder);
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     if (entry->is_symlink(error) || error) continue;
@@ -96,6 +99,16 @@ std::error_code sync_tree(const fs::path& folder) {
     if (error) return error;
   }
   return error ? error : sync_to_disk(folder);
+}
+
+/// A folder of this program's with all in it; once more if something was in the way for a moment (descriptors
+/// of other threads).
+void remove_folder(const fs::path& folder) {
+  std::error_code error;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    fs::remove_all(folder, error);
+    if (!error) return;
+  }
 }
 
 /// The parent folder of a path.
@@ -159,7 +172,7 @@ StagedFolder::StagedFolder(StagedFolder&& other) noexcept
 
 StagedFolder::~StagedFolder() {
   std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  if (!temporary_.empty()) remove_folder(temporary_);
   if (lock_ >= 0) close(lock_);
   // Innermost first; one that holds something else stays.
   for (auto parent = created_.rbegin(); parent != created_.rend(); ++parent) fs::remove(*parent, ignored);
@@ -182,7 +195,7 @@ Result<void> StagedFolder::commit() {
     if (!error) {
       // The replaced folder is removed once the new one is on the disk.
       error = sync_folders();
-      fs::remove_all(std::exchange(temporary_, {}), ignored);
+      remove_folder(std::exchange(temporary_, {}));
       created_.clear();
       if (error) break;
       return {};

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/base/printable.hpp"
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
@@ -60,7 +61,7 @@ Result<std::vector<Vector3d>> read_vertices(const fs::path& file) {
   std::string line;
   std::vector<std::string_view> fields;
   std::vector<Vector3d> vertices;
-  for (std::size_t number = 1; std::getline(lines, line); ++number) {
+  for (std::size_t number = 1; io::next_line(lines, line); ++number) {
     io::split_fields(line, fields);
     if (fields.empty()) continue;
     if (fields[0] == "f") {
@@ -82,6 +83,10 @@ Result<std::vector<Vector3d>> read_vertices(const fs::path& file) {
       if (k < 3) vertex[static_cast<Eigen::Index>(k)] = *value;
     }
   }
+  if (lines.bad())
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: cannot be read, or has a line of more than {} bytes", file.string(),
+                            io::kMostLineBytes));
   return vertices;
 }
 

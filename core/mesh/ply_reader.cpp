@@ -235,8 +235,16 @@ Result<PreciseMesh> read_ply(const std::filesystem::path& file) {
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(file, no_size);
   std::ifstream stream = io::input_file(file);
-  std::string bytes(no_size ? 0 : size, '\0');
-  if (no_size || !stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+  // Of what is none, the beginning is enough to say so: no room is made for 60 GB of holes.
+  constexpr std::uintmax_t kBeginning = 4096;
+  std::string bytes(no_size ? 0 : std::min(size, kBeginning), '\0');
+  bool is_read = !no_size && stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (is_read && size > kBeginning && bytes.starts_with("ply")) {
+    bytes.resize(size);
+    is_read =
+        static_cast<bool>(stream.read(&bytes[kBeginning], static_cast<std::streamsize>(size - kBeginning)));
+  }
+  if (!is_read) {
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot read the file", file.string()),
                 "check the path and its permissions");
   }

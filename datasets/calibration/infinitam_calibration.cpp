@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
@@ -32,7 +33,7 @@ Result<std::vector<Word>> words_of(const std::filesystem::path& file) {
   std::vector<Word> words;
   std::vector<std::string_view> fields;
   std::string line;
-  for (int number = 1; std::getline(stream, line) && words.size() < kMaxWords; ++number) {
+  for (int number = 1; io::next_line(stream, line) && words.size() < kMaxWords; ++number) {
     std::string_view content = std::string_view(line).substr(0, line.find_first_of("%#"));
     if (number == 1 && content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);  // byte order mark
     io::split_fields(content, fields);

@@ -89,14 +89,15 @@ Result<void> ExportPlace::move_files() const {
     const fs::path target = out_.parent_path() / name;
     error = sync_file(staged_.path() / name);
     if (!error) fs::rename(staged_.path() / name, target, error);
-    if (error) {
-      std::error_code ignored;
-      for (const fs::path& file : moved) fs::remove(file, ignored);
-      return cannot_be_written(target, error.message());
-    }
+    if (error) break;
     moved.push_back(target);
   }
-  return {};
+  // The names, which are the folder's.
+  if (!error) error = sync_file(out_.has_parent_path() ? out_.parent_path() : fs::path("."));
+  if (!error) return {};
+  std::error_code ignored;
+  for (const fs::path& file : moved) fs::remove(file, ignored);
+  return cannot_be_written(out_, error.message());
 }
 
 }  // namespace fusebench::exports

@@ -4,12 +4,10 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 
-#include "core/io/input_file.hpp"
+#include "core/io/bounded_text.hpp"
 #include "datasets/reading/text_matrix.hpp"
 
 namespace fusebench::reading {
@@ -40,14 +38,9 @@ Result<int> pixels(const nlohmann::json& object, const std::string& key, const s
 }  // namespace
 
 Result<nlohmann::json> read_json(const std::filesystem::path& file) {
-  std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(file, error);
-  std::ifstream stream = io::input_file(file);
-  if (!is_file || !stream)
-    return fail(ErrorCode::data_missing, fmt::format("{}: no such file, or not readable", file.string()));
-  if (std::filesystem::file_size(file, error) > kMostBytes)
-    return wrong(file, fmt::format("larger than {} bytes", kMostBytes));
-  auto document = nlohmann::json::parse(stream, nullptr, false);
+  const auto text = io::whole_text(file, kMostBytes, "description of a recording");
+  if (!text) return tl::unexpected(text.error());
+  auto document = nlohmann::json::parse(*text, nullptr, false);
   if (document.is_discarded()) return wrong(file, "is not JSON, or not all of it is there");
   if (!document.is_object()) return wrong(file, "is no JSON object");
   return document;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/printable.hpp"
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/trajectory/trajectory.hpp"
@@ -81,7 +82,8 @@ Result<void> read_ground_truth_beside(const std::filesystem::path& folder, recor
   auto truth =
       trajectory::read_tum_trajectory(file, recording.warnings, trajectory::Duplicates::last_in_order);
   if (!truth) return tl::unexpected(truth.error());
-  if (std::string first; std::getline(io::input_file(file), first) && first.starts_with("# ") &&
+  std::ifstream stream = io::input_file(file);
+  if (std::string first; io::next_line(stream, first) && first.starts_with("# ") &&
                          first.substr(2).starts_with(recording::kPseudoTruthBeginning)) {
     while (first.ends_with('\r')) first.pop_back();
     label_truth(printable(first.substr(2), kLongestLabel), recording);

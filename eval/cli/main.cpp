@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,11 @@ int main(int argc, char** argv) {
   try {
     const int code = fusebench::cli::command_line(argc, argv);
     return fusebench::cli::console::output_arrived() ? code : fusebench::exit_code(fusebench::ErrorCode::io);
+  } catch (const std::bad_alloc&) {
+    const fusebench::Error error{fusebench::ErrorCode::run_failed, "not enough memory",
+                                 "close other programs, raise the limit (ulimit -v), or give less input"};
+    fusebench::cli::console::print_error(error);
+    return fusebench::exit_code(error.code);
   } catch (const std::exception& error) {
     fusebench::cli::console::print_error(
         {fusebench::ErrorCode::internal, error.what(), "this is a bug: please report it"});

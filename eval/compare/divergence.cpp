@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
@@ -57,8 +58,8 @@ Result<std::vector<Row>> read_rows(const fs::path& file) {
 std::optional<std::size_t> frame_at(const fs::path& run, std::int64_t timestamp_ns) {
   std::ifstream stream = io::input_file(run / "frames.csv");
   std::string line;
-  if (!std::getline(stream, line) || !line.starts_with("frame,timestamp,")) return std::nullopt;
-  while (std::getline(stream, line)) {
+  if (!io::next_line(stream, line) || !line.starts_with("frame,timestamp,")) return std::nullopt;
+  while (io::next_line(stream, line)) {
     const std::size_t first = line.find(',');
     const std::size_t second = first == std::string::npos ? first : line.find(',', first + 1);
     if (second == std::string::npos) return std::nullopt;

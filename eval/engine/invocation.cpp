@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <system_error>
 
+#include "core/io/bounded_text.hpp"
 #include "core/io/fingerprint.hpp"
-#include "core/io/input_file.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_file.hpp"
@@ -24,11 +22,7 @@ using Json = nlohmann::ordered_json;
 fs::path invocations_folder(const fs::path& out) { return engine_folder(out) / "invocations"; }
 
 Result<std::string> text_of(const fs::path& file) {
-  std::ifstream stream = io::input_file(file);
-  if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return io::whole_text(file, std::uintmax_t{1} << 26, "invocation");
 }
 
 std::string absolute_text(const fs::path& path) {

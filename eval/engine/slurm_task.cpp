@@ -4,15 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include "core/config/config_access.hpp"
+#include "core/io/bounded_text.hpp"
 #include "core/io/fingerprint.hpp"
-#include "core/io/input_file.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/process/forked_job.hpp"
 #include "eval/record/build_info.hpp"
@@ -78,10 +77,7 @@ Result<std::vector<BatchJob>> jobs_of_task(std::span<const BatchJob> jobs, const
 }  // namespace
 
 std::string text_if_there(const fs::path& file) {
-  std::ifstream stream = io::input_file(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return io::whole_text(file, std::uintmax_t{1} << 28, "file of tasks").value_or("");
 }
 
 fs::path sign_of_life(const fs::path& folder, std::size_t task) {

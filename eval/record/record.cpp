@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
-#include "core/io/input_file.hpp"
+#include "core/io/bounded_text.hpp"
 #include "eval/record/histogram_json.hpp"
 #include "eval/record/record_loops.hpp"
 #include "eval/record/record_metrics.hpp"
@@ -333,11 +331,10 @@ Result<RunRecord> parse_record(std::string_view json, const std::string& name) {
 }
 
 Result<RunRecord> read_record(const std::filesystem::path& file) {
-  std::ifstream stream = io::input_file(file);
-  if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_record(text.str(), file.string());
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
+  const auto text = io::whole_text(file, kMostBytes, "record");
+  if (!text) return tl::unexpected(text.error());
+  return parse_record(*text, file.string());
 }
 
 }  // namespace fusebench::record

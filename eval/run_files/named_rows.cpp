@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 
@@ -48,12 +49,12 @@ Result<void> for_each_named_row(const std::filesystem::path& file,
                                 const std::function<Result<void>(const NamedRow&)>& row) {
   std::ifstream stream = io::input_file(file);
   std::string line;
-  if (!stream || !std::getline(stream, line))
+  if (!stream || !io::next_line(stream, line))
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read", file.string()));
   std::vector<std::string_view> cells;
   split_cells(line, cells);
   const std::vector<std::string> names(cells.begin(), cells.end());
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
+  for (std::size_t number = 2; io::next_line(stream, line); ++number) {
     const auto refuse = [&](std::string_view what) {
       return fail(ErrorCode::data_corrupt, fmt::format("{}:{}: {}", file.string(), number, what));
     };

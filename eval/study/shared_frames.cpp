@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/text_table.hpp"
 #include "eval/metrics/intensity_file.hpp"
@@ -106,7 +107,7 @@ Result<std::vector<SharedFrame>> shared_frames(const std::filesystem::path& refe
 Result<std::map<std::int64_t, double>> read_patch_motion(const std::filesystem::path& frames_csv) {
   std::ifstream stream = io::input_file(frames_csv);
   std::string line;
-  if (!stream || !std::getline(stream, line))
+  if (!stream || !io::next_line(stream, line))
     return fail(ErrorCode::data_missing, fmt::format("{}: cannot be read", frames_csv.string()));
   const std::string header_line = line;
   const std::vector<std::string_view> header = cells_of(header_line);
@@ -121,7 +122,7 @@ Result<std::map<std::int64_t, double>> read_patch_motion(const std::filesystem::
   if (std::max(stamp, motion) >= header.size())
     return corrupt(1, "has no columns timestamp and patch_motion_px");
   std::map<std::int64_t, double> result;
-  for (int number = 2; std::getline(stream, line); ++number) {
+  for (int number = 2; io::next_line(stream, line); ++number) {
     const std::vector<std::string_view> cells = cells_of(line);
     if (cells.size() != header.size())
       return corrupt(number, "has another number of columns than the header");

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/io/bounded_text.hpp"
 #include "core/io/input_file.hpp"
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
@@ -73,7 +74,7 @@ Result<FirstRow> first_row(const std::filesystem::path& file) {
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::string line;
   std::vector<std::string_view> fields;
-  for (int number = 1; std::getline(stream, line); ++number) {
+  for (int number = 1; io::next_line(stream, line); ++number) {
     std::string_view text = line;
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     fields.clear();

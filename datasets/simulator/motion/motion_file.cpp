@@ -23,6 +23,7 @@ constexpr double kIclRate_hz = 30;
 // ICL-NUIM's paths are estimates of a hand-held camera that jump by millimetres from frame to frame. Hand
 // motion ends at about 3 Hz; what is above would shake the camera with accelerations of several g.
 constexpr double kIclCutoff_hz = 3;
+constexpr double kMost_m = 1e7;       // as of recordings: beyond it, squares of distances are no numbers
 constexpr double kFitMargin_s = 0.5;  // beyond what is needed, since a fit is less accurate at its ends
 
 constexpr std::string_view kMatrixColumns = "index r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz";
@@ -163,6 +164,15 @@ Result<FilePath> read_file_path(const std::filesystem::path& file) {
   if (poses->size() < 4) {
     return fail(ErrorCode::data_corrupt,
                 fmt::format("{}: {} poses are too few (at least 4)", file.string(), poses->size()));
+  }
+  const auto is_far = [](const StampedPose& pose) {
+    return !(pose.T_world_camera.translation.cwiseAbs().maxCoeff() <= kMost_m);
+  };
+  if (const auto far = std::ranges::find_if(*poses, is_far); far != poses->end()) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: pose {}: a position beyond {:g} m", file.string(), far - poses->begin() + 1,
+                            kMost_m),
+                "metres are expected");
   }
   start_at_zero(*poses);
   if (matrices || file.filename().string().find(".gt.freiburg") != std::string::npos) {

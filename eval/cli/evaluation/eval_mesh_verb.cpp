@@ -33,12 +33,18 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   mesh.colors = mesh_error::error_colors(evaluation.vertex_errors_m, largest_m);
   mesh.quality.assign(evaluation.vertex_errors_m.begin(), evaluation.vertex_errors_m.end());
   const std::filesystem::path unfinished = options.colored.string() + ".part";
-  if (auto written = mesh::write_ply(mesh.cast<float>(), unfinished); !written) return written;
   std::error_code error;
+  std::error_code ignored;
+  if (auto written = mesh::write_ply(mesh.cast<float>(), unfinished); !written) {
+    std::filesystem::remove(unfinished, ignored);
+    return written;
+  }
   std::filesystem::rename(unfinished, options.colored, error);
-  if (error)
+  if (error) {
+    std::filesystem::remove(unfinished, ignored);
     return fail(ErrorCode::io,
                 fmt::format("{}: cannot be written: {}", options.colored.string(), error.message()));
+  }
   console::print_progress(
       fmt::format("{}: the reconstruction in the truth's world, dark blue on the true surface to yellow at "
                   "{:g} m from it and beyond",
