@@ -25,6 +25,10 @@ void zip_archive(std::string_view bytes);
 void sensor_files(std::string_view bytes);
 void stray(std::string_view bytes);
 void rosbag(std::string_view bytes);
+void obj(std::string_view bytes);
+void record(std::string_view bytes);
+void config(std::string_view bytes);
+void gates(std::string_view bytes);
 
 struct Target {
   std::string_view name;  ///< also its folder below tests/fuzz/corpus
@@ -49,6 +53,10 @@ inline constexpr std::array kTargets = {
     Target{"sensor_files", sensor_files},
     Target{"stray", stray},
     Target{"rosbag", rosbag},
+    Target{"obj", obj},
+    Target{"record", record},
+    Target{"config", config},
+    Target{"gates", gates},
 };
 
 }  // namespace fusebench::fuzz

@@ -1,0 +1,28 @@
+// OBJ meshes.
+#include <algorithm>
+
+#include "core/mesh/obj_file.hpp"
+#include "tests/fuzz/memory_file.hpp"
+#include "tests/fuzz/properties.hpp"
+#include "tests/fuzz/targets.hpp"
+
+namespace fusebench::fuzz {
+
+using namespace mesh;
+
+void obj(std::string_view bytes) {
+  static const MemoryFile file("mesh.obj");
+  file.write(bytes);
+  const auto mesh = read_obj(file.path());
+  if (!mesh) return check_error(mesh.error(), file.path());
+  const std::size_t count = mesh->vertices.size();
+  check(count <= bytes.size() && mesh->triangles.size() <= bytes.size(), "an item takes at least a byte");
+  check(mesh->colors.empty() || mesh->colors.size() == count, "no colours or one a vertex");
+  check(std::ranges::all_of(mesh->vertices, [](const Vector3d& v) { return v.allFinite(); }),
+        "vertices are finite");
+  for (const auto& triangle : mesh->triangles) {
+    check(std::ranges::all_of(triangle, [&](std::uint32_t i) { return i < count; }), "indices are vertices");
+  }
+}
+
+}  // namespace fusebench::fuzz
