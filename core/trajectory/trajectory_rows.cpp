@@ -98,6 +98,12 @@ io::TimeOrder order_for(Duplicates duplicates) {
   return io::TimeOrder::any;
 }
 
+Result<void> check_position(const io::TextTable& table, const Vector3d& position) {
+  if (position.cwiseAbs().maxCoeff() <= kMostPosition) return {};
+  return table.fail_here(fmt::format("position {:g} {:g} {:g} (allowed: coordinates up to {:g})",
+                                     position.x(), position.y(), position.z(), kMostPosition));
+}
+
 Result<void> take_pose(const io::TextTable& table, std::int64_t time_ns, const Vector3d& translation_m,
                        const Quaterniond& rotation, TrajectoryRows& rows) {
   const double norm = rotation.norm();
@@ -106,6 +112,7 @@ Result<void> take_pose(const io::TextTable& table, std::int64_t time_ns, const V
         fmt::format("quaternion (x y z w) = {:g} {:g} {:g} {:g} has norm {:g} (expected 1)", rotation.x(),
                     rotation.y(), rotation.z(), rotation.w(), norm));
   }
+  if (auto within = check_position(table, translation_m); !within) return within;
   if (std::abs(norm - 1.0) > kMaxNormError && rows.not_unit++ == 0) rows.first_not_unit_line = table.line();
   rows.poses.push_back({time_ns, {rotation.normalized(), translation_m}});
   rows.lines.push_back(table.line());

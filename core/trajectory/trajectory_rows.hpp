@@ -38,7 +38,15 @@ struct TrajectoryRows {
   int first_not_unit_line = 0;
 };
 
-/// Adds the pose of a row; the quaternion is normalised. Error data_corrupt: its norm is near zero.
+/// Squares of distances between positions within this, and sums of them, are numbers; in any unit of a
+/// trajectory.
+inline constexpr double kMostPosition = 1e12;
+
+/// Error data_corrupt with file:line: a coordinate beyond that.
+[[nodiscard]] Result<void> check_position(const io::TextTable& table, const Vector3d& position);
+
+/// Adds the pose of a row; the quaternion is normalised. Error data_corrupt: its norm is near zero, or its
+/// position beyond kMostPosition.
 [[nodiscard]] Result<void> take_pose(const io::TextTable& table, std::int64_t time_ns,
                                      const Vector3d& translation_m, const Quaterniond& rotation,
                                      TrajectoryRows& rows);

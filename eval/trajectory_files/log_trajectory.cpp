@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/io/text_table.hpp"
+#include "core/trajectory/trajectory_rows.hpp"
 #include "eval/trajectory_files/nearest_rotation.hpp"
 
 namespace fusebench::trajectory_files {
@@ -69,6 +70,8 @@ Result<Trajectory> read_log_trajectory(const std::filesystem::path& file,
           fmt::format("the 3x3 part is no rotation (determinant {:g}, R^T R off identity by {:.2g})",
                       matrix->topLeftCorner<3, 3>().determinant(), rotation.deviation));
     }
+    if (auto within = trajectory::check_position(*table, matrix->topRightCorner<3, 1>()); !within)
+      return tl::unexpected(within.error());
     largest = std::max(largest, rotation.deviation);
     poses.push_back({*number, {Quaterniond(rotation.R), matrix->topRightCorner<3, 1>()}});
   }

@@ -154,6 +154,7 @@ Result<Trajectory> read_kitti(const std::filesystem::path& file, std::vector<std
                           T.leftCols<3>().determinant(), rotation.deviation),
               "a row is the upper 3x4 of the pose, row by row");
         }
+        if (auto within = trajectory::check_position(table, T.col(3)); !within) return within;
         if (rotation.deviation > largest) {
           largest = rotation.deviation;
           largest_line = table.line();

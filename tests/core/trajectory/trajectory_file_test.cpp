@@ -58,6 +58,17 @@ TEST_F(TrajectoryFile, PublishedTruthMayRepeatAStampButNotRunBackwards) {
   EXPECT_NE(backwards.error().message.find(":3: time runs backwards"), std::string::npos);
 }
 
+/// Their distances would be no numbers, and every error of the trajectory.
+TEST_F(TrajectoryFile, PositionsBeyondAnyUnitAreRefused) {
+  EXPECT_TRUE(read("1 1e12 0 -1e12 0 0 0 1\n2 0 0 0 0 0 0 1\n").has_value());
+  for (const char* position : {"1e308 0 0", "0 -1e13 0", "0 0 1.1e12"}) {
+    const auto refused = read("1 0 0 0 0 0 0 1\n2 " + std::string(position) + " 0 0 0 1\n");
+    ASSERT_FALSE(refused) << position;
+    EXPECT_NE(refused.error().message.find("trajectory.txt:2: position "), std::string::npos)
+        << refused.error().message;
+  }
+}
+
 TEST_F(TrajectoryFile, ErrorsNameTheLine) {
   const auto expect_line = [&](const std::string& text, int line, std::string_view what) {
     const auto result = read(text);
