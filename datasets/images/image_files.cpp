@@ -76,7 +76,7 @@ Result<OpenedImage> sound_image(const std::string& image, LibraryResult<OpenedIm
 
 Result<OpenedImage> open_image(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
+  if (!std::filesystem::is_regular_file(file, ignored)) {
     return fail(ErrorCode::data_missing, fmt::format("{}: no such image", file.string()));
   }
   if (const auto sized = check_image_bytes(file); !sized) return tl::unexpected(sized.error());

@@ -149,6 +149,19 @@ TEST_F(MalformedImage, OtherLayouts) {
       << "nothing is behind the end";
 }
 
+// /dev/zero never ends, whatever reader of the library takes it.
+TEST_F(MalformedImage, ADeviceIsNoImage) {
+  const std::filesystem::path device = folder_ / "device.png";
+  std::filesystem::create_symlink("/dev/zero", device);
+  const ChildResult result = run_in_child(std::size_t{512} << 20, [&] {
+    alarm(60);
+    return read_color(device).error().message + read_depth16(device).error().message +
+           read_image_size(device).error().message;
+  });
+  EXPECT_TRUE(result.ended_well);
+  EXPECT_NE(result.text.find("device.png: no such image"), std::string::npos) << result.text;
+}
+
 // 10^5 x 10^5 pixels would be 30 GB of colour.
 TEST_F(MalformedImage, AHeaderAloneTakesNoMemory) {
   struct Claim {
