@@ -6,7 +6,7 @@ Usage: tests/soak/soak.py BINARY runs [--count N] [-j N] [--csv FILE]
 
 runs: a sweep of N (default 1000) over a recording of 64x48 pixels and 3 frames, in one `bench`. recording: N (default 5) minutes at
 4 Hz and 64x48 pixels, simulated, in one `run`. FILE (default build/soak/KIND.csv) gets a row a sample: seconds, runs or frames
-finished, resident kB, descriptors, children. Compares the second eighth with the last one. Exit code: 0 nothing grows, 1 something
+finished, resident kB, descriptors, children, processor seconds. Compares the second eighth with the last one. Exit code: 0 nothing grows, 1 something
 does, 2 usage.
 """
 
@@ -43,12 +43,14 @@ tsdf.voxel_m = {{ from = 0.01, to = 0.02 }}
 
 
 def sample(process):
-    """(resident kB, descriptors, children) of a process, or None once it has ended."""
+    """(resident kB, descriptors, children, processor seconds) of a process, or None once it has ended."""
     try:
         status = pathlib.Path(f"/proc/{process}/status").read_text()
         resident = re.search(r"VmRSS:\s+(\d+)", status)
         children = pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
-        return int(resident.group(1)), len(os.listdir(f"/proc/{process}/fd")), len(children)
+        times = pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()
+        cpu_s = (int(times[11]) + int(times[12])) / os.sysconf("SC_CLK_TCK")  # its own, without its children's
+        return int(resident.group(1)), len(os.listdir(f"/proc/{process}/fd")), len(children), cpu_s
     except (OSError, AttributeError):
         return None
 
@@ -87,7 +89,7 @@ class Watch:
     def write(self, file):
         file = pathlib.Path(file)
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text("seconds,finished,resident_kb,descriptors,children\n" +
+        file.write_text("seconds,finished,resident_kb,descriptors,children,cpu_s\n" +
                         "".join(f"{row[0]:.2f}," + ",".join(map(str, row[1:])) + "\n" for row in self.rows))
 
 
@@ -142,6 +144,7 @@ def many_runs(options, folder):
     inside = overhead(f"{folder}/out")
     print(f"of which {1000 * inside:.1f} ms are the run's own (timing.wall_s of its record)"
           + (f", and {1000 * (watch.took_s / options.count - inside):.1f} ms the engine's" if options.jobs == 1 else ""))
+    print(f"processor time of the engine itself: {1000 * watch.rows[-1][5] / options.count:.1f} ms a run")
     left = [str(path) for path in pathlib.Path(folder, "out").rglob(".*.tmp")]
     if watch.process.returncode not in (0, 4) or left:
         print(f"soak: exit code {watch.process.returncode}, left {left[:3]}: {''.join(watch.errors[-3:])}")
