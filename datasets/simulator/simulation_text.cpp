@@ -126,6 +126,12 @@ Result<std::string> simulation_identity(const SimulationOptions& options) {
   fingerprint.add(calibration::to_toml(options.rig));
   for (const auto& file : {options.scene_file, options.trajectory_file}) {
     if (file.empty()) continue;
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 33;  // it is hashed before it is looked into
+    std::error_code ignored;
+    if (const auto size = std::filesystem::file_size(file, ignored); !ignored && size > kMostBytes)
+      return fail(ErrorCode::data_corrupt,
+                  fmt::format("{}: {} bytes are no scene and no path of a camera (allowed: up to {})",
+                              file.string(), size, kMostBytes));
     if (const auto added = fingerprint.add_file(file); !added) return tl::unexpected(added.error());
   }
   return fingerprint.hex();

@@ -5,7 +5,7 @@ Usage: tests/soak/soak.py BINARY runs [--count N] [-j N] [--csv FILE]
        tests/soak/soak.py BINARY recording [--minutes N] [--csv FILE]
 
 runs: a sweep of N (default 1000) over a recording of 64x48 pixels and 3 frames, in one `bench`. recording: N (default 5) minutes at
-4 Hz and 64x48 pixels, simulated, in one `run`. FILE (default build/soak/KIND.csv) gets a row a sample: seconds, runs or frames
+10 Hz and 160x120 pixels, simulated, in one `run`. FILE (default build/soak/KIND.csv) gets a row a sample: seconds, runs or frames
 finished, resident kB, descriptors, children, processor seconds. Compares the second eighth with the last one. Exit code: 0 nothing grows, 1 something
 does, 2 usage.
 """
@@ -154,15 +154,15 @@ def many_runs(options, folder):
 
 def long_recording(options, folder):
     recording = f"{folder}/long"
-    subprocess.run([options.binary, "simulate", "--preset", "slow", "--format", "zr300", "--size", "64x48", "--rate", "4", "--duration",
+    subprocess.run([options.binary, "simulate", "--preset", "slow", "--format", "zr300", "--size", "160x120", "--rate", "10", "--duration",
                     str(60 * options.minutes), "--blur-samples", "1", "--in-motion", "--out", recording], check=True)
-    frames = 60 * options.minutes * 4
+    frames = 60 * options.minutes * 10
     hidden = pathlib.Path(folder) / "out"
 
     def progress(self):
         # Frames by the share of processor time: a run says nothing on the way.
         return 0 if not self.rows else self.rows[-1][1]
-    watch = Watch([options.binary, "run", recording, "--variant", "full", "--threads", "1", "--out", str(hidden)], progress)
+    watch = Watch([options.binary, "run", recording, "--variant", "full", "--set", "iekf.min_patches=2", "--threads", "1", "--out", str(hidden)], progress)
     watch.rows = [(row[0], round(frames * row[0] / watch.took_s), *row[2:]) for row in watch.rows]
     watch.write(options.csv or "build/soak/recording.csv")
     print(f"{frames} frames of {options.minutes} minutes in {watch.took_s:.0f} s, exit code {watch.process.returncode}: "
