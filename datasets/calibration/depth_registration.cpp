@@ -85,8 +85,10 @@ void find_cover(const float* depth_m, const float* half_px, const Axis& axis, Co
     const float high_px = select(joined_ahead & (ahead_px > 0), 0.5F * ahead_px, half);
     const float low = std::ceil(at - low_px - kOverlap_px);
     const float high = std::floor(at + high_px + kOverlap_px) + 1;
-    first[i] = static_cast<int>(std::min(std::max(low, 0.0F), size));
-    end[i] = static_cast<int>(std::min(std::max(high, 0.0F), size));
+    // In this order, what is no number becomes 0 and covers nothing: a depth so small that its inverse is
+    // infinite.
+    first[i] = static_cast<int>(std::min(std::max(0.0F, low), size));
+    end[i] = static_cast<int>(std::min(std::max(0.0F, high), size));
     const float span_px = select(joined_back, back_px, 0.0F) + select(joined_ahead, ahead_px, 0.0F);
     const float rise_m = select(joined_back, back_m, 0.0F) + select(joined_ahead, ahead_m, 0.0F);
     slope[i] = select(span_px > half, rise_m / std::max(span_px, half), 0.0F);

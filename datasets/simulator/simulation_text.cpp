@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
 #include "datasets/simulator/realism.hpp"

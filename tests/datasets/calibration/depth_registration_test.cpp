@@ -52,6 +52,19 @@ TEST(DepthRegistration, TheSameCameraKeepsThePixels) {
     EXPECT_NEAR(registered_m.data[i], depth_m.data[i], 1e-6) << i;
 }
 
+/// A depth whose inverse is infinite has no place in the image: it was drawn before the image's memory.
+TEST(DepthRegistration, WhatHasNoPlaceIsNotDrawn) {
+  const PinholeCamera camera{6, 5, 20, 21, 2.5, 2};
+  for (const float tiny : {1e-45F, 1e-40F, 3e-39F}) {
+    DepthImage depth_m(6, 5);
+    depth_m(2, 2) = tiny;
+    depth_m(4, 3) = 2;
+    const DepthImage registered_m = DepthRegistration(camera, camera, {}).register_depth(depth_m);
+    EXPECT_EQ(std::ranges::count_if(registered_m.data, [](float z) { return z > 1; }), 1) << tiny;
+    EXPECT_NEAR(registered_m(4, 3), 2, 1e-6);
+  }
+}
+
 TEST(DepthRegistration, ProjectsByTheTransform) {
   // 0.1 m to the right of the depth camera and 0.5 m behind it: a point at 2 m is at 2.5 m, 100 * 0.1 / 2.5
   // px to the left.
