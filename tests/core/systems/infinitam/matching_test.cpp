@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/systems/image_gradient.hpp"
 #include "core/systems/infinitam/color_matching.hpp"
 #include "core/systems/infinitam/depth_matching.hpp"
 #include "core/systems/infinitam/depth_pyramid.hpp"
