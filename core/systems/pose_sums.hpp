@@ -9,8 +9,8 @@
 
 namespace fusebench::systems {
 
-/// Of a motion d = (rotation in rad, translation in m) of points in world, p -> p + rotation x p +
-/// translation, which lowers the cost if it goes along `descent`.
+/// Of a motion d = (rotation in rad, translation in m) of points in the world (or the frame of a view), p ->
+/// p + rotation x p + translation, which lowers the cost if it goes along `descent`.
 struct PoseSums {
   Matrix6d information = Matrix6d::Zero();
   Vector6d descent = Vector6d::Zero();

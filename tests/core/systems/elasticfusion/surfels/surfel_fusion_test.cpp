@@ -12,14 +12,14 @@ using namespace systems::elasticfusion::surfels;
 
 namespace {
 
-const PinholeCamera kCamera = {80, 60, 60, 60, 39.5, 29.5};
+const PinholeCamera kWallCamera = {80, 60, 60, 60, 39.5, 29.5};
 
 /// A wall across the view.
 LiveFrame wall_at(float depth_m, const Workers& workers) {
   RgbdFrame frame;
-  frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, depth_m);
-  frame.color = ColorImage(kCamera.width_px, kCamera.height_px, {10, 20, 30});
-  return make_live_frame(frame, kCamera, {}, config::PeerDefects::fixed, workers);
+  frame.depth_m = DepthImage(kWallCamera.width_px, kWallCamera.height_px, depth_m);
+  frame.color = ColorImage(kWallCamera.width_px, kWallCamera.height_px, {10, 20, 30});
+  return make_live_frame(frame, kWallCamera, {}, config::PeerDefects::fixed, workers);
 }
 
 class Fusion : public ::testing::Test {
@@ -39,14 +39,14 @@ class Fusion : public ::testing::Test {
   }
 
   Workers workers{2};
-  SurfelFusion fusion{kCamera, 10, 200, workers};
+  SurfelFusion fusion{kWallCamera, 10, 200, workers};
   SurfelMap map;
   std::int32_t now = 0;
 };
 
 TEST_F(Fusion, StartsWithASurfelForEachPixelThatHasANormal) {
   fuse(2, 1);
-  EXPECT_EQ(map.size(), static_cast<std::size_t>((kCamera.width_px - 2) * (kCamera.height_px - 2)));
+  EXPECT_EQ(map.size(), static_cast<std::size_t>((kWallCamera.width_px - 2) * (kWallCamera.height_px - 2)));
   for (std::size_t i = 0; i < map.size(); ++i) {
     EXPECT_NEAR(static_cast<double>(map.position[i].z()), 2, 1e-5);
     EXPECT_NEAR(static_cast<double>(map.normal[i].z()), -1, 1e-5);
@@ -88,7 +88,7 @@ TEST_F(Fusion, IsTheSameForAnyNumberOfThreads) {
   fuse(2, 4);
   fuse(2.02F, 4);
   const Workers one(1);
-  SurfelFusion alone(kCamera, 10, 200, one);
+  SurfelFusion alone(kWallCamera, 10, 200, one);
   SurfelMap other;
   for (std::int32_t time = 0; time < 8; ++time) {
     const LiveFrame live = wall_at(time < 4 ? 2.0F : 2.02F, one);

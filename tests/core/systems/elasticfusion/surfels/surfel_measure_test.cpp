@@ -13,20 +13,20 @@ using namespace systems::elasticfusion::surfels;
 
 namespace {
 
-const PinholeCamera kCamera = {640, 480, 500, 500, 320, 240};
+const PinholeCamera kVgaCamera = {640, 480, 500, 500, 320, 240};
 
 TEST(SurfelMeasure, RadiusCoversAPixelAndIsAtMostTwiceThat) {
   const float front = std::numbers::sqrt2_v<float> * 2.0F / 500.0F;
-  EXPECT_FLOAT_EQ(radius_of(2, -1, kCamera), front);
-  EXPECT_FLOAT_EQ(radius_of(2, -0.8F, kCamera), front / 0.8F);
-  EXPECT_FLOAT_EQ(radius_of(2, -0.1F, kCamera), 2 * front);
+  EXPECT_FLOAT_EQ(radius_of(2, -1, kVgaCamera), front);
+  EXPECT_FLOAT_EQ(radius_of(2, -0.8F, kVgaCamera), front / 0.8F);
+  EXPECT_FLOAT_EQ(radius_of(2, -0.1F, kVgaCamera), 2 * front);
 }
 
 TEST(SurfelMeasure, ConfidenceFallsFromTheMiddleAndWithMotion) {
-  EXPECT_FLOAT_EQ(confidence_of(320, 240, kCamera, 1), 1);
+  EXPECT_FLOAT_EQ(confidence_of(320, 240, kVgaCamera, 1), 1);
   // 200 px from the middle are half of the 400 px to a corner.
-  EXPECT_FLOAT_EQ(confidence_of(520, 240, kCamera, 1), std::exp(-0.25F / 0.72F));
-  EXPECT_FLOAT_EQ(confidence_of(520, 240, kCamera, 0.5F), 0.5F * std::exp(-0.25F / 0.72F));
+  EXPECT_FLOAT_EQ(confidence_of(520, 240, kVgaCamera, 1), std::exp(-0.25F / 0.72F));
+  EXPECT_FLOAT_EQ(confidence_of(520, 240, kVgaCamera, 0.5F), 0.5F * std::exp(-0.25F / 0.72F));
   EXPECT_FLOAT_EQ(weight_of_motion(SE3{}), 1);
   EXPECT_FLOAT_EQ(weight_of_motion({Quaterniond::Identity(), {0.002, 0, 0}}), 0.8F);
   EXPECT_FLOAT_EQ(weight_of_motion({so3_exp({0, 0.003, 0}), {0.002, 0, 0}}), 0.7F);

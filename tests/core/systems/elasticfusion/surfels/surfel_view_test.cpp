@@ -11,7 +11,7 @@ using namespace systems::elasticfusion::surfels;
 
 namespace {
 
-const PinholeCamera kCamera = {67, 45, 60, 62, 33, 22};
+const PinholeCamera kDiscCamera = {67, 45, 60, 62, 33, 22};
 
 /// Discs all over the view, some of them behind others, beyond the border, or of no use.
 SurfelMap random_discs(std::size_t count) {
@@ -23,7 +23,7 @@ SurfelMap random_discs(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     Surfel surfel;
     const double z = uniform(0.5, 3);
-    surfel.position = kCamera.back_project(uniform(-5, 72), uniform(-5, 50), z).cast<float>();
+    surfel.position = kDiscCamera.back_project(uniform(-5, 72), uniform(-5, 50), z).cast<float>();
     surfel.normal = Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-2, 0.2)).normalized().cast<float>();
     surfel.color = {static_cast<std::uint8_t>(i), 0, 0};
     surfel.radius_m = static_cast<float>(uniform(0.01, 0.08));
@@ -41,12 +41,12 @@ TEST(SurfelView, EachPixelSeesTheNearestDiscOfTheChoice) {
   const SE3 T_world_camera{so3_exp({0.02, -0.03, 0.1}), {0.02, 0.01, -0.05}};
   ViewRenderer renderer;
   SurfelView view;
-  renderer.render(map, kCamera, T_world_camera, kChoice, Workers(1), view);
+  renderer.render(map, kDiscCamera, T_world_camera, kChoice, Workers(1), view);
   const SE3 T_camera_world = T_world_camera.inverse();
   std::size_t seen = 0;
-  for (int y = 0; y < kCamera.height_px; ++y) {
-    for (int x = 0; x < kCamera.width_px; ++x) {
-      const Vector3d ray = kCamera.back_project(x, y, 1);
+  for (int y = 0; y < kDiscCamera.height_px; ++y) {
+    for (int x = 0; x < kDiscCamera.width_px; ++x) {
+      const Vector3d ray = kDiscCamera.back_project(x, y, 1);
       double nearest = std::numeric_limits<double>::infinity();
       std::int32_t expected = kNoSurfel;
       for (std::size_t i = 0; i < map.size(); ++i) {
@@ -78,8 +78,8 @@ TEST(SurfelView, IsTheSameForAnyNumberOfThreads) {
   const SurfelMap map = random_discs(600);
   SurfelView one, three;
   ViewRenderer renderer;
-  renderer.render(map, kCamera, SE3{}, kChoice, Workers(1), one);
-  renderer.render(map, kCamera, SE3{}, kChoice, Workers(3), three);
+  renderer.render(map, kDiscCamera, SE3{}, kChoice, Workers(1), one);
+  renderer.render(map, kDiscCamera, SE3{}, kChoice, Workers(3), three);
   EXPECT_EQ(one.surfel.data, three.surfel.data);
   EXPECT_EQ(one.point.z.data, three.point.z.data);
   EXPECT_EQ(one.seen, three.seen);
@@ -87,13 +87,13 @@ TEST(SurfelView, IsTheSameForAnyNumberOfThreads) {
 
 TEST(SurfelView, LiveDataFillsTheHoles) {
   LiveFrame live;
-  live.smooth_m = DepthImage(kCamera.width_px, kCamera.height_px, 2.0F);
-  live.normal.resize(kCamera.width_px, kCamera.height_px);
+  live.smooth_m = DepthImage(kDiscCamera.width_px, kDiscCamera.height_px, 2.0F);
+  live.normal.resize(kDiscCamera.width_px, kDiscCamera.height_px);
   std::ranges::fill(live.normal.z.data, -1.0F);
-  live.color = ColorImage(kCamera.width_px, kCamera.height_px, {1, 2, 3});
+  live.color = ColorImage(kDiscCamera.width_px, kDiscCamera.height_px, {1, 2, 3});
   SurfelView view;
   ViewRenderer renderer;
-  renderer.render(random_discs(40), kCamera, SE3{}, kChoice, Workers(1), view);
+  renderer.render(random_discs(40), kDiscCamera, SE3{}, kChoice, Workers(1), view);
   const SurfelView before = view;
   fill_in(live, view);
   for (std::size_t pixel = 0; pixel < view.surfel.data.size(); ++pixel) {
