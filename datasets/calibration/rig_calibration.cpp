@@ -148,15 +148,16 @@ class Section {
   [[nodiscard]] SE3 transform(const std::string& key) {
     const std::vector<double> rows = numbers(key, 12);
     if (rows.empty()) return {};
+    const double farthest_m = std::max({std::abs(rows[3]), std::abs(rows[7]), std::abs(rows[11])});
+    if (farthest_m > kMostLeverArm_m) {
+      report(fmt::format("{}: {} has a translation of {:g} m (allowed up to {} m)", entries_.at(key)->place,
+                         entries_.at(key)->key, farthest_m, kMostLeverArm_m),
+             "translations are in metres");
+    }
     const auto T = rigid_transform(std::span<const double, 12>(rows));
     if (!T) {
       report(fmt::format("{}: {} is no rigid transform", entries_.at(key)->place, entries_.at(key)->key),
              fmt::format("a matrix is {}, translation in metres", kRigidTransformRule));
-    }
-    if (T && T->translation.cwiseAbs().maxCoeff() > kMostLeverArm_m) {
-      report(fmt::format("{}: {} has a translation of {:g} m (allowed up to {} m)", entries_.at(key)->place,
-                         entries_.at(key)->key, T->translation.cwiseAbs().maxCoeff(), kMostLeverArm_m),
-             "translations are in metres");
     }
     return T.value_or(SE3{});
   }

@@ -260,8 +260,9 @@ Json document_of(const RunRecord& record) {
   return json;
 }
 
-/// Metrics whose numbers are NaN where no frame has any, which is null in the document.
-constexpr std::array<std::string_view, 3> kMayHaveNone = {"aie", "intensity_readings", "residuals"};
+/// Metrics whose numbers are NaN where no frame, or no part of a surface, has any, which is null in the
+/// document.
+constexpr std::array<std::string_view, 4> kMayHaveNone = {"aie", "intensity_readings", "residuals", "mesh"};
 
 /// Place and value of the first number that is infinite, or NaN where that does not mean none
 /// ("metrics.ate.stats.rmse = nan"); empty if there is none.

@@ -248,15 +248,10 @@ TEST_P(MalformedTable, NumbersAreFiniteDecimals) {
     SCOPED_TRACE(field);
     expect_same(with_field_in_row_1(1, field), with_field_in_row_1(1, same));
   }
-  if (table_.any_number) {
-    expect_same(with_field_in_row_1(1, "2" + std::string(20, '0')), with_field_in_row_1(1, "2e20"));
-    EXPECT_TRUE(read(with_field_in_row_1(1, "1e308"))) << "huge, but a number";
-    return;
-  }
-  // Poses are checked as a whole, when all rows have been read.
-  const int line = table_.name == "groundtruth" ? 0 : 3;
+  if (table_.any_number)
+    expect_same(with_field_in_row_1(1, "2" + std::string(11, '0')), with_field_in_row_1(1, "2e11"));
   for (const std::string& huge : {"2" + std::string(20, '0'), std::string("1e308")})
-    expect_refused(with_field_in_row_1(1, huge), line, "(allowed -");
+    expect_refused(with_field_in_row_1(1, huge), 3, "(allowed");
 }
 
 TEST_P(MalformedTable, WhatIsNoFileIsMissing) {

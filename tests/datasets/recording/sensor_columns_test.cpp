@@ -130,7 +130,7 @@ TEST(TruthRange, PositionsAreOnEarth) {
     return read_ground_truth_beside(folder.path(), recording);
   };
   EXPECT_TRUE(read("5.5e6")) << "a northing of UTM";
-  for (const char* far : {"-1.1e7", "1e20", "1e308"}) {
+  for (const char* far : {"-1.1e7", "1e11"}) {
     const auto refused = read(far);
     ASSERT_FALSE(refused) << far;
     expect_refusal(

@@ -1,5 +1,6 @@
 #include "eval/page/page.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -63,8 +64,8 @@ TEST(Page, FiguresOfLongNamesHaveFilesOfTheirOwn) {
   Chart chart;
   chart.series = {{"full", {{0, 1}, {1, 2}}, SeriesStyle::line}};
   std::vector<Chart> charts(2, chart);
-  charts[0].title = std::string(250, 'x') + "a";
-  charts[1].title = std::string(250, 'x') + "b";
+  charts[0].title = fmt::format("{:x>250}", "a");
+  charts[1].title = fmt::format("{:x>250}", "b");
   const testing::TemporaryFolder folder;
   const auto drawn = write_figures({"t", "", {{"desk", "", charts}}}, folder.path(), FigureFormat::svg);
   if (!drawn && drawn.error().code == ErrorCode::usage) GTEST_SKIP() << drawn.error().message;

@@ -64,9 +64,8 @@ TEST(ElasticfusionSystem, ClosesALoopWhereItComesBack) {
   config::Config config = testing::config_of_variant("elasticfusion");
   config.elasticfusion.loops = config::ElasticfusionLoops::local;
   config.elasticfusion.time_window = 8;
-  config.elasticfusion.stable_confidence = 0.3;
-  config.elasticfusion.loop_max_error_m = 1e-3;
-  config.elasticfusion.loop_max_variance = 1e-3;
+  config.elasticfusion.stable_confidence =
+      3;  // what was seen in a few frames is stable, what was seen once is not
   const Workers workers(2);
   const auto system = core::make_system(config, run.rig, run.imu, workers);
   for (const RgbdFrame& frame : run.frames) ASSERT_TRUE(system->process(frame).has_value());

@@ -25,8 +25,9 @@ PointConstraint held(const Vector3d& position, const Vector3d& target, std::int3
 }
 
 TEST(DeformationGraph, NeedsFiveNodes) {
-  EXPECT_FALSE(DeformationGraph::make(std::span(corridor()).first(4)).has_value());
-  EXPECT_TRUE(DeformationGraph::make(std::span(corridor()).first(5)).has_value());
+  const std::vector<TimedPoint> nodes = corridor();
+  EXPECT_FALSE(DeformationGraph::make(std::span(nodes).first(4)).has_value());
+  EXPECT_TRUE(DeformationGraph::make(std::span(nodes).first(5)).has_value());
 }
 
 TEST(DeformationGraph, SharesAddUpAndFallWithDistance) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/support/textured_room.hpp"
 
@@ -24,13 +25,14 @@ LiveFrame wall_at(float depth_m, const Workers& workers) {
 
 class Fusion : public ::testing::Test {
  protected:
-  void fuse(float depth_m, int frames) {
+  void fuse(float depth_m, int frames, double aside_m = 0) {
     const LiveFrame live = wall_at(depth_m, workers);
+    const SE3 T_world_camera{Quaterniond::Identity(), {aside_m, aside_m, 0}};
     for (int i = 0; i < frames; ++i) {
       if (now == 0)
-        fusion.start(live, {SE3{}, now, 1}, map);
+        fusion.start(live, {T_world_camera, now, 1}, map);
       else
-        fusion.fuse(live, {SE3{}, now, 1}, map);
+        fusion.fuse(live, {T_world_camera, now, 1}, map);
       ++now;
     }
   }
@@ -79,7 +81,8 @@ TEST_F(Fusion, AWallFurtherAwayEndsWhatWasInFrontOfIt) {
   };
   EXPECT_GT(stable(), 500);
   EXPECT_GT(near(), 1000);
-  fuse(2.5F, 60);  // once the new wall is stable itself
+  // A hand-held camera sways, so that the surfels of both walls are on other rays in each frame.
+  for (int i = 0; i < 80; ++i) fuse(2.5F, 1, 0.05 * std::sin(0.4 * i));
   EXPECT_LT(near(), 50);
   EXPECT_GT(stable(), 500);
 }

@@ -131,10 +131,10 @@ TEST_F(Tracking, FindsTheMotionBetweenTwoFrames) {
     config.defects = defects;
     const auto motion = tracking::CameraTracker(config, workers).track(live, view, SE3{});
     EXPECT_FALSE(motion.was_dropped);
-    // As published each step goes a tenth of the way where depth decides.
-    const double limit = defects == config::PeerDefects::fixed ? 0.002 : 0.004;
-    EXPECT_LT((motion.T_view_camera.translation - T_view_camera.translation).norm(), limit);
-    EXPECT_LT(rotation_angle_rad(motion.T_view_camera.rotation, T_view_camera.rotation), limit);
+    // Intensities are compared at whole pixels: half a pixel is what can be expected, here 2 m away.
+    const double limit_rad = 0.5 / small_camera().fx_px;
+    EXPECT_LT((motion.T_view_camera.translation - T_view_camera.translation).norm(), 2 * limit_rad);
+    EXPECT_LT(rotation_angle_rad(motion.T_view_camera.rotation, T_view_camera.rotation), limit_rad);
     EXPECT_GT(motion.matches, 10000);
     EXPECT_LT(motion.variance(), 1e-3);
   }
