@@ -220,10 +220,10 @@ check_bad_usage() {
   refused "unknown metric of a criterion" 2 'suite.toml:7' 'ate_rmse_m' -- bench suite.toml --data . --out out
 
   # What cannot be simulated is refused before anything runs.
-  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\nsize = "0x0"\n' >suite.toml
+  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\npreset = "slow"\nsize = "0x0"\n' >suite.toml
   refused "no pixels" 2 "recording 'a': image size = 0x0" -- bench suite.toml --out out --dry-run
-  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\nduration_s = 1e12\n' >suite.toml
-  refused "too long" 2 "recording 'a': duration_s = 1e\\+12" -- bench suite.toml --out out --dry-run
+  printf 'name = "s"\nvariants = ["full"]\n[[simulations]]\nname = "a"\npreset = "slow"\nduration_s = 1e12\n' >suite.toml
+  refused "too long" 2 "recording 'a': duration_s = 1000000000000 .allowed" -- bench suite.toml --out out --dry-run
   printf 'name = "s"\nall = true\nvariants = ["full"]\n' >suite.toml
   refused "no silence" 2 'slurm-silence' 'nan' -- bench suite.toml --out out --slurm-silence nan
   refused "delta without end" 2 'delta = 1e\+308 ' -- \
