@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
@@ -12,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/io/input_file.hpp"
+#include "core/io/bounded_text.hpp"
 #include "eval/aggregate/option_order.hpp"
 #include "eval/aggregate/record_scan.hpp"
 #include "eval/run_files/found_runs.hpp"
@@ -27,13 +26,9 @@ namespace {
 RunRow read_row(const fs::path& root, const fs::path& file) {
   RunRow row;
   const fs::path folder = file.parent_path();
-  std::error_code error;
-  const auto bytes = fs::file_size(file, error);
-  std::ifstream stream = io::input_file(file);
-  std::string text(error ? 0 : bytes, '\0');
-  if (!error && stream.read(text.data(), static_cast<std::streamsize>(text.size()))) {
+  if (const auto text = io::whole_text(file, record::kMostRecordBytes, "record")) {
     std::vector<record::RecordedFile> files;
-    row = scan_record(text, &files);
+    row = scan_record(*text, &files);
     if (std::string damage = row.readable ? run_files::changed_size(folder, files) : ""; !damage.empty())
       row = damaged_row(std::move(row), std::move(damage));
   } else {

@@ -332,8 +332,7 @@ Result<RunRecord> parse_record(std::string_view json, const std::string& name) {
 }
 
 Result<RunRecord> read_record(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
-  const auto text = io::whole_text(file, kMostBytes, "record");
+  const auto text = io::whole_text(file, kMostRecordBytes, "record");
   if (!text) return tl::unexpected(text.error());
   return parse_record(*text, file.string());
 }

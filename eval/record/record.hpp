@@ -28,6 +28,8 @@
 namespace fusebench::record {
 
 inline constexpr int kRecordSchema = 1;
+/// A larger file is no record.
+inline constexpr std::uintmax_t kMostRecordBytes = std::uintmax_t{1} << 28;
 
 /// The word for a ground truth that `fusebench smooth` made from the recording itself.
 inline constexpr std::string_view kPseudoTruthWord = "pseudo ground truth";
@@ -213,8 +215,9 @@ struct RunRecord {
   RecordedProvenance provenance;
 };
 
-/// A record of a number that is NaN or infinite becomes that of a failed run without metrics, whose reason has
-/// the number's place ("metrics.ate.stats.rmse = nan"): JSON has no such numbers, and nobody could compare them.
+/// A record of a number that is NaN or infinite becomes that of a failed run without metrics, whose reason
+/// has the number's place ("metrics.ate.stats.rmse = nan"): JSON has no such numbers, and nobody could
+/// compare them.
 void fail_if_not_finite(RunRecord& record);
 
 /// JSON with two blanks of indentation. Everything outside `timing` and `provenance` depends on the inputs
