@@ -14,8 +14,8 @@
 
 namespace fusebench::page {
 
-/// Columns of numbers are right-aligned: those whose cells are all numbers, "-" or empty. A cell may have several
-/// lines ("\n").
+/// Columns of numbers are right-aligned: those whose cells are all numbers, "-" or empty. A cell may have
+/// several lines ("\n").
 struct PageTable {
   struct Row {
     std::vector<std::string> cells;
