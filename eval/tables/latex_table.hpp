@@ -32,8 +32,8 @@ struct LatexTable {
 
 /// A table, table* or sidewaystable with caption and label, needing the packages that its first line names.
 /// What is too wide is split: the columns of numbers over several tabulars, one below the other. Each is
-/// scaled down where its letters are wider than was thought. What is too long for a page becomes several floats
-/// of one number, the later ones "(continued)"; footnotes are below the last. Texts are escaped.
+/// scaled down where its letters are wider than was thought. What is too long for a page becomes several
+/// floats of one number, the later ones "(continued)"; footnotes are below the last. Texts are escaped.
 [[nodiscard]] std::string latex_table(const LatexTable& table, const LatexLayout& layout);
 
 }  // namespace fusebench::tables
