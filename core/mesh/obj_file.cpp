@@ -99,8 +99,8 @@ Result<void> add_faces(const tinyobj::shape_t& shape, const fs::path& file, Prec
       const int vertex = shape.mesh.indices[at++].vertex_index;
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= mesh.vertices.size()) {
         return fail(ErrorCode::data_corrupt,
-                    fmt::format("{}: shape '{}': a face names vertex {} of {}", file.string(), shape.name,
-                                vertex + 1, mesh.vertices.size()));
+                    fmt::format("{}: shape '{}': a face names vertex {} of {}", file.string(),
+                                printable(shape.name), vertex + 1, mesh.vertices.size()));
       }
       triangle[std::min<std::size_t>(k, 2)] = static_cast<std::uint32_t>(vertex);
       if (k < 2) continue;
@@ -128,8 +128,8 @@ Result<PreciseMesh> read_obj(const fs::path& file) {
   constexpr bool kDefaultColors = false;  // no white where the file has no colours
   if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, kNoMaterials,
                         kTriangulate, kDefaultColors)) {
-    return fail(ErrorCode::data_corrupt,
-                fmt::format("{}: not a readable OBJ file: {}", file.string(), without_line_end(error)));
+    return fail(ErrorCode::data_corrupt, fmt::format("{}: not a readable OBJ file: {}", file.string(),
+                                                     printable(without_line_end(error), 200)));
   }
   PreciseMesh mesh;
   mesh.vertices = std::move(*vertices);
