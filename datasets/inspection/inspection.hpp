@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
-#include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/inspection/finding.hpp"
 #include "datasets/inspection/measures/registration_fit.hpp"
 #include "datasets/recording/recording.hpp"
@@ -67,12 +66,6 @@ struct DepthMeasurement {
 };
 inline constexpr double kDepthBin_m = 0.1;
 inline constexpr std::size_t kDepthBins = 121;
-
-/// How far edges of depth lie from edges of colour.
-struct RegistrationMeasurement {
-  measures::RegistrationFit fit;
-  calibration::DepthCamera depth_camera;  ///< that fits best
-};
 
 struct ExposureMeasurement {
   double mean_grey = 0;        ///< median over frames
@@ -201,7 +194,7 @@ struct Inspection {
   std::vector<FrameStatistics> images;  ///< the sampled frames
   ExposureMeasurement exposure;
   DepthMeasurement depth;
-  std::optional<RegistrationMeasurement> registration;  ///< nothing where depth has too few edges
+  std::optional<measures::RegistrationFit> registration;  ///< nothing where depth has too few edges
   std::optional<TruthMeasurement> truth;
   MotionMeasurement motion;
   std::optional<ImuMeasurement> imu;

@@ -32,8 +32,7 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   if (out.images.empty() || out.has("depth-range") || out.has("depth-scale")) return;
   const auto fit = measures::fit_registration(recording, workers);
   if (!fit) return;
-  const calibration::DepthCamera camera = measures::fitted_depth_camera(fit->model, recording);
-  out.registration = {*fit, camera};
+  out.registration = fit;
   if (fit->moved_px < kMinMoved_px || fit->better_share < kMinBetterShare) return;
   const bool one_camera = fit->spread_px <= kMaxSpread * fit->moved_px;
   // Points of one frame that are warped into another have the depth camera's focal length as well.
@@ -45,7 +44,7 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   out.add("depth-misregistered", Severity::warning,
           one_camera
               ? fmt::format("edges of depth lie {:.0f} px from those of colour; {} would bring them there",
-                            fit->moved_px, proposal(camera))
+                            fit->moved_px, proposal(fit->fitted))
               : "edges of depth do not lie on edges of colour, and no place of the depth camera was found "
                 "that would "
                 "bring all of them there",

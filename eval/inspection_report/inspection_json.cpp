@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "eval/inspection_report/depth_camera_report.hpp"
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::inspection_report {
@@ -159,21 +160,12 @@ std::string to_json(const inspection::Inspection& i) {
                                {"repeated_depth", i.association.frozen}};
     document["exposure"] = json_of(i.exposure);
     document["depth"] = json_of(i.depth);
-    const inspection::measures::RegistrationFit& r = i.registration->fit;
-    const calibration::DepthCamera& camera = i.registration->depth_camera;
-    document["registration"] = {{"moved_px", r.moved_px},
-                                {"spread_px", r.spread_px},
-                                {"better_share", r.better_share},
-                                {"strength_as_read", r.strength_as_read},
-                                {"strength_moved", r.strength_moved},
-                                {"depth_camera",
-                                 {{"fx_px", camera.pinhole.fx_px},
-                                  {"fy_px", camera.pinhole.fy_px},
-                                  {"cx_px", camera.pinhole.cx_px},
-                                  {"cy_px", camera.pinhole.cy_px},
-                                  {"x_m", camera.T_color_depth.translation.x()},
-                                  {"y_m", camera.T_color_depth.translation.y()}}},
-                                {"edge_pixels", r.edges}};
+    document["registration"] = nullptr;
+    if (i.registration) {
+      const inspection::measures::RegistrationFit& fit = *i.registration;
+      document["registration"] = registration_json(fit);
+      document["registration"]["depth_camera"] = camera_json(fit.fitted);
+    }
     document["motion"] = json_of(i.motion);
     document["truth"] = nullptr;
     if (i.truth) {

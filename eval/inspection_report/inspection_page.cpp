@@ -238,7 +238,7 @@ std::string to_page(const inspection::Inspection& inspection, const recording::R
                              fmt::format("Borders of what is nearer, white as depth was read, red moved by "
                                          "{:.1f} px (rms) by the depth camera that "
                                          "fits best. White should lie on edges of the image.",
-                                         inspection.registration->fit.moved_px),
+                                         inspection.registration->moved_px),
                              registration_pictures(inspection, recording)});
   }
   page.sections.push_back({"Measurements", "", measurement_table(inspection)});

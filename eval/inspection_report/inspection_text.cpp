@@ -57,7 +57,7 @@ void image_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
   depth.add("range", fmt::format("{:.2f} to {:.2f} m, median {:.2f} m, {:.1f} % beyond 10 m", d.min_m,
                                  d.max_m, d.median_m, 100 * d.beyond_10m_share));
   if (i.registration) {
-    const inspection::measures::RegistrationFit& fit = i.registration->fit;
+    const inspection::measures::RegistrationFit& fit = *i.registration;
     depth.add(
         "edges on colour",
         fmt::format("best when moved by {:.1f} px (uncertain by {:.1f} px), better in {:.0f} % of frames",

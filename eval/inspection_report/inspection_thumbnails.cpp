@@ -45,7 +45,7 @@ std::string side_by_side(const RgbdFrame& frame, double far_m) {
   return page::jpeg_source(both, kQuality);
 }
 
-/// Half of the image's brightness, and a pixel for each edge, over those that were drawn before.
+/// A pixel for each edge, over what was drawn before.
 void draw_edges(const std::vector<inspection::measures::DepthEdge>& edges,
                 const inspection::measures::RegistrationModel& model, const PinholeCamera& camera, Rgb color,
                 ColorImage& picture) {
@@ -129,7 +129,7 @@ std::vector<page::PageImage> registration_pictures(const inspection::Inspection&
     const auto frame = recording.load_frame(k);
     if (!frame) continue;
     result.push_back({fmt::format("frame {}", k),
-                      edges_on_grey(*frame, inspection.registration->fit.model, recording.rig.camera)});
+                      edges_on_grey(*frame, inspection.registration->model, recording.rig.camera)});
   }
   return result;
 }

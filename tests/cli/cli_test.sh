@@ -309,6 +309,8 @@ check_recordings() {
   grep -Eq '^  fitted  .* px, centre ' stdout || complain "calibrate --depth-camera does not say what it fitted"
   "$binary" run fr1_rpy --data data --calibration depth.toml --variant no-imu --frames 0:2 --out out >stdout 2>stderr ||
     complain "a run with the fitted depth camera: exit code $?"
+  "$binary" inspect fr1_rpy --data data --frames 0:3 --json >stdout 2>stderr || complain "inspect of three frames: exit code $?"
+  grep -q '"registration": null' stdout || complain "inspect --json: what was not measured is not null"
   refused "too few frames for a depth camera" 4 'too few edges' 'hint:near and far' -- \
     calibrate fr1_rpy --data data --depth-camera --frames 0:3
 

@@ -218,7 +218,7 @@ std::vector<Movements> coarse_search(const EdgeScore& score, double half_width_p
   return starts;
 }
 
-/// Steps along each movement alone and along both of one axis, halved when none improves.
+/// Steps along each movement alone and along both of one axis; the next size of steps when none improves.
 Movements fine_search(const EdgeScore& score, Movements at, std::span<const Step> steps) {
   constexpr std::array<std::array<double, 5>, 7> kDirections = {{{1, 0, 0, 0, 0},
                                                                  {0, 1, 0, 1, 0},
@@ -319,14 +319,15 @@ std::optional<RegistrationFit> fit_registration(const recording::Recording& reco
   fit.moved_px = score.distance_px({}, fit.model);
   const EdgeScore first(halves[0], camera), second(halves[1], camera);
   fit.spread_px = score.distance_px(first.model(found[1]), second.model(found[2]));
+  fit.as_read = {camera, SE3{}};
+  if (recording.calibration && recording.calibration->depth) fit.as_read = *recording.calibration->depth;
+  fit.fitted = fitted_depth_camera(fit.model, camera, fit.as_read);
   return fit;
 }
 
-calibration::DepthCamera fitted_depth_camera(const RegistrationModel& model,
-                                             const recording::Recording& recording) {
-  const PinholeCamera& color = recording.rig.camera;
-  calibration::DepthCamera out{color, SE3{}};
-  if (recording.calibration && recording.calibration->depth) out = *recording.calibration->depth;
+calibration::DepthCamera fitted_depth_camera(const RegistrationModel& model, const PinholeCamera& color,
+                                             const calibration::DepthCamera& as_read) {
+  calibration::DepthCamera out = as_read;
   out.pinhole.fx_px /= model.scale;
   out.pinhole.fy_px /= model.scale;
   // A shift of the moved image is one of the centre by the same angle.

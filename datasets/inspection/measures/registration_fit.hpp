@@ -43,19 +43,21 @@ struct RegistrationFit {
   /// where they are and moved by the model.
   double strength_as_read = 0;
   double strength_moved = 0;
-  double better_share = 0;  ///< of the frames: their own edges lie better when moved
-  double moved_px = 0;      ///< by the model, rms over the edges
-  double spread_px = 0;     ///< between the models of every other frame, rms over the edges
+  double better_share = 0;           ///< of the frames: their own edges lie better when moved
+  double moved_px = 0;               ///< by the model, rms over the edges
+  double spread_px = 0;              ///< between the models of every other frame, rms over the edges
+  calibration::DepthCamera as_read;  ///< the calibration's; the colour camera, if depth counts as registered
+  calibration::DepthCamera fitted;   ///< that the model asks for in its place
 };
 
 /// Fits the model to frames all over the recording. Nothing if they have too few edges.
 [[nodiscard]] std::optional<RegistrationFit> fit_registration(const recording::Recording& recording,
                                                               const Workers& workers);
 
-/// The depth camera that the model asks for, in place of the one with which the recording was read (the
-/// colour camera, if its depth counts as registered). Exact for parallel cameras; small turns become a shift
-/// of the centre.
+/// The depth camera that the model asks for in place of the one with which depth was read. Exact for parallel
+/// cameras; small turns become a shift of the centre.
 [[nodiscard]] calibration::DepthCamera fitted_depth_camera(const RegistrationModel& model,
-                                                           const recording::Recording& recording);
+                                                           const PinholeCamera& color,
+                                                           const calibration::DepthCamera& as_read);
 
 }  // namespace fusebench::inspection::measures

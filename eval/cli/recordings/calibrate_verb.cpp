@@ -7,12 +7,12 @@
 #include "core/config/variants.hpp"
 #include "datasets/open_recording.hpp"
 #include "eval/batch_estimation/calibration.hpp"
-#include "eval/batch_estimation/depth_camera_report.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
+#include "eval/inspection_report/depth_camera_report.hpp"
 #include "eval/run/run.hpp"
 #include "eval/text/text_file.hpp"
 
@@ -54,13 +54,13 @@ Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
   }
   print_warnings(*recording);
   const Workers workers(options.request.threads);
-  const auto estimate = batch_estimation::estimate_depth_camera(*recording, workers);
-  if (!estimate) return tl::unexpected(estimate.error());
+  const auto fit = inspection_report::estimate_depth_camera(*recording, workers);
+  if (!fit) return tl::unexpected(fit.error());
   const auto written =
-      write_calibration(options.out, batch_estimation::rig_with_depth_camera(*recording, *estimate));
+      write_calibration(options.out, inspection_report::rig_with_depth_camera(*recording, *fit));
   if (!written) return tl::unexpected(written.error());
-  console::print_output(options.json ? batch_estimation::to_json(*estimate, *recording)
-                                     : batch_estimation::to_text(*estimate, *recording));
+  console::print_output(options.json ? inspection_report::depth_camera_json(*fit, *recording)
+                                     : inspection_report::depth_camera_text(*fit, *recording));
   return 0;
 }
 

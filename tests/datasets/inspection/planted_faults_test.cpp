@@ -407,8 +407,8 @@ TEST(PlantedFaults, DepthThatIsNotRegistered) {
   const Inspection result = inspected(recording);
   EXPECT_THAT(faults(result), ElementsAre("depth-misregistered"));
   ASSERT_TRUE(result.registration);
-  EXPECT_NEAR(result.registration->fit.moved_px, 16, 1);
-  EXPECT_NEAR(result.registration->depth_camera.pinhole.cx_px, cx_px + 16, 4);
+  EXPECT_NEAR(result.registration->moved_px, 16, 1);
+  EXPECT_NEAR(result.registration->fitted.pinhole.cx_px, cx_px + 16, 4);
 }
 
 TEST(PlantedFaults, APartOfARecording) {

@@ -69,8 +69,7 @@ TEST(RegistrationModel, IsWhatParallelCamerasDo) {
   const Vector2d moved = model.move({250, 40, 1.7F, true}, color);
   EXPECT_LT((moved - color.project(depth.T_color_depth * point_depth)).norm(), 1e-4);
   // And back: the camera that the model asks for is that camera.
-  recording::Recording recording = clean_recording({.camera = color, .truth = false, .imu = false});
-  const calibration::DepthCamera fitted = fitted_depth_camera(model, recording);
+  const calibration::DepthCamera fitted = fitted_depth_camera(model, color, {color, SE3{}});
   EXPECT_NEAR(fitted.pinhole.fx_px, depth.pinhole.fx_px, 1e-9);
   EXPECT_NEAR(fitted.pinhole.cx_px, depth.pinhole.cx_px, 1e-9);
   EXPECT_NEAR(fitted.pinhole.cy_px, depth.pinhole.cy_px, 1e-9);
@@ -86,9 +85,7 @@ TEST(RegistrationFit, FindsTheDepthCamera) {
   EXPECT_LT(fit->spread_px, 1.5);
   EXPECT_GT(fit->better_share, 0.9);
   EXPECT_GT(fit->strength_moved, 2 * fit->strength_as_read);
-  const recording::Recording color_only =
-      clean_recording({.camera = testing::small_camera(), .truth = false, .imu = false});
-  const calibration::DepthCamera fitted = fitted_depth_camera(fit->model, color_only);
+  const calibration::DepthCamera& fitted = fit->fitted;
   EXPECT_NEAR(fitted.pinhole.fx_px, 265, 3);
   EXPECT_NEAR(fitted.T_color_depth.translation.x(), -0.03, 0.01);
   EXPECT_NEAR(fitted.T_color_depth.translation.y(), 0, 0.01);

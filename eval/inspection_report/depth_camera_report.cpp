@@ -1,0 +1,79 @@
+#include "eval/inspection_report/depth_camera_report.hpp"
+
+#include <fmt/format.h>
+
+#include "eval/text/json_text.hpp"
+
+namespace fusebench::inspection_report {
+
+namespace {
+
+using inspection::measures::RegistrationFit;
+using Json = nlohmann::ordered_json;
+
+std::string camera_text(const calibration::DepthCamera& camera) {
+  return fmt::format("{:.1f} x {:.1f} px, centre ({:.1f}, {:.1f}) px, at ({:.1f}, {:.1f}) mm of colour",
+                     camera.pinhole.fx_px, camera.pinhole.fy_px, camera.pinhole.cx_px, camera.pinhole.cy_px,
+                     1e3 * camera.T_color_depth.translation.x(), 1e3 * camera.T_color_depth.translation.y());
+}
+
+}  // namespace
+
+Json camera_json(const calibration::DepthCamera& camera) {
+  return {{"fx_px", camera.pinhole.fx_px},
+          {"fy_px", camera.pinhole.fy_px},
+          {"cx_px", camera.pinhole.cx_px},
+          {"cy_px", camera.pinhole.cy_px},
+          {"x_m", camera.T_color_depth.translation.x()},
+          {"y_m", camera.T_color_depth.translation.y()}};
+}
+
+Json registration_json(const RegistrationFit& fit) {
+  return {{"edge_pixels", fit.edges},
+          {"moved_px", fit.moved_px},
+          {"spread_px", fit.spread_px},
+          {"better_share", fit.better_share},
+          {"strength_as_read", fit.strength_as_read},
+          {"strength_moved", fit.strength_moved}};
+}
+
+Result<RegistrationFit> estimate_depth_camera(const recording::Recording& recording, const Workers& workers) {
+  if (auto fit = inspection::measures::fit_registration(recording, workers)) return *fit;
+  return fail(
+      ErrorCode::run_failed,
+      fmt::format("recording '{}' has too few edges of depth to estimate a depth camera", recording.name),
+      "record things that stand apart from what is behind them, near and far, all over the image");
+}
+
+calibration::RigCalibration rig_with_depth_camera(const recording::Recording& recording,
+                                                  const RegistrationFit& fit) {
+  check(recording.calibration.has_value(), "the recording's reader kept its calibration");
+  calibration::RigCalibration rig = *recording.calibration;
+  rig.depth = fit.fitted;
+  rig.source = fmt::format(
+      "depth camera by fusebench calibrate on {} edges of {} (uncertain by {:.1f} px); the rest: {}",
+      fit.edges, recording.name, fit.spread_px, rig.source.empty() ? "no source given" : rig.source);
+  return rig;
+}
+
+std::string depth_camera_text(const RegistrationFit& fit, const recording::Recording& recording) {
+  return fmt::format(
+      "depth camera of {} by {} edges of depth\n"
+      "  as read        {}\n"
+      "  fitted         {}\n"
+      "  edges move     {:.1f} px (rms), and by {:.1f} px between the fits to every other frame\n"
+      "  better         {:.0f} % of the frames; strength of colour's edges there {:.3f} -> {:.3f}\n",
+      recording.name, fit.edges, camera_text(fit.as_read), camera_text(fit.fitted), fit.moved_px,
+      fit.spread_px, 100 * fit.better_share, fit.strength_as_read, fit.strength_moved);
+}
+
+std::string depth_camera_json(const RegistrationFit& fit, const recording::Recording& recording) {
+  Json document{{"recording", recording.name},
+                {"recording_fingerprint", recording.fingerprint},
+                {"as_read", camera_json(fit.as_read)},
+                {"fitted", camera_json(fit.fitted)}};
+  document.update(registration_json(fit));
+  return text::json_text(document) + "\n";
+}
+
+}  // namespace fusebench::inspection_report
