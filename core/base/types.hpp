@@ -101,8 +101,8 @@ struct StampedPose {
 };
 using Trajectory = std::vector<StampedPose>;  ///< sorted by time, stamps unique
 
-/// Indexed triangle mesh in the world frame (metres). normals, colors and quality are empty or one per
-/// vertex.
+/// Indexed triangle mesh in the world frame (metres), or surfels. normals, colors, quality and radii_m are
+/// empty or one per vertex.
 template <class Scalar>
 struct BasicMesh {
   std::vector<Eigen::Matrix<Scalar, 3, 1>> vertices;
@@ -110,10 +110,11 @@ struct BasicMesh {
   std::vector<Rgb> colors;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
   std::vector<float> quality = {};                      ///< any number, such as the vertex's error
+  std::vector<float> radii_m = {};  ///< of surfels: discs around the vertices, across the normals
 
   template <class Other>
   [[nodiscard]] BasicMesh<Other> cast() const {
-    BasicMesh<Other> result{{}, normals, colors, triangles, quality};
+    BasicMesh<Other> result{{}, normals, colors, triangles, quality, radii_m};
     result.vertices.reserve(vertices.size());
     for (const auto& vertex : vertices) result.vertices.push_back(vertex.template cast<Other>());
     return result;

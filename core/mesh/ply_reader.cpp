@@ -45,9 +45,10 @@ class PlyReader {
   }
 
  private:
-  static constexpr std::array<std::string_view, 10> kVertexNames = {"x",  "y",   "z",     "nx",   "ny",
-                                                                    "nz", "red", "green", "blue", "quality"};
+  static constexpr std::array<std::string_view, 11> kVertexNames = {
+      "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "quality", "radius"};
   static constexpr std::size_t kQuality = 9;
+  static constexpr std::size_t kRadius = 10;
 
   bool reject(const std::string& what) {
     const std::string place =
@@ -76,6 +77,9 @@ class PlyReader {
     has_normals_ = has(3);
     has_colors_ = has(6);
     has_quality_ = has(kQuality, 1);
+    const bool has_faces = std::ranges::any_of(
+        header.elements, [](const PlyElement& e) { return e.name == "face" && e.count > 0; });
+    has_radii_ = has(kRadius, 1) && has_normals_ && !has_faces;
     vertex_count_ = vertex->count;
     binary_ = header.binary;
     big_endian_ = header.big_endian;
@@ -99,10 +103,13 @@ class PlyReader {
           !(value >= 0 && value <= 255 && value == std::floor(value))) {
         return reject(fmt::format("property {} = {} (expected an integer in 0-255)", property.name, value));
       }
+      if (role == kRadius && has_radii_ && !(value > 0 && value <= std::numeric_limits<float>::max()))
+        return reject(fmt::format("property {} = {} (expected metres above 0)", property.name, value));
     }
     mesh_.vertices.emplace_back(values[0], values[1], values[2]);
     if (has_normals_) mesh_.normals.push_back(Vector3d(values[3], values[4], values[5]).cast<float>());
     if (has_quality_) mesh_.quality.push_back(static_cast<float>(values[kQuality]));
+    if (has_radii_) mesh_.radii_m.push_back(static_cast<float>(values[kRadius]));
     if (has_colors_) {
       mesh_.colors.push_back({static_cast<std::uint8_t>(values[6]), static_cast<std::uint8_t>(values[7]),
                               static_cast<std::uint8_t>(values[8])});
@@ -225,6 +232,7 @@ class PlyReader {
   bool has_normals_ = false;
   bool has_colors_ = false;
   bool has_quality_ = false;
+  bool has_radii_ = false;
   PreciseMesh mesh_;
   Error error_;
 };

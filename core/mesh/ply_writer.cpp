@@ -30,6 +30,7 @@ std::string header_of(const Mesh& mesh) {
   if (!mesh.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
   if (!mesh.colors.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   if (!mesh.quality.empty()) header += "property float quality\n";
+  if (!mesh.radii_m.empty()) header += "property float radius\n";
   header += fmt::format("element face {}\n", mesh.triangles.size());
   return header + "property list uchar int vertex_indices\nend_header\n";
 }
@@ -47,6 +48,7 @@ Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
   check(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size(), "no normals or one a vertex");
   check(mesh.colors.empty() || mesh.colors.size() == mesh.vertices.size(), "no colours or one a vertex");
   check(mesh.quality.empty() || mesh.quality.size() == mesh.vertices.size(), "no quality or one a vertex");
+  check(mesh.radii_m.empty() || mesh.radii_m.size() == mesh.vertices.size(), "no radius or one a vertex");
   errno = 0;
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   if (!stream) return cannot_write(file, errno);
@@ -66,6 +68,7 @@ Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
     if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
     if (!mesh.colors.empty()) append(bytes, mesh.colors[i]);
     if (!mesh.quality.empty()) append(bytes, mesh.quality[i]);
+    if (!mesh.radii_m.empty()) append(bytes, mesh.radii_m[i]);
   }
   for (std::size_t i = 0; i < mesh.triangles.size() && write_from(kPieceBytes); ++i) {
     append(bytes, std::uint8_t{3});

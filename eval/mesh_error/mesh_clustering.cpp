@@ -18,9 +18,23 @@ namespace {
 struct Cluster {
   Vector3d position = Vector3d::Zero();
   Vector3d color = Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();
+  double radius_m = 0;
   double quality = 0;
   double count = 0;
 };
+
+/// Of a surfel, in place of those of a cell: it reaches the cell's corners, and is no smaller than they were.
+void add_disc(PreciseMesh& mesh, const Cluster& cluster, double cell_m) {
+  const double length = cluster.normal.norm();
+  const Vector3d normal = length > 1e-6 ? Vector3d(cluster.normal / length) : Vector3d(0, 0, 1);
+  mesh.normals.push_back(normal.cast<float>());
+  mesh.radii_m.push_back(static_cast<float>(std::max(cluster.radius_m / cluster.count, cell_m / std::sqrt(2.0))));
+}
+
+std::size_t parts_of(const PreciseMesh& mesh) {
+  return mesh.radii_m.empty() ? mesh.triangles.size() : mesh.vertices.size();
+}
 
 }  // namespace
 
@@ -44,6 +58,10 @@ PreciseMesh clustered(const PreciseMesh& mesh, double cell_m) {
     if (!mesh.colors.empty())
       cluster.color += Vector3d(mesh.colors[i][0], mesh.colors[i][1], mesh.colors[i][2]);
     if (!mesh.quality.empty()) cluster.quality += static_cast<double>(mesh.quality[i]);
+    if (!mesh.radii_m.empty()) {
+      cluster.normal += mesh.normals[i].cast<double>();
+      cluster.radius_m += static_cast<double>(mesh.radii_m[i]);
+    }
     ++cluster.count;
   }
   PreciseMesh result;
@@ -53,6 +71,7 @@ PreciseMesh clustered(const PreciseMesh& mesh, double cell_m) {
     const auto level = [&](int c) { return static_cast<std::uint8_t>(std::lround(color[c])); };
     if (!mesh.colors.empty()) result.colors.push_back({level(0), level(1), level(2)});
     if (!mesh.quality.empty()) result.quality.push_back(static_cast<float>(cluster.quality / cluster.count));
+    if (!mesh.radii_m.empty()) add_disc(result, cluster, cell_m);
   }
   std::set<std::array<std::uint32_t, 3>> known;  // by sorted corners: either face of a thin sheet is enough
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -65,13 +84,13 @@ PreciseMesh clustered(const PreciseMesh& mesh, double cell_m) {
   return result;
 }
 
-PreciseMesh reduced(const PreciseMesh& mesh, std::size_t most_triangles) {
-  if (mesh.triangles.size() <= most_triangles) return mesh;
+PreciseMesh reduced(const PreciseMesh& mesh, std::size_t most) {
+  if (parts_of(mesh) <= most) return mesh;
   constexpr double kLargest_m = 1e4;
   PreciseMesh result;
   for (double cell_m = 0.005; cell_m < kLargest_m; cell_m *= std::sqrt(2.0)) {
     result = clustered(mesh, cell_m);
-    if (result.triangles.size() <= most_triangles) break;
+    if (parts_of(result) <= most) break;
   }
   return result;
 }

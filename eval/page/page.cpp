@@ -92,6 +92,22 @@ std::string colors_text(const std::vector<Rgb>& colors) {
   return bytes_text(colors.data(), colors.size() * sizeof(Rgb));
 }
 
+/// Of surfels: three signed bytes a normal, and radii as shares of the largest. Nothing of other meshes.
+Json discs_of(const PreciseMesh& mesh) {
+  if (mesh.radii_m.empty()) return nullptr;
+  const float largest_m = std::ranges::max(mesh.radii_m);
+  std::vector<std::int8_t> normals;
+  std::vector<std::uint8_t> radii;
+  for (std::size_t i = 0; i < mesh.radii_m.size(); ++i) {
+    for (const float part : mesh.normals[i])
+      normals.push_back(static_cast<std::int8_t>(std::lround(127 * std::clamp(part, -1.0F, 1.0F))));
+    radii.push_back(static_cast<std::uint8_t>(std::lround(255 * mesh.radii_m[i] / largest_m)));
+  }
+  return {{"normals", bytes_text(normals.data(), normals.size())},
+          {"radii", bytes_text(radii.data(), radii.size())},
+          {"largest_radius_m", number(static_cast<double>(largest_m))}};
+}
+
 Json json_of(const SceneMesh& scene) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& vertex : scene.mesh.vertices) box.extend(vertex);
@@ -111,6 +127,7 @@ Json json_of(const SceneMesh& scene) {
           {"positions", bytes_text(positions.data(), positions.size() * sizeof(std::uint16_t))},
           {"triangles", bytes_text(scene.mesh.triangles.data(),
                                    scene.mesh.triangles.size() * sizeof(scene.mesh.triangles[0]))},
+          {"discs", discs_of(scene.mesh)},
           {"colors", colors_text(scene.mesh.colors)},
           {"errors", colors_text(scene.error_colors)}};
 }

@@ -83,7 +83,7 @@ struct PageImage {
   std::optional<double> time_s = {};  ///< of what it shows, on the charts' axis of time
 };
 
-/// A mesh, ready to be drawn: positions are quantised to 16 bits within its box.
+/// A mesh or surfels, ready to be drawn: positions are quantised to 16 bits within their box.
 struct SceneMesh {
   std::string label;
   PreciseMesh mesh;               ///< with colors

@@ -16,10 +16,51 @@
     const positions = new Float32Array(quantised.length);
     for (let i = 0; i < quantised.length; ++i) positions[i] = mesh.low[i % 3] + mesh.size[i % 3] * quantised[i] / 65535;
     const geometry = new THREE.BufferGeometry();
+    if (mesh.discs) return discGeometry(geometry, positions, mesh.discs);
     geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes(mesh.triangles).buffer), 1));
     geometry.computeVertexNormals();
     return geometry;
+  }
+
+  // Surfels are drawn as hexagons across their normals.
+  const corners = 6;
+  function discGeometry(geometry, middles, discs) {
+    const normals = new Int8Array(bytes(discs.normals).buffer), radii = bytes(discs.radii);
+    const positions = new Float32Array(corners * middles.length), directions = new Float32Array(corners * middles.length);
+    const fan = corners - 2;
+    const triangles = new Uint32Array(3 * fan * radii.length);
+    const normal = new THREE.Vector3(), across = new THREE.Vector3(), up = new THREE.Vector3(), corner = new THREE.Vector3();
+    for (let i = 0; i < radii.length; ++i) {
+      normal.set(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]).normalize();
+      across.set(1, 0, 0);
+      if (Math.abs(normal.x) > 0.7) across.set(0, 1, 0);
+      up.crossVectors(normal, across).normalize();
+      across.crossVectors(up, normal);
+      const radius = discs.largest_radius_m * Math.max(radii[i], 1) / 255;
+      for (let k = 0; k < corners; ++k) {
+        const angle = 2 * Math.PI * k / corners;
+        corner.fromArray(middles, 3 * i).addScaledVector(across, radius * Math.cos(angle)).addScaledVector(up, radius * Math.sin(angle));
+        corner.toArray(positions, 3 * (corners * i + k));
+        normal.toArray(directions, 3 * (corners * i + k));
+      }
+      for (let k = 0; k < fan; ++k) triangles.set([corners * i, corners * i + k + 1, corners * i + k + 2], 3 * (fan * i + k));
+    }
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute("normal", new THREE.BufferAttribute(directions, 3));
+    geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+    return geometry;
+  }
+
+  /// Of each vertex of what is drawn.
+  function coloursOf(mesh, text) {
+    const given = bytes(text);
+    if (!mesh.discs) return given;
+    const colours = new Uint8Array(corners * given.length);
+    for (let i = 0; i < given.length / 3; ++i) {
+      for (let k = 0; k < corners; ++k) colours.set(given.subarray(3 * i, 3 * i + 3), 3 * (corners * i + k));
+    }
+    return colours;
   }
 
   function element(tag, parent, text) {
@@ -57,7 +98,7 @@
 
   function paint(view, errors) {
     const text = errors && view.mesh.errors !== "" ? view.mesh.errors : view.mesh.colors;
-    view.geometry.setAttribute("color", new THREE.BufferAttribute(bytes(text), 3, true));
+    view.geometry.setAttribute("color", new THREE.BufferAttribute(coloursOf(view.mesh, text), 3, true));
   }
 
   function choose(host, name, text, checked, change) {

@@ -9,6 +9,7 @@
 #include "core/mesh/ply_file.hpp"
 #include "datasets/images/image_files.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
+#include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/page/image_source.hpp"
 #include "eval/paper_figures/model_view.hpp"
 #include "eval/report/patch_pictures.hpp"
@@ -199,11 +200,12 @@ Result<void> add_models(const Loaded& recording, const std::filesystem::path& fo
       "models_" + recording.label, std::max<std::size_t>(1, recording.series.size()), {}, {}, {}};
   std::optional<PinholeCamera> camera;
   for (const report::RunSeries& run : recording.series) {
-    const auto mesh = mesh::read_ply(run.run->folder / "mesh.ply");
+    auto mesh = mesh::read_ply(run.run->folder / "mesh.ply");
     if (!mesh) {
       written.warnings.push_back(mesh.error().message);
       continue;
     }
+    mesh = mesh_error::with_discs(*std::move(mesh));
     const SE3 T_world_view = run.T_first_world.inverse() * T_first_view();
     if (!camera) camera = view_camera(*mesh, T_world_view);
     const ColorImage image = model_view(mesh->cast<float>(), *camera, T_world_view);

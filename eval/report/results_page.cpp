@@ -175,6 +175,12 @@ page::ScenePath path_of(const RunSeries& run, std::size_t most) {
   return path;
 }
 
+void move(PreciseMesh& mesh, const SE3& T_new_old) {
+  for (Vector3d& vertex : mesh.vertices) vertex = T_new_old * vertex;
+  const Matrix3d turn = T_new_old.rotation.toRotationMatrix();
+  for (Eigen::Vector3f& normal : mesh.normals) normal = (turn * normal.cast<double>()).cast<float>();
+}
+
 page::PageScene scene_of(std::span<const RunSeries> runs, const Detail& detail,
                          std::vector<std::string>& warnings) {
   page::PageScene scene;
@@ -187,9 +193,9 @@ page::PageScene scene_of(std::span<const RunSeries> runs, const Detail& detail,
     const auto checked = run_files::check_file(run.run->folder, run.run->record, "mesh.ply");
     const auto mesh = checked ? mesh::read_ply(file) : tl::unexpected(checked.error());
     if (!mesh) warnings.push_back(mesh.error().message);
-    if (!mesh || mesh->triangles.empty()) continue;
+    if (!mesh || (mesh->triangles.empty() && mesh->radii_m.empty())) continue;
     page::SceneMesh shown{run.label, mesh_error::reduced(*mesh, detail.triangles), {}};
-    for (Vector3d& vertex : shown.mesh.vertices) vertex = run.T_first_world * vertex;
+    move(shown.mesh, run.T_first_world);
     if (shown.mesh.colors.empty()) shown.mesh.colors.assign(shown.mesh.vertices.size(), Rgb{170, 170, 170});
     if (run.run->record.metrics.mesh.value && !shown.mesh.quality.empty()) {
       const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());

@@ -6,6 +6,7 @@
 
 #include "core/config/variants.hpp"
 #include "core/mesh/ply_file.hpp"
+#include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/true_camera.hpp"
@@ -141,7 +142,8 @@ Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const record
   options.reconstruction.count = kReconstructionSamples;
   options.truth.count = kTruthSamples;
   const PreciseMesh precise = output.mesh.cast<double>();
-  const auto comparison = mesh_error::MeshComparison::create(precise, *truth, *views, options, workers);
+  const PreciseMesh surface = mesh_error::with_discs(precise);
+  const auto comparison = mesh_error::MeshComparison::create(surface, *truth, *views, options, workers);
   if (!comparison) return tl::unexpected(comparison.error());
   const auto aligned = trajectory_error::align_poses(cameras.reference, cameras.estimate);
   if (!aligned) return tl::unexpected(aligned.error());

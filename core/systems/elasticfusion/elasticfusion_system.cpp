@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/systems/elasticfusion/surfels/disc_mesh.hpp"
+#include "core/systems/elasticfusion/surfels/surfel_cloud.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_measure.hpp"
 #include "core/systems/elasticfusion/tracking/rotation_start.hpp"
 
@@ -179,9 +179,9 @@ Result<std::optional<Trajectory>> ElasticfusionSystem::revise() {
 }
 
 Surface ElasticfusionSystem::take_surface() {
-  Mesh mesh = surfels::disc_mesh(map_, static_cast<float>(config_.elasticfusion.stable_confidence));
+  Mesh cloud = surfels::surfel_cloud(map_, static_cast<float>(config_.elasticfusion.stable_confidence));
   map_ = {};
-  return mesh;
+  return cloud;
 }
 
 }  // namespace fusebench::systems::elasticfusion

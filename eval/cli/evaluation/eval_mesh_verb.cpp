@@ -18,6 +18,7 @@
 #include "eval/cli/evaluation/mesh_request.hpp"
 #include "eval/mesh_error/error_colors.hpp"
 #include "eval/mesh_error/mesh_evaluation.hpp"
+#include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/metric_reports/mesh_report.hpp"
 
 namespace fusebench::cli::evaluation {
@@ -82,9 +83,11 @@ Result<int> run(const MeshVerbOptions& options) {
   const double scale = options.scale.value_or(1.0);
   if (scale != 1) {
     for (Vector3d& vertex : reconstruction->vertices) vertex *= scale;
+    for (float& radius_m : reconstruction->radii_m) radius_m *= static_cast<float>(scale);
   }
+  reconstruction = mesh_error::with_discs(*std::move(reconstruction));
   const Workers workers(options.threads);
-  const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, *truth, *request, workers);
+  const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, mesh_error::with_discs(*truth), *request, workers);
   if (!evaluation) return tl::unexpected(evaluation.error());
   warn(*evaluation);
   if (!options.colored.empty()) {

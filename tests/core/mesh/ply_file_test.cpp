@@ -83,10 +83,31 @@ TEST_F(PlyFile, RoundTripsWithAndWithoutNormalsAndColours) {
   measured.quality = {0, 0.5F, 1e-6F, 3};
   ASSERT_TRUE(write_ply(measured, folder_ / "measured.ply"));
   EXPECT_EQ(read_ply(folder_ / "measured.ply")->quality, measured.quality);
+  Mesh surfels = tetrahedron();
+  surfels.triangles.clear();
+  surfels.radii_m = {0.01F, 0.02F, 0.03F, 0.04F};
+  ASSERT_TRUE(write_ply(surfels, folder_ / "surfels.ply"));
+  EXPECT_EQ(read_ply(folder_ / "surfels.ply")->radii_m, surfels.radii_m);
   ASSERT_TRUE(write_ply(Mesh{}, folder_ / "empty.ply"));
   const auto empty = read_ply(folder_ / "empty.ply");
   ASSERT_TRUE(empty) << empty.error().message;
   expect_same(empty->cast<float>(), Mesh{});
+}
+
+TEST_F(PlyFile, RadiiAreOfSurfels) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float radius\n";
+  EXPECT_EQ(read_ply(write(header + "end_header\n0 0 0 0 0 1 0.5\n"))->radii_m, std::vector<float>{0.5F});
+  for (const std::string radius : {"0", "-1", "nan", "inf"}) {
+    const auto read = read_ply(write(header + "end_header\n0 0 0 0 0 1 " + radius + "\n"));
+    ASSERT_FALSE(read) << radius;
+    EXPECT_NE(read.error().message.find("property radius"), std::string::npos) << read.error().message;
+  }
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto mesh = read_ply(write(header + face + "0 0 0 0 0 1 0\n3 0 0 0\n"));
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_TRUE(mesh->radii_m.empty()) << "a mesh with faces is a surface already";
 }
 
 TEST_F(PlyFile, CountsAreWholeNumbers) {

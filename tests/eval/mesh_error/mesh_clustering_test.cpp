@@ -34,6 +34,25 @@ TEST(MeshClustering, LeavesASmallMeshAlone) {
   EXPECT_EQ(reduced(ball, 1000).vertices, ball.vertices);
 }
 
+TEST(MeshClustering, SurfelsStillCoverWhatTheyCovered) {
+  PreciseMesh wall;
+  for (int i = 0; i < 10'000; ++i) {
+    wall.vertices.emplace_back(0.01 * (i % 100), 0.01 * (i / 100), 2);
+    wall.normals.emplace_back(0, 0, -1);
+    wall.radii_m.push_back(0.007F);
+  }
+  const PreciseMesh fewer = reduced(wall, 500);
+  ASSERT_LE(fewer.vertices.size(), 500U);
+  ASSERT_GT(fewer.vertices.size(), 100U);
+  for (const Vector3d& point : wall.vertices) {
+    bool covered = false;
+    for (std::size_t i = 0; i < fewer.vertices.size() && !covered; ++i)
+      covered = (fewer.vertices[i] - point).norm() <= static_cast<double>(fewer.radii_m[i]) + 1e-9;
+    ASSERT_TRUE(covered) << point.transpose();
+  }
+  for (const Eigen::Vector3f& normal : fewer.normals) EXPECT_EQ(normal, Eigen::Vector3f(0, 0, -1));
+}
+
 TEST(MeshClustering, AveragesWhatIsInACell) {
   PreciseMesh mesh;
   mesh.vertices = {{0.1, 0.1, 0.1}, {0.3, 0.1, 0.1}, {1.5, 0, 0}, {0, 1.5, 0}};
