@@ -15,6 +15,8 @@ namespace {
 constexpr double kMinMoved_px = 3.5;
 constexpr double kMinBetterShare = 0.9;
 constexpr double kMaxSpread = 0.5;  // of the movement: beyond it, no one camera fits
+// Where no one camera fits, few frames are better when moved by chance: five of a right recording were.
+constexpr std::size_t kMinFrames = 12;
 
 std::string proposal(const calibration::DepthCamera& camera) {
   const Vector3d& depth_in_color_m = camera.T_color_depth.translation;
@@ -35,6 +37,7 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   out.registration = fit;
   if (fit->moved_px < kMinMoved_px || fit->better_share < kMinBetterShare) return;
   const bool one_camera = fit->spread_px <= kMaxSpread * fit->moved_px;
+  if (!one_camera && fit->frames < kMinFrames) return;
   // Points of one frame that are warped into another have the depth camera's focal length as well.
   for (Finding& finding : out.findings) {
     if (finding.code == "focal-length")
@@ -46,11 +49,9 @@ void check_registration(const recording::Recording& recording, const Workers& wo
               ? fmt::format("edges of depth lie {:.0f} px from those of colour; {} would bring them there",
                             fit->moved_px, proposal(fit->fitted))
               : "edges of depth do not lie on edges of colour, and no place of the depth camera was found "
-                "that would "
-                "bring all of them there",
+                "that would bring all of them there",
           "check [depth] and T_color_depth in calibration.toml, and that depth is registered; `fusebench "
-          "calibrate "
-          "RECORDING --depth-camera` estimates the depth camera");
+          "calibrate RECORDING --depth-camera` estimates the depth camera");
 }
 
 }  // namespace fusebench::inspection

@@ -71,6 +71,12 @@ std::string edges_on_grey(const RgbdFrame& frame, const inspection::measures::Re
   return page::jpeg_source(picture, kQuality);
 }
 
+/// In the place of a frame that was there when it was inspected, and is no more.
+page::PageImage unread(std::size_t frame, const Error& error, const PinholeCamera& camera) {
+  return {fmt::format("frame {} could not be read again: {}", frame, error.message),
+          page::jpeg_source(ColorImage(camera.width_px / 4, camera.height_px / 4), kQuality)};
+}
+
 struct Choice {
   std::size_t frame;
   std::string why;
@@ -111,7 +117,10 @@ std::vector<page::PageImage> inspection_thumbnails(const inspection::Inspection&
   const double far_m = *std::ranges::max_element(far);
   for (const Choice& choice : chosen_frames(inspection)) {
     const auto frame = recording.load_frame(choice.frame);
-    if (!frame) continue;
+    if (!frame) {
+      result.push_back(unread(choice.frame, frame.error(), recording.rig.camera));
+      continue;
+    }
     const double time_s = seconds_between(recording.frames.front().timestamp_ns, frame->timestamp_ns);
     result.push_back({fmt::format("frame {} at {:.2f} s{}{}", choice.frame, time_s,
                                   choice.why.empty() ? "" : "; ", choice.why),
@@ -127,7 +136,10 @@ std::vector<page::PageImage> registration_pictures(const inspection::Inspection&
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t k = (2 * i + 1) * recording.frames.size() / 8;
     const auto frame = recording.load_frame(k);
-    if (!frame) continue;
+    if (!frame) {
+      result.push_back(unread(k, frame.error(), recording.rig.camera));
+      continue;
+    }
     result.push_back({fmt::format("frame {}", k),
                       edges_on_grey(*frame, inspection.registration->model, recording.rig.camera)});
   }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "eval/report/chart_parts.hpp"
@@ -49,14 +50,26 @@ page::Chart view_chart(std::span<const RunSeries> runs, int across, int along, s
   return chart;
 }
 
+/// Times of the recording: the truth often begins earlier and ends later.
+Vector2d shown_times_s(std::span<const RunSeries> runs) {
+  Vector2d range(0, 0);
+  for (const RunSeries& run : runs) {
+    if (!run.poses.empty()) range[1] = std::max(range[1], run.time_s(run.poses.back().timestamp_ns));
+    if (!run.frames.empty()) range[1] = std::max(range[1], run.time_s(run.frames.back().timestamp_ns));
+  }
+  return range;
+}
+
 page::Chart position_chart(std::span<const RunSeries> runs, int axis, std::size_t buckets) {
   page::Chart chart = chart_of(fmt::format("Position along {}", kAxes[static_cast<std::size_t>(axis)]),
                                "time [s]", fmt::format("{} [m]", kAxes[static_cast<std::size_t>(axis)]));
   chart.from_zero = false;
   if (const RunSeries* run = with_truth(runs)) {
-    const auto points = of_truth(*run, [&](const StampedPose& p) {
+    auto points = of_truth(*run, [&](const StampedPose& p) {
       return Vector2d(run->time_s(p.timestamp_ns), p.T_world_camera.translation[axis]);
     });
+    const Vector2d times_s = shown_times_s(runs);
+    std::erase_if(points, [&](const Vector2d& p) { return p.x() < times_s[0] || p.x() > times_s[1]; });
     chart.series.push_back(
         {"ground truth", page::thinned(points, buckets), page::SeriesStyle::backdrop, false, 0});
   }

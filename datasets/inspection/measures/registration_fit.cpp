@@ -302,6 +302,7 @@ std::optional<RegistrationFit> fit_registration(const recording::Recording& reco
     all.push_back(&frames[i]);
   }
   if (fit.edges < kMinEdges || all.size() < 4) return std::nullopt;
+  fit.frames = all.size();
   const PinholeCamera& camera = recording.rig.camera;
   const EdgeScore score(all, camera);
   const double half_width_px = camera.width_px / 2.0;

@@ -38,6 +38,7 @@ struct RegistrationModel {
 
 struct RegistrationFit {
   RegistrationModel model;
+  std::size_t frames = 0;  ///< with edges
   std::size_t edges = 0;
   /// Mean strength of edges of colour under those of depth (0: as strong as around them, 1: much stronger),
   /// where they are and moved by the model.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "datasets/open_recording.hpp"
+#include "tests/datasets/formats/tum/tum_folder.hpp"
 #include "tests/datasets/inspection/clean_recording.hpp"
 
 namespace fusebench::testing {
@@ -54,6 +55,16 @@ TEST(Inspection, TheThreadsDoNotShow) {
     EXPECT_EQ(one.findings[i].message, three.findings[i].message);
   EXPECT_EQ(one.imu_alignment->time_offset_s, three.imu_alignment->time_offset_s);
   EXPECT_EQ(one.reprojection->depth_residual_m, three.reprojection->depth_residual_m);
+}
+
+TEST(Inspection, FiveRightFramesDoNotSayThatDepthIsMisregistered) {
+  const auto recording = open_recording(golden_tum_folder());
+  ASSERT_TRUE(recording) << recording.error().message;
+  const Inspection result = inspected(*recording);
+  ASSERT_TRUE(result.registration);
+  EXPECT_EQ(result.registration->frames, 5U);
+  EXPECT_GT(result.registration->spread_px, result.registration->moved_px / 2) << "the halves disagree";
+  EXPECT_FALSE(result.has("depth-misregistered"));
 }
 
 TEST(Inspection, AFrameThatCannotBeLoadedIsAFinding) {
