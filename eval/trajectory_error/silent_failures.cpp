@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "core/base/geometry.hpp"
@@ -31,14 +30,11 @@ std::vector<KnownPose> known_poses(const Trajectory& ground_truth, const Traject
 
 }  // namespace
 
-Result<SilentFailures> silent_failures(const Trajectory& ground_truth, const Trajectory& estimate,
-                                       const SilentFailureLimits& limits) {
+std::vector<JudgedPose> judged_poses(const Trajectory& ground_truth, const Trajectory& estimate,
+                                     const SilentFailureLimits& limits) {
   const std::vector<KnownPose> known = known_poses(ground_truth, estimate);
-  if (known.size() < 2)
-    return fail(ErrorCode::data_corrupt, "fewer than two poses of the estimate have ground truth");
   const auto interval_ns = static_cast<std::int64_t>(std::llround(1e9 * limits.interval_s));
-  SilentFailures result;
-  result.limits = limits;
+  std::vector<JudgedPose> judged;
   std::size_t before = 0;
   for (std::size_t now = 1; now < known.size(); ++now) {
     while (before + 1 < now && known[before + 1].timestamp_ns + interval_ns <= known[now].timestamp_ns)
@@ -46,15 +42,30 @@ Result<SilentFailures> silent_failures(const Trajectory& ground_truth, const Tra
     const SE3 claimed = known[before].estimate.inverse() * known[now].estimate;
     const SE3 real = known[before].truth.inverse() * known[now].truth;
     const SE3 error = real.inverse() * claimed;
-    const double translation_m = error.translation.norm();
-    const double rotation_rad = rotation_angle_rad(real.rotation, claimed.rotation);
-    ++result.judged;
-    result.worst_translation_m = std::max(result.worst_translation_m, translation_m);
-    result.worst_rotation_rad = std::max(result.worst_rotation_rad, rotation_rad);
+    JudgedPose pose{known[now].timestamp_ns, error.translation.norm(),
+                    rotation_angle_rad(real.rotation, claimed.rotation), false};
     // Written so that a pose that is not a number is a failure.
-    if (translation_m <= limits.max_translation_m && rotation_rad <= limits.max_rotation_rad) continue;
+    pose.silent =
+        !(pose.translation_m <= limits.max_translation_m && pose.rotation_rad <= limits.max_rotation_rad);
+    judged.push_back(pose);
+  }
+  return judged;
+}
+
+Result<SilentFailures> silent_failures(const Trajectory& ground_truth, const Trajectory& estimate,
+                                       const SilentFailureLimits& limits) {
+  const std::vector<JudgedPose> judged = judged_poses(ground_truth, estimate, limits);
+  if (judged.empty())
+    return fail(ErrorCode::data_corrupt, "fewer than two poses of the estimate have ground truth");
+  SilentFailures result;
+  result.limits = limits;
+  result.judged = judged.size();
+  for (const JudgedPose& pose : judged) {
+    result.worst_translation_m = std::max(result.worst_translation_m, pose.translation_m);
+    result.worst_rotation_rad = std::max(result.worst_rotation_rad, pose.rotation_rad);
+    if (!pose.silent) continue;
     ++result.silent;
-    if (!result.first_ns) result.first_ns = known[now].timestamp_ns;
+    if (!result.first_ns) result.first_ns = pose.timestamp_ns;
   }
   return result;
 }

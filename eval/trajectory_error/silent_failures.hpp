@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
@@ -25,6 +26,19 @@ struct SilentFailures {
   double worst_translation_m = 0;        ///< over all judged
   double worst_rotation_rad = 0;
 };
+
+/// What a pose that is claimed is off by, by its motion since an earlier one.
+struct JudgedPose {
+  std::int64_t timestamp_ns = 0;
+  double translation_m = 0;
+  double rotation_rad = 0;
+  bool silent = false;  ///< beyond the limits
+};
+
+/// The poses that silent_failures() judges, in order: all of the estimate for which the truth is known, but
+/// the first of them.
+[[nodiscard]] std::vector<JudgedPose> judged_poses(const Trajectory& ground_truth, const Trajectory& estimate,
+                                                   const SilentFailureLimits& limits = {});
 
 /// Judges each pose of the estimate by its motion since the latest pose that is at least `interval_s` older
 /// (in the first interval: since the first pose), so that a frame after a gap is judged by the whole gap:

@@ -1,0 +1,105 @@
+#include "eval/report/speed_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "eval/report/chart_parts.hpp"
+
+namespace fusebench::report {
+
+namespace {
+
+using trajectory_error::kSpeedBin_degps;
+using trajectory_error::SpeedBin;
+
+constexpr std::size_t kFastBin = 2;  // from 100 deg/s
+
+Trajectory estimate_of(const std::vector<ComparedPose>& poses) {
+  Trajectory estimate;
+  for (const ComparedPose& pose : poses) estimate.push_back({pose.timestamp_ns, pose.T_truth_camera});
+  return estimate;
+}
+
+/// Without a table of frames those with a pose are all that is known.
+std::vector<std::int64_t> frame_stamps(const RunSeries& run) {
+  std::vector<std::int64_t> stamps;
+  for (const run_files::FrameTableRow& frame : run.frames) stamps.push_back(frame.timestamp_ns);
+  if (stamps.empty()) {
+    for (const ComparedPose& pose : run.poses) stamps.push_back(pose.timestamp_ns);
+  }
+  return stamps;
+}
+
+std::string range_text(std::size_t bin) {
+  return fmt::format("{:.0f} to {:.0f} deg/s", kSpeedBin_degps * static_cast<double>(bin),
+                     kSpeedBin_degps * static_cast<double>(bin + 1));
+}
+
+std::string cell_text(const SpeedBin& bin) {
+  if (bin.frames == 0) return "-";
+  return fmt::format("{:.0f} % of {} ({} lost, {} silent)",
+                     100.0 * static_cast<double>(bin.lost + bin.silent) / static_cast<double>(bin.frames),
+                     bin.frames, bin.lost, bin.silent);
+}
+
+}  // namespace
+
+void SpeedFailures::add(const RunSeries& run, const std::string& method) {
+  const std::vector<std::int64_t> stamps = frame_stamps(run);
+  const auto bins_of = [&](const std::vector<ComparedPose>& poses) {
+    return trajectory_error::failures_by_speed(run.truth, stamps, estimate_of(poses));
+  };
+  add(method, run.colour, bins_of(run.poses));
+  if (!run.final_poses.empty()) add(method + ", final poses", run.colour, bins_of(run.final_poses));
+}
+
+void SpeedFailures::add(const std::string& name, std::size_t colour, const std::vector<SpeedBin>& bins) {
+  auto method = std::ranges::find(methods_, name, &Method::name);
+  if (method == methods_.end()) method = methods_.insert(method, {name, colour, {}});
+  if (method->bins.size() < bins.size()) method->bins.resize(bins.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) method->bins[i] += bins[i];
+}
+
+std::vector<page::PageSection> SpeedFailures::sections() const {
+  std::size_t most = 0;
+  std::size_t failed = 0;
+  for (const Method& method : methods_) {
+    most = std::max(most, method.bins.size());
+    for (const SpeedBin& bin : method.bins) failed += bin.lost + bin.silent;
+  }
+  if (most <= kFastBin || failed == 0) return {};
+  page::Chart chart = chart_of("Frames that are lost or silently wrong",
+                               "angular speed of the camera [deg/s]", "share of the frames [%]");
+  page::PageTable table;
+  table.header = {"method"};
+  for (std::size_t i = 0; i < most; ++i) table.header.push_back(range_text(i));
+  for (const Method& method : methods_) {
+    page::ChartSeries series{method.name, {}, page::SeriesStyle::line, false, method.colour};
+    page::PageTable::Row row{{method.name}, ""};
+    for (std::size_t i = 0; i < most; ++i) {
+      const SpeedBin bin = i < method.bins.size() ? method.bins[i] : SpeedBin{};
+      row.cells.push_back(cell_text(bin));
+      if (bin.frames > 0)
+        series.points.emplace_back(
+            kSpeedBin_degps * (static_cast<double>(i) + 0.5),
+            100.0 * static_cast<double>(bin.lost + bin.silent) / static_cast<double>(bin.frames));
+    }
+    chart.series.push_back(std::move(series));
+    table.rows.push_back(std::move(row));
+  }
+  const std::string text =
+      "Frames of all recordings that are drawn below, by the fastest turn of the true camera in the second "
+      "before. Lost: without "
+      "a pose; silent: with one whose motion over that second is off by more than 5 cm or 3 degrees. Bins of "
+      "few "
+      "frames say little.";
+  std::vector<page::Chart> charts{std::move(chart)};
+  return {{"Failures by angular speed", text, std::move(charts)},
+          {"The same in numbers", "", std::move(table), 3}};
+}
+
+}  // namespace fusebench::report
