@@ -229,11 +229,11 @@ Result<WrittenFigures> write_paper_figures(std::span<const RecordingRuns> record
   written.page.title = "The paper's figures, from runs made here";
   written.page.subtitle =
       "All recordings are simulated (a ZR300 in a room, 8 s): slow and fast by a camera without faults, "
-      "turns "
-      "by realistic sensors that are not told. full: the system of the paper; no-imu: the same without the "
-      "inertial prior; dm: squares that are moved as a whole, as a direct method does; infinitam: "
-      "InfiniTAM's tracker on the same model. Each figure is a file "
-      "beside this page, with the script that draws it (.gp).";
+      "turns by realistic sensors that are not told. full: the system of the paper; no-imu: the same without "
+      "the "
+      "inertial prior; dm: squares that are moved as a whole, as a direct method does; infinitam "
+      "and elasticfusion: the methods of these systems, which have no IMU. Each figure is a file beside this "
+      "page, with the script that draws it (.gp).";
   const std::vector<Loaded> loaded = load_all(recordings, written);
   for (const Loaded& recording : loaded) add_speeds(recording, written.page);
   for (const Loaded& recording : loaded) add_imu_experiment(recording, written.page);
