@@ -9,7 +9,7 @@ namespace fusebench::mesh_error {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kSamplesPerChunk = 1024;
 
 /// Sorts the values.
 MeshDistances summary_of(std::vector<double>& values) {
@@ -31,7 +31,7 @@ double share_below(std::span<const double> sorted, double limit) {
 std::vector<double> distances_m(std::span<const Vector3d> points, const SE3& T_surface_points,
                                 const TriangleTree& surface, const Workers& workers) {
   std::vector<double> result(points.size());
-  workers.for_chunks(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  workers.for_chunks(points.size(), kSamplesPerChunk, [&](std::size_t begin, std::size_t end) {
     NearestTriangle nearest;
     for (std::size_t i = begin; i < end; ++i) {
       nearest = surface.nearest(T_surface_points * points[i], nearest);

@@ -9,7 +9,7 @@ namespace fusebench::mesh_error {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kPointsPerChunk = 1024;
 
 // Nearer to a point than this, what lies in front of it is taken for the point's own surface.
 constexpr double kOwnSurface_m = 0.01;
@@ -79,7 +79,7 @@ std::vector<std::size_t> observed_points(std::span<const Vector3d> points_truth,
   std::vector<SE3> T_camera_truth;
   for (const SE3& T_truth_camera : views.T_truth_camera) T_camera_truth.push_back(T_truth_camera.inverse());
   const auto parts = workers.map_chunks<std::vector<std::size_t>>(
-      points_truth.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      points_truth.size(), kPointsPerChunk, [&](std::size_t begin, std::size_t end) {
         std::vector<std::size_t> seen;
         std::size_t first_view = 0;
         for (std::size_t i = begin; i < end; ++i) {

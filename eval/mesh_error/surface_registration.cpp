@@ -13,7 +13,7 @@ namespace fusebench::mesh_error {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kPairsPerChunk = 1024;
 // Of the strongest direction. A slide over a surface that is flat but for noise is no information.
 constexpr double kFreeDirection = 1e-6;
 
@@ -27,7 +27,7 @@ struct Match {
 std::vector<Match> matches_of(std::span<const Vector3d> points, const TriangleTree& surface, const SE3& pose,
                               const Workers& workers) {
   std::vector<Match> matches(points.size());
-  workers.for_chunks(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  workers.for_chunks(points.size(), kPairsPerChunk, [&](std::size_t begin, std::size_t end) {
     NearestTriangle nearest;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d point = pose * points[i];

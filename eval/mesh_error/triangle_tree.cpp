@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kLeafSize = 4;
 constexpr std::uint32_t kSmallestPart =
     16'384;  ///< triangles; larger parts are halved before they are shared out
-constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kQueriesPerChunk = 4096;
 constexpr int kDeepest = 64;  ///< halving 2^32 triangles takes 32 levels
 
 Vector3d closest_point_of_edge(const Vector3d& point, const Vector3d& a, const Vector3d& b) {
@@ -127,7 +127,7 @@ struct TriangleTree::Builder {
 
   Builder(const PreciseMesh& of, std::vector<Node>& into, const Workers& workers)
       : mesh(of), nodes(into), items(of.triangles.size()) {
-    workers.for_chunks(items.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    workers.for_chunks(items.size(), kQueriesPerChunk, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto& [i, j, k] = mesh.triangles[t];
         const Vector3d center = (mesh.vertices[i] + mesh.vertices[j] + mesh.vertices[k]) / 3;
@@ -229,7 +229,7 @@ TriangleTree::TriangleTree(const PreciseMesh& mesh, const Workers& workers) : ve
   Builder builder(mesh, nodes_, workers);
   builder.build(workers);
   triangles_.resize(builder.items.size());
-  workers.for_chunks(triangles_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  workers.for_chunks(triangles_.size(), kQueriesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t at = begin; at < end; ++at) triangles_[at] = mesh.triangles[builder.items[at].triangle];
   });
 }

@@ -10,7 +10,7 @@ namespace fusebench::mesh_error {
 
 namespace {
 
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kVerticesPerChunk = 1024;
 
 /// The points, in the words of nanoflann.
 struct PointCloud {
@@ -34,7 +34,7 @@ Matches match(std::span<const Vector3d> points, const VertexTree& tree, const Wo
   Matches matches;
   matches.nearest.resize(points.size());
   std::vector<double> distances_m(points.size());
-  workers.for_chunks(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  workers.for_chunks(points.size(), kVerticesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const VertexTree::Nearest found = tree.nearest(points[i]);
       matches.nearest[i] = tree[found.index];

@@ -30,7 +30,7 @@ std::string log_of(const std::string& version, const external::ProgramResults& r
   return log;
 }
 
-record::RecordedTiming timing_of(const external::ProgramResults& results, std::size_t frames) {
+record::RecordedTiming program_timing(const external::ProgramResults& results, std::size_t frames) {
   record::RecordedTiming timing;
   timing.wall_s = results.end.wall_s;
   timing.cpu_s = results.end.cpu_s;
@@ -67,7 +67,7 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   record.reason = results->reason;
   describe_foreign_output(output, recording, record);
   record.metrics = metrics_of(output, recording, run.spec.config.values, Workers(run.spec.threads));
-  record.timing = timing_of(*results, total);
+  record.timing = program_timing(*results, total);
   record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   const std::array<NamedText, 3> texts = {
       {{"trajectory.tum", trajectory::tum_text(output.trajectory)},

@@ -15,7 +15,7 @@ namespace fusebench::run {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using FrameClock = std::chrono::steady_clock;
 
 metrics::FrameResiduals residuals_of(const health::FrameReport& report) {
   metrics::FrameResiduals residuals;
@@ -158,9 +158,9 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
   for (std::size_t frame = 0; frame < recording.frames.size() && progress.status == record::RunStatus::ok;
        ++frame) {
     if (control.is_stopped()) return fail(ErrorCode::run_failed, "stopped by the user");
-    const auto begin = Clock::now();
+    const auto begin = FrameClock::now();
     const auto loaded = source.next();
-    const auto ready = Clock::now();
+    const auto ready = FrameClock::now();
     if (!loaded) {
       if (const auto ended = ends(frame, loaded.error()); !ended) return tl::unexpected(ended.error());
       break;
@@ -170,7 +170,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
       if (const auto ended = ends(frame, outcome.error()); !ended) return tl::unexpected(ended.error());
       break;
     }
-    const auto processed = Clock::now();
+    const auto processed = FrameClock::now();
     const health::FrameReport* const report = system.filter_report();
     take_frame(progress, frame, *outcome, report, run, loaded->decode.milliseconds());
     if (*intensity && report != nullptr) {
@@ -184,7 +184,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
                                          loaded->decode,
                                          {begin, ready},
                                          outcome->stages,
-                                         {processed, Clock::now()}});
+                                         {processed, FrameClock::now()}});
     if (system.wants_frames_again()) {
       if (const auto again = make_model_again(run, frame, system, progress, control); !again) {
         if (control.is_stopped()) return tl::unexpected(again.error());

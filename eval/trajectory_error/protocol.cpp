@@ -65,15 +65,15 @@ constexpr std::array kProtocols{
                 {}},
 };
 
-const ProtocolRow& row_of(Protocol protocol) {
+const ProtocolRow& protocol_row(Protocol protocol) {
   return *std::ranges::find(kProtocols, protocol, &ProtocolRow::protocol);
 }
 
 }  // namespace
 
-std::string_view to_string(Protocol protocol) { return row_of(protocol).name; }
+std::string_view to_string(Protocol protocol) { return protocol_row(protocol).name; }
 
-std::string_view source_of(Protocol protocol) { return row_of(protocol).source; }
+std::string_view source_of(Protocol protocol) { return protocol_row(protocol).source; }
 
 std::string_view to_string(TrajectoryMetric metric) {
   return metric == TrajectoryMetric::ate ? "ate" : "rpe";
@@ -108,7 +108,7 @@ Result<TrajectoryRequest> request_for(Protocol protocol, TrajectoryMetric metric
     return fail(ErrorCode::usage, "KITTI's benchmark has no absolute error",
                 "`--protocol evo --format kitti` computes one");
   }
-  const ProtocolRow& row = row_of(protocol);
+  const ProtocolRow& row = protocol_row(protocol);
   TrajectoryRequest request;
   request.metric = metric;
   request.protocol = protocol;
