@@ -37,12 +37,8 @@ Result<void> check_name(const std::string& name) {
 }
 
 Result<recording::Recording> open(const ImportSpec& spec) {
-  auto recording = datasets::open_recording(spec.recording, spec.open);
-  if (!recording) return recording;
-  if (spec.frames) {
-    if (auto cut = select_window(*recording, *spec.frames); !cut) return tl::unexpected(cut.error());
-  }
-  if (recording->frames.empty())
+  auto recording = open_window(spec.recording, spec.open, spec.frames);
+  if (recording && recording->frames.empty())
     return fail(ErrorCode::data_corrupt, fmt::format("recording '{}' has no frames", recording->name));
   return recording;
 }

@@ -66,6 +66,15 @@ Result<void> select_window(recording::Recording& recording, const FrameWindow& w
   return recording::select_frames(recording, window.begin, window.end.value_or(recording.frames.size()));
 }
 
+Result<recording::Recording> open_window(const std::filesystem::path& recording,
+                                         const datasets::OpenOptions& options,
+                                         const std::optional<FrameWindow>& window) {
+  auto opened = datasets::open_recording(recording, options);
+  if (!opened || !window) return opened;
+  if (auto cut = select_window(*opened, *window); !cut) return tl::unexpected(cut.error());
+  return opened;
+}
+
 Result<recording::Recording> view_for_run(recording::Recording whole, const RunSpec& spec) {
   if (spec.frames) {
     if (auto cut = select_window(whole, *spec.frames); !cut) return tl::unexpected(cut.error());

@@ -34,6 +34,12 @@ struct FrameWindow {
 /// Cuts the recording to the window. Errors: those of select_frames().
 [[nodiscard]] Result<void> select_window(recording::Recording& recording, const FrameWindow& window);
 
+/// A recording as it is read with these options, cut to the window if there is one. Errors: those of
+/// open_recording() and select_frames().
+[[nodiscard]] Result<recording::Recording> open_window(const std::filesystem::path& recording,
+                                                       const datasets::OpenOptions& options,
+                                                       const std::optional<FrameWindow>& window);
+
 /// Which files a run's folder keeps. In large sweeps the others would fill the disk.
 enum class KeptFiles {
   all,

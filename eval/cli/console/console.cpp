@@ -77,6 +77,10 @@ void print_progress(std::string_view line) {
   print_status(fmt::format("{}\n", text::without_controls(line)));
 }
 
+void print_warnings(std::span<const std::string> warnings) {
+  for (const std::string& warning : warnings) print_progress("warning: " + warning);
+}
+
 const std::atomic<bool>& stop_requested() { return stop_flag(); }
 
 void install_stop_handler() {

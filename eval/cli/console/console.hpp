@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -31,8 +32,9 @@ void print_output(std::string_view text);  ///< standard output
 [[nodiscard]] bool output_arrived();
 /// Characters in a line of standard output; nothing where that is no terminal.
 [[nodiscard]] std::optional<std::size_t> terminal_width();
-void print_progress(std::string_view line);  ///< a line on standard error
-void print_status(std::string_view text);    ///< on standard error, as it is: of a line that is redrawn
+void print_progress(std::string_view line);                  ///< a line on standard error
+void print_warnings(std::span<const std::string> warnings);  ///< a line each: "warning: ..."
+void print_status(std::string_view text);  ///< on standard error, as it is: of a line that is redrawn
 
 /// Set by Ctrl-C (and SIGTERM) once install_stop_handler() was called; runs check it at each frame.
 [[nodiscard]] const std::atomic<bool>& stop_requested();

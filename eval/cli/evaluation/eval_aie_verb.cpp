@@ -46,7 +46,7 @@ Result<std::vector<pose_intensity::NamedTrajectory>> load_all(const AieOptions& 
     std::vector<std::string> warnings;
     auto loaded = trajectory_files::load_trajectory(file, {}, warnings);
     if (!loaded) return tl::unexpected(loaded.error());
-    for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
+    console::print_warnings(warnings);
     if (!loaded->has_stamps())
       return fail(ErrorCode::usage,
                   fmt::format("{}: poses need stamps, which the format kitti does not have", file.string()),

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/config/variants.hpp"
-#include "datasets/open_recording.hpp"
 #include "eval/batch_estimation/calibration.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
@@ -37,22 +36,13 @@ Result<void> write_calibration(const std::filesystem::path& out, const calibrati
   return text::write_text_file(out, calibration::to_toml(rig));
 }
 
-void print_warnings(const recording::Recording& recording) {
-  for (const std::string& warning : recording.warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
-}
-
 /// Of the images alone: no estimator runs, and no IMU is needed.
 Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
   const auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
-  auto recording = datasets::open_recording(spec->recording, spec->open);
+  const auto recording = run::open_window(spec->recording, spec->open, spec->frames);
   if (!recording) return tl::unexpected(recording.error());
-  if (spec->frames) {
-    const auto selected = run::select_window(*recording, *spec->frames);
-    if (!selected) return tl::unexpected(selected.error());
-  }
-  print_warnings(*recording);
+  console::print_warnings(recording->warnings);
   const Workers workers(options.request.threads);
   const auto fit = inspection_report::estimate_depth_camera(*recording, workers);
   if (!fit) return tl::unexpected(fit.error());
@@ -93,7 +83,7 @@ Result<int> run(const CalibrateVerbOptions& options) {
                             recording.name),
                 "a calibration needs recorded inertial samples; without --out the result is only shown");
   }
-  print_warnings(recording);
+  console::print_warnings(recording.warnings);
   console::ProgressBar bar(recording.name + " calibrate");
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },

@@ -1,12 +1,9 @@
 #include "eval/cli/recordings/export_request.hpp"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <utility>
 
 #include "datasets/exports/export_recording.hpp"
-#include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/suites/suite_file.hpp"
@@ -22,11 +19,7 @@ Result<recording::Recording> open_for_export(const ExportRequest& request) {
   if (!how) return tl::unexpected(how.error());
   const auto place = suites::find_recording(request.recording, request.data);
   if (!place) return tl::unexpected(place.error());
-  auto recording = datasets::open_recording(*place, *how);
-  if (!recording || !*window) return recording;
-  const auto selected = run::select_window(*recording, **window);
-  if (!selected) return tl::unexpected(selected.error());
-  return recording;
+  return run::open_window(*place, *how, *window);
 }
 
 }  // namespace
@@ -45,8 +38,7 @@ void add_export_request(CLI::App& verb, ExportRequest& request, const std::strin
 Result<DoneExport> export_as_requested(const ExportRequest& request) {
   auto recording = open_for_export(request);
   if (!recording) return tl::unexpected(recording.error());
-  for (const std::string& warning : recording->warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
+  console::print_warnings(recording->warnings);
   console::ProgressBar bar("exporting");
   recording->load_frame = [&bar, count = recording->frames.size(),
                            load = std::move(recording->load_frame)](std::size_t frame) -> Result<RgbdFrame> {

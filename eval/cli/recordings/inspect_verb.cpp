@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
@@ -7,7 +5,6 @@
 
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "datasets/inspection/inspection.hpp"
-#include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
@@ -42,13 +39,7 @@ Result<recording::Recording> open(const InspectVerbOptions& options, const std::
   if (!window) return tl::unexpected(window.error());
   const auto how = console::open_options(options.reading);
   if (!how) return tl::unexpected(how.error());
-  auto recording = datasets::open_recording(folder, *how);
-  if (!recording) return recording;
-  if (*window) {
-    const auto selected = run::select_window(*recording, **window);
-    if (!selected) return tl::unexpected(selected.error());
-  }
-  return recording;
+  return run::open_window(folder, *how, *window);
 }
 
 tl::unexpected<Error> interrupted() { return fail(ErrorCode::run_failed, "interrupted"); }

@@ -68,8 +68,7 @@ void print_summary(const simulator::SimulationReport& report) {
     console::print_progress("this recording is there already: left as it is");
     return;
   }
-  for (const std::string& warning : report.warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
+  console::print_warnings(report.warnings);
   if (report.trajectory_turned_rad != 0) {
     console::print_progress(fmt::format("the trajectory was moved into the room and turned by {:.0f} degrees",
                                         report.trajectory_turned_rad * 180 / std::numbers::pi));

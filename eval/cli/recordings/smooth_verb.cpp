@@ -61,8 +61,7 @@ Result<int> run(const SmoothVerbOptions& options) {
                     recording.name),
         "a reference trajectory needs recorded inertial samples");
   }
-  for (const std::string& warning : recording.warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
+  console::print_warnings(recording.warnings);
   console::ProgressBar bar(recording.name + " smooth");
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
@@ -71,8 +70,7 @@ Result<int> run(const SmoothVerbOptions& options) {
   const auto smoothed = batch_estimation::smooth(recording, prepared->spec.config.values, workers, control);
   bar.clear();
   if (!smoothed) return tl::unexpected(smoothed.error());
-  for (const std::string& remark : batch_estimation::smoothing_remarks(*smoothed))
-    console::print_progress(fmt::format("warning: {}", remark));
+  console::print_warnings(batch_estimation::smoothing_remarks(*smoothed));
   const std::string json = batch_estimation::to_json(*smoothed, recording);
   if (auto written = write_results(options.out, *smoothed, json); !written)
     return tl::unexpected(written.error());

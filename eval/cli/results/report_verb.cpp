@@ -43,7 +43,7 @@ Result<int> report(const ReportOptions& options) {
   const auto after_tables = page.page.sections.begin() + static_cast<std::ptrdiff_t>(page.tables);
   page.page.sections.insert(after_tables, std::make_move_iterator(sweep.begin()),
                             std::make_move_iterator(sweep.end()));
-  for (const std::string& warning : page.warnings) console::print_progress("warning: " + warning);
+  console::print_warnings(page.warnings);
   const std::string html = page::to_html(page.page);
   if (auto written = text::write_text_file(options.out, html); !written)
     return tl::unexpected(written.error());

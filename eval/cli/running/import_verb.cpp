@@ -67,7 +67,7 @@ Result<int> import(const ImportOptions& options) {
   if (!spec) return tl::unexpected(spec.error());
   const auto run = run::import_run(*spec);
   if (!run) return tl::unexpected(run.error());
-  for (const std::string& warning : run->warnings) console::print_progress("warning: " + warning);
+  console::print_warnings(run->warnings);
   console::print_progress(fmt::format("{}: {}", run->record.variant, console::summary_line(run->record)));
   console::print_output(run->folder.string() + "\n");
   return 0;

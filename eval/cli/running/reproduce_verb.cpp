@@ -94,7 +94,7 @@ Result<int> reproduce_figures(ReproduceOptions options) {
                 fmt::format("{}: the folder cannot be made: {}", options.figures.string(), error.message()));
   const auto written = paper_figures::write_paper_figures(runs_by_group(*outcomes), options.figures, *format);
   if (!written) return tl::unexpected(written.error());
-  for (const std::string& warning : written->warnings) console::print_progress("warning: " + warning);
+  console::print_warnings(written->warnings);
   const std::filesystem::path file = options.figures / "figures.html";
   if (auto saved = text::write_text_file(file, page::to_html(written->page)); !saved)
     return tl::unexpected(saved.error());

@@ -107,8 +107,7 @@ Result<run::PreparedRun> prepare(const RunOptions& options) {
 Result<int> run(const RunOptions& options) {
   const auto prepared = prepare(options);
   if (!prepared) return tl::unexpected(prepared.error());
-  for (const std::string& warning : prepared->recording.warnings)
-    console::print_progress(fmt::format("warning: {}", warning));
+  console::print_warnings(prepared->recording.warnings);
 
   const std::string title = fmt::format("{} {}", prepared->recording.name, prepared->spec.variant);
   console::ProgressBar bar(title);

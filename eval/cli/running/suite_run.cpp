@@ -88,7 +88,7 @@ Result<int> run_suite(BenchOptions options) {
   if (!plan) return tl::unexpected(plan.error());
   if (auto sensible = engine::check_simulations(plan->jobs); !sensible)
     return tl::unexpected(sensible.error());
-  for (const std::string& warning : plan->warnings) console::print_progress("warning: " + warning);
+  console::print_warnings(plan->warnings);
   if (options.controls.dry_run) {
     print_preview(*plan, options.controls);
     return 0;

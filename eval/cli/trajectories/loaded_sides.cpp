@@ -18,7 +18,7 @@ Result<Sides> load_sides(const std::filesystem::path& reference, const std::file
 Result<Sides> load_sides(const std::filesystem::path& reference, const std::filesystem::path& estimate) {
   std::vector<std::string> warnings;
   auto sides = load_sides(reference, estimate, {}, warnings);
-  for (const std::string& warning : warnings) console::print_progress("warning: " + warning);
+  console::print_warnings(warnings);
   return sides;
 }
 
