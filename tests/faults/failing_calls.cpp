@@ -1,13 +1,12 @@
 // Loaded into the program by LD_PRELOAD: lets the n-th call that may fail do so (tests/faults).
 //
-// Environment: FAULTS_KIND write, sync, rename, open, create, map, fork, allocate, or files (the first three
-// and create); FAULTS_AT n, from 1; 0 counts only; FAULTS_ERROR an errno; FAULTS_LOG a file, which gets a
-// line "KIND PATH" for each call of the kind and "FAILED KIND PATH" for the one that failed. All calls of a
-// process and its children are counted as one sequence.
+// Environment: FAULTS_KIND write, sync, rename, open, create, map, fork, or allocate; FAULTS_AT n, from 1; 0
+// counts only; FAULTS_ERROR an errno; FAULTS_LOG a file, which gets a line "KIND PATH" for each call of the
+// kind and "FAILED KIND PATH" for the one that failed. All calls of a process and its children are counted as
+// one sequence.
 //
 // A call counts if it changes files or takes resources: files that are opened for reading count as `open`,
 // for writing as `create`. What failed once works again the next time, as after a moment of a full disk.
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -23,11 +22,15 @@
 #include <cstring>
 #include <new>
 
+#include "tests/faults/preloaded.hpp"
+
 namespace {
+
+using fusebench::preloaded::path_of;
+using fusebench::preloaded::real;
 
 struct Plan {
   bool active = false;
-  bool files = false;
   char kind[16] = {};
   long at = 0;
   int error = 0;
@@ -36,11 +39,6 @@ struct Plan {
 };
 
 Plan plan;
-
-template <class Function>
-Function* real(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
 
 using Main = int (*)(int, char**, char**);
 Main program_main = nullptr;
@@ -60,7 +58,6 @@ __attribute__((constructor)) void read_plan() {
   const char* const at = std::getenv("FAULTS_AT");
   if (kind == nullptr || at == nullptr) return;
   std::strncpy(plan.kind, kind, sizeof plan.kind - 1);
-  plan.files = std::strcmp(kind, "files") == 0;
   plan.at = std::atol(at);
   const char* const error = std::getenv("FAULTS_ERROR");
   plan.error = error != nullptr ? std::atoi(error) : EIO;
@@ -79,13 +76,7 @@ void note(const char* prefix, const char* kind, const char* path) {
   syscall(SYS_write, plan.log, line, static_cast<std::size_t>(size));
 }
 
-bool is_of_plan(const char* kind) {
-  if (!plan.active) return false;
-  if (!plan.files) return std::strcmp(kind, plan.kind) == 0;
-  for (const char* const one : {"write", "sync", "rename", "create"})
-    if (std::strcmp(kind, one) == 0) return true;
-  return false;
-}
+bool is_of_plan(const char* kind) { return plan.active && std::strcmp(kind, plan.kind) == 0; }
 
 /// Whether this call is the one that fails; sets errno.
 bool fails(const char* kind, const char* path) {
@@ -100,14 +91,6 @@ bool fails(const char* kind, const char* path) {
   note("FAILED ", kind, path);
   errno = plan.error;
   return true;
-}
-
-const char* path_of(int descriptor, char (&path)[600]) {
-  char link[40];
-  std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
-  const long size = syscall(SYS_readlinkat, AT_FDCWD, link, path, sizeof path - 1);
-  path[size > 0 ? size : 0] = '\0';
-  return path;
 }
 
 /// Only files: what goes to terminals and pipes is not the subject.
