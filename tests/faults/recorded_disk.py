@@ -16,6 +16,7 @@ folders above. A rename is one event in both folders, done once either is synced
 import collections
 import os
 import pathlib
+import shutil
 import struct
 
 HEAD = struct.Struct("=IIHH12sq")
@@ -174,11 +175,13 @@ def tree_of(folder):
     return Disk(folder).tree("live")
 
 
-def write_tree(folder, tree):
-    """Names of folders stand before what is in them."""
+def write_tree(folder, tree, times):
+    """Names of folders stand before what is in them. What has the name of a file in the folder `times` gets its time."""
     folder.mkdir()
     for name, data in tree.items():
         if data is None:
             (folder / name).mkdir()
-        else:
-            (folder / name).write_bytes(data)
+            continue
+        (folder / name).write_bytes(data)
+        if (times / name).is_file():
+            shutil.copystat(times / name, folder / name)

@@ -20,6 +20,9 @@ STEPS = {
     "bench": ["bench", "suite.toml", "--data", ".", "--threads", "1", "--out", "out"],
     "bench -j 2": ["bench", "suite.toml", "--data", ".", "--threads", "1", "-j", "2", "--out", "out"],
     "rerun": ["bench", "suite.toml", "--data", ".", "--threads", "1", "--out", "runs"],
+    # The run that is there is replaced.
+    "run over a run": ["run", "tum", "--variant", "no-imu", "--imu", "auto", "--frames", "1:", "--set", "iekf.min_patches=1", "--set",
+                       "tsdf.voxel_m=0.02", "--threads", "1", "--out", "runs"],
     "report": ["report", "runs", "--out", "out.html"],
     "collect": ["collect", "runs", "--out", "out.csv"],
     "merge": ["merge", "runs", "--into", "out"],
@@ -122,5 +125,5 @@ def scratch_folder():
 
 
 def is_temporary(name):
-    """Whether it is, or is in, what a kill may leave, which nobody reads and `gc` removes."""
-    return any(part.startswith(".") and part.endswith(".tmp") for part in name.split("/"))
+    """Whether it is, or is in, what a kill may leave and nobody reads."""
+    return any((part.startswith(".") and part.endswith(".tmp")) or part.endswith(".ply.part") for part in name.split("/"))
