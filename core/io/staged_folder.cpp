@@ -211,11 +211,21 @@ Result<void> StagedFolder::commit() {
   return io_error(final_, error);
 }
 
-/// The names of the folder, and of those above it that were made for it.
+/// The names of the folder, and of those above it.
 std::error_code StagedFolder::sync_folders() const {
-  std::error_code error = sync_to_disk(folder_of(final_));
+  std::error_code error = sync_names(final_);
   for (auto parent = created_.rbegin(); parent != created_.rend() && !error; ++parent)
     error = sync_to_disk(folder_of(*parent));
+  return error;
+}
+
+std::error_code sync_names(const fs::path& path) {
+  fs::path folder = folder_of(path);
+  const std::error_code error = sync_to_disk(folder);
+  // Those above may have been made just now, by another process or for something else, and not been synced.
+  // What cannot be opened or synced there is not ours.
+  for (; !error && folder != folder_of(folder); folder = folder_of(folder))
+    static_cast<void>(sync_to_disk(folder_of(folder)));
   return error;
 }
 

@@ -43,6 +43,10 @@ class StagedFolder {
   std::vector<std::filesystem::path> created_;  // parents that were not there before, outermost first
 };
 
+/// Syncs the names on a path to the disk: of its folder, whose error is returned, and of those above as far
+/// as they can be. Without them, what is in the folder would not be there after a power failure.
+[[nodiscard]] std::error_code sync_names(const std::filesystem::path& path);
+
 /// Whether a folder is a temporary one of StagedFolder or of remove_atomically(): ".<name>.<process>.tmp" or
 /// ".<name>.<process>-<attempt>.tmp" that holds nothing but folders "new" and "old".
 [[nodiscard]] bool is_staged_folder(const std::filesystem::path& folder);

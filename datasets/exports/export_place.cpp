@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/fingerprint.hpp"
+
 namespace fusebench::exports {
 
 namespace fs = std::filesystem;
@@ -29,6 +31,12 @@ std::error_code sync_file(const fs::path& file) {
   close(descriptor);
   if (failed == EINVAL || failed == ENOTSUP) return {};  // a file system that cannot sync
   return {failed, std::generic_category()};
+}
+
+bool have_same_bytes(const fs::path& one, const fs::path& other) {
+  const auto first = io::Fingerprint().add_file(one);
+  const auto second = io::Fingerprint().add_file(other);
+  return first && second && *first == *second;
 }
 
 }  // namespace
@@ -82,7 +90,9 @@ Result<void> ExportPlace::move_files() const {
   std::ranges::sort(names);
   for (const fs::path& name : names) {
     const fs::path target = out_.parent_path() / name;
-    if (fs::exists(fs::symlink_status(target, error))) return exists_already(target);
+    const bool is_there = fs::exists(fs::symlink_status(target, error));
+    // What an export that ended between two of its files has left is no obstacle.
+    if (is_there && !have_same_bytes(staged_.path() / name, target)) return exists_already(target);
   }
   std::vector<fs::path> moved;
   for (const fs::path& name : names) {
@@ -93,7 +103,7 @@ Result<void> ExportPlace::move_files() const {
     moved.push_back(target);
   }
   // The names, which are the folder's.
-  if (!error) error = sync_file(out_.has_parent_path() ? out_.parent_path() : fs::path("."));
+  if (!error) error = io::sync_names(out_);
   if (!error) return {};
   std::error_code ignored;
   for (const fs::path& file : moved) fs::remove(file, ignored);

@@ -25,6 +25,13 @@ Result<std::string> text_of(const fs::path& file) {
   return io::whole_text(file, std::uintmax_t{1} << 26, "invocation");
 }
 
+/// Not again if it is there; but a power cut leaves zeros, or nothing in a file.
+Result<void> keep_text(const fs::path& file, const std::string& text) {
+  const auto there = text_of(file);
+  if (there && *there == text) return {};
+  return text::write_text_file(file, text);
+}
+
 std::string absolute_text(const fs::path& path) {
   std::error_code ignored;
   return path.empty() ? "" : fs::absolute(path, ignored).lexically_normal().string();
@@ -64,10 +71,8 @@ Result<fs::path> keep(const Invocation& invocation) {
   const std::string name = identity.hex().substr(0, 8);
   const fs::path folder = invocations_folder(options.out);
   fs::path file = folder / (name + ".json");
-  if (fs::exists(file, ignored)) return file;
-  if (auto written = text::write_text_file(folder / (name + ".toml"), *suite); !written)
-    return tl::unexpected(written.error());
-  if (auto written = text::write_text_file(file, text); !written) return tl::unexpected(written.error());
+  if (auto kept = keep_text(folder / (name + ".toml"), *suite); !kept) return tl::unexpected(kept.error());
+  if (auto kept = keep_text(file, text); !kept) return tl::unexpected(kept.error());
   return file;
 }
 
@@ -91,6 +96,17 @@ Result<Invocation> read_invocation(const fs::path& file) {
     return invocation;
   } catch (const Json::exception& error) {
     return fail(ErrorCode::data_corrupt, fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+void copy_invocations(const fs::path& from, const fs::path& into) {
+  std::error_code error;
+  for (fs::directory_iterator entry(invocations_folder(from), error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string ending = entry->path().extension().string();
+    if (ending != ".json" && ending != ".toml") continue;
+    if (const auto text = text_of(entry->path()))
+      static_cast<void>(keep_text(invocations_folder(into) / entry->path().filename(), *text));
   }
 }
 

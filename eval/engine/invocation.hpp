@@ -32,6 +32,9 @@ struct Invocation {
 /// <out>/.fusebench/invocations/<hash8>.{json,toml}; the same one once. Returns the file. Error io.
 [[nodiscard]] Result<std::filesystem::path> keep(const Invocation& invocation);
 
+/// What was asked for in one folder of runs is kept in another as well, as far as it can be read and written.
+void copy_invocations(const std::filesystem::path& from, const std::filesystem::path& into);
+
 /// Errors: data_missing; data_corrupt for what is no invocation.
 [[nodiscard]] Result<Invocation> read_invocation(const std::filesystem::path& file);
 

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/io/staged_folder.hpp"
+#include "eval/engine/invocation.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/record/record.hpp"
@@ -57,14 +58,6 @@ fs::path longer_place(const fs::path& target, const std::string& run_id) {
   const std::size_t repetition = name.find("-r");
   return target.parent_path() /
          (run_id.substr(0, kDigits) + (repetition == std::string::npos ? "" : name.substr(repetition)));
-}
-
-/// What was asked for goes along, so that failed runs can be run again there.
-void copy_invocations(const fs::path& from, const fs::path& into) {
-  std::error_code ignored;
-  fs::create_directories(engine_folder(into), ignored);
-  fs::copy(engine_folder(from) / "invocations", engine_folder(into) / "invocations",
-           fs::copy_options::recursive | fs::copy_options::skip_existing, ignored);
 }
 
 Result<void> copy_run(const fs::path& from, const fs::path& to) {
