@@ -8,7 +8,7 @@
 //     fx_px = 608.446           # also fy_px, cx_px, cy_px
 //     distortion = [0.0644, -0.114, 0.00127, 0.00203, 0]  # k1 k2 p1 p2 k3 (Brown-Conrady); none: 0
 //     readout_s = 0.0           # rolling shutter, first to last row; without the key it is not known
-//     readout_sigma_s = 0.0     # its uncertainty; none: 0, or 0.015 where readout_s is not known
+//     readout_sigma_s = 0.0     # its uncertainty; none: 0, or 0.01 where readout_s is not known
 //     ground_truth_offset_m = [0, 0, 0]  # of the camera in the body of the ground truth's poses; none: 0
 //     [depth]
 //     units_per_metre = 1000

@@ -105,7 +105,7 @@ void report_frame_gaps(std::span<const std::int64_t> stamps_ns, Inspection& out)
   const double share =
       static_cast<double>(stamps.missing) / static_cast<double>(stamps.count + stamps.missing);
   out.add("frames-dropped", share > 0.05 ? Severity::warning : Severity::note,
-          fmt::format("{} single frames are missing ({:.1f} % of {:.1f} Hz)", stamps.missing, 100 * share,
+          fmt::format("single frames are missing: {} ({:.1f} % of {:.1f} Hz)", stamps.missing, 100 * share,
                       stamps.rate_hz));
 }
 

@@ -92,11 +92,13 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric&
 
 std::string incomplete_note(const ConfigurationSummary& configuration) {
   std::string note;
-  if (!configuration.failed.empty())
-    note = fmt::format("failed or lost: {}", fmt::join(configuration.failed, ", "));
-  if (!configuration.not_run.empty()) {
-    note += fmt::format("{}not run: {}", note.empty() ? "" : "; ", fmt::join(configuration.not_run, ", "));
-  }
+  const auto add = [&](const char* what, const std::vector<std::string>& recordings) {
+    if (!recordings.empty())
+      note += fmt::format("{}{}: {}", note.empty() ? "" : "; ", what, fmt::join(recordings, ", "));
+  };
+  add("failed or lost", configuration.failed);
+  add("without this number", configuration.without_number);
+  add("not run", configuration.not_run);
   return note;
 }
 

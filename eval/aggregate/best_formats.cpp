@@ -45,7 +45,8 @@ std::string markdown(const BestTable& table) {
                           group.rows.size(), group.configurations);
     }
   }
-  std::string text = text::markdown_table(lines, text_columns) + "\n" + more;
+  // No run has the number: the notes say so.
+  std::string text = table.groups.empty() ? "" : text::markdown_table(lines, text_columns) + "\n" + more;
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   return text;
 }
@@ -82,6 +83,7 @@ Json json_of(const BestRow& row) {
           {"n_total", row.configuration.n_total},
           {"complete", row.configuration.complete()},
           {"failed", row.configuration.failed},
+          {"without_number", row.configuration.without_number},
           {"not_run", row.configuration.not_run}};
 }
 

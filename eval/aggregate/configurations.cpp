@@ -25,6 +25,7 @@ struct ConfigurationKey {
 
 struct RecordingTally {
   std::size_t runs = 0;
+  std::size_t ok = 0;
   std::vector<double> values;  ///< of ok runs
 };
 
@@ -45,7 +46,8 @@ ConfigurationSummary summary_of(const ConfigurationKey& key, const Tallies& tall
     const RecordingTally& tally = found->second;
     summary.n_total += tally.runs;
     summary.n_ok += tally.values.size();
-    if (tally.values.size() < tally.runs) summary.failed.push_back(recording);
+    if (tally.ok < tally.runs) summary.failed.push_back(recording);
+    if (tally.values.size() < tally.ok) summary.without_number.push_back(recording);
     if (!tally.values.empty()) means.push_back(ordered_mean(tally.values));
   }
   if (!means.empty()) summary.mean = ordered_mean(std::move(means));
@@ -79,6 +81,7 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
     ++tally.runs;
     if (run->status != record::RunStatus::ok) continue;
     recording.any_ok = true;
+    ++tally.ok;
     if (!(run->*metric.value)) continue;
     recording.any_value = true;
     tally.values.push_back(*(run->*metric.value));

@@ -17,13 +17,16 @@ struct ConfigurationSummary {
   RunOptions options;
   /// Mean over recordings of the mean over their ok runs; absent without any.
   std::optional<double> mean;
-  std::size_t n_ok = 0;              ///< runs that are ok and have the number
-  std::size_t n_total = 0;           ///< runs on the measured recordings
-  std::vector<std::string> failed;   ///< recordings on which a run failed, was lost or has no number
-  std::vector<std::string> not_run;  ///< recordings without a run
+  std::size_t n_ok = 0;                     ///< runs that are ok and have the number
+  std::size_t n_total = 0;                  ///< runs on the measured recordings
+  std::vector<std::string> failed;          ///< recordings on which a run failed or was lost
+  std::vector<std::string> without_number;  ///< recordings with an ok run that does not have it
+  std::vector<std::string> not_run;         ///< recordings without a run
 
   /// Whether the mean is over every measured recording and run.
-  [[nodiscard]] bool complete() const { return mean && failed.empty() && not_run.empty(); }
+  [[nodiscard]] bool complete() const {
+    return mean && failed.empty() && without_number.empty() && not_run.empty();
+  }
 };
 
 struct ConfigurationSummaries {

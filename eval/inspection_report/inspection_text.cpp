@@ -98,9 +98,9 @@ void truth_rows(const inspection::Inspection& i, std::vector<InspectionRow>& all
                          1e3 * r.depth_residual_m, 100 * r.depth_residual_share, r.intensity_residual_grey));
   for (const inspection::HypothesisResult& h : r.hypotheses) {
     const std::string value = h.value == 0                    ? ""
-                              : h.code == "truth-time-offset" ? fmt::format(" by {:+.1f} ms", 1e3 * h.value)
-                                                              : fmt::format(" by {:.3f}", h.value);
-    warped.add("if " + h.name, fmt::format("{:.2f} of the residuals{}", h.factor, value));
+                              : h.code == "truth-time-offset" ? fmt::format(", by {:+.1f} ms", 1e3 * h.value)
+                                                              : fmt::format(", factor {:.3f}", h.value);
+    warped.add("if " + h.name, fmt::format("{:.2f} times the residuals{}", h.factor, value));
   }
   warped.append_to(all);
 }

@@ -66,7 +66,8 @@ Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
   // What a run could do without an IMU of its own, a calibration cannot.
   if (!prepared && prepared.error().hint.starts_with("--imu synthetic"))
     prepared.error().hint =
-        "a calibration needs recorded inertial samples; with --imu synthetic and without --out it only shows "
+        "a calibration of camera and IMU needs recorded inertial samples (--depth-camera needs none); with "
+        "--imu synthetic and without --out it only shows "
         "what it finds in those that the ground truth gives";
   return prepared;
 }

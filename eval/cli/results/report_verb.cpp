@@ -47,8 +47,8 @@ Result<int> report(const ReportOptions& options) {
   const std::string html = page::to_html(page.page);
   if (auto written = text::write_text_file(options.out, html); !written)
     return tl::unexpected(written.error());
-  console::print_progress(fmt::format("{}: {} runs, {:.1f} MB", options.out.string(), runs->size(),
-                                      static_cast<double>(html.size()) / 1e6));
+  console::print_progress(fmt::format("{}: {} run{}, {:.1f} MB", options.out.string(), runs->size(),
+                                      runs->size() == 1 ? "" : "s", static_cast<double>(html.size()) / 1e6));
   if (options.figures.empty()) return 0;
   const auto format = page::parse_figure_format(options.figure_format);
   if (!format) return tl::unexpected(format.error());
