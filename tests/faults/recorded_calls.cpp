@@ -17,6 +17,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
@@ -124,7 +125,7 @@ void record(const char* kind, const std::string& path, std::int64_t number = 0, 
             static_cast<std::uint16_t>(other.size()),
             {},
             number};
-  std::strncpy(head.kind, kind, sizeof head.kind);
+  std::memcpy(head.kind, kind, std::min(std::strlen(kind), sizeof head.kind));  // zeros after it
   const iovec parts[] = {{&head, sizeof head},
                          {const_cast<char*>(path.data()), path.size()},
                          {const_cast<char*>(other.data()), other.size()},

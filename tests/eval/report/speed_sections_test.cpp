@@ -13,14 +13,14 @@ namespace {
 /// Turns by this speed for a second; the last frames are lost.
 RunSeries turning(double degps, std::size_t lost) {
   RunSeries run;
-  constexpr std::size_t kFrames = 30;
-  for (std::size_t i = 0; i < kFrames; ++i) {
+  constexpr std::size_t kTurnFrames = 30;
+  for (std::size_t i = 0; i < kTurnFrames; ++i) {
     const auto stamp_ns = static_cast<std::int64_t>(i) * 33'000'000;
     const SE3 pose{so3_exp({0, radians(degps) * 0.033 * static_cast<double>(i), 0}), Vector3d(0, 0, 0)};
     run.truth.push_back({stamp_ns, pose});
     run.frames.emplace_back();
     run.frames.back().timestamp_ns = stamp_ns;
-    if (i + lost < kFrames) run.poses.push_back({stamp_ns, pose, pose, 0});
+    if (i + lost < kTurnFrames) run.poses.push_back({stamp_ns, pose, pose, 0});
   }
   return run;
 }
