@@ -88,6 +88,7 @@ std::vector<page::PageSection> SpeedFailures::sections() const {
             kSpeedBin_degps * (static_cast<double>(i) + 0.5),
             100.0 * static_cast<double>(bin.lost + bin.silent) / static_cast<double>(bin.frames));
     }
+    if (series.points.size() == 1) series.style = page::SeriesStyle::dots;  // one point is no line
     chart.series.push_back(std::move(series));
     table.rows.push_back(std::move(row));
   }
