@@ -29,7 +29,8 @@ void add_disc(PreciseMesh& mesh, const Cluster& cluster, double cell_m) {
   const double length = cluster.normal.norm();
   const Vector3d normal = length > 1e-6 ? Vector3d(cluster.normal / length) : Vector3d(0, 0, 1);
   mesh.normals.push_back(normal.cast<float>());
-  mesh.radii_m.push_back(static_cast<float>(std::max(cluster.radius_m / cluster.count, cell_m / std::sqrt(2.0))));
+  mesh.radii_m.push_back(
+      static_cast<float>(std::max(cluster.radius_m / cluster.count, cell_m / std::sqrt(2.0))));
 }
 
 std::size_t parts_of(const PreciseMesh& mesh) {

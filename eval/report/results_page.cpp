@@ -10,24 +10,28 @@
 #include <system_error>
 #include <utility>
 
+#include "core/mesh/ply_file.hpp"
+#include "eval/mesh_error/error_colors.hpp"
+#include "eval/mesh_error/mesh_clustering.hpp"
+#include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/page/image_source.hpp"
 #include "eval/page/series_colours.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/report/loop_sections.hpp"
-#include "eval/report/model_scene.hpp"
 #include "eval/report/patch_pictures.hpp"
 #include "eval/report/profile_charts.hpp"
 #include "eval/report/run_charts.hpp"
 #include "eval/report/run_series.hpp"
-#include "eval/report/speed_sections.hpp"
 #include "eval/report/summary_sections.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/run_files/run_labels.hpp"
+#include "eval/speed_failures/speed_sections.hpp"
 
 namespace fusebench::report {
 
 namespace {
 
+constexpr double kLargestError_m = 0.05;
 constexpr std::size_t kMostDrawn = 12;    // of a recording: more curves nobody can tell apart
 constexpr std::size_t kMostPictured = 2;  // variants whose patches stand beside each other
 
@@ -145,6 +149,66 @@ std::vector<LabelledPatches> patches_of(Group drawn, Group group, const Labels& 
   return runs;
 }
 
+/// Stray bits of a mesh would make the rest small.
+void look_at_most(page::PageScene& scene) {
+  constexpr double kStray = 0.02;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> places;
+    for (const page::SceneMesh& mesh : scene.meshes) {
+      for (const Vector3d& vertex : mesh.mesh.vertices) places.push_back(vertex[axis]);
+    }
+    if (places.empty()) return;
+    std::ranges::sort(places);
+    scene.low[axis] = mesh_error::percentile(places, kStray);
+    scene.high[axis] = mesh_error::percentile(places, 1 - kStray);
+  }
+}
+
+/// Of the poses that the model is of, in the frame of their first.
+page::ScenePath path_of(const RunSeries& run, std::size_t most) {
+  const std::vector<ComparedPose>& poses = run.final_poses.empty() ? run.poses : run.final_poses;
+  page::ScenePath path{run.label, run.colour, {}};
+  const std::size_t step = poses.size() / std::max<std::size_t>(most, 1) + 1;
+  for (std::size_t i = 0; i < poses.size(); i += step) {
+    path.poses.push_back({run.time_s(poses[i].timestamp_ns),
+                          poses.front().T_truth_camera.inverse() * poses[i].T_truth_camera});
+  }
+  return path;
+}
+
+void move(PreciseMesh& mesh, const SE3& T_new_old) {
+  for (Vector3d& vertex : mesh.vertices) vertex = T_new_old * vertex;
+  const Matrix3d turn = T_new_old.rotation.toRotationMatrix();
+  for (Eigen::Vector3f& normal : mesh.normals) normal = (turn * normal.cast<double>()).cast<float>();
+}
+
+page::PageScene scene_of(std::span<const RunSeries> runs, const Detail& detail,
+                         std::vector<std::string>& warnings) {
+  page::PageScene scene;
+  scene.largest_error_m = kLargestError_m;
+  scene.up = {0, -1, 0};  // of the first camera, whose y points down and whose z points ahead
+  scene.ahead = {0, 0, 1};
+  for (const RunSeries& run : runs) {
+    const auto file = run.run->folder / "mesh.ply";
+    if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
+    const auto checked = run_files::check_file(run.run->folder, run.run->record, "mesh.ply");
+    const auto mesh = checked ? mesh::read_ply(file) : tl::unexpected(checked.error());
+    if (!mesh) warnings.push_back(mesh.error().message);
+    if (!mesh || (mesh->triangles.empty() && mesh->radii_m.empty())) continue;
+    page::SceneMesh shown{run.label, mesh_error::reduced(*mesh, detail.triangles), {}};
+    move(shown.mesh, run.T_first_world);
+    if (shown.mesh.colors.empty()) shown.mesh.colors.assign(shown.mesh.vertices.size(), Rgb{170, 170, 170});
+    if (run.run->record.metrics.mesh.value && !shown.mesh.quality.empty()) {
+      const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());
+      shown.error_colors = mesh_error::error_colors(errors_m, kLargestError_m);
+    }
+    scene.meshes.push_back(std::move(shown));
+    scene.paths.push_back(path_of(run, detail.buckets));
+  }
+  look_at_most(scene);
+  return scene;
+}
+
 std::string value_text(const config::OptionValue& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
@@ -239,6 +303,26 @@ void add_patches(page::Page& page, std::span<const LabelledPatches> patches,
   page.sections.push_back({"Patches", pictures.text, page_images(pictures, time_s), 3});
 }
 
+Trajectory estimate_of(const std::vector<ComparedPose>& poses) {
+  Trajectory estimate;
+  for (const ComparedPose& pose : poses) estimate.push_back({pose.timestamp_ns, pose.T_truth_camera});
+  return estimate;
+}
+
+/// Of the poses as each was known when its frame came, and, if the system revised them, at the end.
+void add_failures(speed_failures::FailureSections& failures, const RunSeries& run,
+                  const std::string& method) {
+  // Without a table of frames those with a pose are all that is known.
+  std::vector<std::int64_t> stamps;
+  for (const run_files::FrameTableRow& frame : run.frames) stamps.push_back(frame.timestamp_ns);
+  if (stamps.empty()) {
+    for (const ComparedPose& pose : run.poses) stamps.push_back(pose.timestamp_ns);
+  }
+  failures.add(method, run.colour, run.truth, stamps, estimate_of(run.poses));
+  if (!run.final_poses.empty())
+    failures.add(method + ", final poses", run.colour, run.truth, stamps, estimate_of(run.final_poses));
+}
+
 /// What is the same for all recordings of a page.
 struct PageContext {
   const std::vector<run_files::FoundRun>& runs;
@@ -248,7 +332,8 @@ struct PageContext {
   const FrameReader& reader;
 };
 
-void add_recording(ResultsPage& result, SpeedFailures& failures, Group group, const PageContext& context) {
+void add_recording(ResultsPage& result, speed_failures::FailureSections& failures, Group group,
+                   const PageContext& context) {
   page::Page& page = result.page;
   const Detail& detail = context.detail;
   const auto started = std::ranges::find_if(
@@ -274,11 +359,11 @@ void add_recording(ResultsPage& result, SpeedFailures& failures, Group group, co
          frame_pictures(recording, series, patches, detail.in_between, context.reader))
       page.sections.push_back(std::move(section));
   }
-  for (const RunSeries& run : series) failures.add(run, context.methods[first + place_of(*run.run, group)]);
+  for (const RunSeries& run : series)
+    add_failures(failures, run, context.methods[first + place_of(*run.run, group)]);
   add_curves(page, series, detail);
   add_patches(page, patches, series);
-  if (page::PageScene scene = model_scene(series, detail.triangles, detail.buckets, result.warnings);
-      !scene.meshes.empty()) {
+  if (page::PageScene scene = scene_of(series, detail, result.warnings); !scene.meshes.empty()) {
     page.sections.push_back(
         {"Models",
          "Simplified for this page; mesh.ply of each run has all triangles. Lines: the way of "
@@ -325,7 +410,7 @@ ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std
   const std::vector<std::string> methods = methods_of(runs);
   const PageContext context{runs, methods, colours_of(runs, methods), detail_for(drawn, groups.size()),
                             reader};
-  SpeedFailures failures;
+  speed_failures::FailureSections failures;
   for (const Group group : groups) add_recording(result, failures, group, context);
   const std::vector<page::PageSection> by_speed = failures.sections();
   result.page.sections.insert(result.page.sections.begin() + static_cast<std::ptrdiff_t>(result.tables),

@@ -18,7 +18,7 @@ constexpr const metrics::StatePart& kOrientationPart = metrics::kStateParts[0];
 constexpr const metrics::StatePart& kPositionPart = metrics::kStateParts[1];
 
 std::optional<PoseConsistencyRow> nees_row(const SE3& truth, const StampedPose& estimate,
-                                         const trajectory_files::PoseCovariance& covariance) {
+                                           const trajectory_files::PoseCovariance& covariance) {
   PoseConsistencyRow row;
   row.timestamp_ns = estimate.timestamp_ns;
   const SE3& pose = estimate.T_world_camera;
@@ -95,7 +95,7 @@ Result<PoseConsistency> pose_consistency(const Trajectory& reference,
     const auto owner =
         std::ranges::lower_bound(estimate.poses, pose.timestamp_ns, {}, &StampedPose::timestamp_ns);
     const auto row = nees_row(T_estimate_reference * pair->reference[i].T_world_camera, pose,
-                            estimate.covariances[static_cast<std::size_t>(owner - estimate.poses.begin())]);
+                              estimate.covariances[static_cast<std::size_t>(owner - estimate.poses.begin())]);
     if (row) {
       result.rows.push_back(*row);
     } else {

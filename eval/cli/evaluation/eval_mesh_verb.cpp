@@ -87,7 +87,8 @@ Result<int> run(const MeshVerbOptions& options) {
   }
   reconstruction = mesh_error::with_discs(*std::move(reconstruction));
   const Workers workers(options.threads);
-  const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, mesh_error::with_discs(*truth), *request, workers);
+  const auto evaluation =
+      mesh_error::evaluate_mesh(*reconstruction, mesh_error::with_discs(*truth), *request, workers);
   if (!evaluation) return tl::unexpected(evaluation.error());
   warn(*evaluation);
   if (!options.colored.empty()) {

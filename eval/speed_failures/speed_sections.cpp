@@ -1,4 +1,4 @@
-#include "eval/report/speed_sections.hpp"
+#include "eval/speed_failures/speed_sections.hpp"
 
 #include <fmt/format.h>
 
@@ -7,32 +7,11 @@
 #include <span>
 #include <utility>
 
-#include "eval/report/chart_parts.hpp"
-
-namespace fusebench::report {
+namespace fusebench::speed_failures {
 
 namespace {
 
-using trajectory_error::kSpeedBin_degps;
-using trajectory_error::SpeedBin;
-
 constexpr std::size_t kFastBin = 2;  // from 100 deg/s
-
-Trajectory estimate_of(const std::vector<ComparedPose>& poses) {
-  Trajectory estimate;
-  for (const ComparedPose& pose : poses) estimate.push_back({pose.timestamp_ns, pose.T_truth_camera});
-  return estimate;
-}
-
-/// Without a table of frames those with a pose are all that is known.
-std::vector<std::int64_t> frame_stamps(const RunSeries& run) {
-  std::vector<std::int64_t> stamps;
-  for (const run_files::FrameTableRow& frame : run.frames) stamps.push_back(frame.timestamp_ns);
-  if (stamps.empty()) {
-    for (const ComparedPose& pose : run.poses) stamps.push_back(pose.timestamp_ns);
-  }
-  return stamps;
-}
 
 std::string range_text(std::size_t bin) {
   return fmt::format("{:.0f} to {:.0f} deg/s", kSpeedBin_degps * static_cast<double>(bin),
@@ -48,23 +27,16 @@ std::string cell_text(const SpeedBin& bin) {
 
 }  // namespace
 
-void SpeedFailures::add(const RunSeries& run, const std::string& method) {
-  const std::vector<std::int64_t> stamps = frame_stamps(run);
-  const auto bins_of = [&](const std::vector<ComparedPose>& poses) {
-    return trajectory_error::failures_by_speed(run.truth, stamps, estimate_of(poses));
-  };
-  add(method, run.colour, bins_of(run.poses));
-  if (!run.final_poses.empty()) add(method + ", final poses", run.colour, bins_of(run.final_poses));
-}
-
-void SpeedFailures::add(const std::string& name, std::size_t colour, const std::vector<SpeedBin>& bins) {
+void FailureSections::add(const std::string& name, std::size_t colour, const Trajectory& ground_truth,
+                          std::span<const std::int64_t> frames_ns, const Trajectory& estimate) {
+  const std::vector<SpeedBin> bins = failures_by_speed(ground_truth, frames_ns, estimate);
   auto method = std::ranges::find(methods_, name, &Method::name);
   if (method == methods_.end()) method = methods_.insert(method, {name, colour, {}});
   if (method->bins.size() < bins.size()) method->bins.resize(bins.size());
   for (std::size_t i = 0; i < bins.size(); ++i) method->bins[i] += bins[i];
 }
 
-std::vector<page::PageSection> SpeedFailures::sections() const {
+std::vector<page::PageSection> FailureSections::sections() const {
   std::size_t most = 0;
   std::size_t failed = 0;
   for (const Method& method : methods_) {
@@ -72,8 +44,10 @@ std::vector<page::PageSection> SpeedFailures::sections() const {
     for (const SpeedBin& bin : method.bins) failed += bin.lost + bin.silent;
   }
   if (most <= kFastBin || failed == 0) return {};
-  page::Chart chart = chart_of("Frames that are lost or silently wrong",
-                               "angular speed of the camera [deg/s]", "share of the frames [%]");
+  page::Chart chart;
+  chart.title = "Frames that are lost or silently wrong";
+  chart.x_label = "angular speed of the camera [deg/s]";
+  chart.left_label = "share of the frames [%]";
   page::PageTable table;
   table.header = {"method"};
   for (std::size_t i = 0; i < most; ++i) table.header.push_back(range_text(i));
@@ -103,4 +77,4 @@ std::vector<page::PageSection> SpeedFailures::sections() const {
           {"The same in numbers", "", std::move(table), 3}};
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::speed_failures

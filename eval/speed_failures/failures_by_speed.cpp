@@ -1,4 +1,4 @@
-#include "eval/trajectory_error/failures_by_speed.hpp"
+#include "eval/speed_failures/failures_by_speed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "core/base/geometry.hpp"
 #include "core/trajectory/trajectory.hpp"
 
-namespace fusebench::trajectory_error {
+namespace fusebench::speed_failures {
 
 namespace {
 
@@ -38,8 +38,9 @@ SpeedBin& SpeedBin::operator+=(const SpeedBin& other) {
 
 std::vector<SpeedBin> failures_by_speed(const Trajectory& ground_truth,
                                         std::span<const std::int64_t> frames_ns, const Trajectory& estimate,
-                                        const SilentFailureLimits& limits) {
-  const std::vector<JudgedPose> judged = judged_poses(ground_truth, estimate, limits);
+                                        const trajectory_error::SilentFailureLimits& limits) {
+  const std::vector<trajectory_error::JudgedPose> judged =
+      trajectory_error::judged_poses(ground_truth, estimate, limits);
   const std::vector<std::optional<double>> speeds = speeds_degps(ground_truth, frames_ns);
   const auto interval_ns = static_cast<std::int64_t>(std::llround(1e9 * limits.interval_s));
   std::vector<SpeedBin> bins;
@@ -51,7 +52,8 @@ std::vector<SpeedBin> failures_by_speed(const Trajectory& ground_truth,
       if (speeds[k]) fastest = std::max(fastest.value_or(0), *speeds[k]);
     }
     if (!fastest) continue;
-    const auto pose = std::ranges::lower_bound(judged, frames_ns[i], {}, &JudgedPose::timestamp_ns);
+    const auto pose =
+        std::ranges::lower_bound(judged, frames_ns[i], {}, &trajectory_error::JudgedPose::timestamp_ns);
     const bool is_judged = pose != judged.end() && pose->timestamp_ns == frames_ns[i];
     const bool has_pose = std::ranges::binary_search(estimate, frames_ns[i], {}, &StampedPose::timestamp_ns);
     if (has_pose && !is_judged) continue;
@@ -62,4 +64,4 @@ std::vector<SpeedBin> failures_by_speed(const Trajectory& ground_truth,
   return bins;
 }
 
-}  // namespace fusebench::trajectory_error
+}  // namespace fusebench::speed_failures

@@ -10,7 +10,7 @@
 #include "core/base/types.hpp"
 #include "eval/trajectory_error/silent_failures.hpp"
 
-namespace fusebench::trajectory_error {
+namespace fusebench::speed_failures {
 
 /// Width of a bin.
 inline constexpr double kSpeedBin_degps = 50;
@@ -28,9 +28,8 @@ struct SpeedBin {
 /// the largest mean over 0.1 s, within limits.interval_s, of the ground truth. frames_ns: stamps of all
 /// frames, sorted. A frame that is neither lost nor judged (silent_failures()), or about whose motion the
 /// truth tells nothing, is in no bin.
-[[nodiscard]] std::vector<SpeedBin> failures_by_speed(const Trajectory& ground_truth,
-                                                      std::span<const std::int64_t> frames_ns,
-                                                      const Trajectory& estimate,
-                                                      const SilentFailureLimits& limits = {});
+[[nodiscard]] std::vector<SpeedBin> failures_by_speed(
+    const Trajectory& ground_truth, std::span<const std::int64_t> frames_ns, const Trajectory& estimate,
+    const trajectory_error::SilentFailureLimits& limits = {});
 
-}  // namespace fusebench::trajectory_error
+}  // namespace fusebench::speed_failures

@@ -1,4 +1,4 @@
-#include "eval/trajectory_error/failures_by_speed.hpp"
+#include "eval/speed_failures/failures_by_speed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 namespace fusebench {
 
-using namespace trajectory_error;
+using namespace speed_failures;
 
 namespace {
 

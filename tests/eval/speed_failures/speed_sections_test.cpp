@@ -1,4 +1,4 @@
-#include "eval/report/speed_sections.hpp"
+#include "eval/speed_failures/speed_sections.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,31 +6,30 @@
 
 namespace fusebench {
 
-using namespace report;
+using namespace speed_failures;
 
 namespace {
 
-/// Turns by this speed for a second; the last frames are lost.
-RunSeries turning(double degps, std::size_t lost) {
-  RunSeries run;
+/// A camera that turns by this speed for a second; the last poses of the estimate are missing.
+void add(FailureSections& failures, const std::string& method, double degps, std::size_t lost) {
   constexpr std::size_t kTurnFrames = 30;
+  Trajectory truth;
+  std::vector<std::int64_t> stamps;
   for (std::size_t i = 0; i < kTurnFrames; ++i) {
-    const auto stamp_ns = static_cast<std::int64_t>(i) * 33'000'000;
-    const SE3 pose{so3_exp({0, radians(degps) * 0.033 * static_cast<double>(i), 0}), Vector3d(0, 0, 0)};
-    run.truth.push_back({stamp_ns, pose});
-    run.frames.emplace_back();
-    run.frames.back().timestamp_ns = stamp_ns;
-    if (i + lost < kTurnFrames) run.poses.push_back({stamp_ns, pose, pose, 0});
+    stamps.push_back(static_cast<std::int64_t>(i) * 33'000'000);
+    const double angle_rad = radians(degps) * 0.033 * static_cast<double>(i);
+    truth.push_back({stamps.back(), {so3_exp({0, angle_rad, 0}), Vector3d(0, 0, 0)}});
   }
-  return run;
+  const Trajectory estimate(truth.begin(), truth.end() - static_cast<std::ptrdiff_t>(lost));
+  failures.add(method, 1, truth, stamps, estimate);
 }
 
 TEST(SpeedSections, CountsTheFramesOfEachMethod) {
-  SpeedFailures failures;
-  failures.add(turning(20, 0), "full");
-  failures.add(turning(120, 0), "full");
-  failures.add(turning(20, 0), "icp");
-  failures.add(turning(120, 10), "icp");
+  FailureSections failures;
+  add(failures, "full", 20, 0);
+  add(failures, "full", 120, 0);
+  add(failures, "icp", 20, 0);
+  add(failures, "icp", 120, 10);
   const auto sections = failures.sections();
   ASSERT_EQ(sections.size(), 2U);
   const auto& chart = std::get<std::vector<page::Chart>>(sections[0].content).front();
@@ -47,10 +46,10 @@ TEST(SpeedSections, CountsTheFramesOfEachMethod) {
 }
 
 TEST(SpeedSections, AreNoneWhereNothingIsFastOrFails) {
-  SpeedFailures slow, right;
-  slow.add(turning(20, 10), "full");
+  FailureSections slow, right;
+  add(slow, "full", 20, 10);
   EXPECT_TRUE(slow.sections().empty());
-  right.add(turning(120, 0), "full");
+  add(right, "full", 120, 0);
   EXPECT_TRUE(right.sections().empty());
 }
 
