@@ -16,7 +16,7 @@ const double kCorner = std::sqrt(4 * std::numbers::pi / (3 * std::numbers::sqrt3
 
 }  // namespace
 
-PreciseMesh with_discs(const PreciseMesh& mesh) {
+PreciseMesh with_discs(PreciseMesh mesh) {
   if (mesh.radii_m.empty()) return mesh;
   PreciseMesh discs;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

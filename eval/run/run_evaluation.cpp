@@ -141,8 +141,7 @@ Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const record
   mesh_error::MeshErrorOptions options;
   options.reconstruction.count = kReconstructionSamples;
   options.truth.count = kTruthSamples;
-  const PreciseMesh precise = output.mesh.cast<double>();
-  const PreciseMesh surface = mesh_error::with_discs(precise);
+  const PreciseMesh surface = mesh_error::with_discs(output.mesh.cast<double>());
   const auto comparison = mesh_error::MeshComparison::create(surface, *truth, *views, options, workers);
   if (!comparison) return tl::unexpected(comparison.error());
   const auto aligned = trajectory_error::align_poses(cameras.reference, cameras.estimate);
@@ -157,7 +156,9 @@ Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const record
   mesh.min_depth_m = depth.min_m;
   mesh.max_depth_m = depth.max_m;
   mesh.poses = comparison->evaluate({"poses", *aligned}, workers);
-  mesh.vertex_errors_m = mesh_error::distances_m(precise.vertices, *aligned, comparison->truth(), workers);
+  // Of the model's own vertices, which are the middles of discs.
+  mesh.vertex_errors_m =
+      mesh_error::distances_m(output.mesh.cast<double>().vertices, *aligned, comparison->truth(), workers);
   // Of the first known one: ICL-NUIM's truth begins with its second image.
   const SE3 by_first_camera = cameras.reference.front() * cameras.estimate.front().inverse();
   mesh.first_camera = comparison->evaluate({"first_camera", by_first_camera}, workers);

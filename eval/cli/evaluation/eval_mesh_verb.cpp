@@ -78,7 +78,7 @@ Result<int> run(const MeshVerbOptions& options) {
   if (!request) return tl::unexpected(request.error());
   auto reconstruction = mesh::read_mesh(options.reconstruction);
   if (!reconstruction) return tl::unexpected(reconstruction.error());
-  const auto truth = mesh::read_mesh(options.truth);
+  auto truth = mesh::read_mesh(options.truth);
   if (!truth) return tl::unexpected(truth.error());
   const double scale = options.scale.value_or(1.0);
   if (scale != 1) {
@@ -86,9 +86,9 @@ Result<int> run(const MeshVerbOptions& options) {
     for (float& radius_m : reconstruction->radii_m) radius_m *= static_cast<float>(scale);
   }
   reconstruction = mesh_error::with_discs(*std::move(reconstruction));
+  truth = mesh_error::with_discs(*std::move(truth));
   const Workers workers(options.threads);
-  const auto evaluation =
-      mesh_error::evaluate_mesh(*reconstruction, mesh_error::with_discs(*truth), *request, workers);
+  const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, *truth, *request, workers);
   if (!evaluation) return tl::unexpected(evaluation.error());
   warn(*evaluation);
   if (!options.colored.empty()) {
