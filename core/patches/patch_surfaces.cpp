@@ -9,7 +9,7 @@ namespace fusebench::patches {
 
 namespace {
 
-constexpr std::size_t kPatchesPerChunk = 8;
+constexpr std::size_t kPatchesPerWorkspace = 8;
 constexpr std::size_t kPixelsPerChunk = 512;
 
 }  // namespace
@@ -34,9 +34,9 @@ void PatchSurfaces::find_near_measurements(const raycast::SurfaceSearch& search,
                                            std::span<const raycast::ExpectedSurface> pixels,
                                            std::span<const std::size_t> first, const Workers& workers) {
   const std::size_t patches = first.size() - 1;
-  workspaces_.resize(std::max(workspaces_.size(), patches / kPatchesPerChunk + 1));
-  workers.for_chunks(patches, kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-    auto& [brick, measured, places, found] = workspaces_[begin / kPatchesPerChunk];
+  workspaces_.resize(std::max(workspaces_.size(), patches / kPatchesPerWorkspace + 1));
+  workers.for_chunks(patches, kPatchesPerWorkspace, [&](std::size_t begin, std::size_t end) {
+    auto& [brick, measured, places, found] = workspaces_[begin / kPatchesPerWorkspace];
     for (std::size_t p = begin; p < end; ++p) {
       measured.clear();
       places.clear();

@@ -13,8 +13,6 @@ namespace fusebench::prediction {
 
 namespace {
 
-double square(double x) { return x * x; }
-
 struct WindowStatistics {
   Vector3d mean_angular_velocity_radps = Vector3d::Zero();
   Vector3d mean_specific_force_mps2 = Vector3d::Zero();  ///< in the IMU frame at the first frame
@@ -56,7 +54,7 @@ WindowStatistics window_statistics(std::span<const ImuSample> window, std::int64
 }
 
 void set_variance(filter::GaussianState& state, int offset, int size, double sigma) {
-  state.covariance.diagonal().segment(offset, size).setConstant(square(sigma));
+  state.covariance.diagonal().segment(offset, size).setConstant(sigma * sigma);
 }
 
 }  // namespace

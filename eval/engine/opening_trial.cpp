@@ -42,13 +42,13 @@ std::uint64_t machine_limit_bytes() {
 
 /// Gives a sign whenever something was read.
 void watch_reading(const std::stop_token& stop, const process::JobReporter& reporter) {
-  constexpr std::chrono::milliseconds kLookAround(200);
+  constexpr std::chrono::milliseconds kWatchEvery(200);
   constexpr std::uint64_t kByLooking = 4096;  // what asking how much was read reads itself
   std::mutex mutex;
   std::condition_variable_any wait;
   std::unique_lock lock(mutex);
   std::uint64_t before = bytes_read();
-  while (!wait.wait_for(lock, stop, kLookAround, [&] { return stop.stop_requested(); })) {
+  while (!wait.wait_for(lock, stop, kWatchEvery, [&] { return stop.stop_requested(); })) {
     const std::uint64_t now = bytes_read();
     if (now > before + kByLooking) reporter.progress(0, 0);
     before = now;

@@ -39,17 +39,20 @@ function(fusebench_precompile target headers level)
   endif()
 endfunction()
 
-# fusebench_room(FOLDER [PROGRAM] [UNITY] [USES ROOM...] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [SOURCES FILE...] [OPTIMIZE LEVEL]
-#                [HEADERS SET])
-# Defines the library fusebench_<last name of FOLDER> of all sources in FOLDER (PROGRAM: the program fusebench).
-#   UNITY     five sources are compiled at a time (of rooms whose libraries take longer to read than they do)
+# fusebench_room(FOLDER [PROGRAM] [APART] [ALONE NAME...] [USES ROOM...] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [SOURCES FILE...]
+#                [OPTIMIZE LEVEL] [HEADERS SET])
+# Defines the library fusebench_<last name of FOLDER> of all sources in FOLDER (PROGRAM: the program fusebench). Eight of them are
+# compiled at a time (FUSEBENCH_UNITY): most of the time goes into reading libraries and into their templates, once for each
+# compilation. With that off, a change of one source compiles that one alone, and a missing #include shows.
+#   APART     each source is compiled alone: most of them give the same names other meanings
+#   ALONE     sources (without .cpp) that are, since another one gives one of their names another meaning
 #   USES      last names of the rooms that its files include
 #   SOURCES   generated files beside those of the folder
 #   OPTIMIZE  level of a release build, 3 unless given. Rooms that only read, write and print take 1: half the time to compile,
 #             and not a bit of difference in what they compute.
 #   HEADERS   precompiled headers (see above), "values" unless given; "none" for rooms whose libraries define macros
 function(fusebench_room folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;UNITY" "OPTIMIZE;HEADERS" "USES;PUBLIC;PRIVATE;SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;APART" "OPTIMIZE;HEADERS" "ALONE;USES;PUBLIC;PRIVATE;SOURCES")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "fusebench_room(${folder}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -79,8 +82,11 @@ function(fusebench_room folder)
     set(level ${arg_OPTIMIZE})
     target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   endif()
-  if(arg_UNITY)
-    set_target_properties(${room} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
+  if(FUSEBENCH_UNITY AND NOT arg_APART)
+    set_target_properties(${room} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    foreach(source IN LISTS arg_ALONE)
+      set_source_files_properties(${PROJECT_SOURCE_DIR}/${folder}/${source}.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endforeach()
   endif()
   target_link_libraries(${room} PUBLIC ${used} ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   if(NOT arg_HEADERS)

@@ -10,7 +10,7 @@ namespace fusebench::systems::bundlefusion {
 
 namespace {
 
-constexpr int kSteps = 2;
+constexpr int kChunkSteps = 2;
 constexpr double kMaxResidual_m = 0.02;  // of matches, but for a share of
 constexpr double kMaxShareBeyond = 0.05;
 constexpr DenseLimits kOfADoubtfulChunk{0.05, 0.001};
@@ -38,7 +38,7 @@ bool Chunk::add(View view) {
   if (!T_first_camera_[added]) return false;
   const AdjustmentTerms terms{pairs_, {}, {config_.sparse_weight, 0, 0}};
   // Singular equations leave the poses that the pairs gave.
-  static_cast<void>(adjust_poses(T_first_camera_, terms, kSteps, workers_));
+  static_cast<void>(adjust_poses(T_first_camera_, terms, kChunkSteps, workers_));
   return true;
 }
 
@@ -55,7 +55,7 @@ bool Chunk::close() {
   const auto all_clouds = clouds();
   const AdjustmentTerms terms{
       pairs_, all_clouds, {config_.sparse_weight, config_.dense_weight, config_.dense_far_m}};
-  if (!adjust_poses(T_first_camera_, terms, kSteps, workers_)) return false;
+  if (!adjust_poses(T_first_camera_, terms, kChunkSteps, workers_)) return false;
   return matches_are_consistent() || depth_is_consistent();
 }
 

@@ -7,7 +7,7 @@ namespace fusebench::systems::bundlefusion {
 
 namespace {
 
-constexpr int kSteps = 3;
+constexpr int kGraphSteps = 3;
 
 /// Largest residual of the pair's matches along an axis of the world (metres).
 double largest_residual_m(const FramePair& pair, const Poses& poses) {
@@ -49,7 +49,7 @@ void KeyframeGraph::finish() {
   for (const View& keyframe : keyframes_) clouds.push_back(&keyframe.cloud);
   const AdjustmentTerms terms{
       pairs_, clouds, {config_.sparse_weight, config_.final_dense_weight, config_.dense_far_m}};
-  static_cast<void>(adjust_poses(T_world_keyframe_, terms, kSteps, workers_));
+  static_cast<void>(adjust_poses(T_world_keyframe_, terms, kGraphSteps, workers_));
 }
 
 bool KeyframeGraph::place(std::size_t keyframe, const std::optional<SE3>& T_world_guess) {
@@ -86,7 +86,7 @@ void KeyframeGraph::retry_one() {
 void KeyframeGraph::adjust() {
   do {
     const AdjustmentTerms terms{pairs_, {}, {config_.sparse_weight, 0, 0}};
-    if (!adjust_poses(T_world_keyframe_, terms, kSteps, workers_)) return;
+    if (!adjust_poses(T_world_keyframe_, terms, kGraphSteps, workers_)) return;
   } while (remove_worst_pair());
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kMaxSquaredResidual_m2 = 4e-4;
 constexpr double kMinSeparation_px = 5;
 constexpr std::size_t kMinMatches = 5;
-constexpr std::size_t kMaxMatches = 25;
+constexpr std::size_t kMaxRigidMatches = 25;
 constexpr std::size_t kFewestToFit = 3;
 constexpr double kMaxCondition = 100;
 constexpr double kMinArea_m2 = 0.032;
@@ -97,7 +97,7 @@ std::optional<RigidMatches> filter_by_motion(std::span<const KeypointMatch> matc
                                              const Keypoints& b) {
   RigidMatches rigid;
   for (const KeypointMatch& match : matches) {
-    if (rigid.matches.size() == kMaxMatches) break;
+    if (rigid.matches.size() == kMaxRigidMatches) break;
     if (is_near_one(match, rigid.matches, a, b)) continue;
     rigid.matches.push_back(match);
     rigid.points.push_back({a[match.a].point_camera, b[match.b].point_camera});

@@ -16,7 +16,7 @@ constexpr std::int32_t kFramesToBecomeStable = 20;
 constexpr float kCopyDepth_m = 0.01F;
 constexpr float kCopyReach = 1.4F;  // by the radius
 constexpr int kFewestOriginals = 3;
-constexpr std::size_t kRowsAtOnce = 8;
+constexpr std::size_t kFusedRowsAtOnce = 8;
 constexpr std::size_t kSurfelsAtOnce = 16384;
 
 bool is_measured(const LiveFrame& live, std::size_t pixel) {
@@ -78,7 +78,7 @@ std::vector<SurfelFusion::Match> SurfelFusion::find_matches(const LiveFrame& liv
     });
     return match;
   };
-  workers_.for_chunks(static_cast<std::size_t>(rows), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  workers_.for_chunks(static_cast<std::size_t>(rows), kFusedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       for (int column = 0; column < columns; ++column)
         matches[row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)] =

@@ -13,7 +13,7 @@ using simd::Int8;
 
 constexpr std::size_t kPixelsAtOnce = 4096;
 constexpr float kMostDepth_m = 6;
-constexpr float kMostApart_m = 0.07F;
+constexpr float kMostDepthApart_m = 0.07F;
 
 /// Eight pixels and what the model has there.
 struct Match {
@@ -50,7 +50,7 @@ class IntensityMatcher {
     match.row = simd::to_int(simd::clamp(v, 0.0F, height - 1));
     const Int8 at = match.row * view_.camera.width_px + match.column;
     match.depth_m = simd::gather(view_.depth_m.data.data(), at);
-    match.valid &= (match.depth_m > 0.0F) & (simd::abs(match.depth_m - seen.z) <= kMostApart_m);
+    match.valid &= (match.depth_m > 0.0F) & (simd::abs(match.depth_m - seen.z) <= kMostDepthApart_m);
     match.residual = simd::load(&pixels_.intensity[first]) - simd::gather(view_.intensity.data.data(), at);
     return match;
   }
