@@ -13,8 +13,8 @@
 #include "eval/page/image_source.hpp"
 #include "eval/paper_figures/model_view.hpp"
 #include "eval/report/patch_pictures.hpp"
-#include "eval/report/run_charts.hpp"
-#include "eval/report/run_series.hpp"
+#include "eval/run_charts/run_charts.hpp"
+#include "eval/run_charts/run_series.hpp"
 #include "eval/run_files/patch_table.hpp"
 
 namespace fusebench::paper_figures {
@@ -28,7 +28,7 @@ constexpr int kQuality = 92;
 struct Loaded {
   std::string label;
   std::vector<run_files::FoundRun> runs;
-  std::vector<report::RunSeries> series;
+  std::vector<run_charts::RunSeries> series;
 };
 
 std::vector<Loaded> load_all(std::span<const RecordingRuns> recordings, WrittenFigures& written) {
@@ -43,18 +43,18 @@ std::vector<Loaded> load_all(std::span<const RecordingRuns> recordings, WrittenF
       }
     }
     for (const run_files::FoundRun& run : one.runs) {
-      one.series.push_back(report::series_of(run, run.record.variant));
+      one.series.push_back(run_charts::series_of(run, run.record.variant));
       for (const std::string& warning : one.series.back().warnings) written.warnings.push_back(warning);
     }
   }
   return loaded;
 }
 
-std::vector<report::RunSeries> with_variants(const Loaded& recording,
-                                             std::span<const std::string_view> variants) {
-  std::vector<report::RunSeries> chosen;
+std::vector<run_charts::RunSeries> with_variants(const Loaded& recording,
+                                                 std::span<const std::string_view> variants) {
+  std::vector<run_charts::RunSeries> chosen;
   for (const std::string_view variant : variants) {
-    const auto found = std::ranges::find(recording.series, variant, &report::RunSeries::label);
+    const auto found = std::ranges::find(recording.series, variant, &run_charts::RunSeries::label);
     if (found != recording.series.end()) chosen.push_back(*found);
   }
   return chosen;
@@ -63,7 +63,7 @@ std::vector<report::RunSeries> with_variants(const Loaded& recording,
 /// Linear and angular speed over time, by the true poses.
 void add_speeds(const Loaded& recording, page::Page& page) {
   constexpr std::size_t kSpeeds = 2;  // the first of the charts of motion
-  auto charts = report::motion_charts(recording.series, kBuckets);
+  auto charts = run_charts::motion_charts(recording.series, kBuckets);
   if (charts.size() > kSpeeds) charts.resize(kSpeeds);
   for (page::Chart& chart : charts) {
     for (page::ChartSeries& series : chart.series) series.label = recording.label + ", by the true poses";
@@ -73,9 +73,9 @@ void add_speeds(const Loaded& recording, page::Page& page) {
 }
 
 /// "full: ATE 0.19 cm, 237 of 237 frames tracked; no-imu: ..."
-std::string results_of(std::span<const report::RunSeries> series) {
+std::string results_of(std::span<const run_charts::RunSeries> series) {
   std::string text;
-  for (const report::RunSeries& run : series) {
+  for (const run_charts::RunSeries& run : series) {
     const record::RunRecord& record = run.run->record;
     text += text.empty() ? "" : "; ";
     text += run.label + ": ";
@@ -92,8 +92,8 @@ std::string results_of(std::span<const report::RunSeries> series) {
 void add_imu_experiment(const Loaded& recording, page::Page& page) {
   constexpr std::array<std::string_view, 2> kVariants = {"full", "no-imu"};
   const auto series = with_variants(recording, kVariants);
-  auto charts = report::view_charts(series, kBuckets);
-  auto errors = report::error_charts(series, kBuckets);
+  auto charts = run_charts::view_charts(series, kBuckets);
+  auto errors = run_charts::error_charts(series, kBuckets);
   if (charts.size() > 1) charts.resize(1);
   if (!errors.empty()) charts.push_back(std::move(errors.front()));
   page.sections.push_back({"IMU " + recording.label,
@@ -199,7 +199,7 @@ Result<void> add_models(const Loaded& recording, const std::filesystem::path& fo
   ImageFigure figure{
       "models_" + recording.label, std::max<std::size_t>(1, recording.series.size()), {}, {}, {}};
   std::optional<PinholeCamera> camera;
-  for (const report::RunSeries& run : recording.series) {
+  for (const run_charts::RunSeries& run : recording.series) {
     auto mesh = mesh::read_ply(run.run->folder / "mesh.ply");
     if (!mesh) {
       written.warnings.push_back(mesh.error().message);

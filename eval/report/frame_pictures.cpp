@@ -51,7 +51,7 @@ ColorImage color_of(const GreyImage& grey) {
 }
 
 /// The run's frame of a pose; stamps of trajectories are rounded.
-std::size_t frame_at(const RunSeries& run, std::int64_t timestamp_ns) {
+std::size_t frame_at(const run_charts::RunSeries& run, std::int64_t timestamp_ns) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < run.frames.size(); ++i) {
     if (std::abs(run.frames[i].timestamp_ns - timestamp_ns) <
@@ -61,14 +61,14 @@ std::size_t frame_at(const RunSeries& run, std::int64_t timestamp_ns) {
   return best;
 }
 
-Choice choice_of(const RunSeries& run, std::size_t frame, std::string what) {
+Choice choice_of(const run_charts::RunSeries& run, std::size_t frame, std::string what) {
   const double time_s = run.time_s(run.frames[frame].timestamp_ns);
   return {frame, time_s, fmt::format("{}frame {}", what.empty() ? "" : what + ", ", frame)};
 }
 
-std::optional<Choice> worst_of(const RunSeries& run) {
-  const ComparedPose* worst = nullptr;
-  for (const ComparedPose& pose : run.poses) {
+std::optional<Choice> worst_of(const run_charts::RunSeries& run) {
+  const run_charts::ComparedPose* worst = nullptr;
+  for (const run_charts::ComparedPose& pose : run.poses) {
     if (pose.T_truth_truth && (worst == nullptr || pose.error_m > worst->error_m)) worst = &pose;
   }
   if (worst == nullptr || run.frames.empty()) return std::nullopt;
@@ -77,9 +77,10 @@ std::optional<Choice> worst_of(const RunSeries& run) {
 }
 
 /// The first frame, and the worst of some runs.
-std::vector<Choice> scene_choices(std::span<const RunSeries> runs, const RunSeries& framed) {
+std::vector<Choice> scene_choices(std::span<const run_charts::RunSeries> runs,
+                                  const run_charts::RunSeries& framed) {
   std::vector<Choice> choices = {choice_of(framed, 0, "the scene as it is seen first")};
-  for (const RunSeries& run : runs) {
+  for (const run_charts::RunSeries& run : runs) {
     if (choices.size() > kMostWorst) break;
     if (auto worst = worst_of(run)) choices.push_back(std::move(*worst));
   }
@@ -95,7 +96,8 @@ std::vector<page::PageImage> images_of(const std::vector<Choice>& choices,
 }
 
 /// Of the frames that runs kept with their patches, each once.
-std::vector<page::PageImage> kept_images(const RunSeries* framed, std::span<const LabelledPatches> patches) {
+std::vector<page::PageImage> kept_images(const run_charts::RunSeries* framed,
+                                         std::span<const LabelledPatches> patches) {
   std::map<std::size_t, page::PageImage> images;
   for (const LabelledPatches& run : patches) {
     for (const run_files::PatchTableFrame& frame : run.frames) {
@@ -111,7 +113,7 @@ std::vector<page::PageImage> kept_images(const RunSeries* framed, std::span<cons
 }
 
 /// Evenly from the first frame to the last.
-std::vector<Choice> choices_between(const RunSeries& framed, std::size_t most) {
+std::vector<Choice> choices_between(const run_charts::RunSeries& framed, std::size_t most) {
   std::vector<Choice> choices;
   const std::size_t count = std::min(most, framed.frames.size());
   for (std::size_t k = 0; k < count; ++k) {
@@ -146,12 +148,13 @@ Result<std::vector<page::PageSection>> read_pictures(const record::RecordedRecor
 }  // namespace
 
 std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& recording,
-                                              std::span<const RunSeries> runs,
+                                              std::span<const run_charts::RunSeries> runs,
                                               std::span<const LabelledPatches> patches,
                                               std::size_t in_between, const FrameReader& reader) {
   const auto longest =
-      std::ranges::max_element(runs, {}, [](const RunSeries& run) { return run.frames.size(); });
-  const RunSeries* const framed = longest == runs.end() || longest->frames.empty() ? nullptr : &*longest;
+      std::ranges::max_element(runs, {}, [](const run_charts::RunSeries& run) { return run.frames.size(); });
+  const run_charts::RunSeries* const framed =
+      longest == runs.end() || longest->frames.empty() ? nullptr : &*longest;
   std::string why = framed == nullptr ? "no run has a table of its frames" : "it was not looked for";
   if (framed != nullptr && reader) {
     auto sections =

@@ -12,7 +12,7 @@
 #include "core/base/types.hpp"
 #include "eval/page/page.hpp"
 #include "eval/report/patch_pictures.hpp"
-#include "eval/report/run_series.hpp"
+#include "eval/run_charts/run_series.hpp"
 
 namespace fusebench::report {
 
@@ -24,7 +24,7 @@ using FrameReader = std::function<Result<std::vector<ColorImage>>(const record::
 /// in_between: how many frames for the time line. Where the recording cannot be read, the images that runs
 /// kept with their patches, and a sentence that says why. Nothing without images.
 [[nodiscard]] std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& recording,
-                                                            std::span<const RunSeries> runs,
+                                                            std::span<const run_charts::RunSeries> runs,
                                                             std::span<const LabelledPatches> patches,
                                                             std::size_t in_between,
                                                             const FrameReader& reader);

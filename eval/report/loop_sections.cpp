@@ -12,8 +12,8 @@
 
 #include "core/base/geometry.hpp"
 #include "eval/loop_error/loop_error.hpp"
-#include "eval/report/chart_parts.hpp"
-#include "eval/report/loop_charts.hpp"
+#include "eval/run_charts/chart_parts.hpp"
+#include "eval/run_charts/loop_charts.hpp"
 #include "eval/text/plain_table.hpp"
 
 namespace fusebench::report {
@@ -33,7 +33,8 @@ std::string mode_of(const record::RunRecord& record) {
 }
 
 std::string ate_cell(const record::Outcome<trajectory_error::AteResult>& ate) {
-  return text::number_cell(ate.value ? std::optional(ate.value->stats.rmse) : std::nullopt, kCentimetres, 2);
+  return text::number_cell(ate.value ? std::optional(ate.value->stats.rmse) : std::nullopt,
+                           run_charts::kCentimetres, 2);
 }
 
 std::string found_cell(const loop_error::Revisits& revisits) {
@@ -45,12 +46,12 @@ std::vector<std::string> error_cells(const record::RunRecord& record) {
   if (!record.loops || !record.loops->value) return {"-", "-", "-", "-", "-"};
   const loop_error::LoopError& error = *record.loops->value;
   return {found_cell(error.sharp), found_cell(error.blurred), fmt::format("{}", error.false_accepted),
-          fmt::format("{:.2f} cm, {:.2f} deg", kCentimetres * error.median_translation_m,
+          fmt::format("{:.2f} cm, {:.2f} deg", run_charts::kCentimetres * error.median_translation_m,
                       degrees(error.median_rotation_rad)),
           fmt::format("{:.2f}, {:.2f}", error.nees_position, error.nees_rotation)};
 }
 
-page::PageTable::Row row_of(const RunSeries& run) {
+page::PageTable::Row row_of(const run_charts::RunSeries& run) {
   const record::RunRecord& record = run.run->record;
   page::PageTable::Row row;
   const auto count = [&](CandidateFate fate) {
@@ -73,8 +74,8 @@ page::PageTable::Row row_of(const RunSeries& run) {
   row.cells.push_back(ate_cell(record.metrics.ate));
   row.cells.push_back(record.final_metrics ? ate_cell(record.final_metrics->ate) : "-");
   const bool known = record.loops && record.loops->value;
-  row.cells.push_back(
-      text::number_cell(known ? record.loops->value->oracle_ate_m : std::nullopt, kCentimetres, 2));
+  row.cells.push_back(text::number_cell(known ? record.loops->value->oracle_ate_m : std::nullopt,
+                                        run_charts::kCentimetres, 2));
   if (known && record.loops->value->false_accepted > 0) row.style = "warning";
   return row;
 }
@@ -90,11 +91,11 @@ std::string explanation() {
       "what they claim, a number an axis; 1 is consistent. ATE with true loops: of the final poses if "
       "every return had a true loop.",
       100 * loop_error::kRevisitOverlap, loop_error::kBlurred_px,
-      kCentimetres * loop_error::kFalseTranslation_m, degrees(loop_error::kFalseRotation_rad),
+      run_charts::kCentimetres * loop_error::kFalseTranslation_m, degrees(loop_error::kFalseRotation_rad),
       loop_error::kFalseSigmas);
 }
 
-page::PageSection table_section(std::span<const RunSeries* const> runs) {
+page::PageSection table_section(std::span<const run_charts::RunSeries* const> runs) {
   page::PageTable table;
   table.header = {"run",
                   "loops.mode",
@@ -111,7 +112,7 @@ page::PageSection table_section(std::span<const RunSeries* const> runs) {
                   "ATE final [cm]",
                   "ATE with true loops [cm]"};
   std::string text = explanation();
-  for (const RunSeries* const run : runs) {
+  for (const run_charts::RunSeries* const run : runs) {
     table.rows.push_back(row_of(*run));
     const auto& loops = run->run->record.loops;
     if (loops && !loops->value)
@@ -122,9 +123,10 @@ page::PageSection table_section(std::span<const RunSeries* const> runs) {
 
 }  // namespace
 
-std::vector<page::PageSection> loop_sections(std::span<const RunSeries> runs, std::size_t buckets) {
-  std::vector<const RunSeries*> with_loops;
-  for (const RunSeries& run : runs) {
+std::vector<page::PageSection> loop_sections(std::span<const run_charts::RunSeries> runs,
+                                             std::size_t buckets) {
+  std::vector<const run_charts::RunSeries*> with_loops;
+  for (const run_charts::RunSeries& run : runs) {
     if (has_loops(run)) with_loops.push_back(&run);
   }
   if (with_loops.empty()) return {};
@@ -138,9 +140,9 @@ std::vector<page::PageSection> loop_sections(std::span<const RunSeries> runs, st
     with_loops.resize(kMostCharted);
   }
   std::vector<page::Chart> views, times;
-  for (const RunSeries* const run : with_loops) {
-    for (page::Chart& chart : loop_view_charts(*run, buckets)) views.push_back(std::move(chart));
-    for (page::Chart& chart : loop_time_charts(*run, buckets)) times.push_back(std::move(chart));
+  for (const run_charts::RunSeries* const run : with_loops) {
+    for (page::Chart& chart : run_charts::loop_view_charts(*run, buckets)) views.push_back(std::move(chart));
+    for (page::Chart& chart : run_charts::loop_time_charts(*run, buckets)) times.push_back(std::move(chart));
   }
   if (!views.empty()) sections.push_back({"Trajectories with loops", std::move(text), std::move(views), 3});
   if (!times.empty()) sections.push_back({"Loops over time", "", std::move(times), 3});

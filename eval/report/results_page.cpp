@@ -10,19 +10,16 @@
 #include <system_error>
 #include <utility>
 
-#include "core/mesh/ply_file.hpp"
-#include "eval/mesh_error/error_colors.hpp"
-#include "eval/mesh_error/mesh_clustering.hpp"
-#include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/page/image_source.hpp"
 #include "eval/page/series_colours.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/report/loop_sections.hpp"
+#include "eval/report/model_scene.hpp"
 #include "eval/report/patch_pictures.hpp"
-#include "eval/report/profile_charts.hpp"
-#include "eval/report/run_charts.hpp"
-#include "eval/report/run_series.hpp"
 #include "eval/report/summary_sections.hpp"
+#include "eval/run_charts/profile_charts.hpp"
+#include "eval/run_charts/run_charts.hpp"
+#include "eval/run_charts/run_series.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/run_files/run_labels.hpp"
 #include "eval/speed_failures/speed_sections.hpp"
@@ -31,7 +28,6 @@ namespace fusebench::report {
 
 namespace {
 
-constexpr double kLargestError_m = 0.05;
 constexpr std::size_t kMostDrawn = 12;    // of a recording: more curves nobody can tell apart
 constexpr std::size_t kMostPictured = 2;  // variants whose patches stand beside each other
 
@@ -149,66 +145,6 @@ std::vector<LabelledPatches> patches_of(Group drawn, Group group, const Labels& 
   return runs;
 }
 
-/// Stray bits of a mesh would make the rest small.
-void look_at_most(page::PageScene& scene) {
-  constexpr double kStray = 0.02;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> places;
-    for (const page::SceneMesh& mesh : scene.meshes) {
-      for (const Vector3d& vertex : mesh.mesh.vertices) places.push_back(vertex[axis]);
-    }
-    if (places.empty()) return;
-    std::ranges::sort(places);
-    scene.low[axis] = mesh_error::percentile(places, kStray);
-    scene.high[axis] = mesh_error::percentile(places, 1 - kStray);
-  }
-}
-
-/// Of the poses that the model is of, in the frame of their first.
-page::ScenePath path_of(const RunSeries& run, std::size_t most) {
-  const std::vector<ComparedPose>& poses = run.final_poses.empty() ? run.poses : run.final_poses;
-  page::ScenePath path{run.label, run.colour, {}};
-  const std::size_t step = poses.size() / std::max<std::size_t>(most, 1) + 1;
-  for (std::size_t i = 0; i < poses.size(); i += step) {
-    path.poses.push_back({run.time_s(poses[i].timestamp_ns),
-                          poses.front().T_truth_camera.inverse() * poses[i].T_truth_camera});
-  }
-  return path;
-}
-
-void move(PreciseMesh& mesh, const SE3& T_new_old) {
-  for (Vector3d& vertex : mesh.vertices) vertex = T_new_old * vertex;
-  const Matrix3d turn = T_new_old.rotation.toRotationMatrix();
-  for (Eigen::Vector3f& normal : mesh.normals) normal = (turn * normal.cast<double>()).cast<float>();
-}
-
-page::PageScene scene_of(std::span<const RunSeries> runs, const Detail& detail,
-                         std::vector<std::string>& warnings) {
-  page::PageScene scene;
-  scene.largest_error_m = kLargestError_m;
-  scene.up = {0, -1, 0};  // of the first camera, whose y points down and whose z points ahead
-  scene.ahead = {0, 0, 1};
-  for (const RunSeries& run : runs) {
-    const auto file = run.run->folder / "mesh.ply";
-    if (std::error_code ignored; !std::filesystem::exists(file, ignored)) continue;
-    const auto checked = run_files::check_file(run.run->folder, run.run->record, "mesh.ply");
-    const auto mesh = checked ? mesh::read_ply(file) : tl::unexpected(checked.error());
-    if (!mesh) warnings.push_back(mesh.error().message);
-    if (!mesh || (mesh->triangles.empty() && mesh->radii_m.empty())) continue;
-    page::SceneMesh shown{run.label, mesh_error::reduced(*mesh, detail.triangles), {}};
-    move(shown.mesh, run.T_first_world);
-    if (shown.mesh.colors.empty()) shown.mesh.colors.assign(shown.mesh.vertices.size(), Rgb{170, 170, 170});
-    if (run.run->record.metrics.mesh.value && !shown.mesh.quality.empty()) {
-      const std::vector<double> errors_m(shown.mesh.quality.begin(), shown.mesh.quality.end());
-      shown.error_colors = mesh_error::error_colors(errors_m, kLargestError_m);
-    }
-    scene.meshes.push_back(std::move(shown));
-    scene.paths.push_back(path_of(run, detail.buckets));
-  }
-  look_at_most(scene);
-  return scene;
-}
-
 std::string value_text(const config::OptionValue& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
@@ -262,61 +198,63 @@ std::vector<run_files::FoundRun> runs_to_draw(Group group) {
 }
 
 /// Of the runs that have something to draw. colours: one a run of the group.
-std::vector<RunSeries> series_to_draw(Group drawn, Group group, const Labels& labels,
-                                      std::span<const std::size_t> colours,
-                                      std::vector<std::string>& warnings) {
-  std::vector<RunSeries> series;
+std::vector<run_charts::RunSeries> series_to_draw(Group drawn, Group group, const Labels& labels,
+                                                  std::span<const std::size_t> colours,
+                                                  std::vector<std::string>& warnings) {
+  std::vector<run_charts::RunSeries> series;
   for (const run_files::FoundRun& run : drawn) {
     if (run.state != run_files::RunState::whole) {
       warnings.push_back(fmt::format("{}: {}", run.folder.string(), run.record.reason));
       continue;
     }
     if (run.record.frames.total == 0) continue;  // failed before its first frame: there is nothing to draw
-    series.push_back(series_of(run, labels[place_of(run, group)]));
+    series.push_back(run_charts::series_of(run, labels[place_of(run, group)]));
     series.back().colour = colours[place_of(run, group)];
     warnings.insert(warnings.end(), series.back().warnings.begin(), series.back().warnings.end());
   }
   return series;
 }
 
-void add_curves(page::Page& page, std::span<const RunSeries> series, const Detail& detail) {
+void add_curves(page::Page& page, std::span<const run_charts::RunSeries> series, const Detail& detail) {
   const bool revised =
-      std::ranges::any_of(series, [](const RunSeries& run) { return !run.final_poses.empty(); });
+      std::ranges::any_of(series, [](const run_charts::RunSeries& run) { return !run.final_poses.empty(); });
   const std::string which =
       revised ? "Poses as each was known when its frame came; final ones are under Loops and final poses."
               : "";
-  add_charts(page, "Trajectories", view_charts(series, detail.buckets), which);
-  add_charts(page, "Position over time", position_charts(series, detail.buckets), which);
-  add_charts(page, "Errors", error_charts(series, detail.buckets), which);
+  add_charts(page, "Trajectories", run_charts::view_charts(series, detail.buckets), which);
+  add_charts(page, "Position over time", run_charts::position_charts(series, detail.buckets), which);
+  add_charts(page, "Errors", run_charts::error_charts(series, detail.buckets), which);
   for (page::PageSection& section : loop_sections(series, detail.buckets))
     page.sections.push_back(std::move(section));
-  add_charts(page, "Motion and intensity", motion_charts(series, detail.buckets));
+  add_charts(page, "Motion and intensity", run_charts::motion_charts(series, detail.buckets));
 }
 
 void add_patches(page::Page& page, std::span<const LabelledPatches> patches,
-                 std::span<const RunSeries> series) {
+                 std::span<const run_charts::RunSeries> series) {
   const PatchPictures pictures = patch_pictures(patches);
   if (pictures.pictures.empty()) return;
-  const auto framed = std::ranges::find_if(series, [](const RunSeries& run) { return !run.frames.empty(); });
+  const auto framed =
+      std::ranges::find_if(series, [](const run_charts::RunSeries& run) { return !run.frames.empty(); });
   const auto time_s =
       framed == series.end() ? std::nullopt : std::optional(framed->time_s(pictures.timestamp_ns));
   page.sections.push_back({"Patches", pictures.text, page_images(pictures, time_s), 3});
 }
 
-Trajectory estimate_of(const std::vector<ComparedPose>& poses) {
+Trajectory estimate_of(const std::vector<run_charts::ComparedPose>& poses) {
   Trajectory estimate;
-  for (const ComparedPose& pose : poses) estimate.push_back({pose.timestamp_ns, pose.T_truth_camera});
+  for (const run_charts::ComparedPose& pose : poses)
+    estimate.push_back({pose.timestamp_ns, pose.T_truth_camera});
   return estimate;
 }
 
 /// Of the poses as each was known when its frame came, and, if the system revised them, at the end.
-void add_failures(speed_failures::FailureSections& failures, const RunSeries& run,
+void add_failures(speed_failures::FailureSections& failures, const run_charts::RunSeries& run,
                   const std::string& method) {
   // Without a table of frames those with a pose are all that is known.
   std::vector<std::int64_t> stamps;
   for (const run_files::FrameTableRow& frame : run.frames) stamps.push_back(frame.timestamp_ns);
   if (stamps.empty()) {
-    for (const ComparedPose& pose : run.poses) stamps.push_back(pose.timestamp_ns);
+    for (const run_charts::ComparedPose& pose : run.poses) stamps.push_back(pose.timestamp_ns);
   }
   failures.add(method, run.colour, run.truth, stamps, estimate_of(run.poses));
   if (!run.final_poses.empty())
@@ -352,26 +290,28 @@ void add_recording(ResultsPage& result, speed_failures::FailureSections& failure
   }
   const auto first = static_cast<std::size_t>(group.data() - context.runs.data());
   const auto colours = std::span(context.colours).subspan(first, group.size());
-  const std::vector<RunSeries> series = series_to_draw(drawn, group, labels, colours, result.warnings);
+  const std::vector<run_charts::RunSeries> series =
+      series_to_draw(drawn, group, labels, colours, result.warnings);
   const std::vector<LabelledPatches> patches = patches_of(drawn, group, labels, result.warnings);
   if (!series.empty()) {
     for (page::PageSection& section :
          frame_pictures(recording, series, patches, detail.in_between, context.reader))
       page.sections.push_back(std::move(section));
   }
-  for (const RunSeries& run : series)
+  for (const run_charts::RunSeries& run : series)
     add_failures(failures, run, context.methods[first + place_of(*run.run, group)]);
   add_curves(page, series, detail);
   add_patches(page, patches, series);
-  if (page::PageScene scene = scene_of(series, detail, result.warnings); !scene.meshes.empty()) {
+  if (page::PageScene scene = model_scene(series, {detail.triangles, detail.buckets}, result.warnings);
+      !scene.meshes.empty()) {
     page.sections.push_back(
         {"Models",
          "Simplified for this page; mesh.ply of each run has all triangles. Lines: the way of "
          "the camera, and where it was at the chosen time.",
          std::move(scene), 3});
   }
-  add_charts(page, "Health and time", tracking_charts(series, detail.buckets));
-  add_charts(page, "Profiles", profile_charts(series));
+  add_charts(page, "Health and time", run_charts::tracking_charts(series, detail.buckets));
+  add_charts(page, "Profiles", run_charts::profile_charts(series));
   std::vector<page::PageDetails> details;
   for (const run_files::FoundRun& run : drawn)
     details.push_back(configuration_of(run, labels[place_of(run, group)]));

@@ -8,11 +8,10 @@
 #include "core/mesh/ply_file.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/page/figures.hpp"
-#include "eval/report/chart_parts.hpp"
 #include "eval/report/frame_pictures.hpp"
-#include "eval/report/loop_charts.hpp"
-#include "eval/report/profile_charts.hpp"
-#include "eval/report/run_charts.hpp"
+#include "eval/run_charts/loop_charts.hpp"
+#include "eval/run_charts/profile_charts.hpp"
+#include "eval/run_charts/run_charts.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_meshes.hpp"
 
@@ -27,6 +26,7 @@ using namespace trajectory_error;
 using namespace record;
 using namespace run_files;
 using namespace page;
+using namespace run_charts;
 using namespace report;
 
 namespace {
@@ -127,52 +127,6 @@ TEST_F(ResultsPageTest, ChartsShowWhatTheFilesSay) {
   const auto tracking = tracking_charts(runs, 100);
   EXPECT_EQ(series_of_chart(tracking, "Accepted patches and lost frames", "no-imu, lost").points.size(), 30U);
   EXPECT_EQ(series_of_chart(tracking, "Time of the stages", "update").points[1].y(), 12);
-}
-
-Chart chart_with_peaks(const std::vector<std::pair<std::string, double>>& peaks) {
-  Chart chart;
-  chart.left_label = "error [cm]";
-  for (const auto& [label, peak] : peaks) chart.series.push_back({label, {{0, 0.1}, {1, peak}, {2, 0.2}}});
-  return chart;
-}
-
-TEST(FarValues, OneBadRunIsCutAndSaid) {
-  Chart chart = chart_with_peaks({{"full", 1.1}, {"dm", 2.0}, {"no-imu", 340}});
-  cut_far_values(chart);
-  ASSERT_TRUE(chart.y_range.has_value());
-  EXPECT_GE(chart.y_range->y(), 2.0);
-  EXPECT_LE(chart.y_range->y(), 4.0);
-  EXPECT_EQ(chart.caption, "Cut at 2.5 cm, where triangles stand: no-imu reaches 340 cm.");
-  EXPECT_EQ(chart.series[2].points[1].y(), 340) << "what is cut is still there";
-}
-
-TEST(FarValues, RunsThatAreAlikeAreNotCut) {
-  Chart alike = chart_with_peaks({{"full", 1.1}, {"dm", 2.0}, {"no-imu", 5.2}});
-  cut_far_values(alike);
-  EXPECT_FALSE(alike.y_range.has_value());
-  Chart single = chart_with_peaks({{"full", 500}});
-  cut_far_values(single);
-  EXPECT_FALSE(single.y_range.has_value());
-  EXPECT_TRUE(single.caption.empty());
-}
-
-TEST(FarPlaces, AViewStaysAroundTheGroundTruth) {
-  Chart chart;
-  chart.equal_scale = true;
-  chart.series = {{"ground truth", {{0, 0}, {2, 1}}, SeriesStyle::backdrop},
-                  {"full", {{0.1, 0}, {2.2, 1}}},
-                  {"dm", {{0, 0}, {90, -400}}}};
-  cut_far_places(chart);
-  ASSERT_TRUE(chart.x_range && chart.y_range);
-  EXPECT_LT(chart.x_range->y(), 5);
-  EXPECT_GT(chart.x_range->y(), 2.2);
-  EXPECT_GT(chart.y_range->x(), -3);
-  EXPECT_EQ(chart.caption, "Cut around the ground truth; beyond it runs dm.");
-  chart.series.pop_back();
-  chart.x_range.reset();
-  chart.y_range.reset();
-  cut_far_places(chart);
-  EXPECT_FALSE(chart.x_range.has_value());
 }
 
 TEST_F(ResultsPageTest, TheFirstBinOfAHistogramIsAsWideAsTheOthers) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "eval/report/chart_parts.hpp"
-#include "eval/report/run_charts.hpp"
+#include "eval/run_charts/chart_parts.hpp"
+#include "eval/run_charts/run_charts.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -100,4 +100,4 @@ std::vector<page::Chart> position_charts(std::span<const RunSeries> runs, std::s
   return charts;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
-#include "eval/report/run_series.hpp"
+#include "eval/run_charts/run_series.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 /// buckets: of thinned(), for what changes with time. Charts that would be empty are left out.
 [[nodiscard]] std::vector<page::Chart> view_charts(std::span<const RunSeries> runs, std::size_t buckets);
@@ -17,4 +17,4 @@ namespace fusebench::report {
 [[nodiscard]] std::vector<page::Chart> motion_charts(std::span<const RunSeries> runs, std::size_t buckets);
 [[nodiscard]] std::vector<page::Chart> tracking_charts(std::span<const RunSeries> runs, std::size_t buckets);
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

@@ -1,4 +1,4 @@
-#include "eval/report/run_series.hpp"
+#include "eval/run_charts/run_series.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/run_files/record_files.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -98,4 +98,4 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
   return series;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

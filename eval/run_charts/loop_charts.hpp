@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
-#include "eval/report/run_series.hpp"
+#include "eval/run_charts/run_series.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 /// The path before and after loops from three sides, with a line from each place to the frame that was
 /// compared with it; those that were refused on request. At most so many lines of a kind.
@@ -18,4 +18,4 @@ namespace fusebench::report {
 /// Charts that would be empty are left out.
 [[nodiscard]] std::vector<page::Chart> loop_time_charts(const RunSeries& run, std::size_t buckets);
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "core/base/geometry.hpp"
-#include "eval/report/chart_parts.hpp"
-#include "eval/report/run_charts.hpp"
+#include "eval/run_charts/chart_parts.hpp"
+#include "eval/run_charts/run_charts.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -142,4 +142,4 @@ std::vector<page::Chart> tracking_charts(std::span<const RunSeries> runs, std::s
   return charts;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "eval/page/page.hpp"
-#include "eval/report/run_series.hpp"
+#include "eval/run_charts/run_series.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 inline constexpr double kCentimetres = 100;
 
@@ -50,4 +50,4 @@ std::vector<Vector2d> of_frames(const RunSeries& run, std::size_t buckets, const
   return page::thinned(points, buckets);
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

@@ -1,4 +1,4 @@
-#include "eval/report/loop_charts.hpp"
+#include "eval/run_charts/loop_charts.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <utility>
 
-#include "eval/report/chart_parts.hpp"
+#include "eval/run_charts/chart_parts.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -205,4 +205,4 @@ std::vector<page::Chart> loop_time_charts(const RunSeries& run, std::size_t buck
   return charts;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

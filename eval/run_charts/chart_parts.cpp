@@ -1,4 +1,4 @@
-#include "eval/report/chart_parts.hpp"
+#include "eval/run_charts/chart_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -131,4 +131,4 @@ const RunSeries* with_truth(std::span<const RunSeries> runs) {
   return found == runs.end() ? nullptr : &*found;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

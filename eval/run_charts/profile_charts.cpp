@@ -1,4 +1,4 @@
-#include "eval/report/profile_charts.hpp"
+#include "eval/run_charts/profile_charts.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "eval/profile/run_profile.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::vector<page::Chart> profile_charts(std::span<const RunSeries> runs) {
   return charts;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

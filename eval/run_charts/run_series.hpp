@@ -13,7 +13,7 @@
 #include "eval/run_files/loop_table.hpp"
 #include "eval/run_files/nees_table.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 /// Where a tracked frame was, and where it should have been.
 struct ComparedPose {
@@ -47,4 +47,4 @@ struct RunSeries {
 /// where it should be there.
 [[nodiscard]] RunSeries series_of(const run_files::FoundRun& run, std::string label);
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "eval/mesh_error/mesh_metrics.hpp"
-#include "eval/report/chart_parts.hpp"
-#include "eval/report/run_charts.hpp"
+#include "eval/run_charts/chart_parts.hpp"
+#include "eval/run_charts/run_charts.hpp"
 #include "eval/trajectory_error/motion_pairs.hpp"
 #include "eval/trajectory_error/segment_errors.hpp"
 
-namespace fusebench::report {
+namespace fusebench::run_charts {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::vector<page::Chart> error_charts(std::span<const RunSeries> runs, std::size
   return charts;
 }
 
-}  // namespace fusebench::report
+}  // namespace fusebench::run_charts

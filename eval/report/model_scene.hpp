@@ -1,0 +1,25 @@
+// The models of a recording's runs and the ways of their cameras, to be looked at from all sides.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/page/page.hpp"
+#include "eval/run_charts/run_series.hpp"
+
+namespace fusebench::report {
+
+/// How much of each run is shown.
+struct SceneDetail {
+  std::size_t triangles = 0;  ///< of its model, at most
+  std::size_t poses = 0;      ///< of its path, about
+};
+
+/// Every model in the frame of its first camera, reduced, with its errors as colours where the true scene is
+/// known. Runs without a model are left out; a model that cannot be read is, with a warning.
+[[nodiscard]] page::PageScene model_scene(std::span<const run_charts::RunSeries> runs,
+                                          const SceneDetail& detail, std::vector<std::string>& warnings);
+
+}  // namespace fusebench::report
