@@ -75,7 +75,7 @@ tl::unexpected<Error> unknown_format(std::string_view name) {
   std::vector<std::string_view> names;
   for (const RecordingFormat& format : formats()) names.push_back(format.name);
   return fail(ErrorCode::configuration, fmt::format("format = {} (allowed {})", name, fmt::join(names, ", ")),
-              fmt::format("did you mean {}?", nearest_name(name, names)));
+              did_you_mean(name, names));
 }
 
 Error unrecognised(const std::filesystem::path& place) {

@@ -10,10 +10,11 @@ namespace fusebench {
 inline namespace base {
 
 namespace {
-/// Levenshtein distance, one row of the table at a time.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+/// Levenshtein distance, one row of the table at a time; of the part of b that is most like a, if only a part
+/// has to be.
+std::size_t edit_distance(std::string_view a, std::string_view b, bool of_a_part = false) {
   std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  if (!of_a_part) std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::vector<std::size_t> next(row.size(), i + 1);
     for (std::size_t j = 0; j < b.size(); ++j) {
@@ -22,7 +23,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
     row = std::move(next);
   }
-  return row[b.size()];
+  return of_a_part ? *std::ranges::min_element(row) : row[b.size()];
+}
+
+bool are_alike(std::string_view a, std::string_view b) {
+  constexpr std::size_t kShortest = 3;  // of a part that says something
+  if (a.size() > b.size()) std::swap(a, b);
+  if (2 * edit_distance(a, b) <= b.size()) return true;
+  return a.size() >= kShortest && 3 * edit_distance(a, b, true) <= a.size();
 }
 }  // namespace
 
@@ -31,12 +39,21 @@ std::string nearest_name(std::string_view name, std::span<const std::string_view
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const std::string_view candidate : names) {
     const std::size_t distance = edit_distance(name, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
+    if (distance >= best_distance || !are_alike(name, candidate)) continue;
+    best_distance = distance;
+    best = candidate;
   }
   return std::string(best);
+}
+
+std::string nearest_hint(std::string_view name, std::span<const std::string_view> names) {
+  const std::string nearest = nearest_name(name, names);
+  return nearest.empty() ? "" : " (nearest: " + nearest + ")";
+}
+
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> names) {
+  const std::string nearest = nearest_name(name, names);
+  return nearest.empty() ? "" : "did you mean " + nearest + "?";
 }
 
 }  // namespace base

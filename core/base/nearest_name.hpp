@@ -8,8 +8,16 @@
 namespace fusebench {
 inline namespace base {
 
-/// The name with the least Levenshtein distance (the first of equals); empty for an empty list.
+/// Of the names that are alike the one with the least Levenshtein distance (the first of equals); empty where
+/// none is. Two are alike if at most half of the longer one differs, or at most a third of the shorter one
+/// from a part of the longer one.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string_view> names);
+
+/// " (nearest: NAME)", to go on behind "unknown ... 'name'"; empty where no name is alike.
+[[nodiscard]] std::string nearest_hint(std::string_view name, std::span<const std::string_view> names);
+
+/// "did you mean NAME?"; empty where no name is alike.
+[[nodiscard]] std::string did_you_mean(std::string_view name, std::span<const std::string_view> names);
 
 }  // namespace base
 }  // namespace fusebench

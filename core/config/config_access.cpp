@@ -173,10 +173,10 @@ Result<void> check_group(const Config& config, const TomlTable& table) {
     if (group == table.key) return {};
     if (groups.empty() || groups.back() != group) groups.push_back(group);
   }
-  return fail(ErrorCode::configuration,
-              fmt::format("{}: unknown table [{}] (nearest: [{}])", table.place, table.key,
-                          nearest_name(table.key, groups)),
-              fmt::format("tables are {}", fmt::join(groups, ", ")));
+  return fail(
+      ErrorCode::configuration,
+      fmt::format("{}: unknown table [{}]{}", table.place, table.key, nearest_hint(table.key, groups)),
+      fmt::format("tables are {}", fmt::join(groups, ", ")));
 }
 
 /// Relations between the options by which places are recognised.
@@ -237,8 +237,7 @@ Result<void> set_option(Config& config, std::string_view key, const OptionValue&
   const std::vector<OptionRow> rows = describe_options(config);
   std::vector<std::string_view> names;
   for (const OptionRow& row : rows) names.push_back(row.key);
-  return fail(ErrorCode::configuration,
-              fmt::format("unknown option '{}' (nearest: {})", key, nearest_name(key, names)),
+  return fail(ErrorCode::configuration, fmt::format("unknown option '{}'{}", key, nearest_hint(key, names)),
               "`fusebench config` lists all options");
 }
 

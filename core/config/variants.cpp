@@ -109,8 +109,7 @@ Result<Variant> find_variant(std::string_view name) {
     if (variant.name == name) return variant;
     names.push_back(variant.name);
   }
-  return fail(ErrorCode::usage,
-              fmt::format("unknown variant '{}' (nearest: {})", name, nearest_name(name, names)),
+  return fail(ErrorCode::usage, fmt::format("unknown variant '{}'{}", name, nearest_hint(name, names)),
               fmt::format("variants are {}", fmt::join(names, ", ")));
 }
 

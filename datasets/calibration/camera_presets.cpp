@@ -96,7 +96,7 @@ Result<CalibratedCamera> parse_camera(std::string_view text) {
   return fail(ErrorCode::configuration,
               fmt::format("camera = {} (allowed {}, or fx,fy,cx,cy[,k1,k2,p1,p2,k3])", text,
                           fmt::join(preset_names(), ", ")),
-              fmt::format("did you mean {}?", nearest_name(text, preset_names())));
+              did_you_mean(text, preset_names()));
 }
 
 std::optional<CalibratedCamera> camera_by_folder_name(std::string_view folder_name) {

@@ -231,7 +231,7 @@ Result<RigCalibration> catalogue_calibration(std::string_view name) {
     std::vector<std::string_view> names;
     for (const auto& [known, file] : catalogue().calibrations) names.push_back(known);
     return fail(ErrorCode::configuration, fmt::format("no calibration '{}' in configs/recordings", name),
-                fmt::format("did you mean {}?", nearest_name(name, names)));
+                did_you_mean(name, names));
   }
   const std::string file(found->second.name);
   const auto document = config::parse_toml(found->second.text, file);

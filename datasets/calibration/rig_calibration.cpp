@@ -73,8 +73,7 @@ class Section {
   void allow(std::span<const std::string_view> keys) {
     for (const auto& [key, entry] : entries_) {
       if (std::ranges::find(keys, key) != keys.end()) continue;
-      report(fmt::format("{}: unknown key '{}' (nearest: {})", entry->place, entry->key,
-                         nearest_name(key, keys)),
+      report(fmt::format("{}: unknown key '{}'{}", entry->place, entry->key, nearest_hint(key, keys)),
              fmt::format("keys of [{}] are {}", name_, fmt::join(keys, ", ")));
     }
   }

@@ -82,7 +82,7 @@ Result<ExportFormat> parse_export_format(std::string_view name) {
   }
   const std::vector<std::string_view> names = export_format_names();
   return fail(ErrorCode::configuration, fmt::format("format = {} (allowed {})", name, fmt::join(names, ", ")),
-              fmt::format("did you mean {}?", nearest_name(name, names)));
+              did_you_mean(name, names));
 }
 
 Result<ExportSummary> export_recording(const recording::Recording& recording, ExportFormat format,

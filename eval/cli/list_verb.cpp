@@ -178,8 +178,8 @@ Result<void> filter(Listing& listing, const std::string& what, const std::string
   });
   if (!listing.rows.empty()) return {};
   const std::vector<std::string_view> views(names.begin(), names.end());
-  return fail(ErrorCode::usage, fmt::format("none of the {} {} contains '{}' (nearest: {})", names.size(),
-                                            what, text, nearest_name(text, views)));
+  return fail(ErrorCode::usage, fmt::format("none of the {} {} contains '{}'{}", names.size(), what, text,
+                                            nearest_hint(text, views)));
 }
 
 Result<Listing> whole_listing(const ListOptions& options) {

@@ -58,7 +58,7 @@ Result<std::size_t> index_of(const std::string& name, const std::vector<std::str
   const auto found = std::ranges::find(known, name);
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
   return fail(ErrorCode::configuration,
-              fmt::format("{}: unknown metric '{}' (nearest: {})", place, name, nearest_name(name, known)),
+              fmt::format("{}: unknown metric '{}'{}", place, name, nearest_hint(name, known)),
               fmt::format("they are {}", fmt::join(known, ", ")));
 }
 

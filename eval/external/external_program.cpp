@@ -196,7 +196,7 @@ Result<void> read_entry(const config::TomlEntry& entry, ExternalProgram& program
   const std::string& key = entry.key;
   if (std::ranges::find(kKeys, key) == kKeys.end()) {
     return fail(ErrorCode::configuration,
-                fmt::format("{}: unknown key '{}' (nearest: {})", entry.place, key, nearest_name(key, kKeys)),
+                fmt::format("{}: unknown key '{}'{}", entry.place, key, nearest_hint(key, kKeys)),
                 fmt::format("a system has {}", fmt::join(kKeys, ", ")));
   }
   if (key == "name") return read_name(entry, program);

@@ -72,8 +72,7 @@ Result<void> check_names(const Table1Protocol& protocol, const std::vector<std::
   for (const Reading& reading : protocol.readings) known.push_back(reading.name);
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    return fail(ErrorCode::usage,
-                fmt::format("no reading '{}' (nearest: {})", name, nearest_name(name, known)),
+    return fail(ErrorCode::usage, fmt::format("no reading '{}'{}", name, nearest_hint(name, known)),
                 fmt::format("readings are: {}", fmt::join(known, "; ")));
   }
   return {};

@@ -65,10 +65,9 @@ Result<void> check_metrics(const config::TomlEntry& entry, const std::vector<std
   for (const StudyValue& value : study_values()) known.push_back(value.name);
   for (const std::string& name : names) {
     if (find_study_value(name) != nullptr) continue;
-    return fail(
-        ErrorCode::configuration,
-        fmt::format("{}: unknown metric '{}' (nearest: {})", entry.place, name, nearest_name(name, known)),
-        fmt::format("metrics are {}", fmt::join(known, ", ")));
+    return fail(ErrorCode::configuration,
+                fmt::format("{}: unknown metric '{}'{}", entry.place, name, nearest_hint(name, known)),
+                fmt::format("metrics are {}", fmt::join(known, ", ")));
   }
   return {};
 }

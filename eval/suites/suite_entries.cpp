@@ -18,7 +18,7 @@ tl::unexpected<Error> wrong_entry(const config::TomlEntry& entry, std::string_vi
 tl::unexpected<Error> unknown_key(const std::string& place, const std::string& key,
                                   std::span<const std::string_view> keys, std::string_view what) {
   return fail(ErrorCode::configuration,
-              fmt::format("{}: unknown key '{}' (nearest: {})", place, key, nearest_name(key, keys)),
+              fmt::format("{}: unknown key '{}'{}", place, key, nearest_hint(key, keys)),
               fmt::format("keys of {} are {}", what, fmt::join(keys, ", ")));
 }
 

@@ -163,8 +163,8 @@ Result<void> check_groups(const Suite& suite) {
   for (const Criterion& criterion : suite.criteria) {
     for (const std::string& group : criterion.groups) {
       if (suite.all || std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
-      return fail(ErrorCode::configuration, fmt::format("{}: no recording is in the group '{}' (nearest: {})",
-                                                        criterion.place, group, nearest_name(group, known)));
+      return fail(ErrorCode::configuration, fmt::format("{}: no recording is in the group '{}'{}",
+                                                        criterion.place, group, nearest_hint(group, known)));
     }
   }
   return {};
@@ -230,8 +230,9 @@ Result<fs::path> find_folder_named(const std::string& name, const fs::path& data
   const std::string there = present.empty()
                                 ? "there are none under --data"
                                 : fmt::format("under --data there are: {}", fmt::join(present, ", "));
+  const std::string nearest = did_you_mean(name, known);
   return fail(ErrorCode::data_missing, fmt::format("no recording '{}' here or under {}", name, data.string()),
-              fmt::format("did you mean {}? {}", nearest_name(name, known), there));
+              nearest.empty() ? there : nearest + " " + there);
 }
 
 Result<Suite> suite_of(const config::TomlDocument& document, const std::string& file) {

@@ -57,8 +57,7 @@ Result<fs::path> find_suite(const fs::path& name, const fs::path& configs) {
   const std::vector<std::string_view> views(names.begin(), names.end());
   return fail(
       ErrorCode::data_missing,
-      fmt::format("no suite '{}'{}", name.string(),
-                  names.empty() ? "" : fmt::format(" (nearest: {})", nearest_name(name.string(), views))),
+      fmt::format("no suite '{}'{}", name.string(), nearest_hint(name.string(), views)),
       "`fusebench list suites` lists those that are found by name; any other one is given by its file");
 }
 

@@ -71,8 +71,7 @@ Result<PoseRelation> parse_pose_relation(std::string_view text) {
     if (spelling.name == text) return spelling.relation;
     names.push_back(spelling.name);
   }
-  return fail(ErrorCode::usage,
-              fmt::format("unknown pose relation '{}' (nearest: {})", text, nearest_name(text, names)),
+  return fail(ErrorCode::usage, fmt::format("unknown pose relation '{}'{}", text, nearest_hint(text, names)),
               fmt::format("pose relations are {}", fmt::join(names, ", ")));
 }
 

@@ -1,0 +1,39 @@
+#include "core/base/nearest_name.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string_view>
+
+namespace fusebench {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames = {"full", "no-imu", "tsdf.voxel_m", "depth.max_m"};
+
+TEST(NearestName, OneThatIsMisspeltIsFound) {
+  EXPECT_EQ(nearest_name("ful", kNames), "full");
+  EXPECT_EQ(nearest_name("no_imu", kNames), "no-imu");
+  EXPECT_EQ(nearest_name("lufl", kNames), "full");
+}
+
+TEST(NearestName, APartOfALongOneIsFoundAlsoMisspelt) {
+  EXPECT_EQ(nearest_name("voxel", kNames), "tsdf.voxel_m");
+  EXPECT_EQ(nearest_name("tsdf.voxl", kNames), "tsdf.voxel_m");
+}
+
+TEST(NearestName, WhatIsLikeNothingHasNone) {
+  EXPECT_EQ(nearest_name("beauty", kNames), "");
+  EXPECT_EQ(nearest_name("zzz", kNames), "");
+  EXPECT_EQ(nearest_name("", kNames), "");
+  EXPECT_EQ(nearest_name("full", {}), "");
+}
+
+TEST(NearestName, HintsAreSentencesOrNothing) {
+  EXPECT_EQ(nearest_hint("ful", kNames), " (nearest: full)");
+  EXPECT_EQ(nearest_hint("zzz", kNames), "");
+  EXPECT_EQ(did_you_mean("ful", kNames), "did you mean full?");
+  EXPECT_EQ(did_you_mean("zzz", kNames), "");
+}
+
+}  // namespace
+}  // namespace fusebench
