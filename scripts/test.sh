@@ -88,6 +88,13 @@ check_tidy() {
     xargs -0 -r -n 1 -P "$(nproc)" clang-tidy-19 -p build/ci --quiet --warnings-as-errors='*'
 }
 
+# Waits for them. Tests whose packages could not be installed are skipped, and say so.
+packages_for_tests() {
+  while [[ ! -s $logs/packages.status ]]; do sleep 0.5; done
+  cat "$logs/packages.txt"
+  return "$(<"$logs/packages.status")"
+}
+
 # What the checks that failed said last, then the summary: the end of a log tells what is wrong.
 finish() {
   local name
@@ -107,6 +114,12 @@ finish() {
 
 step set-up ./scripts/setup.sh
 if ((failures > 0)); then finish; fi
+# What only tests need comes while the build, which does not need it, computes.
+{
+  ./scripts/setup.sh clang-19 libclang-rt-19-dev llvm-19 chromium-driver python3-selenium slurm-wlm munge iproute2 \
+    >"$logs/packages.txt" 2>&1 && status=0 || status=$?
+  printf '%d\n' "$status" >"$logs/packages.status"
+} &
 step scripts check_scripts
 step formatting check_format
 step includes ./scripts/check_includes.py
@@ -114,6 +127,7 @@ step references ./scripts/check_references.sh
 step links ./scripts/check_links.py
 step type-names ./scripts/check_type_names.sh
 step build ./scripts/build.sh ci
+step test-packages packages_for_tests
 if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi
 step tests-built ./scripts/check_tests_built.sh build/ci
 step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
@@ -121,8 +135,6 @@ if $tidy; then step clang-tidy check_tidy; fi
 if $odr; then step one-definition ./scripts/check_odr.sh; fi
 step fuzz ./scripts/fuzz.sh 60
 step attack ./scripts/attack.sh --seconds 50
-step browser ./scripts/setup.sh chromium-driver python3-selenium
-step cluster ./scripts/setup.sh slurm-wlm munge iproute2
 step baseline ./scripts/check_baseline.sh --binary build/ci/fusebench
 step instructions ./scripts/check_instructions.sh
 step tests ctest --preset ci
