@@ -27,7 +27,10 @@ names=$(mktemp)
 trap 'rm -f "$names" "$object.part"' EXIT
 # Without groups, of which a linker would keep one a name, whatever is local.
 ld -r --force-group-allocation --whole-archive "$archive" -o "$object.part"
-nm "$object.part" | awk '$2 ~ /^[WVu]$/ && $3 ~ /Eigen/ { print $3 }' | LC_ALL=C sort -u >"$names"
+# A static variable of an inline function is "unique" rather than weak, which cannot be made local as it is.
+nm "$object.part" | awk '$2 == "u" { print $3 }' | LC_ALL=C sort -u >"$names"
+objcopy --weaken-symbols="$names" "$object.part"
+nm "$object.part" | awk '$2 ~ /^[WV]$/ && $3 ~ /Eigen/ { print $3 }' | LC_ALL=C sort -u >"$names"
 if [[ ! -s $names ]]; then
   printf 'isolate_eigen: %s has no functions of Eigen\n' "$archive" >&2
   exit 1
