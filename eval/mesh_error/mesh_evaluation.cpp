@@ -4,7 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <span>
+
+#include "core/base/geometry.hpp"
 
 namespace fusebench::mesh_error {
 
@@ -55,6 +58,40 @@ Result<void> check_registered(const RegistrationResult& icp, const MeshErrorOpti
                             "trajectory.tum of a run), or from --transform FILE"));
 }
 
+/// How far icp moved the points, as a share of their distance from their own centre (both rms).
+double moved_share(std::span<const Vector3d> points, const SE3& moved) {
+  Vector3d center = Vector3d::Zero();
+  for (const Vector3d& point : points) center += point / static_cast<double>(points.size());
+  double moved_m2 = 0;
+  double radius_m2 = 0;
+  for (const Vector3d& point : points) {
+    moved_m2 += (moved * point - point).squaredNorm();
+    radius_m2 += (point - center).squaredNorm();
+  }
+  return std::sqrt(moved_m2 / radius_m2);
+}
+
+/// Of an icp that had no start.
+std::string doubt_of(const RegistrationResult& icp, std::span<const Vector3d> points,
+                     const MeshErrorOptions& options) {
+  const double most_m = options.thresholds_m.empty() ? 0 : std::ranges::max(options.thresholds_m);
+  const double share = moved_share(points, icp.T_surface_points);
+  const bool far = share > kNearShare;
+  const bool loose = icp.kept_rms_m > kCloseShare * most_m;
+  if (!far && !loose) return "";
+  const std::string moved =
+      fmt::format("moved the reconstruction by {:.0f} % of its radius (turned by {:.1f} deg)", 100 * share,
+                  degrees(so3_log(icp.T_surface_points.rotation).norm()));
+  const std::string left = fmt::format("left it {:.4g} m (rms) from the truth", icp.kept_rms_m);
+  return fmt::format(
+      "icp had no start, {}: it may have ended in a wrong place, which these numbers do not tell from a bad "
+      "reconstruction; start it from the poses, --trajectories TRUTH ESTIMATE (truth.tum and trajectory.tum "
+      "of a run), or from --transform FILE",
+      far && loose ? moved + " and " + left
+      : far        ? moved
+                   : left);
+}
+
 Result<void> check_observed(const MeshComparison& comparison, double least) {
   const double share =
       static_cast<double>(comparison.truth_observed()) / static_cast<double>(comparison.truth_samples());
@@ -94,11 +131,14 @@ Result<MeshEvaluation> evaluate_mesh(const PreciseMesh& reconstruction, const Pr
   }
   trajectory_error::Alignment alignment = request.start;
   if (request.icp) {
-    const auto moved = register_points(fewer(comparison->reconstruction_points()), comparison->truth(),
-                                       alignment.T_reference_estimate, *request.icp, workers);
+    const bool started = request.start.mode != "none";
+    const std::vector<Vector3d> points = fewer(comparison->reconstruction_points());
+    const auto moved =
+        register_points(points, comparison->truth(), alignment.T_reference_estimate, *request.icp, workers);
     if (!moved) return tl::unexpected(moved.error());
-    if (auto near = check_registered(*moved, request.errors, request.start.mode != "none"); !near)
+    if (auto near = check_registered(*moved, request.errors, started); !near)
       return tl::unexpected(near.error());
+    if (!started) result.icp_doubt = doubt_of(*moved, points, request.errors);
     result.icp = *moved;
     alignment = {"icp", moved->T_surface_points};
   }

@@ -42,12 +42,21 @@ struct MeshEvaluation {
   MeshErrorResult errors;                     ///< completeness of what is observed
   std::optional<MeshErrorResult> not_culled;  ///< with views: of all of the truth
   std::optional<RegistrationResult> icp;
+  std::string icp_doubt;  ///< why icp may have found another place, and what settles it; empty: no reason
   SurfregScore surfreg;
   std::vector<double> vertex_errors_m;  ///< if they were asked for
 };
 
 /// Largest of a mesh's extents over the other's, from which on one is not taken for metres.
 inline constexpr double kOtherUnit = 20;
+
+/// Where nothing says where the reconstruction is (start.mode is "none"), icp takes the nearest points for
+/// the same ones. That holds near the right place only, and a wrong one is not told from a bad reconstruction
+/// by its distances. So there is a doubt (icp_doubt) if the reconstruction moved by more than kNearShare of
+/// its own radius (rms; a turn of 14 degrees), or if the points that count are still further from the truth
+/// (rms) than kCloseShare of the largest threshold.
+inline constexpr double kNearShare = 0.25;
+inline constexpr double kCloseShare = 0.4;
 
 /// Errors data_corrupt: those of MeshComparison::create and register_points; boxes that differ kOtherUnit
 /// times in size; a truth of which less than least_observed is seen; or a registration that leaves the points

@@ -757,6 +757,10 @@ check_meshes() {
   awk '/^v/ { print "v", -$3 + 2, $2 * 0.9 - $4 * 0.4 + 3, $2 * 0.4 + $4 * 0.9 - 1; next } { print }' truth.obj >first_camera.obj
   refused "an icp that sticks" 3 'stuck in a wrong place' 'hint:--trajectories TRUTH ESTIMATE' -- \
     eval mesh first_camera.obj truth.obj --align icp
+  awk '/^v/ { print "v", $2 * 0.9063 - $3 * 0.4226, $2 * 0.4226 + $3 * 0.9063, $4; next } { print }' truth.obj >turned.obj
+  checks=$((checks + 1))
+  "$binary" eval mesh turned.obj truth.obj --align icp >stdout 2>stderr || complain "icp from far: exit code $?"
+  grep -q '^warning: icp had no start, moved .*--trajectories TRUTH ESTIMATE' stderr || complain "icp from far is not doubted"
   refused "millimetres for metres" 3 'not to be in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
   refused "no such mesh" 3 'absent.ply' -- eval mesh absent.ply truth.obj
   refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj

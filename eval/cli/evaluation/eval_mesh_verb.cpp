@@ -64,6 +64,7 @@ void warn(const mesh_error::MeshEvaluation& evaluation) {
         "warning: icp had not converged after {} steps: the result may depend on where it started",
         evaluation.icp->steps));
   }
+  if (!evaluation.icp_doubt.empty()) console::print_progress("warning: " + evaluation.icp_doubt);
   const mesh_error::MeshThreshold& widest = evaluation.errors.thresholds.back();
   if (widest.precision == 0) {
     console::print_progress(

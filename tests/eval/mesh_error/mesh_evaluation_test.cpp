@@ -46,6 +46,7 @@ TEST(MeshEvaluation, IcpBringsTheReconstructionBack) {
   const auto result = evaluate_mesh(moved(egg(1), elsewhere.inverse()), egg(1), request, workers);
   ASSERT_TRUE(result.has_value()) << result.error().message;
   EXPECT_EQ(result->errors.alignment.mode, "icp");
+  EXPECT_EQ(result->icp_doubt, "");
   EXPECT_LT(result->errors.accuracy.stats.max, 1e-5);
   EXPECT_LT((result->errors.alignment.T_reference_estimate.translation - elsewhere.translation).norm(), 1e-5);
   EXPECT_LT(result->surfreg.vertex_mean_m, 1e-4);
@@ -73,6 +74,30 @@ TEST(MeshEvaluation, AnIcpThatSticksInAWrongPlaceIsRefused) {
   request.errors = {};
   request.start = {"trajectory", elsewhere};
   EXPECT_TRUE(evaluate_mesh(reconstruction, egg(1), request, workers).has_value());
+}
+
+TEST(MeshEvaluation, AnIcpWithoutAStartThatMovedFarIsDoubted) {
+  const Workers workers(1);
+  const SE3 elsewhere{so3_exp({0, 0, 0.5}), {0.02, 0.03, 0}};
+  MeshRequest request;
+  request.icp = RegistrationOptions{};
+  const PreciseMesh reconstruction = moved(egg(1), elsewhere.inverse());
+  const auto far = evaluate_mesh(reconstruction, egg(1), request, workers);
+  ASSERT_TRUE(far.has_value()) << far.error().message;
+  EXPECT_NE(far->icp_doubt.find("turned by 28.6 deg"), std::string::npos) << far->icp_doubt;
+  EXPECT_NE(far->icp_doubt.find("--trajectories TRUTH ESTIMATE"), std::string::npos) << far->icp_doubt;
+  request.start = {"trajectory", elsewhere};
+  EXPECT_EQ(evaluate_mesh(reconstruction, egg(1), request, workers)->icp_doubt, "");
+}
+
+TEST(MeshEvaluation, AnIcpWithoutAStartThatEndedFarFromTheTruthIsDoubted) {
+  const Workers workers(1);
+  MeshRequest request;
+  request.icp = RegistrationOptions{};
+  const auto loose = evaluate_mesh(sphere(1.03, 30), sphere(1, 30), request, workers);
+  ASSERT_TRUE(loose.has_value()) << loose.error().message;
+  EXPECT_NE(loose->icp_doubt.find("m (rms) from the truth"), std::string::npos) << loose->icp_doubt;
+  EXPECT_EQ(evaluate_mesh(sphere(1.01, 30), sphere(1, 30), request, workers)->icp_doubt, "");
 }
 
 TEST(MeshEvaluation, TellsBothWithAndWithoutCulling) {
