@@ -50,6 +50,7 @@ class TextTable {
   [[nodiscard]] int line() const { return line_; }
   [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[column]; }
   [[nodiscard]] bool has(std::size_t column) const { return column < fields_.size(); }
+  [[nodiscard]] bool has_commas() const { return text_.find(',') != std::string_view::npos; }
   [[nodiscard]] Result<std::int64_t> time_ns(std::size_t column, TimeUnit unit = TimeUnit::seconds) const;
   [[nodiscard]] Result<double> number(std::size_t column) const;
   /// Fills values from as many neighbouring columns.

@@ -91,6 +91,11 @@ Result<Trajectory> read_euroc(const std::filesystem::path& file, trajectory::Dup
   const Result<void> done = io::for_each_stamped_row(
       file, "timestamp px py pz qw qx qy qz [vx vy vz wx wy wz ax ay az]", trajectory::order_for(duplicates),
       [&](const io::TextTable& table, std::int64_t time_ns) -> Result<void> {
+        // TUM text has as many columns, but w last: read as these it gives poses like any others.
+        if (!table.has_commas())
+          return table.fail_here("no commas between the numbers, so that this is no ground truth of EuRoC",
+                                 "a timestamp in seconds, tx ty tz, qx qy qz qw between blanks is TUM text: "
+                                 "say tum in place of euroc");
         Eigen::Matrix<double, 7, 1> v;
         if (auto read = table.numbers(1, {v.data(), 7}); !read) return read;
         return trajectory::take_pose(table, time_ns, v.head<3>(), Quaterniond(v[3], v[4], v[5], v[6]), rows);

@@ -17,7 +17,7 @@ namespace fusebench::trajectory_files {
 enum class TrajectoryFormat {
   tum,       ///< "timestamp tx ty tz qx qy qz qw", seconds and metres
   kitti,     ///< the upper 3x4 of a pose, row by row; no stamps, poses go by their number
-  euroc,     ///< "timestamp[ns] px py pz qw qx qy qz", with or without velocity and biases (data.csv)
+  euroc,     ///< "timestamp[ns],px,py,pz,qw,qx,qy,qz", with or without velocity and biases (data.csv)
   log,       ///< Redwood's and Open3D's: the number of a frame, then its 4x4 pose (log_trajectory.hpp)
   openvins,  ///< tum, then the upper triangles of the covariances of orientation and position (ov_eval)
 };
@@ -59,8 +59,8 @@ struct TrajectoryReading {
 /// orthonormal; warnings say how far off they were, and what ordered() did.
 ///
 /// Errors name file:line: data_missing; data_corrupt for a row that is no pose, a matrix that is no rotation
-/// to a hundredth, those of ordered(), columns that fit no format, or (openvins) time that does not increase
-/// or a variance below zero.
+/// to a hundredth, a row of euroc without commas, those of ordered(), columns that fit no format, or
+/// (openvins) time that does not increase or a variance below zero.
 [[nodiscard]] Result<LoadedTrajectory> load_trajectory(const std::filesystem::path& file,
                                                        const TrajectoryReading& reading,
                                                        std::vector<std::string>& warnings);

@@ -535,6 +535,7 @@ check_evaluation() {
   prints 'trans_part \[cm\]' "change_unit" eval ate gt.txt est.txt --change_unit cm
   prints 'angle_deg \[deg\]' "relation" eval ate gt.txt est.txt --pose_relation angle_deg
   prints 'data.csv \(euroc\): 60 poses' "euroc" eval ate data.csv est.txt -a
+  refused "TUM text as euroc" 3 'est.txt:1: no commas' 'hint:say tum' -- eval traj euroc est.txt
   prints 'estimate +est.txt \(tum\)' "euroc against tum" eval ate euroc data.csv est.txt -a
   prints 'by the number of the pose' "kitti" eval ate kitti kitti.txt kitti.txt
   prints 'consecutive, delta 1 f, selected from the estimate' "rpe" eval rpe gt.txt est.txt

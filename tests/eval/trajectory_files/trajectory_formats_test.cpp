@@ -70,6 +70,16 @@ TEST_F(TrajectoryFormats, ColumnsTellTheFormat) {
   expect_refused("# nothing\n", "has no rows");
 }
 
+TEST_F(TrajectoryFormats, TumTextIsNoGroundTruthOfEuroc) {
+  const auto file = folder_.write("est.txt", "# comment\n0.1 1 2 3 0 0 0 1\n0.2 1 2 3 0 0 0 1\n");
+  const auto refused = load_trajectory(file, {TrajectoryFormat::euroc}, warnings_);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::data_corrupt);
+  EXPECT_NE(refused.error().message.find("est.txt:2: no commas"), std::string::npos)
+      << refused.error().message;
+  EXPECT_NE(refused.error().hint.find("say tum"), std::string::npos) << refused.error().hint;
+}
+
 TEST_F(TrajectoryFormats, UnitsOfStampsAreFoundByTheirSizeOrTold) {
   const auto stamp_of = [&](std::string_view stamp, std::optional<io::TimeUnit> unit = {}) {
     const auto loaded =
