@@ -692,6 +692,9 @@ check_evo() {
   refused "a picture that is none" 2 'plot.png: plots are drawn as .svg or .pdf' 'hint:PNG' -- eval ape gt.txt est.txt --plot plot.png
   refused "no counterpart" 2 "evo's --rerun has no counterpart" 'hint:--save_plot' -- eval ape tum gt.txt est.txt --rerun
   refused "a misspelt option" 2 'eval ate. has no option --alignn \(nearest: --align\)' -- eval ape gt.txt est.txt --alignn
+  refused "an unknown alignment" 2 "no alignment 'foo' .allowed none, se3, " 'hint:without a mode' -- eval ape --align foo gt.txt est.txt
+  refused "a misspelt alignment" 2 "no alignment 'smi3' .*nearest: sim3" -- eval ape gt.txt est.txt --align smi3
+  refused "an absent file to align" 3 'absent.txt' -- eval ape --align absent.txt est.txt
   refused "an unknown view" 2 'plot_mode' -- eval ape gt.txt est.txt --plot_mode xx
   refused "no place for a log" 4 'logfile absent/log' -- eval traj gt.txt --silent --logfile absent/log
 

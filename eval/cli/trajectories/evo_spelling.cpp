@@ -1,6 +1,7 @@
 #include "eval/cli/trajectories/evo_spelling.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/nearest_name.hpp"
+#include "core/base/printable.hpp"
 #include "eval/cli/trajectories/alignment_options.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
@@ -49,6 +52,22 @@ bool is_picture(std::string_view argument) {
 
 bool is_alignment(std::string_view argument) {
   return std::ranges::any_of(kAlignments, [&](const auto& entry) { return argument == entry.first; });
+}
+
+/// --align without a mode is a flag, behind which files may stand. A word that is none of these, nor the path
+/// of a file that is absent, was meant as a mode.
+Result<void> check_mode(const std::string& word) {
+  std::error_code ignored;
+  const bool other = word.starts_with("-") || word.find_first_of("./") != std::string::npos ||
+                     trajectory_files::parse_trajectory_format(word) ||
+                     std::filesystem::exists(word, ignored);
+  if (other || is_alignment(word)) return {};
+  std::vector<std::string_view> modes;
+  for (const auto& [name, mode] : kAlignments) modes.emplace_back(name);
+  return fail(ErrorCode::usage,
+              fmt::format("no alignment '{}' (allowed {}){}", printable(word), fmt::join(modes, ", "),
+                          nearest_hint(word, modes)),
+              "--align without a mode is se3; a file may follow it then, and there is none of this name");
 }
 
 /// Flags in one, "-vap", of which the last one draws.
@@ -94,6 +113,9 @@ Result<std::vector<std::string>> with_own_spelling(std::vector<std::string> argu
     std::string& argument = arguments[i];
     if (auto known = check_counterpart(argument, arguments[1]); !known) return tl::unexpected(known.error());
     const bool has_next = i + 1 < arguments.size();
+    if (argument == "--align" && has_next) {
+      if (auto allowed = check_mode(arguments[i + 1]); !allowed) return tl::unexpected(allowed.error());
+    }
     if (argument == "--align" && !(has_next && is_alignment(arguments[i + 1]))) {
       spelled.emplace_back("-a");
     } else if (argument == "--plot" && !(has_next && is_picture(arguments[i + 1]))) {

@@ -14,8 +14,8 @@ namespace fusebench::cli::trajectories {
 /// into a file of the usual name unless the name of a picture follows. Arguments of other verbs stay as they
 /// are.
 ///
-/// Error usage: a bag (bag, bag2, mcap), or a flag of evo's that has no counterpart here, with what to do
-/// instead.
+/// Error usage: a bag (bag, bag2, mcap), a flag of evo's that has no counterpart here, with what to do
+/// instead, or a word behind --align that is neither a mode nor a format nor a file.
 [[nodiscard]] Result<std::vector<std::string>> with_own_spelling(std::vector<std::string> arguments);
 
 /// Takes a format that stands before the files, as in `evo_ape tum ref.txt est.txt`, off the list. Error
