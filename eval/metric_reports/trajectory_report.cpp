@@ -158,11 +158,12 @@ Json json_of(const trajectory_error::Similarity& alignment) {
           R(2, 0), R(2, 1), R(2, 2), t.z(), 0.0,     0.0,     0.0,     1.0};
 }
 
-Json json_of(const trajectory_error::ErrorSeries& series) {
+Json json_of(const trajectory_error::ErrorSeries& series, EachError each) {
   Json json = {{"relation", series.relation}, {"unit", series.unit}};
-  // Null, not an empty list, where there are more errors than are listed.
-  json["errors"] = series.streamed ? Json() : Json(series.errors);
-  json["timestamps_ns"] = series.streamed ? Json() : Json(series.at_ns);
+  if (each == EachError::listed) {
+    json["errors"] = series.errors;
+    json["timestamps_ns"] = series.at_ns;
+  }
   json["stats"] = metrics::json_of(series.stats);
   return json;
 }
@@ -202,7 +203,8 @@ std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation, co
   return text + statistics_text(evaluation);
 }
 
-std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, const ComparedFiles& files) {
+std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, const ComparedFiles& files,
+                    EachError each) {
   const trajectory_error::TrajectoryRequest& request = evaluation.request;
   const trajectory_error::ErrorSeries& first = evaluation.series.front();
   Json json = {{"metric", trajectory_error::to_string(request.metric)},
@@ -231,11 +233,11 @@ std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, co
   if (evaluation.fitted_offset) json["fitted_offset"] = trajectory_error::json_of(*evaluation.fitted_offset);
   json["plane"] = trajectory_error::to_string(request.plane);
   if (request.metric == trajectory_error::TrajectoryMetric::rpe) json["motions"] = motions_json(request);
-  Json series = json_of(first);
-  for (const char* key : {"errors", "timestamps_ns", "stats"}) json[key] = std::move(series[key]);
+  json.update(json_of(first, each));
   if (evaluation.series.size() > 1) {
     Json also = Json::array();
-    for (std::size_t i = 1; i < evaluation.series.size(); ++i) also.push_back(json_of(evaluation.series[i]));
+    for (std::size_t i = 1; i < evaluation.series.size(); ++i)
+      also.push_back(json_of(evaluation.series[i], each));
     json["also"] = std::move(also);
   }
   if (!evaluation.segments.empty()) {

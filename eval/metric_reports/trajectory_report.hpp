@@ -20,10 +20,13 @@ struct ComparedFiles {
 [[nodiscard]] std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation,
                                   const ComparedFiles& files);
 
+enum class EachError { left_out, listed };
+
 /// {"metric", "protocol", "relation", "unit", "pairs", "possible", "coverage", "association", "alignment":
-/// {"mode", "first", "scale", "matrix"}, "errors", "stats"} of the first series, the other series as "also",
-/// segments as "segments", and of motions "motions". Stamps in integer nanoseconds. Ends with a newline.
+/// {"mode", "first", "scale", "matrix"}, "stats"} of the first series, the other series as "also", segments
+/// as "segments", and of motions "motions". Listed, each error of a series is in "errors", and its stamp,
+/// integer nanoseconds, in "timestamps_ns". Ends with a newline.
 [[nodiscard]] std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation,
-                                  const ComparedFiles& files);
+                                  const ComparedFiles& files, EachError each);
 
 }  // namespace fusebench::metric_reports

@@ -171,8 +171,8 @@ Result<void> check_listing(const MotionListing& listing, std::size_t motions) {
       fmt::format("{} motions are too many to list each error, which would take {:.1f} GB (allowed: up "
                   "to {} motions)",
                   motions, kBytesEach * 1e-9 * static_cast<double>(motions), listing.most),
-      "leave out --all_pairs or take fewer poses (--downsample N); without --errors, more are "
-      "compared");
+      "leave out --all_pairs or take fewer poses (--downsample N); without --errors and --all_errors, "
+      "more are compared");
 }
 
 std::vector<double> path_lengths(const Trajectory& trajectory) {

@@ -544,6 +544,10 @@ check_evaluation() {
   prints 'length \[m\] +segments' "rpe of rpg" eval rpe gt.txt est.txt --protocol rpg
   prints 'held where it has no pose' "eth3d" eval ate gt.txt est.txt --protocol eth3d
   prints '"protocol": "evo"' "JSON" eval rpe gt.txt est.txt --json
+  grep -Eq '"(errors|timestamps_ns)"' stdout && complain "JSON lists errors that nobody asked for"
+  prints '"errors": \[' "JSON with each error" eval rpe gt.txt est.txt --json --all_errors
+  prints '"timestamps_ns": \[' "JSON with each stamp" eval rpe gt.txt est.txt --json --all_errors --protocol tum
+  refused "each error of no JSON" 2 'all_errors is for --json' 'hint:--errors' -- eval rpe gt.txt est.txt --all_errors
   prints 'rmse' "errors as a file" eval ate gt.txt est.txt --errors errors/ate.csv
   [[ $(head -1 errors/ate.csv) == timestamp_ns,trans_part_m ]] || complain "errors as a file: $(head -1 errors/ate.csv)"
   [[ $(wc -l <errors/ate.csv) == 61 ]] || complain "errors as a file: not 60 errors"
@@ -560,7 +564,9 @@ check_evaluation() {
   # Each pose with each pose of 2100: more motions than are listed, but not than are compared.
   awk 'BEGIN { for (i = 0; i < 2100; ++i) printf "%.2f %.9f %.9f 0 0 0 0 1\n", i / 20, cos(i / 50), i / 100 }' >many.txt
   prints 'errors +4410000 +4410000' "many motions" eval rpe many.txt many.txt --protocol tum --all_pairs
-  prints '"errors": null' "many motions as JSON" eval rpe many.txt many.txt --protocol tum --all_pairs --json
+  prints '"count": 4410000' "many motions as JSON" eval rpe many.txt many.txt --protocol tum --all_pairs --json
+  refused "many motions in JSON" 2 '4410000 motions.*1048576' 'hint:--downsample' -- \
+    eval rpe many.txt many.txt --protocol tum --all_pairs --json --all_errors
   refused "a list of many motions" 2 '4410000 motions.*0.3 GB.*4194304' 'hint:--downsample' -- \
     eval rpe many.txt many.txt --protocol tum --all_pairs --errors out
 

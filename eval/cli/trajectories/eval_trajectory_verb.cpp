@@ -129,7 +129,9 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
     return tl::unexpected(written.error());
   const metric_reports::ComparedFiles files = {options.files[0], sides->reference.format, options.files[1],
                                                sides->estimate.format};
-  transcript.result(options.json ? metric_reports::to_json(*evaluation, files)
+  const auto each =
+      options.all_errors ? metric_reports::EachError::listed : metric_reports::EachError::left_out;
+  transcript.result(options.json ? metric_reports::to_json(*evaluation, files, each)
                                  : metric_reports::to_text(*evaluation, files));
   if (auto logged = transcript.finish(); !logged) return tl::unexpected(logged.error());
   return 0;
@@ -246,6 +248,7 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
   verb->add_option("--errors", options->errors, "Writes each error with its stamp")->type_name("FILE.csv");
   add_transcript_options(*verb, options->transcript, kAlwaysComplete);
   console::add_json_flag(*verb, options->json);
+  verb->add_flag("--all_errors", options->all_errors, "Lists each error with its stamp in --json as well");
   verb->footer(
       "docs/metrics.md defines the protocols, docs/evo.md lists evo's flags. Exit code 3 for files that "
       "cannot be compared.");

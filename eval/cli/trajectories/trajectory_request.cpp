@@ -71,6 +71,9 @@ Result<void> take_two_files(TrajectoryOptions& options) {
 
 Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& options,
                                                        trajectory_error::TrajectoryMetric metric) {
+  if (options.all_errors && !options.json)
+    return fail(ErrorCode::usage, "--all_errors is for --json",
+                "--errors FILE.csv writes each error with its stamp");
   const auto protocol = trajectory_error::parse_protocol(options.protocol);
   if (!protocol) return tl::unexpected(protocol.error());
   auto request = trajectory_error::request_for(*protocol, metric);
@@ -82,9 +85,9 @@ Result<trajectory_error::TrajectoryRequest> request_of(const TrajectoryOptions& 
   request->downsample = options.downsample;
   request->fit_offset = options.fit_offset;
   request->keep_poses = !options.save_results.empty() || options.plot.asked();
-  request->listing.needed = request->keep_poses || !options.errors.empty();
+  request->listing.needed = request->keep_poses || !options.errors.empty() || options.all_errors;
   constexpr std::size_t kMostInJson = std::size_t{1} << 20;  // 240 bytes each while the document is made
-  if (options.json && !request->listing.needed) request->listing.most = kMostInJson;
+  if (options.all_errors) request->listing.most = kMostInJson;
   if (!options.motion_filter.empty())
     request->motion_filter =
         trajectory_error::MotionFilter{options.motion_filter[0], radians(options.motion_filter[1])};

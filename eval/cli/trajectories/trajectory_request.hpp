@@ -62,6 +62,7 @@ struct TrajectoryOptions {
   ErrorPlotOptions error_plot;
   TranscriptOptions transcript;
   bool json = false;
+  bool all_errors = false;  ///< in the JSON text
 };
 
 inline constexpr std::array<std::pair<const char*, trajectory::Duplicates>, 4> kDuplicates{
