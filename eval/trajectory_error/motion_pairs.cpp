@@ -298,8 +298,10 @@ Result<void> check_delta(const Delta& delta) {
   const bool half_turn = !is_angle(delta.unit) || in_radians(delta) <= std::numbers::pi;
   if (forwards && whole && half_turn) return {};
   return fail(ErrorCode::configuration,
-              fmt::format("delta = {} {} (allowed: 0 to 1e9, whole frames from 1 on, at most 180 degrees)",
-                          delta.value, to_string(delta.unit)));
+              fmt::format("delta = {} {} (allowed: {})", delta.value, to_string(delta.unit),
+                          frames                 ? "whole frames, 1 to 1e9"
+                          : is_angle(delta.unit) ? "0 to 180 degrees"
+                                                 : "0 to 1e9"));
 }
 
 }  // namespace fusebench::trajectory_error

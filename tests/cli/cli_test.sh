@@ -586,6 +586,14 @@ check_evaluation() {
   refused "unknown relation" 2 'angle' -- eval ate gt.txt est.txt -r angle
   refused "unknown unit" 2 "delta unit 'x'" -- eval rpe gt.txt est.txt -u x
   refused "unit of another kind" 2 'change_unit deg' 'hint:mm' -- eval ate gt.txt est.txt --change_unit deg
+  refused "no poses" 2 'downsample: 0 .allowed: above 0' -- eval ape gt.txt est.txt --downsample 0
+  refused "less than no poses" 2 'downsample: -3 .allowed: above 0' -- eval ape gt.txt est.txt --downsample -3
+  refused "a list of no poses" 2 'downsample: 0 .allowed: above 0' -- eval traj gt.txt --downsample 0
+  refused "an alignment of no pairs" 2 'n_to_align: 0 .allowed: above 0' -- eval ape gt.txt est.txt --n_to_align 0 -a
+  refused "a motion below zero" 2 'motion_filter: -1 .allowed: 0 or more' -- eval ape gt.txt est.txt --motion_filter -1 0
+  refused "an offset that is no number" 2 't_offset: nan .allowed: -4e9 to 4e9' -- eval ape gt.txt est.txt --t_offset nan
+  refused "a start that is no number" 2 't_start: nan .allowed: -4e9 to 4e9' -- eval ape gt.txt est.txt --t_start nan
+  refused "no frames" 2 'delta = 0 f .allowed: whole frames, 1 to 1e9' -- eval rpe gt.txt est.txt -d 0
   refused "half a frame" 2 'delta = 0.5' -- eval rpe gt.txt est.txt -d 0.5
   refused "deltas of segments" 2 'lengths' -- eval rpe gt.txt est.txt --protocol rpg -d 1
   refused "an offset of a motion about one axis" 3 'does not tell' -- eval ate gt.txt est.txt -a --fit_offset
@@ -604,7 +612,7 @@ check_evaluation() {
   refused "not a number" 3 'nan.txt:7' -- eval ate "$(sed '7s/^[^ ]*/nan/' gt.txt >nan.txt && echo nan.txt)" est.txt
   refused "no quaternion" 3 'zero.txt:3.*norm 0' -- \
     eval ate "$(sed '3s/.*/1305031100.2 0 0 0 0 0 0 0/' gt.txt >zero.txt && echo zero.txt)" est.txt
-  refused "a repeated stamp" 3 'twice.txt:2.*line 1' 'hint:--duplicates' -- \
+  refused "a repeated stamp" 3 'twice.txt:2.*line 1' 'hint:keep takes both' -- \
     eval ate "$(sed '1p' gt.txt >twice.txt && echo twice.txt)" est.txt
   refused "two trajectories" 3 'two.txt:61: time jumps back' 'hint:split' -- \
     eval ate "$(cat gt.txt est.txt >two.txt && echo two.txt)" est.txt

@@ -16,7 +16,8 @@ template <class Allows>
 [[nodiscard]] CLI::Validator number_check(const char* range, const char* description, Allows allows) {
   return {[range, allows](const std::string& text) {
             double value = 0;
-            const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);  // "+0.1"
+            const auto [end, status] = std::from_chars(begin, text.data() + text.size(), value);
             const bool number = status == std::errc{} && end == text.data() + text.size();
             return number && allows(value) ? std::string() : text + " (allowed: " + range + ")";
           },
@@ -43,6 +44,13 @@ template <class Allows>
     return nan ? text + " (allowed: a number)" : range(text);
   });
   return strict;
+}
+
+/// Of stamps and differences of them, seconds: what is held in nanoseconds, with room for a sum of two.
+[[nodiscard]] inline CLI::Validator stamp_range() {
+  constexpr double kMost_s = 4e9;
+  return detail::number_check("-4e9 to 4e9", "-4e9 TO 4e9",
+                              [](double value) { return std::abs(value) <= kMost_s; });
 }
 
 }  // namespace fusebench::cli::console

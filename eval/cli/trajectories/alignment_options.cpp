@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "eval/cli/console/number_checks.hpp"
+
 namespace fusebench::cli::trajectories {
 
 void add_alignment_options(CLI::App& verb, AlignmentOptions& options) {
@@ -15,6 +17,7 @@ void add_alignment_options(CLI::App& verb, AlignmentOptions& options) {
   verb.add_flag("-s,--correct_scale", options.evo_scale, "As --align scale; -as as --align sim3");
   verb.add_flag("--align_origin", options.evo_origin, "As --align origin");
   verb.add_option("--n_to_align", options.n_to_align, "Computes the alignment from the first N pairs only")
+      ->check(console::positive())
       ->type_name("N");
 }
 

@@ -77,11 +77,16 @@ void add_bundle_options(CLI::App& verb, BundleOptions& options) {
       ->check(console::not_negative())
       ->type_name("S")
       ->capture_default_str();
-  verb.add_option("--t_offset", options.t_offset, "Added to all stamps but the reference's")->type_name("S");
-  verb.add_option("--downsample", options.downsample, "Downsamples each to N poses first")->type_name("N");
+  verb.add_option("--t_offset", options.t_offset, "Added to all stamps but the reference's")
+      ->check(console::stamp_range())
+      ->type_name("S");
+  verb.add_option("--downsample", options.downsample, "Downsamples each to N poses first")
+      ->check(console::positive())
+      ->type_name("N");
   verb.add_option("--motion_filter", options.motion_filter,
                   "Keeps only poses that moved by D metres or turned by A degrees since the last one kept")
       ->expected(2)
+      ->check(console::not_negative())
       ->type_name("D A");
   verb.add_option("--project_to_plane", options.plane, "Projects all after the alignment")
       ->check(CLI::IsMember(names_of(kPlanes)))

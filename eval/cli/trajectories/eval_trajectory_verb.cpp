@@ -157,9 +157,15 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
                   "Largest difference of stamps (evo 0.01, tum and rpg 0.02), or gap to interpolate")
       ->check(console::not_negative())
       ->type_name("S");
-  verb.add_option("--t_offset", options.t_offset, "Added to the estimate's stamps")->type_name("S");
-  verb.add_option("--t_start", options.t_start, "Uses the reference from this stamp on")->type_name("S");
-  verb.add_option("--t_end", options.t_end, "Uses the reference up to this stamp")->type_name("S");
+  verb.add_option("--t_offset", options.t_offset, "Added to the estimate's stamps")
+      ->check(console::stamp_range())
+      ->type_name("S");
+  verb.add_option("--t_start", options.t_start, "Uses the reference from this stamp on")
+      ->check(console::stamp_range())
+      ->type_name("S");
+  verb.add_option("--t_end", options.t_end, "Uses the reference up to this stamp")
+      ->check(console::stamp_range())
+      ->type_name("S");
   verb.add_flag("--interpolate", options.interpolate,
                 "Interpolates the reference at the estimate's stamps, in gaps of up to --t_max_diff (0.1 s)");
   verb.add_option("--images", options.images,
@@ -173,10 +179,12 @@ void add_protocol_options(CLI::App& verb, TrajectoryOptions& options) {
 
 void add_selection_options(CLI::App& verb, TrajectoryOptions& options) {
   verb.add_option("--downsample", options.downsample, "Downsamples each side to N poses first")
+      ->check(console::positive())
       ->type_name("N");
   verb.add_option("--motion_filter", options.motion_filter,
                   "Keeps only poses that moved by D metres or turned by A degrees since the last one kept")
       ->expected(2)
+      ->check(console::not_negative())
       ->type_name("D A");
   verb.add_option("--project_to_plane", options.plane, "Projects both sides after the alignment")
       ->check(members(kPlanes))
