@@ -17,8 +17,6 @@ constexpr double kMinMoved_px = 3.5;
 // Depth that is taken later or earlier than colour lies beside it where the camera turns: by 18 ms on
 // freiburg1.
 constexpr double kDelay_s = 0.02;
-constexpr double kMinBetterShare = 0.9;
-constexpr double kMaxSpread = 0.5;  // of the movement: beyond it, no one camera fits
 // Where no one camera fits, few frames are better when moved by chance: five of a right recording were.
 constexpr std::size_t kMinFrames = 12;
 
@@ -41,8 +39,8 @@ void check_registration(const recording::Recording& recording, const Workers& wo
   out.registration = fit;
   const double moved_by_delay_px = kDelay_s * out.motion.angular_mean_radps * recording.rig.camera.fx_px;
   if (fit->moved_px < std::max(kMinMoved_px, moved_by_delay_px)) return;
-  if (fit->better_share < kMinBetterShare) return;
-  const bool one_camera = fit->spread_px <= kMaxSpread * fit->moved_px;
+  if (!fit->is_better_all_over()) return;
+  const bool one_camera = fit->is_one_camera();
   if (!one_camera && fit->frames < kMinFrames) return;
   // Points of one frame that are warped into another have the depth camera's focal length as well.
   for (Finding& finding : out.findings) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::inspection_report {
@@ -45,6 +47,25 @@ Result<RegistrationFit> estimate_depth_camera(const recording::Recording& record
       "record things that stand apart from what is behind them, near and far, all over the image");
 }
 
+Result<void> check_determined(const RegistrationFit& fit, const recording::Recording& recording) {
+  if (fit.is_one_camera() && fit.is_better_all_over()) return {};
+  const std::string reason =
+      !fit.is_one_camera()
+          ? fmt::format(
+                "edges move {:.1f} px, and by {:.1f} px between the fits to every other frame (allowed: "
+                "up to {:g} of the movement)",
+                fit.moved_px, fit.spread_px, RegistrationFit::kMaxSpread)
+          : fmt::format(
+                "edges move {:.1f} px and lie better in {:.0f} % of the frames only (allowed: {:.0f} % "
+                "or more)",
+                fit.moved_px, 100 * fit.better_share, 100 * RegistrationFit::kMinBetterShare);
+  return fail(
+      ErrorCode::run_failed,
+      fmt::format("recording '{}' does not determine a depth camera: {}", recording.name, reason),
+      "if `inspect` does not warn of depth-misregistered, the calibration is right as it is; else record "
+      "things near and far, all over the image, with a camera that moves slowly");
+}
+
 calibration::RigCalibration rig_with_depth_camera(const recording::Recording& recording,
                                                   const RegistrationFit& fit) {
   check(recording.calibration.has_value(), "the recording's reader kept its calibration");
@@ -57,14 +78,18 @@ calibration::RigCalibration rig_with_depth_camera(const recording::Recording& re
 }
 
 std::string depth_camera_text(const RegistrationFit& fit, const recording::Recording& recording) {
+  const std::string_view verdict = check_determined(fit, recording)
+                                       ? "the depth camera is determined"
+                                       : "not determined: no better than depth as read";
   return fmt::format(
       "depth camera of {} by {} edges of depth\n"
       "  as read        {}\n"
       "  fitted         {}\n"
       "  edges move     {:.1f} px (rms), and by {:.1f} px between the fits to every other frame\n"
-      "  better         {:.0f} % of the frames; strength of colour's edges there {:.3f} -> {:.3f}\n",
+      "  better         {:.0f} % of the frames; strength of colour's edges there {:.3f} -> {:.3f}\n"
+      "  verdict        {}\n",
       recording.name, fit.edges, camera_text(fit.as_read), camera_text(fit.fitted), fit.moved_px,
-      fit.spread_px, 100 * fit.better_share, fit.strength_as_read, fit.strength_moved);
+      fit.spread_px, 100 * fit.better_share, fit.strength_as_read, fit.strength_moved, verdict);
 }
 
 std::string depth_camera_json(const RegistrationFit& fit, const recording::Recording& recording) {
@@ -73,6 +98,7 @@ std::string depth_camera_json(const RegistrationFit& fit, const recording::Recor
                 {"as_read", camera_json(fit.as_read)},
                 {"fitted", camera_json(fit.fitted)}};
   document.update(registration_json(fit));
+  document["determined"] = check_determined(fit, recording).has_value();
   return text::json_text(document) + "\n";
 }
 

@@ -21,6 +21,11 @@ namespace fusebench::inspection_report {
 [[nodiscard]] Result<inspection::measures::RegistrationFit> estimate_depth_camera(
     const recording::Recording& recording, const Workers& workers);
 
+/// Error run_failed: the fit is no better than the camera that depth was read with, since another half of the
+/// frames would move it as far, or too few of the frames gain by it. The measures are those of `inspect`.
+[[nodiscard]] Result<void> check_determined(const inspection::measures::RegistrationFit& fit,
+                                            const recording::Recording& recording);
+
 /// The recording's calibration with the fitted depth camera.
 [[nodiscard]] calibration::RigCalibration rig_with_depth_camera(
     const recording::Recording& recording, const inspection::measures::RegistrationFit& fit);

@@ -304,13 +304,24 @@ check_recordings() {
 
   # The depth camera needs no IMU, and what is written is a calibration.
   checks=$((checks + 1))
-  "$binary" calibrate fr1_rpy --data data --depth-camera --out depth.toml >stdout 2>stderr ||
+  {
+    printf 'calibration_source = "depth 30 px too low"\n[color]\nwidth_px = 640\nheight_px = 480\nfx_px = 517.3\nfy_px = 516.5\n'
+    printf 'cx_px = 318.6\ncy_px = 255.3\n[depth]\nwidth_px = 640\nheight_px = 480\nfx_px = 517.3\nfy_px = 516.5\n'
+    printf 'cx_px = 318.6\ncy_px = 285.0\nT_color_depth = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]\n'
+  } >depth.toml
+  "$binary" calibrate fr1_rpy --data data --calibration depth.toml --depth-camera --out depth.toml >stdout 2>stderr ||
     complain "calibrate --depth-camera: exit code $?"
   grep -Eq '^  fitted  .* px, centre ' stdout || complain "calibrate --depth-camera does not say what it fitted"
+  grep -q 'verdict .* is determined' stdout || complain "calibrate --depth-camera has no verdict"
+  grep -q '^depth.toml: written, in place of a calibration (depth 30 px too low)' stderr ||
+    complain "calibrate --depth-camera does not say what it replaced"
   "$binary" run fr1_rpy --data data --calibration depth.toml --variant no-imu --frames 0:2 --out out >stdout 2>stderr ||
     complain "a run with the fitted depth camera: exit code $?"
   "$binary" inspect fr1_rpy --data data --frames 0:3 --json >stdout 2>stderr || complain "inspect of three frames: exit code $?"
   grep -q '"registration": null' stdout || complain "inspect --json: what was not measured is not null"
+  refused "a depth camera within its uncertainty" 4 'does not determine a depth camera: edges move' 'hint:near and far' -- \
+    calibrate fr1_rpy --data data --depth-camera --out out
+  prints 'verdict +not determined' "a fit that is only shown" calibrate fr1_rpy --data data --depth-camera
   refused "too few frames for a depth camera" 4 'too few edges' 'hint:near and far' -- \
     calibrate fr1_rpy --data data --depth-camera --frames 0:3
 

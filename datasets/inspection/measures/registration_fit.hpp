@@ -37,6 +37,9 @@ struct RegistrationModel {
 };
 
 struct RegistrationFit {
+  static constexpr double kMaxSpread = 0.5;  ///< of the movement: beyond it, no one camera fits
+  static constexpr double kMinBetterShare = 0.9;
+
   RegistrationModel model;
   std::size_t frames = 0;  ///< with edges
   std::size_t edges = 0;
@@ -49,6 +52,11 @@ struct RegistrationFit {
   double spread_px = 0;              ///< between the models of every other frame, rms over the edges
   calibration::DepthCamera as_read;  ///< the calibration's; the colour camera, if depth counts as registered
   calibration::DepthCamera fitted;   ///< that the model asks for in its place
+
+  /// The fits to every other frame say nearly the same.
+  [[nodiscard]] bool is_one_camera() const { return spread_px <= kMaxSpread * moved_px; }
+  /// The movement is not the gain of a few frames.
+  [[nodiscard]] bool is_better_all_over() const { return better_share >= kMinBetterShare; }
 };
 
 /// Fits the model to frames all over the recording. Nothing if they have too few edges.

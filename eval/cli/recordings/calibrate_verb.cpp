@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
 #include <utility>
 
+#include "core/base/printable.hpp"
 #include "core/config/variants.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
 #include "eval/batch_estimation/calibration.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
@@ -33,7 +38,18 @@ struct CalibrateVerbOptions {
 
 Result<void> write_calibration(const std::filesystem::path& out, const calibration::RigCalibration& rig) {
   if (out.empty()) return {};
-  return text::write_text_file(out, calibration::to_toml(rig));
+  std::error_code ignored;
+  const bool there = std::filesystem::exists(out, ignored);
+  const auto replaced = calibration::read_calibration(out);
+  if (auto written = text::write_text_file(out, calibration::to_toml(rig)); !written) return written;
+  std::string before;
+  if (replaced)
+    before = fmt::format(", in place of a calibration ({})",
+                         replaced->source.empty() ? "no source given" : printable(replaced->source, 200));
+  else if (there)
+    before = ", in place of another file";
+  console::print_progress(fmt::format("{}: written{}", out.string(), before));
+  return {};
 }
 
 /// Of the images alone: no estimator runs, and no IMU is needed.
@@ -46,6 +62,10 @@ Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
   const Workers workers(options.request.threads);
   const auto fit = inspection_report::estimate_depth_camera(*recording, workers);
   if (!fit) return tl::unexpected(fit.error());
+  if (!options.out.empty()) {
+    if (auto told = inspection_report::check_determined(*fit, *recording); !told)
+      return tl::unexpected(told.error());
+  }
   const auto written =
       write_calibration(options.out, inspection_report::rig_with_depth_camera(*recording, *fit));
   if (!written) return tl::unexpected(written.error());
