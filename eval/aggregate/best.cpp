@@ -32,7 +32,7 @@ struct GroupKey {
 
 GroupKey key_of(const RunRow& row, const std::string& group, const std::string& kind) {
   if (group == "none") return {kind, 0, "all"};
-  if (group == "recording") return {kind, 0, row.recording};
+  if (group == "recording") return {kind, 0, row.recorded_part()};
   if (group == "variant") return {kind, run_files::variant_rank(row.variant), row.variant};
   return {kind, 0, std::string(option_of(row, group))};
 }
@@ -82,6 +82,8 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric&
       "Configurations that lost, failed or did not run some of them come after those that did all; "
       "their means are of fewer recordings and do not compare.",
       metric.key));
+  if (std::ranges::any_of(rows, [](const RunRow& row) { return !row.window.empty(); }))
+    notes.emplace_back("Of recordings of which several windows were run, each window is a recording here.");
   std::vector<record::DataWords> words;
   for (const RunRow& row : rows) words.push_back({row.data, row.imu, row.truth});
   for (std::string& footnote : record::data_footnotes(words)) notes.push_back(std::move(footnote));
@@ -107,7 +109,8 @@ Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRe
   BestTable table{request.metric, request.group, edited_options(rows), {}, {}};
   if (auto allowed = check_group(request.group, table.options); !allowed)
     return tl::unexpected(allowed.error());
-  const auto kinds = recording_kinds(rows);
+  const auto kinds =
+      recording_kinds(rows, request.group == "recording" ? KindsBy::data : KindsBy::data_and_imu);
   std::map<GroupKey, std::vector<const RunRow*>> members;
   for (const RunRow& row : rows) {
     if (row.attributable()) members[key_of(row, request.group, kinds.at(row.recording))].push_back(&row);

@@ -28,9 +28,9 @@ struct BestRow {
 /// The runs of one recording, variant or value of an option, on data of one kind.
 struct BestGroup {
   std::string label;
-  std::string kind;  ///< of recording_kinds()
-  std::vector<std::string> recordings;
-  std::size_t configurations = 0;  ///< of which `rows` are the first
+  std::string kind;                     ///< of recording_kinds()
+  std::vector<std::string> recordings;  ///< of RunRow::recorded_part()
+  std::size_t configurations = 0;       ///< of which `rows` are the first
   std::vector<BestRow> rows;
 };
 

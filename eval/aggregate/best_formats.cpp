@@ -22,7 +22,7 @@ std::string option_cell(const RunOptions& options, const std::string& key) {
 }
 
 std::string markdown(const BestTable& table) {
-  text::TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant"};
+  text::TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant", "imu"};
   header.insert(header.end(), table.options.begin(), table.options.end());
   const std::size_t text_columns = header.size();
   header.insert(header.end(), {"rank", std::string(table.metric->heading), "ok", "incomplete"});
@@ -30,7 +30,7 @@ std::string markdown(const BestTable& table) {
   std::string more;
   for (const BestGroup& group : table.groups) {
     for (const BestRow& row : group.rows) {
-      text::TableCells cells = {group.label, group.kind, row.configuration.variant};
+      text::TableCells cells = {group.label, group.kind, row.configuration.variant, row.configuration.imu};
       for (const std::string& key : table.options)
         cells.push_back(option_cell(row.configuration.options, key));
       cells.push_back(row.rank ? fmt::format("{}", *row.rank) : "-");
@@ -52,15 +52,15 @@ std::string markdown(const BestTable& table) {
 }
 
 std::string csv(const BestTable& table) {
-  std::string text = "group,data,rank,variant";
+  std::string text = "group,data,rank,variant,imu";
   for (const std::string& key : table.options) text += fmt::format(",{}", text::csv_cell(key));
   text += ",metric,unit,mean,n_ok,n_total,recordings,note\n";
   for (const BestGroup& group : table.groups) {
     for (const BestRow& row : group.rows) {
       const ConfigurationSummary& configuration = row.configuration;
-      text +=
-          fmt::format("{},{},{},{}", text::csv_cell(group.label), text::csv_cell(group.kind),
-                      row.rank ? fmt::format("{}", *row.rank) : "", text::csv_cell(configuration.variant));
+      text += fmt::format("{},{},{},{},{}", text::csv_cell(group.label), text::csv_cell(group.kind),
+                          row.rank ? fmt::format("{}", *row.rank) : "", text::csv_cell(configuration.variant),
+                          text::csv_cell(configuration.imu));
       for (const std::string& key : table.options)
         text += fmt::format(",{}", text::csv_cell(option_cell(configuration.options, key)));
       text += fmt::format(",{},{},{},{},{},{},{}\n", table.metric->key, table.metric->unit,
@@ -77,6 +77,7 @@ Json json_of(const BestRow& row) {
   for (const auto& [key, value] : row.configuration.options) options[key] = value;
   return {{"rank", row.rank ? Json(*row.rank) : Json(nullptr)},
           {"variant", row.configuration.variant},
+          {"imu", row.configuration.imu},
           {"options", std::move(options)},
           {"mean", row.configuration.mean ? Json(*row.configuration.mean) : Json(nullptr)},
           {"n_ok", row.configuration.n_ok},

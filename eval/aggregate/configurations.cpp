@@ -16,10 +16,12 @@ struct ConfigurationKey {
   std::size_t rank = 0;
   std::string variant;
   RunOptions options;
+  std::string imu;
 
   bool operator<(const ConfigurationKey& other) const {
     if (variant != other.variant) return std::tie(rank, variant) < std::tie(other.rank, other.variant);
-    return RunOptionsLess()(options, other.options);
+    if (options != other.options) return RunOptionsLess()(options, other.options);
+    return imu < other.imu;
   }
 };
 
@@ -29,13 +31,14 @@ struct RecordingTally {
   std::vector<double> values;  ///< of ok runs
 };
 
-using Tallies = std::map<std::string, RecordingTally>;  // by recording
+using Tallies = std::map<std::string, RecordingTally>;  // by part of a recording
 
 ConfigurationSummary summary_of(const ConfigurationKey& key, const Tallies& tallies,
                                 const std::vector<std::string>& recordings) {
   ConfigurationSummary summary;
   summary.variant = key.variant;
   summary.options = key.options;
+  summary.imu = key.imu;
   std::vector<double> means;
   for (const std::string& recording : recordings) {
     const auto found = tallies.find(recording);
@@ -75,9 +78,9 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
     if (!run->attributable()) continue;
     const auto [rank, is_new] = ranks.try_emplace(run->variant, 0);
     if (is_new) rank->second = run_files::variant_rank(run->variant);
-    RecordingTally& tally =
-        tallies[ConfigurationKey{rank->second, run->variant, run->options}][run->recording];
-    Recording& recording = recordings[run->recording];
+    const std::string part = run->recorded_part();
+    RecordingTally& tally = tallies[{rank->second, run->variant, run->options, run->imu}][part];
+    Recording& recording = recordings[part];
     ++tally.runs;
     if (run->status != record::RunStatus::ok) continue;
     recording.any_ok = true;
@@ -98,7 +101,7 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
   return summaries;
 }
 
-std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows) {
+std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows, KindsBy by) {
   // A run that failed early knows nothing of its recording, so that any other one's word counts.
   struct Words {
     bool simulated = false;
@@ -117,7 +120,7 @@ std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows)
     std::string& kind = kinds[name];
     kind = record::data_cell({recording.simulated ? "simulated" : "recorded", "",
                               recording.pseudo_truth ? record::kPseudoTruthWord : std::string_view()});
-    if (recording.synthetic_imu) kind += ", synthetic IMU";
+    if (recording.synthetic_imu && by == KindsBy::data_and_imu) kind += ", IMUs synthetic";
   }
   return kinds;
 }

@@ -1,4 +1,4 @@
-// Runs put together by configuration: a variant and the options that were edited.
+// Runs put together by configuration: a variant, the options that were edited, and the IMU that it had.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,7 @@ namespace fusebench::aggregate {
 struct ConfigurationSummary {
   std::string variant;
   RunOptions options;
+  std::string imu;  ///< of RunRow
   /// Mean over recordings of the mean over their ok runs; absent without any.
   std::optional<double> mean;
   std::size_t n_ok = 0;                     ///< runs that are ok and have the number
@@ -29,20 +30,26 @@ struct ConfigurationSummary {
   }
 };
 
+/// Recordings are here those of RunRow::recorded_part().
 struct ConfigurationSummaries {
   std::vector<std::string> recordings;  ///< that are measured
   /// Recordings that have ok runs, none of which has the number (no ground truth, say): left out.
   std::vector<std::string> without_number;
-  std::vector<ConfigurationSummary> configurations;  ///< by variant in the order of all_variants(), options
+  /// By variant in the order of all_variants(), options, IMU.
+  std::vector<ConfigurationSummary> configurations;
 };
 
 /// Runs whose configuration is not known are left out. Does not depend on the order of the runs.
 [[nodiscard]] ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> runs,
                                                               const RunMetric& metric);
 
+enum class KindsBy { data, data_and_imu };
 /// What kind of data each recording is of, as one word: means never mix recorded with simulated data, an
-/// independent truth with a pseudo one, or a synthetic IMU with a sensor.
-[[nodiscard]] std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows);
+/// independent truth with a pseudo one, or recordings whose IMU is synthetic with those that have a sensor
+/// ("recorded, IMUs synthetic": where a configuration uses one). Of one recording the latter does not matter,
+/// since runs with different IMUs are different configurations.
+[[nodiscard]] std::map<std::string, std::string> recording_kinds(std::span<const RunRow> rows,
+                                                                 KindsBy by = KindsBy::data_and_imu);
 
 /// Added in the order of size, so that the sum does not depend on the order of the values. Not of none.
 [[nodiscard]] double ordered_mean(std::vector<double> values);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "eval/aggregate/configurations.hpp"
@@ -36,11 +37,12 @@ EffectMean mean_for(std::span<const RunRow> rows, const RunMetric& metric) {
 }
 
 std::vector<SweptRun> swept_runs(std::span<const RunRow> rows, const RunMetric& metric, EffectMean mean) {
-  using RunKey = std::pair<std::string_view, std::string_view>;  // recording, variant
+  using RunKey = std::tuple<std::string, std::string_view, std::string_view>;
+  const auto key_of_run = [](const RunRow& row) { return RunKey(row.recorded_part(), row.variant, row.imu); };
   std::map<RunKey, std::vector<double>> values;
   for (const RunRow& row : rows) {
     if (!row.attributable()) continue;
-    if (const auto value = value_of(row, metric)) values[{row.recording, row.variant}].push_back(*value);
+    if (const auto value = value_of(row, metric)) values[key_of_run(row)].push_back(*value);
   }
   std::map<RunKey, double> means;
   for (const auto& [key, of_key] : values) means[key] = mean_of(of_key, mean);
@@ -49,7 +51,7 @@ std::vector<SweptRun> swept_runs(std::span<const RunRow> rows, const RunMetric& 
     if (!row.attributable()) continue;
     SweptRun run{&row, value_of(row, metric)};
     if (run.ratio) {
-      const double of_all = means.at({row.recording, row.variant});
+      const double of_all = means.at(key_of_run(row));
       run.ratio = of_all != 0 ? std::optional(*run.ratio / of_all) : std::nullopt;  // all are zero
     }
     runs.push_back(run);

@@ -15,8 +15,8 @@ namespace fusebench::aggregate {
 
 namespace {
 
-constexpr std::array<const char*, 8> kIdentity = {"recording", "data", "imu",    "truth",
-                                                  "variant",   "run",  "status", "reason"};
+constexpr std::array<const char*, 9> kIdentity = {"recording", "data",   "imu",    "truth", "variant",
+                                                  "run",       "status", "reason", "label"};
 
 std::array<std::string, kIdentity.size()> identity_of(const RunRow& row) {
   return {row.recording,
@@ -26,7 +26,13 @@ std::array<std::string, kIdentity.size()> identity_of(const RunRow& row) {
           row.variant,
           row.run,
           std::string(record::to_string(row.status)),
-          row.reason};
+          row.reason,
+          row.label};
+}
+
+/// Inclusive; empty where the frames are not known.
+std::string last_frame_of(const RunRow& row) {
+  return row.frames == 0 ? "" : fmt::format("{}", row.first_frame + row.frames - 1);
 }
 
 /// Calls add(metric, unit, value) for each number of the run; returns how many there were.
@@ -53,7 +59,7 @@ void add_csv(const RunRow& row, const std::vector<std::string>& options, bool wi
              std::string& text) {
   std::string prefix;
   for (const std::string& cell : identity_of(row)) prefix += text::csv_cell(cell) + ",";
-  prefix += fmt::format("{},{},", row.first_frame, row.repetition);
+  prefix += fmt::format("{},{},{},", row.first_frame, last_frame_of(row), row.repetition);
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
     prefix += (value == kUnsetOption ? std::string() : text::csv_cell(std::string(value))) + ",";
@@ -74,7 +80,9 @@ void add_json_lines(const RunRow& row, const std::vector<std::string>& options, 
   const auto identity = identity_of(row);
   for (std::size_t i = 0; i < kIdentity.size(); ++i)
     prefix += fmt::format("\"{}\":{},", kIdentity[i], json_string(identity[i]));
-  prefix += fmt::format("\"first_frame\":{},\"repetition\":{},", row.first_frame, row.repetition);
+  const std::string last_frame = last_frame_of(row);
+  prefix += fmt::format("\"first_frame\":{},\"last_frame\":{},\"repetition\":{},", row.first_frame,
+                        last_frame.empty() ? "null" : last_frame, row.repetition);
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
     prefix += json_string(key) + ":" + (value == kUnsetOption ? "null" : json_string(value)) + ",";
@@ -103,7 +111,7 @@ std::string long_table(std::span<const RunRow> rows, const LongTableRequest& req
     return text;
   }
   for (const char* column : kIdentity) text += fmt::format("{},", column);
-  text += "first_frame,repetition,";
+  text += "first_frame,last_frame,repetition,";
   for (const std::string& key : options) text += text::csv_cell(key) + ",";
   text += "metric,unit,value\n";
   for (const RunRow& row : rows) add_csv(row, options, request.without_timing, text);

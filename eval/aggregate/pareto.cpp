@@ -47,7 +47,7 @@ ParetoFront pareto_front(std::span<const RunRow> rows, const RunMetric& metric) 
   ConfigurationSummaries values = summarise_configurations(runs, metric);
   // Time counts on the recordings that the value is of.
   std::erase_if(runs, [&](const RunRow* run) {
-    return !std::ranges::binary_search(values.recordings, run->recording);
+    return !std::ranges::binary_search(values.recordings, run->recorded_part());
   });
   const ConfigurationSummaries times = summarise_configurations(runs, time_metric());
   ParetoFront front{&metric, values.recordings, {}, 0};

@@ -84,6 +84,8 @@ constexpr auto kFields = std::to_array<Field>({
     {"recording.imu", text<&RunRow::imu>},
     {"recording.truth", text<&RunRow::truth>},
     {"recording.first_frame", count<&RunRow::first_frame>},
+    {"recording.frames", count<&RunRow::frames>},
+    {"recording.fingerprint", text<&RunRow::fingerprint>},
     {"variant", text<&RunRow::variant>, true},
     {"config_hash", text<&RunRow::config_hash>, true},
     {"repetition", count<&RunRow::repetition>},
@@ -105,6 +107,7 @@ constexpr auto kFields = std::to_array<Field>({
 });
 constexpr std::string_view kConfig = "config";
 constexpr std::string_view kFiles = "files";
+constexpr std::string_view kProgram = "program";
 
 /// Follows the events of the parser; whatever no field begins with is passed over.
 class RecordHandler {
@@ -114,6 +117,7 @@ class RecordHandler {
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   [[nodiscard]] bool has_config() const { return has_config_; }
+  [[nodiscard]] bool has_program() const { return has_program_; }
   /// The path of a field that must be there and was not; empty if there is none.
   [[nodiscard]] std::string_view missing() const {
     for (std::size_t i = 0; i < kFields.size(); ++i) {
@@ -159,6 +163,7 @@ class RecordHandler {
       case Kind::fields:
         next_ = narrowed(level, key);
         if (key == kFiles && (levels_.size() == 1 || is_timing(level))) next_ = {0, 0, 0, Kind::files};
+        has_program_ = has_program_ || (levels_.size() == 1 && key == kProgram);
         if (levels_.size() == 1 && key == kConfig) {
           next_ = {0, 0, 0, Kind::config};
           has_config_seen_ = true;
@@ -293,6 +298,7 @@ class RecordHandler {
   Option option_;
   bool has_config_ = false;
   bool has_config_seen_ = false;
+  bool has_program_ = false;  // from outside
   std::array<bool, kFields.size()> seen_{};
   std::string problem_;
 };
@@ -311,7 +317,10 @@ RunRow damaged_row(RunRow row, std::string reason) {
   row.readable = false;
   row.reason = std::move(reason);
   row.options.clear();
-  row.total = row.tracked = row.lost = row.first_frame = 0;
+  row.wrote_options = false;
+  row.fingerprint.clear();
+  row.imu.clear();
+  row.total = row.tracked = row.lost = row.first_frame = row.frames = 0;
   row.repetition = 1;
   return row;
 }
@@ -324,6 +333,8 @@ RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* fil
   if (const auto missing = handler.missing(); !missing.empty())
     return damaged_row(std::move(row), reason_of(fmt::format("{} is missing", missing)));
   std::ranges::sort(row.options);
+  row.wrote_options = handler.has_config() && !handler.has_program();
+  if (row.fingerprint.empty()) row.imu.clear();  // what stands there is the default
   // A run that was never started says nothing of its options; one of another program has none.
   row.options_known = handler.has_config() || row.status != record::RunStatus::failed;
   const std::size_t processed = row.tracked + row.lost;

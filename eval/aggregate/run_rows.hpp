@@ -26,19 +26,24 @@ inline constexpr std::string_view kUnsetOption = "unset";
 struct RunRow : RunNumbers {
   std::string recording;
   std::string data = "recorded";  ///< "recorded", "simulated"
-  std::string imu = "none";       ///< "none", "recorded", "synthetic IMU"
+  std::string imu = "none";       ///< that it used: "none", "recorded", "synthetic IMU"; empty: not known
   std::string truth;              ///< "none", "given", kPseudoTruthWord
+  std::string fingerprint;        ///< of the recording; empty: it was never opened
   std::string variant;
+  std::string label;   ///< the variant with what tells the run from others (run_files::run_labels)
+  std::string window;  ///< "frames 0:100" where other frames of the recording were run as well
   std::string run;     ///< name of its folder
   std::string folder;  ///< relative to the root, with "/"
   record::RunStatus status = record::RunStatus::failed;
   std::string reason;           ///< empty if ok
   std::size_t first_frame = 0;  ///< of its window of the recording
+  std::size_t frames = 0;       ///< of its window; 0: not known
   std::size_t repetition = 1;
   std::size_t total = 0;
   std::size_t tracked = 0;
   std::size_t lost = 0;
   RunOptions options;
+  bool wrote_options = false;  ///< all of those of this program
   std::string config_hash;
   bool readable = true;  ///< false: the record or a file is damaged; `reason` says how
   /// False for a run that failed before it wrote its options, where no other run has the same configuration.
@@ -46,7 +51,15 @@ struct RunRow : RunNumbers {
 
   /// Whether it is known which configuration the run is of.
   [[nodiscard]] bool attributable() const { return readable && options_known; }
+  /// What means count once: numbers over different frames of a recording are never averaged as if they were
+  /// of the same.
+  [[nodiscard]] std::string recorded_part() const {
+    return window.empty() ? recording : recording + " " + window;
+  }
 };
+
+/// Fills `label` and `window` of all rows, and `imu` of those that never opened their recording.
+void tell_apart(std::vector<RunRow>& rows);
 
 /// The value of an option, or kUnsetOption.
 [[nodiscard]] std::string_view option_of(const RunRow& row, std::string_view key);

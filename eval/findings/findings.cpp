@@ -61,9 +61,10 @@ std::string evidence_of(const Ranking& ranking, const aggregate::MeanRatio& rati
 std::string best_sentence(const Ranking& ranking) {
   const RankedConfiguration& best = ranking.configurations.front();
   const std::string name = name_and_unit(ranking.column).first;
-  const std::string where = ranking.recordings == 1
-                                ? fmt::format("one {} recording", ranking.data)
-                                : fmt::format("{} {} recordings", ranking.recordings, ranking.data);
+  std::string where = ranking.recordings == 1
+                          ? fmt::format("one {} recording", ranking.data)
+                          : fmt::format("{} {} recordings", ranking.recordings, ranking.data);
+  if (!ranking.frames.empty()) where += ", " + ranking.frames;
   if (!best.value) {
     return fmt::format("Nothing has an {} on all of {}; {} has it on most, {}.", name, where, best.label,
                        best.recordings);

@@ -17,8 +17,8 @@ namespace fusebench::findings {
 
 namespace {
 
-/// A recording, or a window of it.
-using Recording = std::pair<std::string, std::size_t>;
+/// A recording, or a window of it: its name, first frame, and frames.
+using Recording = std::tuple<std::string, std::size_t, std::size_t>;
 
 /// The sum over runs that are ok, and their number.
 using Sums = std::map<Recording, std::pair<double, std::size_t>>;
@@ -44,26 +44,65 @@ std::string description_of(const record::RunRecord& record) {
   return "imported: it ran elsewhere, and was evaluated here";
 }
 
-std::optional<tables::TableColumn> column_for(const tables::ResultTable& table, const std::string& data) {
+/// What alone can be compared.
+struct Comparable {
+  std::string data;
+  std::string frames;  ///< of Ranking
+  bool operator==(const Comparable&) const = default;
+};
+
+/// Windows that share frames are no independent samples of their recording, so that their numbers are not
+/// averaged; those that share none are.
+std::set<std::string> recordings_with_shared_frames(std::span<const run_files::RunTraits> runs) {
+  std::map<std::string, std::set<std::pair<std::size_t, std::size_t>>> windows;  // first, end
+  for (const run_files::RunTraits& run : runs) {
+    if (run.frames > 0) windows[run.recording].emplace(run.first_frame, run.first_frame + run.frames);
+  }
+  std::set<std::string> sharing;
+  for (const auto& [recording, of_recording] : windows) {
+    std::size_t end = 0;
+    for (const auto& window : of_recording) {
+      if (window.first < end) sharing.insert(recording);
+      end = std::max(end, window.second);
+    }
+  }
+  return sharing;
+}
+
+std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> runs,
+                                       const tables::ResultTable& table) {
+  const std::vector<std::string> windows = run_files::window_labels(runs);
+  const std::set<std::string> sharing = recordings_with_shared_frames(runs);
+  std::vector<Comparable> comparables;
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    comparables.push_back(
+        {table.rows[i].data, sharing.contains(table.rows[i].recording) ? windows[i] : std::string()});
+  return comparables;
+}
+
+std::optional<tables::TableColumn> column_for(const tables::ResultTable& table,
+                                              const std::vector<std::size_t>& members) {
   for (const auto value : {&tables::TableValues::ate_rmse_m, &tables::TableValues::aie_common_grey}) {
     const auto column = std::ranges::find(tables::table_columns(), value, &tables::TableColumn::value);
-    const bool any = std::ranges::any_of(table.rows, [&](const tables::TableRow& row) {
-      return row.data == data && row.status == record::RunStatus::ok && row.*value && *(row.*value) > 0;
+    const bool any = std::ranges::any_of(members, [&](std::size_t member) {
+      const tables::TableRow& row = table.rows[member];
+      return row.status == record::RunStatus::ok && row.*value && *(row.*value) > 0;
     });
     if (any) return *column;
   }
   return std::nullopt;
 }
 
+/// members: rows of the table. labels: of configurations, one a row.
 std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
-                                     const tables::ResultTable& table, const std::string& data,
+                                     const tables::ResultTable& table,
+                                     const std::vector<std::size_t>& members,
+                                     const std::vector<std::string>& labels,
                                      const tables::TableColumn& column) {
-  const std::vector<std::string> edits = run_files::differing_edits(run_files::traits_of(runs));
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+  for (const std::size_t i : members) {
     const tables::TableRow& row = table.rows[i];
-    if (row.data != data) continue;
-    const std::string label = row.variant + (edits[i].empty() ? "" : " ") + edits[i];
+    const std::string& label = labels[i];
     auto at = std::ranges::find(candidates, label, [](const Candidate& c) { return c.configuration.label; });
     if (at == candidates.end()) {
       at = candidates.insert(at, Candidate{});
@@ -78,7 +117,7 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
     ++configuration.ok;
     const auto value = row.*column.value;
     if (!value || !(*value > 0)) continue;
-    auto& [sum, count] = at->sums[{row.recording, row.first_frame}];
+    auto& [sum, count] = at->sums[{row.recording, row.first_frame, runs[i].record.recording.frames}];
     sum += *value;
     ++count;
   }
@@ -124,21 +163,26 @@ void rank(std::vector<Candidate>& candidates, const std::set<Recording>& recordi
 
 std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
                                  const tables::ResultTable& table) {
-  std::vector<std::string> kinds;
-  for (const tables::TableRow& row : table.rows) {
-    if (std::ranges::find(kinds, row.data) == kinds.end()) kinds.push_back(row.data);
-  }
+  const std::vector<run_files::RunTraits> traits = run_files::traits_of(runs);
+  const std::vector<std::string> labels = run_files::configuration_labels(traits);
+  const std::vector<Comparable> comparables = comparables_of(traits, table);
   std::vector<Ranking> rankings;
-  for (const std::string& data : kinds) {
-    const auto column = column_for(table, data);
+  for (std::size_t first = 0; first < comparables.size(); ++first) {
+    const auto same = std::ranges::find(comparables, comparables[first]);
+    if (same != comparables.begin() + static_cast<std::ptrdiff_t>(first)) continue;  // had its turn
+    std::vector<std::size_t> members;
+    for (std::size_t i = first; i < comparables.size(); ++i) {
+      if (comparables[i] == comparables[first]) members.push_back(i);
+    }
+    const auto column = column_for(table, members);
     if (!column) continue;
-    std::vector<Candidate> candidates = candidates_of(runs, table, data, *column);
+    std::vector<Candidate> candidates = candidates_of(runs, table, members, labels, *column);
     std::set<Recording> recordings;
     for (const Candidate& candidate : candidates) {
       for (const auto& [recording, sum] : candidate.sums) recordings.insert(recording);
     }
     rank(candidates, recordings);
-    Ranking ranking{data, *column, recordings.size(), {}};
+    Ranking ranking{comparables[first].data, comparables[first].frames, *column, recordings.size(), {}};
     for (Candidate& candidate : candidates)
       ranking.configurations.push_back(std::move(candidate.configuration));
     rankings.push_back(std::move(ranking));

@@ -13,7 +13,7 @@
 
 namespace fusebench::findings {
 
-/// A variant with the options that not all runs share.
+/// A variant with the options that not all runs share, and the IMU where its runs had different ones.
 struct RankedConfiguration {
   std::string label;
   std::string variant;
@@ -30,14 +30,17 @@ struct RankedConfiguration {
 /// Over data of one kind, which alone can be compared.
 struct Ranking {
   std::string data;  ///< "recorded", "simulated"
+  /// "frames 0:100" where other windows of the recordings share frames with it; empty where none does.
+  std::string frames;
   tables::TableColumn column;
-  std::size_t recordings = 0;  ///< of which any configuration has a number
+  std::size_t recordings = 0;  ///< or windows of them, of which any configuration has a number
   /// The best first, which has the most numbers; those that lack some come last. By the ratio to the best.
   std::vector<RankedConfiguration> configurations;
 };
 
 /// By ATE, or by AIE on common pixels where there is no ATE; a configuration's number of a recording is the
-/// mean over its runs that are ok. One a kind of data that has a number. table: of these runs.
+/// mean over its runs that are ok. One a kind of data that has a number, and a window of those that share
+/// frames. table: of these runs.
 [[nodiscard]] std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
                                                const tables::ResultTable& table);
 

@@ -85,7 +85,8 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
       ranking.recordings, ranking.data, ranking.recordings == 1 ? "" : "s");
   if (count < ranking.configurations.size())
     text += fmt::format(" The first {} of {}.", count, ranking.configurations.size());
-  return {only ? "What was compared" : fmt::format("What was compared: {} data", ranking.data),
+  const std::string frames = ranking.frames.empty() ? "" : ", " + ranking.frames;
+  return {only ? "What was compared" : fmt::format("What was compared: {} data{}", ranking.data, frames),
           std::move(text), std::move(table), 3};
 }
 

@@ -45,9 +45,8 @@ std::string imu_words(const std::string& imu) {
   return imu == "recorded" ? "recorded IMU" : imu;
 }
 
-/// What runs of one recording, or of one variant over it, have of each kind.
+/// What runs of one variant over one recording have of each kind.
 struct Kinds {
-  std::set<std::pair<std::size_t, std::size_t>> windows;
   std::set<int> repetitions;
   std::set<std::string> imus;
 };
@@ -97,22 +96,75 @@ std::string shared_edits(std::span<const RunTraits> runs) {
   return text;
 }
 
+std::vector<std::string> window_labels(std::span<const RunTraits> runs) {
+  std::map<std::string, std::set<std::pair<std::size_t, std::size_t>>> windows;
+  for (const RunTraits& run : runs) {
+    if (run.frames > 0) windows[run.recording].emplace(run.first_frame, run.frames);
+  }
+  std::vector<std::string> texts(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto of_recording = windows.find(runs[i].recording);
+    if (of_recording == windows.end() || of_recording->second.size() < 2) continue;
+    std::pair window(runs[i].first_frame, runs[i].frames);
+    if (window.second == 0) {
+      const auto next = of_recording->second.lower_bound(window);
+      window = next == of_recording->second.end() ? *of_recording->second.begin() : *next;
+    }
+    texts[i] = fmt::format("frames {}:{}", window.first, window.first + window.second);
+  }
+  return texts;
+}
+
+std::vector<std::string> imus_of_methods(std::span<const RunTraits> runs) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> of_recording;
+  std::map<std::string, std::set<std::string>> of_variant;
+  for (const RunTraits& run : runs) {
+    if (run.imu.empty()) continue;
+    of_recording[{run.recording, run.variant}].insert(run.imu);
+    of_variant[run.variant].insert(run.imu);
+  }
+  std::vector<std::string> imus;
+  for (const RunTraits& run : runs) {
+    std::set<std::string> likely = {run.imu};
+    if (run.imu.empty()) {
+      const auto here = of_recording.find({run.recording, run.variant});
+      likely = here != of_recording.end() ? here->second : of_variant[run.variant];
+    }
+    imus.push_back(likely.size() == 1 ? *likely.begin() : "");
+  }
+  return imus;
+}
+
+std::vector<std::string> configuration_labels(std::span<const RunTraits> runs) {
+  const std::vector<std::string> edits = differing_edits(runs);
+  const std::vector<std::string> imus = imus_of_methods(runs);
+  std::map<std::string, std::set<std::string>> of_variant;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!imus[i].empty()) of_variant[runs[i].variant].insert(imus[i]);
+  }
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::string& label = labels.emplace_back(runs[i].variant);
+    append(label, edits[i]);
+    if (!imus[i].empty() && of_variant.at(runs[i].variant).size() > 1) append(label, imu_words(imus[i]));
+  }
+  return labels;
+}
+
 std::vector<std::string> distinctions(std::span<const RunTraits> runs) {
-  std::map<std::string, Kinds> of_recording;
   std::map<std::pair<std::string, std::string>, Kinds> of_variant;
   for (const RunTraits& run : runs) {
-    if (run.frames > 0) of_recording[run.recording].windows.emplace(run.first_frame, run.frames);
     Kinds& kinds = of_variant[{run.recording, run.variant}];
     kinds.repetitions.insert(run.repetition);
     if (!run.imu.empty()) kinds.imus.insert(run.imu);
   }
+  const std::vector<std::string> windows = window_labels(runs);
   std::vector<std::string> texts = differing_edits(runs);
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> uses;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunTraits& run = runs[i];
     const Kinds& kinds = of_variant.at({run.recording, run.variant});
-    if (run.frames > 0 && of_recording.at(run.recording).windows.size() > 1)
-      append(texts[i], fmt::format("frames {}:{}", run.first_frame, run.first_frame + run.frames));
+    append(texts[i], windows[i]);
     if (kinds.repetitions.size() > 1) append(texts[i], fmt::format("repetition {}", run.repetition));
     if (!run.imu.empty() && kinds.imus.size() > 1) append(texts[i], imu_words(run.imu));
     ++uses[{run.recording, run.variant, texts[i]}];

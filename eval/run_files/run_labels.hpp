@@ -37,6 +37,18 @@ struct RunTraits {
 /// The edits that all of several runs share, in the same form.
 [[nodiscard]] std::string shared_edits(std::span<const RunTraits> runs);
 
+/// "frames 0:100" of each run where other frames of its recording were run as well; empty where not. A run
+/// that does not know its frames belongs to the first window that begins where it does or later.
+[[nodiscard]] std::vector<std::string> window_labels(std::span<const RunTraits> runs);
+
+/// The IMU that each run used. One that never opened its recording has that of the runs of its variant, those
+/// over its recording before others; empty where they differ.
+[[nodiscard]] std::vector<std::string> imus_of_methods(std::span<const RunTraits> runs);
+
+/// The variant of each run with differing_edits(), and with its IMU where runs of the variant differ in it:
+/// the same for runs that may be averaged.
+[[nodiscard]] std::vector<std::string> configuration_labels(std::span<const RunTraits> runs);
+
 /// What tells each run from the others: differing_edits(); "frames 0:100" where other frames of its recording
 /// were run as well; "repetition 2" and the IMU where runs of its variant over its recording differ in them;
 /// and at last the name of its folder, where nothing of that is different.

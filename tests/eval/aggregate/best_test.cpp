@@ -104,6 +104,34 @@ TEST(Best, DataOfDifferentKindsAreNotInOneMean) {
   EXPECT_NE(render_best(table, BestFormat::markdown).find("simulated: images"), std::string::npos);
 }
 
+TEST(Best, WindowsAndImusAreNotAveragedButRepetitionsAre) {
+  const auto run = [](std::size_t frames, std::size_t repetition, const char* imu, double ate_m) {
+    RunRow row = sample_row("desk", {}, ate_m);
+    row.frames = frames;
+    row.repetition = repetition;
+    row.imu = imu;
+    return row;
+  };
+  std::vector<RunRow> rows = {run(5, 1, "none", 0.02), run(5, 2, "none", 0.04),
+                              run(5, 1, "synthetic IMU", 0.01), run(4, 1, "none", 0.08)};
+  rows.push_back(sample_bad_row("desk", {}, RunStatus::failed));
+  rows.back().imu.clear();  // it never opened the recording
+  tell_apart(rows);
+  EXPECT_EQ(rows[1].label, "full frames 0:5 repetition 2 no IMU");
+  const BestTable table = best(rows, "recording");
+  ASSERT_EQ(table.groups.size(), 2U);
+  EXPECT_EQ(table.groups[0].label, "desk frames 0:4");
+  EXPECT_EQ(table.groups[0].kind, "recorded");
+  const auto& five = table.groups[1].rows;
+  ASSERT_EQ(five.size(), 2U);
+  EXPECT_EQ(five[0].configuration.imu, "synthetic IMU");
+  EXPECT_EQ(five[1].configuration.imu, "none");
+  EXPECT_NEAR(*five[1].configuration.mean, 0.03, 1e-15);
+  EXPECT_EQ(five[1].configuration.n_ok, 2U);
+  EXPECT_NE(render_best(table, BestFormat::markdown).find("each window is a recording"), std::string::npos);
+  EXPECT_EQ(best(rows, "none").groups.at(0).kind, "recorded, IMUs synthetic");
+}
+
 TEST(Best, RunsOfUnknownConfigurationAreCountedNotRanked) {
   auto rows = three_levels();
   rows.push_back(sample_bad_row("desk", {}, RunStatus::failed));
@@ -126,7 +154,7 @@ TEST(Best, DoesNotDependOnTheOrderOfRuns) {
 TEST(Best, FormatsCarryTheSameNumbers) {
   const BestTable table = best(three_levels(), "none", 2);
   const std::string csv = render_best(table, BestFormat::csv);
-  EXPECT_NE(csv.find("all,recorded,2,full,1,ate_rmse_m,m,0.04,2,2,2,\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("all,recorded,2,full,none,1,ate_rmse_m,m,0.04,2,2,2,\n"), std::string::npos) << csv;
   const auto document = nlohmann::json::parse(render_best(table, BestFormat::json));
   EXPECT_EQ(document.at("groups").at(0).at("rows").at(1).at("mean"), 0.04);
   EXPECT_EQ(document.at("groups").at(0).at("configurations"), 3);

@@ -23,7 +23,9 @@ std::vector<RunRow> two_runs() {
                               sample_bad_row("desk", {{"c", "x, \"y\""}}, RunStatus::failed)};
   rows[0].run = "01234567";
   rows[0].first_frame = 100;
+  rows[0].frames = 50;
   rows[0].repetition = 2;
+  rows[0].label = "full frames 100:150";
   rows[1].run = "not-started";
   rows[1].reason = "no, \"never\"";
   rows[1].total = 0;
@@ -33,13 +35,15 @@ std::vector<RunRow> two_runs() {
 TEST(LongTable, CsvHasALineForEachNumberAndOneForARunWithout) {
   EXPECT_EQ(
       long_table(two_runs(), {}),
-      "recording,data,imu,truth,variant,run,status,reason,first_frame,repetition,a.b,c,metric,unit,value\n"
-      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,frames,frames,100\n"
-      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,frames_tracked,frames,100\n"
-      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,frames_lost,frames,0\n"
-      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,ate_rmse_m,m,0.0123\n"
-      "desk,recorded,none,given,full,01234567,ok,,100,2,1,,cpu_ms_per_frame,ms,7.5\n"
-      "desk,recorded,none,given,full,not-started,failed,\"no, \"\"never\"\"\",0,1,,\"x, \"\"y\"\"\",,,\n");
+      "recording,data,imu,truth,variant,run,status,reason,label,first_frame,last_frame,repetition,a.b,c,"
+      "metric,unit,value\n"
+      "desk,recorded,none,given,full,01234567,ok,,full frames 100:150,100,149,2,1,,frames,frames,100\n"
+      "desk,recorded,none,given,full,01234567,ok,,full frames "
+      "100:150,100,149,2,1,,frames_tracked,frames,100\n"
+      "desk,recorded,none,given,full,01234567,ok,,full frames 100:150,100,149,2,1,,frames_lost,frames,0\n"
+      "desk,recorded,none,given,full,01234567,ok,,full frames 100:150,100,149,2,1,,ate_rmse_m,m,0.0123\n"
+      "desk,recorded,none,given,full,01234567,ok,,full frames 100:150,100,149,2,1,,cpu_ms_per_frame,ms,7.5\n"
+      "desk,recorded,none,given,full,not-started,failed,\"no, \"\"never\"\"\",,0,,1,,\"x, \"\"y\"\"\",,,\n");
 }
 
 TEST(LongTable, WithoutTimingOnlyTheInputsCount) {
@@ -62,6 +66,9 @@ TEST(LongTable, JsonLinesAreDocumentsWithTheSameNumbers) {
   EXPECT_EQ(documents[3].at("value"), 0.0123);
   EXPECT_EQ(documents[3].at("a.b"), "1");
   EXPECT_EQ(documents[3].at("first_frame"), 100);
+  EXPECT_EQ(documents[3].at("last_frame"), 149);
+  EXPECT_EQ(documents[3].at("label"), "full frames 100:150");
+  EXPECT_TRUE(documents[5].at("last_frame").is_null());
   EXPECT_TRUE(documents[3].at("c").is_null());
   EXPECT_TRUE(documents[5].at("metric").is_null());
   EXPECT_EQ(documents[5].at("reason"), "no, \"never\"");

@@ -10,6 +10,7 @@
 #include "eval/aggregate/long_table.hpp"
 #include "eval/aggregate/record_scan.hpp"
 #include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/run_labels.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -30,6 +31,8 @@ RunRecord sample_record(const std::string& recording, const std::string& variant
   record.recording.name = recording;
   record.recording.truth = "given";
   record.recording.imu = "recorded";
+  record.recording.fingerprint = "0123";
+  record.recording.frames = 100;
   record.recording.notes = {"a note, with a \"mesh\"", "frames"};
   record.variant = variant;
   record.config_hash = "0011223344556677";
@@ -165,6 +168,27 @@ TEST_F(RunRowsTest, HasTheNumbersThatFindRunsHas) {
     EXPECT_EQ(read[i].ate_rmse_m, (*found)[i].record.metrics.ate.value->stats.rmse);
   }
   EXPECT_EQ(read[0].folder, "desk/full/89abcdef");
+}
+
+TEST_F(RunRowsTest, RowsHaveTheLabelsOfTheTable) {
+  RunRecord record = sample_record("desk", "full", 0.02);
+  write_record("desk/full/0", record);
+  record.recording.frames = 50;
+  record.recording.imu = "synthetic IMU";
+  write_record("desk/full/1", record);
+  record.status = RunStatus::failed;
+  record.recording = {};
+  record.recording.name = "desk";
+  write_record("desk/full/2", record);
+  const auto read = rows();
+  ASSERT_EQ(read.size(), 3U);
+  EXPECT_EQ(read[0].label, "full frames 20:120 recorded IMU");
+  EXPECT_EQ(read[1].label, "full frames 20:70 synthetic IMU");
+  EXPECT_EQ(read[1].recorded_part(), "desk frames 20:70");
+  EXPECT_EQ(read[2].imu, "");  // it could have had either
+  const auto found = find_runs(folder_ / "runs");
+  const auto labels = run_labels(traits_of(*found));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(read[i].label, labels[i]);
 }
 
 TEST_F(RunRowsTest, ADamagedRecordIsARow) {

@@ -95,6 +95,37 @@ TEST_F(FindingsTest, WhoLostARecordingIsComparedWhereBothHaveNumbers) {
   testing::expect_contains(failures[0], "1 of 4 runs did not end well: dm on b (lost: too many lost frames)");
 }
 
+TEST_F(FindingsTest, WindowsThatShareFramesAndImusAreComparedApart) {
+  const auto add_window = [&](const std::string& variant, std::size_t first, std::size_t frames,
+                              double ate_m) {
+    add_run("a", variant, ate_m);
+    runs_.back().record.recording.first_frame = first;
+    runs_.back().record.recording.frames = frames;
+  };
+  add_window("full", 0, 5, 0.01);
+  add_window("full", 0, 4, 0.03);
+  add_window("dm", 0, 5, 0.02);
+  add_window("dm", 0, 5, 0.04);
+  runs_.back().record.recording.imu = "recorded";
+  const auto found = rankings();
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].frames, "frames 0:5");
+  ASSERT_EQ(found[0].configurations.size(), 3U);
+  EXPECT_EQ(found[0].configurations[0].label, "full");
+  EXPECT_EQ(found[0].configurations[1].label, "dm synthetic IMU");
+  EXPECT_EQ(found[0].configurations[2].label, "dm recorded IMU");
+  ASSERT_EQ(found[1].configurations.size(), 1U);
+  testing::expect_contains(sentences_of(found[1]).front(), "3.00 cm on one recorded recording, frames 0:4");
+
+  runs_.clear();  // windows that share no frame are samples of the recording
+  add_window("full", 0, 5, 0.01);
+  add_window("full", 5, 5, 0.04);
+  const auto apart = rankings();
+  ASSERT_EQ(apart.size(), 1U);
+  EXPECT_EQ(apart[0].recordings, 2U);
+  EXPECT_NEAR(*apart[0].configurations[0].value, 0.02, 1e-12);
+}
+
 TEST_F(FindingsTest, AnImuMadeFromTheTruthIsSaid) {
   add_run("a", "full", 0.01);
   add_run("a", "no-imu", 0.02);

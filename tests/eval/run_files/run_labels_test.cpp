@@ -54,6 +54,16 @@ TEST(RunLabelsTest, WindowsRepetitionsAndImusAreToldWhereTheyDiffer) {
                                      "full frames 100:150 repetition 1 synthetic IMU", "dm frames 0:240"}));
 }
 
+TEST(RunLabelsTest, ConfigurationsAreApartByImuAndNotByRepetition) {
+  std::vector runs = {run_of("full"), run_of("full"), run_of("full"), run_of("full"), run_of("dm")};
+  runs[1].repetition = 2;
+  runs[2].imu = "synthetic IMU";
+  runs[2].recording = "fr1_xyz";
+  runs[3].imu.clear();
+  EXPECT_EQ(configuration_labels(runs), (Texts{"full recorded IMU", "full recorded IMU", "full synthetic IMU",
+                                               "full recorded IMU", "dm"}));
+}
+
 TEST(RunLabelsTest, WhatNothingTellsApartHasTheNameOfItsFolder) {
   std::vector runs = {run_of("full"), run_of("full"), run_of("full")};
   runs[1].folder = "0be4a4cc";
