@@ -150,20 +150,26 @@ Result<std::vector<page::PageSection>> read_pictures(const record::RecordedRecor
 std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& recording,
                                               std::span<const run_charts::RunSeries> runs,
                                               std::span<const LabelledPatches> patches,
-                                              std::size_t in_between, const FrameReader& reader) {
+                                              std::size_t in_between, const FrameReader& reader,
+                                              std::vector<std::string>& warnings) {
   const auto longest =
       std::ranges::max_element(runs, {}, [](const run_charts::RunSeries& run) { return run.frames.size(); });
   const run_charts::RunSeries* const framed =
       longest == runs.end() || longest->frames.empty() ? nullptr : &*longest;
   std::string why = framed == nullptr ? "no run has a table of its frames" : "it was not looked for";
+  std::string remedy;
   if (framed != nullptr && reader) {
     auto sections =
         read_pictures(recording, scene_choices(runs, *framed), choices_between(*framed, in_between), reader);
     if (sections) return std::move(*sections);
     why = sections.error().message;
+    remedy = sections.error().hint;
+    warnings.push_back(fmt::format("{}: no images of the recording ({}){}{}", recording.name, why,
+                                   remedy.empty() ? "" : ": ", remedy));
   }
+  if (!remedy.empty()) remedy = fmt::format(" {}.", remedy);
   std::vector<page::PageImage> kept = kept_images(framed, patches);
-  const std::string sentence = fmt::format("No images of the recording ({}).", why);
+  const std::string sentence = fmt::format("No images of the recording ({}).{}", why, remedy);
   if (kept.empty()) return {{kTitle, sentence, page::PageParagraphs{}, 3}};
   return {
       {kTitle, sentence + " These are the frames that runs kept with their patches.", std::move(kept), 3, 4}};

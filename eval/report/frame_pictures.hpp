@@ -22,11 +22,11 @@ using FrameReader = std::function<Result<std::vector<ColorImage>>(const record::
                                                                   std::span<const std::size_t> frames)>;
 
 /// in_between: how many frames for the time line. Where the recording cannot be read, the images that runs
-/// kept with their patches, and a sentence that says why. Nothing without images.
+/// kept with their patches, and a sentence that says why and what to do, also in `warnings`.
 [[nodiscard]] std::vector<page::PageSection> frame_pictures(const record::RecordedRecording& recording,
                                                             std::span<const run_charts::RunSeries> runs,
                                                             std::span<const LabelledPatches> patches,
-                                                            std::size_t in_between,
-                                                            const FrameReader& reader);
+                                                            std::size_t in_between, const FrameReader& reader,
+                                                            std::vector<std::string>& warnings);
 
 }  // namespace fusebench::report

@@ -295,7 +295,7 @@ void add_recording(ResultsPage& result, speed_failures::FailureSections& failure
   const std::vector<LabelledPatches> patches = patches_of(drawn, group, labels, result.warnings);
   if (!series.empty()) {
     for (page::PageSection& section :
-         frame_pictures(recording, series, patches, detail.in_between, context.reader))
+         frame_pictures(recording, series, patches, detail.in_between, context.reader, result.warnings))
       page.sections.push_back(std::move(section));
   }
   for (const run_charts::RunSeries& run : series)

@@ -49,6 +49,7 @@ sed -e 's/"status": "ok"/"status": "failed"/' -e 's/"reason": ""/"reason": "<b>n
 mkdir elsewhere
 report_from_elsewhere() { (cd elsewhere && "$binary" report ../runs "$@") 2>stderr; }
 report_from_elsewhere --out ../report.html || failed "no report: $(cat stderr)"
+cp stderr stderr.report
 (($(stat -c %s report.html) < 15000000)) || failed "the report is larger than 15 MB"
 # Pictures are letters too, among which there may be any three by chance.
 grep -q 'NaN\|>nan<\|>inf<' <(sed -e '/<script/,/<\/script>/d' -e 's/data:image[^"]*"/"/g' report.html) && failed "the report shows what is no number"
@@ -62,6 +63,8 @@ grep -q '<p>1 of 5 runs did not end well: planar' report.html || failed "the rep
 grep -q '<td class="best">' report.html || failed "no best value is marked"
 grep -q 'No images of the recording (' report.html ||
   failed "the report does not say that the recording is not there"
+grep -q 'data FOLDER' report.html || failed "the report does not say how images are shown"
+grep -q 'warning: .*no images of the recording.*--data FOLDER' stderr.report || failed "the terminal does not say how images are shown: $(cat stderr.report)"
 for part in 'Loops and final poses' 'Trajectories with loops' 'Loops over time' 'How to read the table of systems'; do
   grep -q "<h3[^>]*>$part" report.html || failed "the report has no part '$part'"
 done

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "datasets/calibration/camera_presets.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/record/record.hpp"
@@ -25,20 +26,47 @@ Result<std::filesystem::path> folder_of(const record::RecordedRecording& recorde
   return suites::find_recording(recorded.name, data);
 }
 
-Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& folder,
-                                            const record::RecordedRecording& recorded,
-                                            std::span<const std::size_t> frames) {
-  auto recording = datasets::open_recording(folder);
-  if (!recording) return tl::unexpected(recording.error());
+Result<recording::Recording> open_window(const std::filesystem::path& folder,
+                                         const record::RecordedRecording& recorded,
+                                         const datasets::OpenOptions& options) {
+  auto recording = datasets::open_recording(folder, options);
   const std::size_t end = recorded.first_frame + recorded.frames;
-  if (end <= recording->frames.size()) {
+  if (recording && end <= recording->frames.size()) {
     if (auto cut = recording::select_frames(*recording, recorded.first_frame, end); !cut)
       return tl::unexpected(cut.error());
   }
-  if (recording->fingerprint != recorded.fingerprint) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("{} has another content than when it was run", folder.string()));
+  return recording;
+}
+
+/// With the camera that the run was given, if it is a published one: the record holds no more of it than what
+/// it contributes to the fingerprint.
+Result<recording::Recording> open_as_run(const std::filesystem::path& folder,
+                                         const record::RecordedRecording& recorded) {
+  auto recording = open_window(folder, recorded, {});
+  if (recording && recording->fingerprint == recorded.fingerprint) return recording;
+  if (!recording && recording.error().code != ErrorCode::configuration) return recording;
+  for (const calibration::CameraPreset& preset : calibration::camera_presets()) {
+    datasets::OpenOptions options;
+    options.read.camera = preset.camera;
+    auto with_camera = open_window(folder, recorded, options);
+    if (with_camera && with_camera->fingerprint == recorded.fingerprint) return with_camera;
   }
+  if (!recording) {
+    return fail(recording.error().code,
+                fmt::format("{}, and with no published camera is it the recording that was run",
+                            recording.error().message),
+                "put a calibration.toml with the camera of the run into the folder");
+  }
+  return fail(ErrorCode::data_missing,
+              fmt::format("{} has another content or camera than when it was run", folder.string()),
+              "--data names the folder of recordings that has it as it was");
+}
+
+Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& folder,
+                                            const record::RecordedRecording& recorded,
+                                            std::span<const std::size_t> frames) {
+  const auto recording = open_as_run(folder, recorded);
+  if (!recording) return tl::unexpected(recording.error());
   std::vector<ColorImage> images;
   for (const std::size_t frame : frames) {
     auto loaded = recording->load_frame(frame);
@@ -52,9 +80,10 @@ Result<std::vector<ColorImage>> read_frames(const std::filesystem::path& folder,
 
 report::FrameReader recorded_frames(const std::filesystem::path& data, const std::filesystem::path& runs) {
   return [data, runs](const record::RecordedRecording& recording, std::span<const std::size_t> frames) {
-    return folder_of(recording, data, runs).and_then([&](const std::filesystem::path& folder) {
-      return read_frames(folder, recording, frames);
-    });
+    auto folder = folder_of(recording, data, runs);
+    if (!folder && data.empty()) folder.error().hint = "--data FOLDER (the folder of recordings) shows them";
+    return folder.and_then(
+        [&](const std::filesystem::path& place) { return read_frames(place, recording, frames); });
   };
 }
 

@@ -155,7 +155,8 @@ TEST_F(ResultsPageTest, PicturesShowTheFirstFrameAndTheWorst) {
     return Result<std::vector<ColorImage>>(
         std::vector<ColorImage>(frames.size(), ColorImage(64, 48, Rgb{9, 9, 9})));
   };
-  const auto sections = frame_pictures(full.record.recording, std::vector{series}, {}, 3, reader);
+  std::vector<std::string> warnings;
+  const auto sections = frame_pictures(full.record.recording, std::vector{series}, {}, 3, reader, warnings);
   EXPECT_EQ(asked, (std::vector<std::size_t>{0, 29, 40, 59}));
   ASSERT_EQ(sections.size(), 2U);
   const auto& scene = std::get<std::vector<PageImage>>(sections[0].content);
@@ -165,11 +166,16 @@ TEST_F(ResultsPageTest, PicturesShowTheFirstFrameAndTheWorst) {
   EXPECT_TRUE(sections[1].strip);
 
   const FrameReader gone = [](const RecordedRecording&, std::span<const std::size_t>) {
-    return Result<std::vector<ColorImage>>(fail(ErrorCode::data_missing, "circle: no such folder"));
+    return Result<std::vector<ColorImage>>(
+        fail(ErrorCode::data_missing, "circle: no such folder", "--data FOLDER shows them"));
   };
-  const auto without = frame_pictures(full.record.recording, std::vector{series}, {}, 3, gone);
+  const auto without = frame_pictures(full.record.recording, std::vector{series}, {}, 3, gone, warnings);
   ASSERT_EQ(without.size(), 1U);
-  EXPECT_EQ(without[0].text, "No images of the recording (circle: no such folder).");
+  EXPECT_EQ(without[0].text,
+            "No images of the recording (circle: no such folder). --data FOLDER "
+            "shows them.");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("--data FOLDER"), std::string::npos) << warnings[0];
 }
 
 TEST_F(ResultsPageTest, AModelHasTheWayOfItsCameraAndItsBoxAndTheSameColourAsItsCurves) {
