@@ -1,7 +1,6 @@
 #include "core/base/nearest_name.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -26,21 +25,29 @@ std::size_t edit_distance(std::string_view a, std::string_view b, bool of_a_part
   return of_a_part ? *std::ranges::min_element(row) : row[b.size()];
 }
 
+constexpr std::size_t kShortest = 3;  // letters of a part that says something
+
 bool are_alike(std::string_view a, std::string_view b) {
-  constexpr std::size_t kShortest = 3;  // of a part that says something
   if (a.size() > b.size()) std::swap(a, b);
   if (2 * edit_distance(a, b) <= b.size()) return true;
   return a.size() >= kShortest && 3 * edit_distance(a, b, true) <= a.size();
+}
+bool begins_with(std::string_view name, std::string_view beginning) {
+  const std::size_t dashes = std::min(beginning.find_first_not_of('-'), beginning.size());
+  return beginning.size() - dashes >= kShortest && name.starts_with(beginning);
 }
 }  // namespace
 
 std::string nearest_name(std::string_view name, std::span<const std::string_view> names) {
   std::string_view best;
-  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  // Whoever types a beginning has left the rest away and not mistyped another, shorter name.
+  std::pair<bool, std::size_t> best_rank;
   for (const std::string_view candidate : names) {
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance >= best_distance || !are_alike(name, candidate)) continue;
-    best_distance = distance;
+    const bool begun = begins_with(candidate, name);
+    const std::pair<bool, std::size_t> rank(!begun, edit_distance(name, candidate));
+    if (!best.empty() && rank >= best_rank) continue;
+    if (!begun && !are_alike(name, candidate)) continue;
+    best_rank = rank;
     best = candidate;
   }
   return std::string(best);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "eval/external/external_program.hpp"
+#include "eval/suites/only_filters.hpp"
 
 namespace fusebench::engine {
 
@@ -24,50 +25,6 @@ struct Planned {
   std::vector<std::string> variants;
   std::optional<suites::SimulationRequest> simulation = {};
 };
-
-/// Whether a value suits what --only says of a key: any of its values, or nothing.
-template <class Suits>
-bool suits_one(const std::vector<std::string>& only, std::string_view key, const Suits& suits) {
-  bool asked = false;
-  for (const std::string_view filter : only) {
-    if (!filter.starts_with(key)) continue;
-    asked = true;
-    if (suits(filter.substr(key.size()))) return true;
-  }
-  return !asked;
-}
-
-/// Whether --only can leave a run of that variant.
-bool variant_may_be_wanted(const std::vector<std::string>& only, std::string_view variant) {
-  return suits_one(only, "variant=", [&](std::string_view value) { return variant == value; });
-}
-
-/// Whether --only can leave something of a recording that the suite calls by that name ("begin*" as well).
-bool recording_may_be_wanted(const std::vector<std::string>& only, std::string_view name) {
-  if (name.ends_with('*')) name.remove_suffix(1);
-  return suits_one(
-      only, "recording=", [&](std::string_view value) { return name.find(value) != std::string_view::npos; });
-}
-
-/// Whether a job is among those asked for.
-Result<bool> wanted(const std::vector<std::string>& only, const std::string& recording,
-                    const std::string& split, const std::string& variant) {
-  for (const std::string& filter : only) {
-    const auto equals = filter.find('=');
-    const std::string key = filter.substr(0, equals);
-    const std::string value = equals == std::string::npos ? "" : filter.substr(equals + 1);
-    const bool known = key == "recording" || key == "variant" || (key == "split" && suites::is_split(value));
-    if (!known || value.empty()) {
-      return fail(ErrorCode::usage, fmt::format("--only {} (allowed: recording=TEXT | variant=NAME | "
-                                                "split=tuning | split=held-out)",
-                                                filter));
-    }
-  }
-  return suits_one(only, "recording=",
-                   [&](std::string_view value) { return recording.find(value) != std::string::npos; }) &&
-         suits_one(only, "split=", [&](std::string_view value) { return split == value; }) &&
-         variant_may_be_wanted(only, variant);
-}
 
 Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, const BatchOptions& options) {
   std::vector<Planned> planned;
@@ -87,7 +44,7 @@ Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, con
   for (const suites::SuiteRecording& recording : suite.recordings) {
     const auto folders = suites::find_recordings(recording.name, options.data);
     if (!folders) {
-      if (!recording_may_be_wanted(options.only, recording.name)) continue;
+      if (!suites::recording_may_be_wanted(options.only, recording.name)) continue;
       return tl::unexpected(folders.error());
     }
     for (const fs::path& folder : *folders) {
@@ -117,7 +74,7 @@ Result<std::vector<Planned>> recordings_of(const suites::Suite& suite, const Bat
   auto planned = existing_recordings(suite, options);
   if (!planned) return planned;
   for (const suites::SuiteSimulation& simulation : suite.simulations) {
-    if (!recording_may_be_wanted(options.only, simulation.name)) continue;
+    if (!suites::recording_may_be_wanted(options.only, simulation.name)) continue;
     auto recording = simulated_recording(simulation, options);
     if (!recording) return tl::unexpected(recording.error());
     planned->push_back(std::move(*recording));
@@ -150,10 +107,10 @@ Result<config::EffectiveConfig> config_of(const suites::Suite& suite, const conf
 
 using Programs = std::vector<std::shared_ptr<const external::ExternalProgram>>;
 
-/// The external programs of the suite that are wanted, each asked for its version.
-Result<Programs> programs_of(const suites::Suite& suite, const std::vector<std::string>& only) {
+/// The external programs of the suite that are wanted, each asked for its version. names: of all of them.
+Result<Programs> programs_of(const suites::Suite& suite, const std::vector<std::string>& only,
+                             std::vector<std::string>& names) {
   Programs programs;
-  std::vector<std::string> names;
   for (const std::string& file : suite.systems) {
     auto program = external::read_external_program(file);
     if (!program && program.error().code == ErrorCode::data_missing)
@@ -162,7 +119,7 @@ Result<Programs> programs_of(const suites::Suite& suite, const std::vector<std::
                   "paths of systems count from the folder that fusebench is started in");
     if (!program) return tl::unexpected(program.error());
     names.push_back(program->name);
-    if (!variant_may_be_wanted(only, program->name)) continue;
+    if (!suites::variant_may_be_wanted(only, program->name)) continue;
     if (auto found = external::find_installed(*program); !found) return tl::unexpected(found.error());
     programs.push_back(std::make_shared<const external::ExternalProgram>(std::move(*program)));
   }
@@ -234,8 +191,8 @@ Result<BatchJob> job_of_program(const Common& common, const Planned& recording,
 Result<void> add_program_runs(const Common& common, const Planned& recording, BatchPlan& plan,
                               std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const auto& program : common.programs) {
-    const auto take =
-        wanted(common.options.only, recording.folder.filename().string(), recording.split, program->name);
+    const auto take = suites::wanted(common.options.only, recording.folder.filename().string(),
+                                     recording.split, program->name);
     if (!take) return tl::unexpected(take.error());
     if (!*take) continue;
     auto job = job_of_program(common, recording, program);
@@ -276,7 +233,7 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
                       std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const std::string& variant : recording.variants) {
     const auto take =
-        wanted(common.options.only, recording.folder.filename().string(), recording.split, variant);
+        suites::wanted(common.options.only, recording.folder.filename().string(), recording.split, variant);
     if (!take) return tl::unexpected(take.error());
     if (!*take) continue;
     for (const suites::SweepPoint& point : common.points) {
@@ -306,7 +263,7 @@ Result<void> check_count(const Common& common, const std::vector<Planned>& recor
   double runs = 0;
   for (const Planned& recording : recordings) {
     const auto wanted_variants = std::ranges::count_if(recording.variants, [&](const std::string& variant) {
-      return variant_may_be_wanted(common.options.only, variant);
+      return suites::variant_may_be_wanted(common.options.only, variant);
     });
     runs += static_cast<double>(wanted_variants) * many(common.points.size()) + many(common.programs.size());
   }
@@ -351,7 +308,8 @@ std::string to_string(const BatchJob& job) {
 }
 
 Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options) {
-  auto programs = programs_of(suite, options.only);
+  std::vector<std::string> variants;
+  auto programs = programs_of(suite, options.only, variants);
   if (!programs) return tl::unexpected(programs.error());
   Common common{suite, options, std::move(*programs), options.sets, {}};
   std::vector<suites::SweepBlock> blocks = suite.sweeps;
@@ -385,6 +343,10 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
           fmt::format("{}: the exclusion '{}' meets no run", exclusion.place, exclusion.reason));
   }
   if (plan.jobs.empty() && plan.excluded.empty()) {
+    for (const Planned& recording : *recordings)
+      variants.insert(variants.end(), recording.variants.begin(), recording.variants.end());
+    if (auto known = suites::check_variants(options.only, suite.name, variants); !known)
+      return tl::unexpected(known.error());
     return fail(ErrorCode::usage, fmt::format("--only leaves nothing of suite '{}'", suite.name),
                 "recording=TEXT keeps the recordings whose name contains it, variant=NAME one variant, "
                 "split=held-out or tuning one split");

@@ -189,6 +189,8 @@ check_bad_usage() {
   refused "too many arguments" 2 'fusebench run. does not take other another$' -- run freiburg1_copy other another
   refused "another value" 2 '--preset slwo: not one of slow, fast, .* \(nearest: slow\)' -- simulate --preset slwo --out out
   refused "no value" 2 '--variant is given without its value' -- run freiburg1_copy --variant
+  refused "the beginning of an option" 2 'has no option --var .nearest: --variant' -- run x --var full
+  refused "the beginning of a short option" 2 'has no option --thr .nearest: --threads' -- run x --thr 2
   refused "unknown verb of eval" 2 "unknown verb 'atee' of .fusebench eval. \(nearest: ate\)" -- eval atee gt.txt est.txt
   refused "no threads" 2 'threads' -- run freiburg1_copy --variant no-imu --out out --threads 0
 
@@ -330,6 +332,9 @@ check_recordings() {
   "$binary" bench quickstart --data data --only variant=full --only variant=no-imu --only recording=walk --dry-run \
     >stdout 2>stderr || complain "a suite by its name: exit code $?"
   [[ $(grep -c freiburg1_walk stdout) == 2 ]] || complain "--only twice: not both variants"
+  refused "a misspelt variant of --only" 2 "suite 'quickstart' has no such variant .nearest: full" 'hint:it has .*no-imu' \
+    -- bench quickstart --data data --only variant=fll --dry-run
+  refused "a misspelt key of --only" 2 'varient=full .nearest: variant' -- bench quickstart --data data --only varient=full --dry-run
   refused "nearly a suite" 3 "no suite 'quickstrat' .nearest: quickstart" 'hint:list suites' -- bench quickstrat --out out
   diff <("$binary" help eval mesh) <("$binary" eval mesh --help) >stderr || complain "help is not --help"
   refused "known, but absent" 3 'fr1_desk.*rgbd_dataset_freiburg1_desk' 'hint:fetch_datasets.sh fr1_desk' \

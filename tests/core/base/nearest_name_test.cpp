@@ -21,6 +21,18 @@ TEST(NearestName, APartOfALongOneIsFoundAlsoMisspelt) {
   EXPECT_EQ(nearest_name("tsdf.voxl", kNames), "tsdf.voxel_m");
 }
 
+TEST(NearestName, ABeginningWinsOverWhatIsNearer) {
+  constexpr std::array<std::string_view, 6> kFlags = {"--max",     "--par", "--variant",
+                                                      "--threads", "--out", "--preset"};
+  EXPECT_EQ(nearest_name("--var", kFlags), "--variant");
+  EXPECT_EQ(nearest_name("--thr", kFlags), "--threads");
+  EXPECT_EQ(nearest_name("--pre", kFlags), "--preset");
+  EXPECT_EQ(nearest_name("--pa", kFlags), "--par");  // too short a beginning, and near
+  constexpr std::array<std::string_view, 2> kBoth = {"--variants", "--variant"};
+  EXPECT_EQ(nearest_name("--var", kBoth), "--variant");
+  EXPECT_EQ(nearest_name("--var", std::array<std::string_view, 1>{"--a-very-long-name"}), "");
+}
+
 TEST(NearestName, WhatIsLikeNothingHasNone) {
   EXPECT_EQ(nearest_name("beauty", kNames), "");
   EXPECT_EQ(nearest_name("zzz", kNames), "");
