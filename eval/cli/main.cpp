@@ -24,10 +24,14 @@ namespace fusebench::cli {
 
 namespace {
 
+bool asks_for_help(int argc, const char* const* argv) {
+  return argc >= 2 && std::string_view(argv[1]) == "help";
+}
+
 /// `help eval ate` is `eval ate --help`.
 std::vector<const char*> words_of(int argc, const char* const* argv) {
   std::vector<const char*> words(argv, argv + argc);
-  if (argc < 2 || std::string_view(argv[1]) != "help") return words;
+  if (!asks_for_help(argc, argv)) return words;
   words.erase(words.begin() + 1);
   words.push_back("--help");
   return words;
@@ -88,6 +92,9 @@ int command_line(int given_count, const char* const* given) {
                                             shell::add_manual_verb(app)};
   const auto arguments = trajectories::with_own_spelling({argv + std::min(argc, 1), argv + argc});
   if (!arguments) return finish(arguments.error());
+  if (asks_for_help(given_count, given)) {
+    if (const auto unknown = console::unknown_words(app, *arguments)) return finish(*unknown);
+  }
   try {
     app.parse(
         std::vector<std::string>(arguments->rbegin(), arguments->rend()));  // it takes them from the end

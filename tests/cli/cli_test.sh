@@ -191,6 +191,9 @@ check_bad_usage() {
   refused "no value" 2 '--variant is given without its value' -- run freiburg1_copy --variant
   refused "the beginning of an option" 2 'has no option --var .nearest: --variant' -- run x --var full
   refused "the beginning of a short option" 2 'has no option --thr .nearest: --threads' -- run x --thr 2
+  refused "help of an unknown verb" 2 "unknown verb 'evall' .nearest: eval" 'hint:lists the verbs' -- help evall
+  refused "help of what is like no verb" 2 "unknown verb 'frobz'$" 'hint:lists the verbs' -- help frobz
+  refused "help of an unknown verb of eval" 2 "unknown verb 'foo' of .fusebench eval" -- help eval foo
   refused "unknown verb of eval" 2 "unknown verb 'atee' of .fusebench eval. \(nearest: ate\)" -- eval atee gt.txt est.txt
   refused "no threads" 2 'threads' -- run freiburg1_copy --variant no-imu --out out --threads 0
 

@@ -131,6 +131,11 @@ std::string reworded(const CLI::App& verb, const std::string& complaint) {
 
 }  // namespace
 
+std::optional<Error> unknown_words(const CLI::App& program, const std::vector<std::string>& arguments) {
+  const CLI::App* verb = &program;
+  return not_understood(program, arguments, verb);
+}
+
 Error usage_error(const CLI::App& program, const std::vector<std::string>& arguments,
                   const CLI::ParseError& complaint) {
   const CLI::App* verb = &program;

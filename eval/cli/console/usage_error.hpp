@@ -2,6 +2,7 @@
 // the nearest one that is.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,10 @@ namespace fusebench::cli::console {
 /// that it does not know, else what the parser complains of.
 [[nodiscard]] Error usage_error(const CLI::App& program, const std::vector<std::string>& arguments,
                                 const CLI::ParseError& complaint);
+
+/// The first verb or flag of arguments (without the program's name) that `program` does not know. The parser
+/// itself does not complain of them where help is asked for.
+[[nodiscard]] std::optional<Error> unknown_words(const CLI::App& program,
+                                                 const std::vector<std::string>& arguments);
 
 }  // namespace fusebench::cli::console
