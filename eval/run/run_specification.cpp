@@ -3,14 +3,29 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/config/variants.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
+#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::run {
 
 namespace {
+
+/// An option that somebody edited so that the configuration needs an IMU; nothing if the variant does.
+std::optional<std::string> edit_that_needs_imu(const config::EffectiveConfig& config) {
+  const bool filter = config.values.system.method == config::SystemMethod::filter;
+  const auto uses = filter ? std::pair("terms.prior", "\"imu\"") : std::pair("elasticfusion.use_imu", "true");
+  const std::pair method("system.method", filter ? "\"filter\"" : "\"elasticfusion\"");
+  for (const auto& [key, value] : {uses, method}) {
+    const std::string origin = config.origin(key);
+    if (run_files::is_edit(origin)) return fmt::format("{}: {} = {}", origin, key, value);
+  }
+  return std::nullopt;
+}
 
 Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
   if (!wants_imu(spec)) {
@@ -28,6 +43,13 @@ Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
                 fmt::format("{}: imu = \"recorded\", and recording '{}' has no inertial samples",
                             spec.program->file.string(), recording.name),
                 "--imu synthetic makes some from the ground truth and says so in every table");
+  if (const auto edit = edit_that_needs_imu(spec.config)) {
+    return fail(ErrorCode::usage,
+                fmt::format("{} needs an IMU, and recording '{}' has none", *edit, recording.name),
+                fmt::format("take that option away (it edits variant '{}'), or make an IMU from the ground "
+                            "truth with --imu synthetic",
+                            spec.variant));
+  }
   return fail(
       ErrorCode::usage,
       fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),

@@ -299,6 +299,17 @@ TEST_F(RunTest, AVariantThatNeedsAnImuSaysHowToGetOne) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
+TEST_F(RunTest, AnEditedOptionThatNeedsAnImuIsNamedWithItsPlace) {
+  RunSpec edited = spec("no-imu");
+  ASSERT_TRUE(edited.config.set("terms.prior", std::string("imu"), "mine.toml:12"));
+  const auto prepared = prepare_run(edited);
+  ASSERT_FALSE(prepared.has_value());
+  EXPECT_NE(prepared.error().message.find("mine.toml:12: terms.prior = \"imu\" needs an IMU"),
+            std::string::npos)
+      << prepared.error().message;
+  EXPECT_EQ(prepared.error().hint.find("--variant no-imu does without"), std::string::npos);
+}
+
 TEST_F(RunTest, TheHashTellsConfigurationsAndWindowsApart) {
   const auto base = prepare_run(spec("no-imu"));
   RunSpec edited = spec("no-imu");
