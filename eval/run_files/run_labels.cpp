@@ -164,7 +164,7 @@ std::vector<std::string> distinctions(std::span<const RunTraits> runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunTraits& run = runs[i];
     const Kinds& kinds = of_variant.at({run.recording, run.variant});
-    append(texts[i], windows[i]);
+    if (run.frames > 0) append(texts[i], windows[i]);
     if (kinds.repetitions.size() > 1) append(texts[i], fmt::format("repetition {}", run.repetition));
     if (!run.imu.empty() && kinds.imus.size() > 1) append(texts[i], imu_words(run.imu));
     ++uses[{run.recording, run.variant, texts[i]}];
