@@ -78,13 +78,29 @@ class AWrittenRun(unittest.TestCase):
             damaged = pathlib.Path(folder) / "record.json"
             damaged.write_text('{"schema": 1', encoding="utf-8")
             with self.assertRaisesRegex(ValueError, "record.json: damaged"):
-                fusebench_runs.open_runs(folder)
+                fusebench_runs.Run(folder)
             damaged.write_text('{"schema": 2}', encoding="utf-8")
             with self.assertRaisesRegex(ValueError, "schema = 2 .this module reads 1"):
-                fusebench_runs.open_runs(folder)
+                fusebench_runs.Run(folder)
             damaged.unlink()
             with self.assertRaisesRegex(FileNotFoundError, "no runs"):
                 fusebench_runs.open_runs(folder)
+
+
+    def test_a_damaged_run_is_a_row_beside_the_others(self):
+        with tempfile.TemporaryDirectory() as folder:
+            places = [pathlib.Path(folder) / "desk" / variant / "01234567" for variant in ("dm", "full")]
+            for place in places:
+                place.mkdir(parents=True)
+            (places[0] / "record.json").write_text('{"schema": 1', encoding="utf-8")
+            (places[1] / "record.json").write_text(json.dumps(self.run_of_test.record), encoding="utf-8")
+            damaged, whole = fusebench_runs.open_runs(folder)
+            self.assertEqual((damaged.recording, damaged.variant, damaged.status), ("desk", "dm", "damaged"))
+            self.assertRegex(damaged.reason, "record.json: damaged")
+            table = fusebench_runs.summary([damaged, whole], frames=False)
+            self.assertEqual(table["status"], ["damaged", self.run_of_test.status])
+            self.assertTrue(math.isnan(table["ate_rmse_m"][0]))
+            self.assertTrue(math.isnan(table["fps"][0]))
 
 
 class Intensities(unittest.TestCase):

@@ -21,8 +21,20 @@ class Run:
             self.record = json.loads(file.read_text(encoding="utf-8"))
         except ValueError as error:
             raise ValueError(f"{file}: damaged: {error}") from error
-        if self.record.get("schema") != SCHEMA:
-            raise ValueError(f"{file}: schema = {self.record.get('schema')} (this module reads {SCHEMA})")
+        if not isinstance(self.record, dict) or "schema" not in self.record:
+            raise ValueError(f"{file}: damaged: no record of a run")
+        if self.record["schema"] != SCHEMA:
+            raise ValueError(f"{file}: schema = {self.record['schema']} (this module reads {SCHEMA})")
+
+    @classmethod
+    def damaged(cls, folder, reason):
+        """A run whose record cannot be read: status "damaged", without numbers; names are those of its folders."""
+        run = cls.__new__(cls)
+        run.folder = pathlib.Path(folder)
+        names = run.folder.resolve().parts
+        run.record = {"recording": {"name": names[-3] if len(names) > 3 else ""}, "variant": names[-2] if len(names) > 2 else "",
+                      "status": "damaged", "reason": reason, "config": {}, "metrics": {}, "timing": {"fps": math.nan}}
+        return run
 
     def __repr__(self):
         return f"<Run {self.recording} {self.label} {self.status}>"
@@ -37,8 +49,13 @@ class Run:
 
     @property
     def status(self):
-        """ok, lost or failed."""
+        """ok, lost, failed, or damaged: the record cannot be read."""
         return self.record["status"]
+
+    @property
+    def reason(self):
+        """Why the run is not ok; empty if it is."""
+        return self.record["reason"]
 
     @property
     def edits(self):
@@ -109,15 +126,24 @@ def _as_typed(value):
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+def _run_in(folder):
+    try:
+        return Run(folder)
+    except ValueError as error:
+        return Run.damaged(folder, str(error))
+
+
 def open_runs(folder):
-    """Every run below a folder, by its place. Raises FileNotFoundError if there is none, ValueError for a damaged record."""
+    """Every run below a folder, by its place; one whose record is damaged has the status "damaged" and a reason.
+
+    Raises FileNotFoundError if there is none."""
     folder = pathlib.Path(folder)
     # Folders whose names begin with a point belong to runs that are not finished.
     records = [file for file in sorted(folder.rglob("record.json"))
                if not any(part.startswith(".") for part in file.relative_to(folder).parts)]
     if not records:
         raise FileNotFoundError(f"{folder}: no runs (no record.json at any depth)")
-    return [Run(file.parent) for file in records]
+    return [_run_in(file.parent) for file in records]
 
 
 def summary(runs, frames=None):
@@ -126,6 +152,7 @@ def summary(runs, frames=None):
         "recording": [run.recording for run in runs],
         "label": [run.label for run in runs],
         "status": [run.status for run in runs],
+        "reason": [run.reason for run in runs],
         "ate_rmse_m": [run.metric("ate/stats/rmse") for run in runs],
         "rpe_second_rmse_m": [run.metric("rpe/second/translation/stats/rmse") for run in runs],
         "rpe_second_rmse_rad": [run.metric("rpe/second/rotation/stats/rmse") for run in runs],
