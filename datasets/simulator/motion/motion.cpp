@@ -49,11 +49,14 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
     }
   }
   const double moving_s = seconds_between(span.first_frame_ns, span.last_frame_ns) - options.rest_s;
-  if (options.from_rest && moving_s < options.start_s) {
+  // A recording of 2 s ends a frame before: the motion itself goes on for longer than that.
+  if (options.from_rest && moving_s + 1e-9 * static_cast<double>(MotionSpan::kTail_ns) < options.start_s) {
+    const double least_s = options.rest_s + options.start_s;
     return fail(ErrorCode::configuration,
-                fmt::format("duration_s = {:.3f} is too short to start from rest (at least {:g})",
-                            moving_s + options.rest_s, options.rest_s + options.start_s),
-                "take a longer recording, or start in motion");
+                fmt::format("{:.3f} s from the first frame to the last are too short to start from rest "
+                            "(allowed: durations from {:g} s)",
+                            moving_s + options.rest_s, least_s),
+                fmt::format("--duration {:g} or more, or --in-motion to begin in full motion", least_s));
   }
   return {};
 }

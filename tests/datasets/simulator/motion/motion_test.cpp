@@ -118,6 +118,16 @@ TEST(HandHeldMotion, FromRestIsStillForASecondAndThenMoves) {
   });
 }
 
+TEST(HandHeldMotion, FromRestTakesTwoSecondsLessAFrame) {
+  const MotionOptions options = options_of(MotionPreset::slow, true);
+  const auto whole = hand_held_motion(options, span_of(2 - 1.0 / 30), kBox, 1);
+  EXPECT_TRUE(whole) << whole.error().message;
+  const auto brief = hand_held_motion(options, span_of(1.5), kBox, 1);
+  ASSERT_FALSE(brief);
+  EXPECT_EQ(brief.error().code, ErrorCode::configuration);
+  EXPECT_EQ(brief.error().hint, "--duration 2 or more, or --in-motion to begin in full motion");
+}
+
 TEST(HandHeldMotion, InMotionMovesFromTheFirstFrame) {
   for_all_motions([](const MotionOptions& options, const PoseSpline& motion, const MotionSpan& span) {
     if (options.from_rest) return;
