@@ -729,7 +729,10 @@ check_evo() {
   refused "a misspelt alignment" 2 "no alignment 'smi3' .*nearest: sim3" -- eval ape gt.txt est.txt --align smi3
   refused "an absent file to align" 3 'absent.txt' -- eval ape --align absent.txt est.txt
   refused "an unknown view" 2 'plot_mode' -- eval ape gt.txt est.txt --plot_mode xx
-  refused "no place for a log" 4 'logfile absent/log' -- eval traj gt.txt --silent --logfile absent/log
+  touch obstacle
+  refused "no place for a log" 4 'logfile obstacle/log' -- eval traj gt.txt --silent --logfile obstacle/log
+  "$binary" eval traj gt.txt --silent --logfile absent/deep/log >stdout 2>stderr && [[ -s absent/deep/log ]] ||
+    complain "--logfile does not make its folder"
 
   checks=$((checks + 1))
   "$binary" eval ape gt.txt est.txt --silent --logfile log.txt || complain "--logfile: exit code $?"
@@ -790,6 +793,8 @@ check_meshes() {
   "$binary" eval mesh rec.obj truth.obj --colored colored.ply >stdout 2>stderr || complain "a coloured mesh: exit code $?"
   grep -q 'yellow at 0.05 m' stderr || complain "a coloured mesh: its range is not told"
   [[ $(head -c 3 colored.ply) == ply ]] || complain "a coloured mesh was not written"
+  "$binary" eval mesh rec.obj truth.obj --colored absent/deep/colored.ply >stdout 2>stderr && [[ -s absent/deep/colored.ply ]] ||
+    complain "--colored does not make its folder"
 
   awk '/^v/ { print "v", -$3 + 2, $2 * 0.9 - $4 * 0.4 + 3, $2 * 0.4 + $4 * 0.9 - 1; next } { print }' truth.obj >first_camera.obj
   refused "an icp that sticks" 3 'stuck in a wrong place' 'hint:--trajectories TRUTH ESTIMATE' -- \

@@ -36,6 +36,9 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   const std::filesystem::path unfinished = options.colored.string() + ".part";
   std::error_code error;
   std::error_code ignored;
+  // Writing says if the folder is not there afterwards.
+  if (options.colored.has_parent_path())
+    std::filesystem::create_directories(options.colored.parent_path(), ignored);
   if (auto written = mesh::write_ply(mesh.cast<float>(), unfinished); !written) {
     std::filesystem::remove(unfinished, ignored);
     return written;

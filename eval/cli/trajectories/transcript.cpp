@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "eval/cli/console/console.hpp"
 
@@ -34,12 +36,15 @@ void Transcript::result(std::string_view text) {
 
 Result<void> Transcript::finish() const {
   if (options_.logfile.empty()) return {};
+  std::error_code ignored;  // opening says if it is not there
+  if (options_.logfile.has_parent_path())
+    std::filesystem::create_directories(options_.logfile.parent_path(), ignored);
   std::ofstream stream(options_.logfile, std::ios::app | std::ios::binary);
   stream << said_;
   stream.close();
   if (stream) return {};
   return fail(ErrorCode::io, fmt::format("--logfile {}: cannot be written", options_.logfile.string()),
-              "choose a file in a folder that exists and can be written");
+              "choose a file in a folder that can be written");
 }
 
 }  // namespace fusebench::cli::trajectories
