@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -13,7 +14,26 @@ namespace fusebench::suites {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The folders at and above which configs/ is looked for; of the program the file.
+std::array<fs::path, 2> places_of_configs() {
+  std::error_code ignored;
+  return {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)};
+}
+
+}  // namespace
+
 Result<std::vector<fs::path>> suite_files(const fs::path& configs) {
+  if (configs.empty()) {
+    const auto [here, program] = places_of_configs();
+    return fail(ErrorCode::data_missing,
+                fmt::format("no suites are found: there is no configs/suites/ and no "
+                            "share/fusebench/configs/suites/ in {} or above it, nor above the program {}",
+                            here.string(), program.string()),
+                "start in a checkout of fusebench, or name the folder that holds suites/ with --configs; a "
+                "suite is also given by its file");
+  }
   std::error_code error;
   std::vector<fs::path> files;
   const fs::path folder = configs / "suites";
@@ -32,7 +52,7 @@ Result<std::vector<fs::path>> suite_files(const fs::path& configs) {
 fs::path shipped_configs() {
   std::error_code ignored;
   if (fs::is_directory("configs/suites", ignored)) return "configs";  // as people would write it
-  for (const fs::path& start : {fs::current_path(ignored), fs::read_symlink("/proc/self/exe", ignored)}) {
+  for (const fs::path& start : places_of_configs()) {
     for (fs::path folder = start; folder.has_relative_path(); folder = folder.parent_path()) {
       for (const fs::path& configs : {folder / "configs", folder / "share" / "fusebench" / "configs"}) {
         if (fs::is_directory(configs / "suites", ignored)) return configs;

@@ -8,7 +8,8 @@
 
 namespace fusebench::suites {
 
-/// The files of suites in a folder of configurations, sorted. Error data_missing.
+/// The files of suites in a folder of configurations, sorted. Error data_missing,
+/// where shipped_configs() has found none with the places where it looked.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> suite_files(const std::filesystem::path& configs);
 
 /// configs/ in the working folder or above it, else above the program; share/fusebench/configs where it is

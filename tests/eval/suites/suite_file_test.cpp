@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "eval/engine/local_engine.hpp"
+#include "eval/suites/suite_names.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -133,6 +134,15 @@ TEST_F(SuiteTest, JobsAreInAFixedOrder) {
   for (const BatchJob& job : jobs->jobs)
     order.push_back(job.recording.filename().string() + " " + job.variant);
   EXPECT_EQ(order, (std::vector<std::string>{"a no-imu", "a full", "b no-imu", "b full"}));
+}
+
+TEST_F(SuiteTest, WithoutConfigsItIsSaidWhereTheyWereLookedFor) {
+  const auto none = suite_files({});
+  ASSERT_FALSE(none.has_value());
+  EXPECT_EQ(none.error().code, ErrorCode::data_missing);
+  EXPECT_NE(none.error().message.find(std::filesystem::current_path().string()), std::string::npos)
+      << none.error().message;
+  EXPECT_NE(none.error().hint.find("--configs"), std::string::npos);
 }
 
 TEST_F(SuiteTest, OnlyFiltersJobs) {
