@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "eval/aggregate/option_order.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/option_order.hpp"
 
 namespace fusebench::aggregate {
 
@@ -26,7 +26,7 @@ struct GroupKey {
   bool operator<(const GroupKey& other) const {
     if (kind != other.kind) return kind < other.kind;
     if (rank != other.rank) return rank < other.rank;
-    return OptionValueLess()(label, other.label);
+    return run_files::OptionValueLess()(label, other.label);
   }
 };
 

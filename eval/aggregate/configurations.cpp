@@ -4,9 +4,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "eval/aggregate/option_order.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/option_order.hpp"
 
 namespace fusebench::aggregate {
 
@@ -20,7 +20,7 @@ struct ConfigurationKey {
 
   bool operator<(const ConfigurationKey& other) const {
     if (variant != other.variant) return std::tie(rank, variant) < std::tie(other.rank, other.variant);
-    if (options != other.options) return RunOptionsLess()(options, other.options);
+    if (options != other.options) return run_files::RunOptionsLess()(options, other.options);
     return imu < other.imu;
   }
 };

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "eval/aggregate/configurations.hpp"
-#include "eval/aggregate/option_order.hpp"
+#include "eval/run_files/option_order.hpp"
 
 namespace fusebench::aggregate {
 
@@ -64,7 +64,7 @@ OptionEffect effect_of(const std::string& option, const std::vector<SweptRun>& r
     EffectValue counts;
     std::vector<double> ratios;
   };
-  std::map<std::string, Tally, OptionValueLess> tallies;
+  std::map<std::string, Tally, run_files::OptionValueLess> tallies;
   for (const SweptRun& run : runs) {
     const std::string_view value = option_of(*run.row, option);
     auto at = tallies.find(value);

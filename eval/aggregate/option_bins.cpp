@@ -1,4 +1,5 @@
 #include "eval/aggregate/option_bins.hpp"
+#include "eval/run_files/option_order.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +8,6 @@
 #include <optional>
 #include <set>
 #include <string>
-
-#include "eval/aggregate/option_order.hpp"
 
 namespace fusebench::aggregate {
 
@@ -20,7 +19,7 @@ std::optional<std::vector<double>> numbers_of(std::span<const RunRow> rows, cons
   for (const RunRow& row : rows) {
     for (const auto& [name, value] : row.options) {
       if (name != key) continue;
-      const auto number = option_number(value);
+      const auto number = run_files::option_number(value);
       if (!number) return std::nullopt;
       numbers.insert(*number);
     }
@@ -50,7 +49,7 @@ std::vector<RunRow> with_binned_options(std::span<const RunRow> rows, std::size_
     const auto names = bins_of(*numbers, bins);
     for (RunRow& row : binned) {
       for (auto& [name, value] : row.options) {
-        if (name == key) value = names.at(*option_number(value));
+        if (name == key) value = names.at(*run_files::option_number(value));
       }
     }
   }

@@ -9,7 +9,6 @@
 
 #include "core/base/error.hpp"
 #include "eval/aggregate/configurations.hpp"
-#include "eval/aggregate/option_order.hpp"
 
 namespace fusebench::aggregate {
 

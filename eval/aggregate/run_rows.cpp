@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "core/io/bounded_text.hpp"
-#include "eval/aggregate/option_order.hpp"
 #include "eval/aggregate/record_scan.hpp"
 #include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/option_order.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::aggregate {
@@ -54,7 +54,7 @@ void recover_options(std::vector<RunRow>& rows) {
     if (!row.attributable() || row.config_hash.empty()) continue;
     const auto [at, is_new] = known.try_emplace({row.variant, row.config_hash}, &row.options);
     // Several option lists may come to the same values; which is taken must not depend on names of folders.
-    if (!is_new && RunOptionsLess()(row.options, *at->second)) at->second = &row.options;
+    if (!is_new && run_files::RunOptionsLess()(row.options, *at->second)) at->second = &row.options;
   }
   for (RunRow& row : rows) {
     if (!row.readable || row.options_known) continue;
@@ -71,7 +71,7 @@ void sort_rows(std::vector<RunRow>& rows) {
     if (a.recording != b.recording) return a.recording < b.recording;
     if (a.variant != b.variant)
       return std::tuple(ranks.at(a.variant), a.variant) < std::tuple(ranks.at(b.variant), b.variant);
-    if (a.options != b.options) return RunOptionsLess()(a.options, b.options);
+    if (a.options != b.options) return run_files::RunOptionsLess()(a.options, b.options);
     return std::tie(a.run, a.folder) < std::tie(b.run, b.folder);
   });
 }

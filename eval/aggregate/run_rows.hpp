@@ -13,11 +13,12 @@
 #include "core/base/parallel.hpp"
 #include "eval/aggregate/run_metrics.hpp"
 #include "eval/record/record.hpp"
+#include "eval/run_files/option_order.hpp"
 
 namespace fusebench::aggregate {
 
 /// Key and value text of the options that somebody edited, beyond what the variant says; by key.
-using RunOptions = std::vector<std::pair<std::string, std::string>>;
+using run_files::RunOptions;
 
 /// What stands in place of the value of an option that a run does not edit.
 inline constexpr std::string_view kUnsetOption = "unset";

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "eval/aggregate/option_order.hpp"
+#include "eval/run_files/option_order.hpp"
 
 namespace fusebench::report {
 
@@ -26,9 +26,9 @@ struct ValueAxis {
 ValueAxis axis_of(const std::vector<std::string>& values) {
   ValueAxis axis;
   axis.numeric =
-      std::ranges::all_of(values, [](const auto& v) { return aggregate::option_number(v).has_value(); });
+      std::ranges::all_of(values, [](const auto& v) { return run_files::option_number(v).has_value(); });
   for (std::size_t i = 0; i < values.size(); ++i)
-    axis.places.push_back(axis.numeric ? *aggregate::option_number(values[i]) : static_cast<double>(i));
+    axis.places.push_back(axis.numeric ? *run_files::option_number(values[i]) : static_cast<double>(i));
   return axis;
 }
 

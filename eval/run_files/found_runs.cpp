@@ -11,7 +11,9 @@
 
 #include "core/config/variants.hpp"
 #include "core/io/staged_folder.hpp"
+#include "eval/run_files/option_order.hpp"
 #include "eval/run_files/record_files.hpp"
+#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::run_files {
 
@@ -148,6 +150,33 @@ tl::unexpected<Error> holds_no_runs(const fs::path& runs) {
               "`fusebench run` and `fusebench bench` write them to their --out");
 }
 
+namespace {
+
+/// By recording, variant, options by value, folder.
+void sort_runs(std::vector<FoundRun>& runs) {
+  std::vector<std::pair<RunOptions, FoundRun>> keyed;
+  for (FoundRun& run : runs) {
+    RunOptions edits = traits_of(run).edits;
+    keyed.emplace_back(std::move(edits), std::move(run));
+  }
+  std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) {
+    const auto key = [](const FoundRun& run) {
+      const std::string& fingerprint = run.record.recording.fingerprint;
+      // An unreadable record has none: after those of its name.
+      return std::tuple(run.record.recording.name, fingerprint.empty(), fingerprint,
+                        variant_rank(run.record.variant), run.record.variant);
+    };
+    const auto key_a = key(a.second);
+    const auto key_b = key(b.second);
+    if (key_a != key_b) return key_a < key_b;
+    if (a.first != b.first) return RunOptionsLess()(a.first, b.first);
+    return a.second.folder.string() < b.second.folder.string();
+  });
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i] = std::move(keyed[i].second);
+}
+
+}  // namespace
+
 Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
   const auto files = record_files(runs);
   if (!files) return tl::unexpected(files.error());
@@ -157,15 +186,7 @@ Result<std::vector<FoundRun>> find_runs(const fs::path& runs) {
     // One that was removed just now is none.
     if (auto run = found_run(file.parent_path())) found.push_back(std::move(*run));
   }
-  std::sort(found.begin(), found.end(), [](const FoundRun& a, const FoundRun& b) {
-    const auto key = [](const FoundRun& run) {
-      const std::string& fingerprint = run.record.recording.fingerprint;
-      // An unreadable record has none: after those of its name.
-      return std::tuple(run.record.recording.name, fingerprint.empty(), fingerprint,
-                        variant_rank(run.record.variant), run.record.variant, run.folder.string());
-    };
-    return key(a) < key(b);
-  });
+  sort_runs(found);
   return found;
 }
 

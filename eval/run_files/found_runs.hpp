@@ -56,7 +56,8 @@ struct PlaceOfRun {
 [[nodiscard]] std::optional<FoundRun> found_run(const std::filesystem::path& folder);
 
 /// Every run below a folder as record_files() finds them, by recording (name, then content), then variant in
-/// the order of all_variants(), then run. Error data_missing: no folder, no records.
+/// the order of all_variants(), then edited options (numbers by value), then run. Error data_missing: no
+/// folder, no records.
 [[nodiscard]] Result<std::vector<FoundRun>> find_runs(const std::filesystem::path& runs);
 
 }  // namespace fusebench::run_files

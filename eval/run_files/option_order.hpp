@@ -3,12 +3,16 @@
 
 #include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
-#include "eval/aggregate/run_rows.hpp"
+namespace fusebench::run_files {
 
-namespace fusebench::aggregate {
+/// Key and value text of options, by key.
+using RunOptions = std::vector<std::pair<std::string, std::string>>;
 
 /// The number that the whole text is.
 [[nodiscard]] inline std::optional<double> option_number(std::string_view text) {
@@ -42,4 +46,4 @@ struct RunOptionsLess {
   }
 };
 
-}  // namespace fusebench::aggregate
+}  // namespace fusebench::run_files

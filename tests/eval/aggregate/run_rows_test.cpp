@@ -155,6 +155,23 @@ TEST_F(RunRowsTest, AnyNumberOfThreadsReadsTheSame) {
   EXPECT_EQ(last, "10");
 }
 
+TEST_F(RunRowsTest, PointsOfASweepAreByValue) {
+  for (const double voxel_m : {0.02, 0.01, 0.015}) {
+    RunRecord record = sample_record("desk", "full", 0.02);
+    record.config[1].value = voxel_m;
+    write_record(fmt::format("desk/full/{}", static_cast<int>(1000 * voxel_m)), record);
+  }
+  const auto found = find_runs(folder_ / "runs");
+  ASSERT_TRUE(found.has_value());
+  std::vector<std::string> order;
+  for (const FoundRun& run : *found) order.push_back(run.folder.filename().string());
+  EXPECT_EQ(order, (std::vector<std::string>{"10", "15", "20"}));
+  record::RunRecord unrelated = sample_record("desk", "full", 0.02);
+  unrelated.config[1].value = 0.1;
+  write_record("desk/full/0", unrelated);
+  EXPECT_EQ(find_runs(folder_ / "runs")->back().folder.filename(), "0");
+}
+
 TEST_F(RunRowsTest, HasTheNumbersThatFindRunsHas) {
   write_record("desk/dm/01234567", sample_record("desk", "dm", 0.0123));
   write_record("desk/full/89abcdef", sample_record("desk", "full", 0.02));
