@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -78,7 +80,24 @@ tl::unexpected<Error> unknown_format(std::string_view name) {
               did_you_mean(name, names));
 }
 
+/// Files of recorders that another program turns into a folder that is read (docs/datasets.md).
+struct PackedRecording {
+  std::string_view extension;
+  std::string_view what;
+  std::string_view remedy;
+};
+constexpr std::array<PackedRecording, 2> kPacked = {
+    {{".mkv", "files of Azure Kinect's recorder (.mkv) are not read",
+      "Open3D's azure_kinect_mkv_reader.py exports it as a folder that is"},
+     {".r3d", "files of Record3D (.r3d) are packed with LZFSE and are not read",
+      "export it from the app as EXR + RGB, a folder that is"}}};
+
 Error unrecognised(const std::filesystem::path& place) {
+  const auto packed = std::ranges::find(kPacked, place.extension().string(), &PackedRecording::extension);
+  if (packed != kPacked.end()) {
+    return {ErrorCode::configuration, fmt::format("{}: {}", place.string(), packed->what),
+            std::string(packed->remedy)};
+  }
   if (formats::rosbag::is_rosbag2(place)) return formats::rosbag::refusal_of_rosbag2(place);
   std::vector<std::string> known;
   for (const RecordingFormat& format : formats())

@@ -85,6 +85,13 @@ std::string to_string(const FrameWindow& window) {
 }
 
 Result<void> select_window(recording::Recording& recording, const FrameWindow& window) {
+  const std::size_t count = recording.frames.size();
+  if (!window.end && window.begin >= count && count > 0) {
+    return fail(ErrorCode::usage,
+                fmt::format("frames {} begins behind the end: '{}' has {} frames, 0 to {}", to_string(window),
+                            recording.name, count, count - 1),
+                fmt::format("A: takes all from A on (allowed: 0 to {})", count - 1));
+  }
   return recording::select_frames(recording, window.begin, window.end.value_or(recording.frames.size()));
 }
 

@@ -174,6 +174,7 @@ check_bad_usage() {
     calibrate freiburg1_copy --out out
   refused "one round" 2 'rounds' '2 (-|to) 20' -- calibrate freiburg1_copy --imu synthetic --rounds 1
   refused "frames backwards" 2 '4:2' -- "${run[@]}" --frames 4:2
+  refused "an open window behind the end" 2 "frames 1000: begins behind the end: 'freiburg1_copy' has 5 frames, 0 to 4" -- "${run[@]}" --frames 1000:
   refused "frames beyond the end" 2 '3:9' -- "${run[@]}" --frames 3:9
   local units
   for units in 1e300 1e-300 nan; do
@@ -874,6 +875,7 @@ check_exports() {
       complain "export --format $format does not say what"
     grep -q 'lost beyond that range: 0 of ' stdout || complain "export --format $format does not say what was lost"
   done
+  refused "an export to .sens without the ending" 2 'out: .*\.sens' 'hint:--out out.sens' -- export freiburg1_copy --format sens --out out
   [[ $(<exported/freiburg1_room.calibration.txt) == '517.306408 516.469215 318.64304 255.313989' ]] ||
     complain "another calibration beside .klg"
   [[ -z $(find exported -name '.*' ! -name .) ]] || complain "an export leaves hidden files"

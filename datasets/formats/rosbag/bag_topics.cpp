@@ -132,11 +132,11 @@ std::optional<std::string> best_topic(const BagTopics& topics, ImageKind kind) {
 std::string list_of_images(const BagTopics& topics) {
   std::string text;
   for (const auto& [topic, images] : topics.images) {
-    if (text.size() > 300) return text + ", ...";
+    if (text.size() > 300) return "is " + text + ", ...";
     text +=
         fmt::format("{}{} ({} images)", text.empty() ? "" : ", ", printable(topic, 80), images.images.size());
   }
-  return text.empty() ? "no images at all" : text;
+  return text.empty() ? "are no images at all" : "is " + text;
 }
 
 }  // namespace
@@ -161,9 +161,15 @@ Result<ChosenTopics> choose_topics(const BagTopics& topics, const std::filesyste
   const auto color = best_topic(topics, ImageKind::color);
   const auto depth = best_topic(topics, ImageKind::depth);
   if (color && depth) return ChosenTopics{*color, *depth};
+  if (topics.ends_early) {
+    return fail(ErrorCode::data_corrupt,
+                fmt::format("{}: ends within a record, before any {} image (up to there, there {})",
+                            file.string(), color ? "depth" : "colour", list_of_images(topics)),
+                "the file is cut off: copy or download it again");
+  }
   return fail(ErrorCode::data_missing,
-              fmt::format("{}: no topic with {} images; there is {}", file.string(),
-                          color ? "depth" : "colour", list_of_images(topics)),
+              fmt::format("{}: no topic with {} images; there {}", file.string(), color ? "depth" : "colour",
+                          list_of_images(topics)),
               "needed are rgb8, bgr8 or JPEG for colour, and 16UC1 or 32FC1 for depth");
 }
 

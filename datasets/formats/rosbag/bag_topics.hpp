@@ -48,7 +48,7 @@ struct BagTopics {
 [[nodiscard]] Result<BagTopics> read_topics(const std::filesystem::path& file);
 
 /// The topic of colour, and of depth: aligned to colour before others, pictures of infrared cameras never.
-/// Error data_missing: there is none; the message lists what there is.
+/// Errors: data_missing (there is none; the message lists what there is), data_corrupt (the bag is cut off).
 struct ChosenTopics {
   std::string color;
   std::string depth;

@@ -1,5 +1,7 @@
 #include "eval/cli/recordings/export_request.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <utility>
 
@@ -22,6 +24,15 @@ Result<recording::Recording> open_for_export(const ExportRequest& request) {
   return run::open_window(*place, *how, *window);
 }
 
+/// A program that is told its file reads any name; this one opens a file by the ending of its name.
+Result<void> check_ending(const ExportRequest& request) {
+  if (request.format != exports::ExportFormat::sens || request.out.extension() == ".sens") return {};
+  return fail(
+      ErrorCode::usage,
+      fmt::format("--out {}: a recording in this format is known by its ending, .sens", request.out.string()),
+      fmt::format("--out {}.sens", request.out.string()));
+}
+
 }  // namespace
 
 void add_export_request(CLI::App& verb, ExportRequest& request, const std::string& out_text) {
@@ -36,6 +47,7 @@ void add_export_request(CLI::App& verb, ExportRequest& request, const std::strin
 }
 
 Result<DoneExport> export_as_requested(const ExportRequest& request) {
+  if (auto ending = check_ending(request); !ending) return tl::unexpected(ending.error());
   auto recording = open_for_export(request);
   if (!recording) return tl::unexpected(recording.error());
   console::print_warnings(recording->warnings);

@@ -97,6 +97,17 @@ TEST_F(Record3d, TheFrontCameraHasNoPosesAndStampsGoBeforeTheRate) {
   EXPECT_EQ(recording->frames[1].timestamp_ns, 10'750'000'000);
 }
 
+TEST_F(Record3d, PackedRecordingsAreRefusedWithWhatUnpacksThem) {
+  for (const auto& [name, remedy] :
+       {std::pair{"room.r3d", "EXR + RGB"}, {"room.mkv", "azure_kinect_mkv_reader.py"}}) {
+    const auto refused = open_recording(write(name, "any"));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::configuration);
+    EXPECT_NE(refused.error().message.find("are not read"), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().hint.find(remedy), std::string::npos) << refused.error().hint;
+  }
+}
+
 TEST_F(Record3d, WhatIsWrongIsNamed) {
   write_metadata("[0, 0, 0, 1, 0, 0, 0]", "");
   EXPECT_TRUE(open_recording(folder_)) << "one pose does not move, and counts as none";

@@ -103,9 +103,18 @@ TEST_F(Rosbag, ABagThatIsCutOffIsReadUpToThere) {
   EXPECT_TRUE(any_contains(cut->warnings, "ends within a record"));
 }
 
+TEST_F(Rosbag, ABagThatIsCutOffBeforeItsImagesSaysSo) {
+  const std::string whole = testing::read_bytes(golden("apart_none.bag"));
+  const auto cut = open_recording(write("cut.bag", std::string_view(whole).substr(0, 3000)));
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().code, ErrorCode::data_corrupt);
+  expect_contains(cut.error().message, "ends within a record");
+  expect_contains(cut.error().hint, "cut off");
+}
+
 TEST_F(Rosbag, DamageIsNamed) {
   EXPECT_EQ(refusal("").code, ErrorCode::data_missing) << "nothing in it";
-  expect_contains(refusal("").message, "room.bag: no topic with colour images; there is no images at all");
+  expect_contains(refusal("").message, "room.bag: no topic with colour images; there are no images at all");
   write("old.bag", "#ROSBAG V1.2\n");
   expect_contains(open_recording(folder_ / "old.bag").error().message, "does not begin with #ROSBAG V2.0");
   expect_contains(refusal(testing::bag_record(9, {}, "")).message,
