@@ -12,10 +12,15 @@ function strokeOf(series) {
   return colour("--series-" + (series.colour % seriesColours));
 }
 
+/// A long title has its unit on a line of its own: it stands along the axis, which may be shorter.
+function titleLines(title) {
+  return title.length > 24 ? title.split(/ (?=\[)/) : title;
+}
+
 function axis(title, extra) {
   return Object.assign({
     type: "linear",
-    title: { display: title !== "", text: title, color: colour("--text") },
+    title: { display: title !== "", text: extra.axis === "y" ? titleLines(title) : title, color: colour("--text") },
     ticks: { color: colour("--faint"), maxTicksLimit: 9 },
     grid: { color: colour("--line") },
   }, extra);

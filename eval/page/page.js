@@ -186,11 +186,20 @@ function labelCells() {
   });
 }
 
-/// Paper is white.
+/// Of charts on paper, in pixels: such that texts are as large as those beside them. page.css has the same shapes.
+const paperSize = { view: [310, 310], chart: [410, 300] };
+
+/// Paper is white, and its columns have other widths than a screen's. A view is fitted at once: paper does not wait.
 function drawForPaper(paper) {
   const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
   document.documentElement.classList.toggle("paper", paper);
   if (dark) draw();
+  drawn.forEach((made, index) => {
+    const { equal } = description[index];
+    made.options.devicePixelRatio = paper ? 2 : undefined;
+    made.resize(...(paper ? paperSize[equal ? "view" : "chart"] : []));
+    if (equal) equalise(made, rangesOf(description[index]));
+  });
 }
 
 labelCells();

@@ -80,6 +80,20 @@ return [...document.querySelectorAll("table.labelled td")].filter((cell) => cell
 CUT_TABLES = """
 return [...document.querySelectorAll(".scroll")].filter((box) => getComputedStyle(box).overflowX !== "visible").length;
 """
+# Charts that paper shows low, or with the title of an axis cut; words of tables that may be broken anywhere.
+UNREADABLE_ON_PAPER = """
+const charts = drawn.filter((chart) => {
+  const cut = Object.values(chart.scales).some((scale) => {
+    if (scale.isHorizontal()) return false;
+    chart.ctx.font = Chart.helpers.toFont(scale.options.title.font).string;
+    const room = 2 * Math.min((scale.top + scale.bottom) / 2, chart.height - (scale.top + scale.bottom) / 2);
+    return [scale.options.title.text].flat().some((line) => chart.ctx.measureText(line).width > room);
+  });
+  return cut || chart.chartArea.height * chart.canvas.clientHeight / chart.height < 60;
+}).map((chart) => chart.canvas.getAttribute("aria-label"));
+const cells = [...document.querySelectorAll("td")].filter((cell) => getComputedStyle(cell).overflowWrap === "anywhere");
+return charts.concat(cells.map((cell) => cell.textContent));
+"""
 LISTEN = """
 window.chosenTimes = [];
 window.addEventListener("time-chosen", (event) => window.chosenTimes.push(event.detail.time_s));
@@ -228,8 +242,10 @@ class Reader:
                 self.complain(f"the legend does not bring '{run}' back")
 
     def print_in_dark(self):
-        """Paper is white, also for who reads in the dark; tables are not cut."""
+        """Paper is white, also for who reads in the dark; tables are not cut, and charts can be read on A4 upright."""
         self.scheme("dark")
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": 703, "height": 1032, "deviceScaleFactor": 1, "mobile": False})
         self.driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print",
                                     "features": [{"name": "prefers-color-scheme", "value": "dark"}]})
@@ -239,8 +255,12 @@ class Reader:
         cut = self.driver.execute_script(CUT_TABLES)
         if cut:
             self.complain(f"print cuts {cut} tables")
+        unreadable = self.driver.execute_script(UNREADABLE_ON_PAPER)
+        if unreadable:
+            self.complain("these cannot be read on paper: " + ", ".join(unreadable[:5]))
         self.driver.execute_script("window.dispatchEvent(new Event('afterprint'))")
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
+        self.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
         settle(self.driver)
 
     def unfold(self):
