@@ -70,12 +70,15 @@ void cut_far_values(page::Chart& chart) {
   const std::string unit = unit_of(chart.left_label);
   chart.y_range = {0, *top};
   std::string beyond;
+  bool marked = false;  // a band that is cut has no triangles
   for (const page::ChartSeries& series : chart.series) {
     const double peak = peak_of(series);
-    if (!series.right && peak > *top)
-      beyond += fmt::format("{}{} reaches {:.3g}{}", beyond.empty() ? "" : ", ", series.label, peak, unit);
+    if (series.right || peak <= *top) continue;
+    beyond += fmt::format("{}{} reaches {:.3g}{}", beyond.empty() ? "" : ", ", series.label, peak, unit);
+    marked = marked || series.style != page::SeriesStyle::band;
   }
-  say(chart, fmt::format("Cut at {:.3g}{}, where triangles stand: {}.", *top, unit, beyond));
+  say(chart,
+      fmt::format("Cut at {:.3g}{}{}: {}.", *top, unit, marked ? ", where triangles stand" : "", beyond));
 }
 
 void cut_far_places(page::Chart& chart) {

@@ -29,6 +29,13 @@ TEST(FarValues, OneBadRunIsCutAndSaid) {
   EXPECT_EQ(chart.series[2].points[1].y(), 340) << "what is cut is still there";
 }
 
+TEST(FarValues, ABandThatIsCutHasNoTriangles) {
+  Chart chart = chart_with_peaks({{"full", 1.1}, {"dm", 2.0}, {"full, 3 sigma", 340}});
+  chart.series.back().style = SeriesStyle::band;
+  cut_far_values(chart);
+  EXPECT_EQ(chart.caption, "Cut at 2.5 cm: full, 3 sigma reaches 340 cm.");
+}
+
 TEST(FarValues, RunsThatAreAlikeAreNotCut) {
   Chart alike = chart_with_peaks({{"full", 1.1}, {"dm", 2.0}, {"no-imu", 5.2}});
   cut_far_values(alike);
