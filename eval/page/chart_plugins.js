@@ -8,25 +8,33 @@ function clipToArea(chart) {
   chart.ctx.clip();
 }
 
+/// Where the boxes of each visible series stand from the place of their group, by the series' number, and how much room
+/// each has, in pixels.
+function boxPlaces(chart) {
+  const sets = chart.data.datasets.map((set, index) => ({ set: set, index: index })).filter(({ set }) => set.boxes);
+  const visible = sets.filter(({ index }) => chart.isDatasetVisible(index));
+  const places = [...new Set(visible.flatMap(({ set }) => set.boxes.map((b) => b[0])))].sort((a, b) => a - b);
+  const gaps = places.slice(1).map((x, i) => chart.scales.x.getPixelForValue(x) - chart.scales.x.getPixelForValue(places[i]));
+  const room = Math.min(90, 0.75 * Math.min(...gaps, chart.chartArea.width / 3));
+  const width = room / visible.length;
+  return { width: width, offsets: new Map(visible.map(({ index }, place) => [index, (place + 0.5) * width - room / 2])) };
+}
+
 /// Boxes from the lower to the upper quartile, with the median and whiskers; those at one place stand side by side.
 const boxPlugin = {
   id: "boxes",
   afterDatasetsDraw(chart) {
-    const sets = chart.data.datasets.map((set, index) => ({ set: set, index: index })).filter(({ set }) => set.boxes);
-    const visible = sets.filter(({ index }) => chart.isDatasetVisible(index));
-    if (visible.length === 0) return;
+    const { width, offsets } = boxPlaces(chart);
+    if (offsets.size === 0) return;
     const context = chart.ctx;
-    const places = [...new Set(visible.flatMap(({ set }) => set.boxes.map((b) => b[0])))].sort((a, b) => a - b);
-    const gaps = places.slice(1).map((x, i) => chart.scales.x.getPixelForValue(x) - chart.scales.x.getPixelForValue(places[i]));
-    const room = Math.min(90, 0.75 * Math.min(...gaps, chart.chartArea.width / 3));
-    const width = room / visible.length;
     context.save();
     clipToArea(chart);
-    visible.forEach(({ set }, place) => {
+    offsets.forEach((offset, index) => {
+      const set = chart.data.datasets[index];
       context.strokeStyle = set.borderColor;
       context.lineWidth = 1.4;
       set.boxes.forEach(([x, ...values]) => {
-        const middle = chart.scales.x.getPixelForValue(x) + (place + 0.5) * width - room / 2;
+        const middle = chart.scales.x.getPixelForValue(x) + offset;
         const [min, low, median, high, max] = values.map((value) => chart.scales.left.getPixelForValue(value));
         const half = 0.38 * width;
         context.beginPath();
@@ -45,7 +53,7 @@ const boxPlugin = {
   },
 };
 
-/// Triangles at the upper edge, in the colour of the curve that lies above it.
+/// Triangles at the upper edge, in the colour of the curve or over the box that lies above it.
 const cutPlugin = {
   id: "cut",
   afterDatasetsDraw(chart) {
@@ -53,12 +61,13 @@ const cutPlugin = {
     if (!cut.y || cut.equal) return;
     const context = chart.ctx;
     const top = chart.chartArea.top;
+    const { offsets } = boxPlaces(chart);
     chart.data.datasets.forEach((set, index) => {
       if (!chart.isDatasetVisible(index) || set.yAxisID !== "left" || set.band) return;
       let last = -Infinity;
       set.data.forEach((point) => {
         if (!(point.y > cut.y[1])) return;
-        const x = chart.scales.x.getPixelForValue(point.x);
+        const x = chart.scales.x.getPixelForValue(point.x) + (offsets.get(index) || 0);
         if (Math.abs(x - last) < 14 || x < chart.chartArea.left || x > chart.chartArea.right) return;
         last = x;
         context.fillStyle = set.borderColor;

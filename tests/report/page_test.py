@@ -94,6 +94,24 @@ const charts = drawn.filter((chart) => {
 const cells = [...document.querySelectorAll("td")].filter((cell) => getComputedStyle(cell).overflowWrap === "anywhere");
 return charts.concat(cells.map((cell) => cell.textContent));
 """
+# Charts of boxes whose triangles do not stand over the box that they are of: cut low, so that all are beyond.
+ASTRAY = """
+return drawn.filter((chart) => {
+  const sets = chart.data.datasets.filter((set) => set.boxes);
+  if (sets.length < 2) return false;
+  const cut = chart.options.plugins.cut, whole = cut.y;
+  cut.y = [0, 1e-9];
+  const offsets = boxPlaces(chart).offsets;
+  const expected = sets.flatMap((set) => set.boxes.map((box) =>
+    chart.scales.x.getPixelForValue(box[0]) + offsets.get(chart.data.datasets.indexOf(set))));
+  const tips = [], lineTo = chart.ctx.lineTo;
+  chart.ctx.lineTo = (x, y) => { if (y === chart.chartArea.top) tips.push(x); };
+  cutPlugin.afterDatasetsDraw(chart);
+  chart.ctx.lineTo = lineTo;
+  cut.y = whole;
+  return tips.length === 0 || tips.some((x) => !expected.some((other) => Math.abs(x - other) < 1));
+}).map((chart) => chart.canvas.getAttribute("aria-label"));
+"""
 LISTEN = """
 window.chosenTimes = [];
 window.addEventListener("time-chosen", (event) => window.chosenTimes.push(event.detail.time_s));
@@ -145,6 +163,8 @@ class Reader:
             self.show(canvas)
             if self.driver.execute_script(SERIES, canvas) < 8:
                 self.complain(f"{scheme}: nothing is drawn: {canvas.get_attribute('aria-label')}")
+        for chart in self.driver.execute_script(ASTRAY):
+            self.complain(f"{scheme}: triangles stand beside their boxes: {chart}")
         return len(canvases)
 
     def ask_for_hidden_series(self):
