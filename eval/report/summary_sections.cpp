@@ -54,16 +54,14 @@ page::PageSection findings_section(const std::vector<run_files::FoundRun>& runs,
 
 page::PageTable::Row compared_row(const findings::Ranking& ranking,
                                   const findings::RankedConfiguration& configuration) {
-  const tables::TableColumn& column = ranking.column;
   std::string interval = "-";
   if (configuration.to_best && configuration.to_best->interval) {
     const auto& [low, high] = *configuration.to_best->interval;
     interval = fmt::format("{:.2f} to {:.2f}", low, high);
   }
-  const auto& value = configuration.value;
   return {{configuration.label, configuration.description,
            fmt::format("{}/{}", configuration.ok, configuration.runs),
-           value ? fmt::format("{:.{}f}", *value * column.shown_factor, column.decimals) : "-",
+           tables::shown_value(ranking.column, configuration.value),
            configuration.to_best ? fmt::format("{:.2f}", configuration.to_best->ratio) : "-",
            std::move(interval)},
           configuration.ok < configuration.runs ? "warning" : ""};
@@ -77,7 +75,10 @@ page::PageSection compared_section(const findings::Ranking& ranking, bool only) 
   const std::size_t count = std::min(ranking.configurations.size(), kMostCompared);
   for (std::size_t i = 0; i < count; ++i)
     table.rows.push_back(compared_row(ranking, ranking.configurations[i]));
-  if (ranking.configurations.front().value && count > 1) table.rows.front().best = {3};
+  for (page::PageTable::Row& row : table.rows) {
+    const bool is_best = row.cells[3] == table.rows.front().cells[3];  // as it is shown
+    if (ranking.configurations.front().value && count > 1 && is_best) row.best = {3};
+  }
   std::string text = fmt::format(
       "Geometric means over {} {} recording{}; ratios and their intervals (Student's t on logarithms) over "
       "the "

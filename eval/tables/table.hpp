@@ -86,8 +86,11 @@ struct ResultTable {
 /// The heading, a line a row and then a line a mean, as people see them: cm and degrees.
 [[nodiscard]] std::vector<std::vector<std::string>> table_cells(const ResultTable& table);
 
+/// A number of a column as people see it; "-" of what does not exist.
+[[nodiscard]] std::string shown_value(const TableColumn& column, const std::optional<double>& value);
+
 /// The places of the cells in which a run is the best of its recording's ok runs over the same frames, if
-/// there are others; ties are all best.
+/// there are others; all that are shown as the best one is are best.
 [[nodiscard]] std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row);
 
 enum class TableFormat { markdown, csv, csv_long, json, latex };

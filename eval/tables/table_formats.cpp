@@ -29,7 +29,7 @@ Cells header_cells() {
 
 void add_values(const TableValues& values, Cells& cells) {
   for (const TableColumn& column : table_columns())
-    cells.push_back(text::number_cell(values.*column.value, column.shown_factor, column.decimals));
+    cells.push_back(shown_value(column, values.*column.value));
 }
 
 Cells shown_cells(const TableRow& row) {
@@ -187,6 +187,10 @@ std::string json(const ResultTable& table) {
 
 }  // namespace
 
+std::string shown_value(const TableColumn& column, const std::optional<double>& value) {
+  return text::number_cell(value, column.shown_factor, column.decimals);
+}
+
 std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row) {
   std::vector<std::size_t> best;
   for (std::size_t c = 0; c < table_columns().size(); ++c) {
@@ -198,7 +202,8 @@ std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& ro
       if (other.first_frame != row.first_frame || other.total != row.total) continue;
       if (other.status != record::RunStatus::ok || !(other.*column.value)) continue;
       ++others;
-      is_best = *(row.*column.value) <= *(other.*column.value);
+      is_best = *(row.*column.value) <= *(other.*column.value) ||
+                shown_value(column, row.*column.value) == shown_value(column, other.*column.value);
     }
     if (is_best && others > 0) best.push_back(kTextColumns + c);
   }

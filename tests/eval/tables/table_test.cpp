@@ -199,6 +199,20 @@ TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("| 1/2 ok |"), std::string::npos);
 }
 
+TEST_F(TableTest, RunsThatAreShownAlikeAreAllTheBest) {
+  add_run("full", RunStatus::ok, "", 0.01231, {});
+  add_run("dm", RunStatus::ok, "", 0.01229, {});
+  add_run("no-imu", RunStatus::ok, "", 0.02, {});
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  const std::string text = render_table(*table, TableFormat::latex);
+  std::size_t bold = 0;
+  for (auto at = text.find("\\textbf{1.23}"); at != std::string::npos;
+       at = text.find("\\textbf{1.23}", at + 1))
+    ++bold;
+  EXPECT_EQ(bold, 2U) << text;
+}
+
 TEST_F(TableTest, LatexHasTheBestOfEachRecordingInBold) {
   add_three_runs();
   const std::string text = render_table(*collect_table(folder_ / "runs"), TableFormat::latex);
