@@ -82,7 +82,8 @@ std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> run
 
 std::optional<tables::TableColumn> column_for(const tables::ResultTable& table,
                                               const std::vector<std::size_t>& members) {
-  for (const auto value : {&tables::TableValues::ate_rmse_m, &tables::TableValues::aie_common_grey}) {
+  for (const auto value : {&tables::TableValues::ate_rmse_m, &tables::TableValues::aie_common_grey,
+                           &tables::TableValues::aie_grey}) {
     const auto column = std::ranges::find(tables::table_columns(), value, &tables::TableColumn::value);
     const bool any = std::ranges::any_of(members, [&](std::size_t member) {
       const tables::TableRow& row = table.rows[member];
@@ -177,6 +178,8 @@ std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
     const auto column = column_for(table, members);
     if (!column) continue;
     std::vector<Candidate> candidates = candidates_of(runs, table, members, labels, *column);
+    // An AIE of other pixels than another's says which dropped more of them, not which is better.
+    if (column->value == &tables::TableValues::aie_grey && candidates.size() > 1) continue;
     std::set<Recording> recordings;
     for (const Candidate& candidate : candidates) {
       for (const auto& [recording, sum] : candidate.sums) recordings.insert(recording);

@@ -38,9 +38,9 @@ struct Ranking {
   std::vector<RankedConfiguration> configurations;
 };
 
-/// By ATE, or by AIE on common pixels where there is no ATE; a configuration's number of a recording is the
-/// mean over its runs that are ok. One a kind of data that has a number, and a window of those that share
-/// frames. table: of these runs.
+/// By ATE, or by AIE on common pixels where there is no ATE, or by AIE where there is one configuration and
+/// neither; a configuration's number of a recording is the mean over its runs that are ok. One a kind of data
+/// that has a number, and a window of those that share frames. table: of these runs.
 [[nodiscard]] std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
                                                const tables::ResultTable& table);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eval/metrics/intensity_metrics.hpp"
 #include "tests/support/expect_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -124,6 +125,24 @@ TEST_F(FindingsTest, WindowsThatShareFramesAndImusAreComparedApart) {
   ASSERT_EQ(apart.size(), 1U);
   EXPECT_EQ(apart[0].recordings, 2U);
   EXPECT_NEAR(*apart[0].configurations[0].value, 0.02, 1e-12);
+}
+
+TEST_F(FindingsTest, ARunWithoutGroundTruthHasItsIntensityErrorSaid) {
+  add_run("a", "full", 0.01);
+  RecordedMetrics& known = runs_.front().record.metrics;
+  known.ate = {std::nullopt, "no ground truth"};
+  metrics::IntensityAccumulator sums;
+  sums.add_frame(std::vector<IntensityResidual>{{5, 2.0F, true}, {7, 10.0F, true}});
+  known.aie = {sums.result(), {}};
+  const auto found = rankings();
+  ASSERT_EQ(found.size(), 1U);
+  testing::expect_contains(sentences_of(found[0]).front(),
+                           "full has an AIE of 6.000 grey on one recorded recording.");
+
+  add_run("a", "dm", 0.01);
+  runs_.back().record.metrics =
+      runs_.front().record.metrics;  // of pixels that it does not share, as no file says which
+  EXPECT_TRUE(rankings().empty()) << "over other pixels they do not compare";
 }
 
 TEST_F(FindingsTest, AnImuMadeFromTheTruthIsSaid) {
