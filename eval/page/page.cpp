@@ -174,11 +174,12 @@ std::string script_safe(const Json& json) {
   return safe;
 }
 
-/// A number, a share such as 12/34, a number with its range or uncertainty, "1 to 2", or several, one a line.
+/// A number, a share such as 12/34, a number with its range or uncertainty, "1 to 2", or several, one a line;
+/// with a "!" behind one that is outside of its range.
 bool is_number(std::string_view cell) {
-  constexpr std::string_view kOthers = "0123456789.,+-/%e ()to\n";
+  constexpr std::string_view kOthers = "0123456789.,+-/%e ()to!\n";
   return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
-         cell.find_first_of("(/%e,to") != 0 && cell.find_first_not_of(kOthers) == std::string_view::npos;
+         cell.find_first_of("(/%e,to!") != 0 && cell.find_first_not_of(kOthers) == std::string_view::npos;
 }
 
 /// Names of the style's classes for columns of numbers: n1 is the first column.

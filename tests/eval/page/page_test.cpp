@@ -28,6 +28,13 @@ TEST(Page, ColumnsOfNumbersAreMarkedAndTheBestOfThemIs) {
   testing::expect_contains(html, "<th scope=\"col\">ATE</th>");
 }
 
+TEST(Page, ANumberOutsideOfItsRangeIsANumberStill) {
+  PageTable table;
+  table.header = {"variant", "NEES / dof", "text"};
+  table.rows = {{{"full", "1.31 ! (0.85 .. 1.16)", "! 1"}, ""}, {{"dm", "1.02 (0.85 .. 1.16)", "2"}, ""}};
+  testing::expect_contains(html_of({"s", "", table}), "<table class=\"n2\">");
+}
+
 TEST(Page, PartsHaveAnElementAndTheirChartsKnowIt) {
   Chart chart;
   chart.x_label = "time [s]";
