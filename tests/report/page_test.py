@@ -112,6 +112,17 @@ return drawn.filter((chart) => {
   return tips.length === 0 || tips.some((x) => !expected.some((other) => Math.abs(x - other) < 1));
 }).map((chart) => chart.canvas.getAttribute("aria-label"));
 """
+# Whether a table that is wider than its place has a sign of it, and keeps its first column when it is moved.
+MOVED_TABLE = """
+const box = [...document.querySelectorAll(".scroll")].find((other) => other.querySelector("th"));
+const table = box.querySelector("table"), cell = box.querySelector("td");
+table.style.minWidth = "2000px";
+box.scrollLeft = 400;
+const kept = Math.abs(cell.getBoundingClientRect().left - box.getBoundingClientRect().left) < 2;
+const told = getComputedStyle(box).backgroundImage.includes("gradient");
+table.style.minWidth = "";
+return kept && told;
+"""
 LISTEN = """
 window.chosenTimes = [];
 window.addEventListener("time-chosen", (event) => window.chosenTimes.push(event.detail.time_s));
@@ -209,6 +220,10 @@ class Reader:
             if self.driver.execute_script(PICTURE, views[0]) == turned:
                 self.complain("the view is not reset")
         return len(scenes)
+
+    def wide_tables(self):
+        if not self.driver.execute_script(MOVED_TABLE):
+            self.complain("a table that is wider than the page does not say so, or its first column goes")
 
     def narrow(self):
         """On a telephone every row says its numbers, and the page is no wider than the screen."""
@@ -336,6 +351,7 @@ def main():
         scenes = reader.turn_meshes()
         reader.unfold()
         reader.follow_links()
+        reader.wide_tables()
         reader.scheme("dark")
         reader.read_charts("dark")
         reader.print_in_dark()
