@@ -1,29 +1,41 @@
 // Where the camera of a 3D view stands at first, and how the way of a recording's camera is drawn.
 "use strict";
 
-/// Looks along `ahead`, a little from above, from as near as most of the points are in view.
+/// Positions of the paths that are not far from the meshes: a lost camera's would make them small.
+function nearPlaces(paths, box) {
+  const around = box.clone().expandByScalar(box.getSize(new THREE.Vector3()).length());
+  const places = [];
+  paths.forEach((path) => {
+    for (let i = 0; i + 8 <= path.poses.length; i += 8) places.push(new THREE.Vector3(...path.poses.slice(i + 1, i + 4)));
+  });
+  return places.filter((place) => around.containsPoint(place));
+}
+
+/// Looks along `ahead`, a little from above, from as near as the paths and almost all of the points are in view.
 function fittedView(camera, description, points) {
-  const low = new THREE.Vector3(...description.low), high = new THREE.Vector3(...description.high);
+  const box = new THREE.Box3(new THREE.Vector3(...description.low), new THREE.Vector3(...description.high));
+  const inBox = points.filter((point) => box.containsPoint(point));
+  const places = nearPlaces(description.paths, box);
+  places.forEach((place) => box.expandByPoint(place));
+  const low = box.min, high = box.max;
   const centre = low.clone().add(high).multiplyScalar(0.5);
   const radius = Math.max(high.clone().sub(low).length() / 2, 1e-3);
-  const most = 0.97;
+  const most = 0.995;
   Object.assign(camera, { near: 0.01 * radius, far: 50 * radius });
   camera.updateProjectionMatrix();
   const up = new THREE.Vector3(...description.up);
   const back = new THREE.Vector3(...description.ahead).negate().add(up.clone().multiplyScalar(0.25)).normalize();
-  const box = new THREE.Box3(low, high);
-  const inBox = points.filter((point) => box.containsPoint(point));
   camera.up.copy(up);
   const seen = new THREE.Vector3();
   for (let distance = 0.3 * radius; distance < 20 * radius; distance *= 1.04) {
     camera.position.copy(centre).add(back.clone().multiplyScalar(distance));
     camera.lookAt(centre);
     camera.updateMatrixWorld();
-    const inside = inBox.filter((point) => {
+    const isSeen = (point) => {
       seen.copy(point).project(camera);
       return Math.abs(seen.x) < 0.95 && Math.abs(seen.y) < 0.92 && seen.z < 1;
-    });
-    if (inside.length >= most * inBox.length) break;
+    };
+    if (places.every(isSeen) && inBox.filter(isSeen).length >= most * inBox.length) break;
   }
   return { position: camera.position.clone(), centre: centre, radius: radius };
 }

@@ -123,6 +123,22 @@ const told = getComputedStyle(box).backgroundImage.includes("gradient");
 table.style.minWidth = "";
 return kept && told;
 """
+# Positions of the recording's camera that are out of sight when a model is seen first.
+PATH_OUT_OF_SIGHT = """
+const [index] = arguments;
+const scene = JSON.parse(document.getElementById("scenes").textContent)[index];
+const camera = new THREE.PerspectiveCamera(45, 1.3, 0.01, 100);
+fittedView(camera, scene, [new THREE.Vector3(...scene.low), new THREE.Vector3(...scene.high)]);
+camera.updateMatrixWorld();
+let count = 0;
+scene.paths.forEach((path) => {
+  for (let i = 0; i + 8 <= path.poses.length; i += 8) {
+    const seen = new THREE.Vector3(...path.poses.slice(i + 1, i + 4)).project(camera);
+    if (Math.abs(seen.x) > 1 || Math.abs(seen.y) > 1 || seen.z > 1) ++count;
+  }
+});
+return count;
+"""
 LISTEN = """
 window.chosenTimes = [];
 window.addEventListener("time-chosen", (event) => window.chosenTimes.push(event.detail.time_s));
@@ -193,7 +209,9 @@ class Reader:
 
     def turn_meshes(self):
         scenes = self.driver.find_elements(By.CSS_SELECTOR, ".scene")
-        for scene in scenes:
+        for index, scene in enumerate(scenes):
+            if self.driver.execute_script(PATH_OUT_OF_SIGHT, index):
+                self.complain(f"the first view of model {index} cuts the way of the camera")
             self.show(scene)
             time.sleep(0.3)
             views = scene.find_elements(By.CSS_SELECTOR, "canvas")
