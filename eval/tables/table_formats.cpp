@@ -45,7 +45,8 @@ Cells shown_cells(const TableRow& row) {
 Cells shown_cells(const TableMean& mean) {
   Cells cells = {fmt::format("mean over {} recordings", mean.recordings),
                  record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
-                 mean.silent > 0 ? fmt::format("{}/{} ok ({} silent)", mean.ok, mean.total, mean.silent)
+                 mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} silent)", mean.ok, mean.total, mean.silent,
+                                               mean.silent == 1 ? "" : "s")
                                  : fmt::format("{}/{} ok", mean.ok, mean.total)};
   add_values(mean.values, cells);
   cells.insert(cells.end(), {"", "", ""});

@@ -199,6 +199,12 @@ TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("| 1/2 ok |"), std::string::npos);
 }
 
+TEST_F(TableTest, AMeanSaysThatItCountsRunsAsSilentAndARowFrames) {
+  ResultTable table;
+  table.means.push_back({"recorded", "none", "given", "full", "full", 2, 2, 2, 1, {}});
+  EXPECT_EQ(table_cells(table).back()[4], "2/2 ok (1 run silent)");
+}
+
 TEST_F(TableTest, RunsThatAreShownAlikeAreAllTheBest) {
   add_run("full", RunStatus::ok, "", 0.01231, {});
   add_run("dm", RunStatus::ok, "", 0.01229, {});
