@@ -70,7 +70,8 @@ std::string best_sentence(const Ranking& ranking) {
                        best.recordings);
   }
   const std::string number =
-      shown(ranking.column, *best.value) + (ranking.recordings > 1 ? " (geometric mean)" : "");
+      shown(ranking.column, *best.value) +
+      (ranking.recordings > 1 ? " (geometric mean; means in the table of results are arithmetic)" : "");
   if (ranking.configurations.size() == 1) {
     return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
                        number, where);

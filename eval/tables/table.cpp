@@ -167,7 +167,8 @@ std::vector<std::string> footer_of(const ResultTable& table) {
   }
   if (!table.means.empty()) {
     footer.push_back(
-        "mean: of the variant's runs that are ok, whose number stands before that of all; over data of one "
+        "mean: arithmetic, of the variant's runs that are ok, whose number stands before that of all; over "
+        "data of one "
         "kind. "
         "Means over different recordings do not compare.");
   }
