@@ -78,13 +78,14 @@ std::vector<SurfelFusion::Match> SurfelFusion::find_matches(const LiveFrame& liv
     });
     return match;
   };
-  workers_.for_chunks(static_cast<std::size_t>(rows), kFusedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      for (int column = 0; column < columns; ++column)
-        matches[row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)] =
-            match_of(2 * column + phase, 2 * static_cast<int>(row) + phase);
-    }
-  });
+  workers_.for_chunks(
+      static_cast<std::size_t>(rows), kFusedRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+          for (int column = 0; column < columns; ++column)
+            matches[row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)] =
+                match_of(2 * column + phase, 2 * static_cast<int>(row) + phase);
+        }
+      });
   return matches;
 }
 
