@@ -29,7 +29,7 @@ trap 'rm -f "$names" "$object.part"' EXIT
 ld -r --force-group-allocation --whole-archive "$archive" -o "$object.part"
 # A static variable of an inline function is "unique" rather than weak, which cannot be made local as it is.
 nm "$object.part" | awk '$2 == "u" { print $3 }' | LC_ALL=C sort -u >"$names"
-objcopy --weaken-symbols="$names" "$object.part"
+if [[ -s $names ]]; then objcopy --weaken-symbols="$names" "$object.part"; fi
 nm "$object.part" | awk '$2 ~ /^[WV]$/ && $3 ~ /Eigen/ { print $3 }' | LC_ALL=C sort -u >"$names"
 if [[ ! -s $names ]]; then
   printf 'isolate_eigen: %s has no functions of Eigen\n' "$archive" >&2
