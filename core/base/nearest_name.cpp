@@ -25,16 +25,22 @@ std::size_t edit_distance(std::string_view a, std::string_view b, bool of_a_part
   return of_a_part ? *std::ranges::min_element(row) : row[b.size()];
 }
 
-constexpr std::size_t kShortest = 3;  // letters of a part that says something
+std::string_view without_dashes(std::string_view flag) {
+  return flag.substr(std::min(flag.find_first_not_of('-'), flag.size()));
+}
 
 bool are_alike(std::string_view a, std::string_view b) {
+  constexpr std::size_t kShortest = 3;  // letters of a part that says something
+  a = without_dashes(a);
+  b = without_dashes(b);
   if (a.size() > b.size()) std::swap(a, b);
   if (2 * edit_distance(a, b) <= b.size()) return true;
   return a.size() >= kShortest && 3 * edit_distance(a, b, true) <= a.size();
 }
+
 bool begins_with(std::string_view name, std::string_view beginning) {
-  const std::size_t dashes = std::min(beginning.find_first_not_of('-'), beginning.size());
-  return beginning.size() - dashes >= kShortest && name.starts_with(beginning);
+  constexpr std::size_t kShortest = 2;
+  return without_dashes(beginning).size() >= kShortest && name.starts_with(beginning);
 }
 }  // namespace
 

@@ -27,7 +27,8 @@ TEST(NearestName, ABeginningWinsOverWhatIsNearer) {
   EXPECT_EQ(nearest_name("--var", kFlags), "--variant");
   EXPECT_EQ(nearest_name("--thr", kFlags), "--threads");
   EXPECT_EQ(nearest_name("--pre", kFlags), "--preset");
-  EXPECT_EQ(nearest_name("--pa", kFlags), "--par");  // too short a beginning, and near
+  EXPECT_EQ(nearest_name("--p", kFlags), "") << "too short a beginning";
+  EXPECT_EQ(nearest_name("--foo", kFlags), "") << "dashes make nothing alike";
   constexpr std::array<std::string_view, 2> kBoth = {"--variants", "--variant"};
   EXPECT_EQ(nearest_name("--var", kBoth), "--variant");
   EXPECT_EQ(nearest_name("--var", std::array<std::string_view, 1>{"--a-very-long-name"}), "");

@@ -224,7 +224,7 @@ TEST_F(ConfigFile, ErrorsNameFileAndLine) {
   expect_at("[iekf]\nmax_iterations = [8]\n", 2, "one value");
   expect_at("[iekf]\nmax_iterations = 1979-05-27\n", 2, "max_iterations");
   expect_at("[iekf]\nmax_iterations = = 8\n", 2, "TOML");
-  expect_at("\n[iefk]\n", 2, "[iekf]");
+  expect_at("\n[iefk]\n", 2, "nearest: iekf");
 }
 
 TEST_F(ConfigFile, MissingFileIsMissingData) {
