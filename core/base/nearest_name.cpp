@@ -35,7 +35,7 @@ bool are_alike(std::string_view a, std::string_view b) {
   b = without_dashes(b);
   if (a.size() > b.size()) std::swap(a, b);
   if (2 * edit_distance(a, b) <= b.size()) return true;
-  return a.size() >= kShortest && 3 * edit_distance(a, b, true) <= a.size();
+  return a.size() >= kShortest && 3 * edit_distance(a, b, true) < a.size();
 }
 
 bool begins_with(std::string_view name, std::string_view beginning) {

@@ -11,7 +11,7 @@ inline namespace base {
 /// Of the names that are alike the one with the least Levenshtein distance (the first of equals), those that
 /// begin with `name` before others if that has at least 3 letters behind its dashes; empty where none is
 /// alike. Two are alike if one is such a beginning of the other, if at most half of the longer one differs,
-/// or at most a third of the shorter one from a part of the longer one.
+/// or less than a third of the shorter one from a part of the longer one.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string_view> names);
 
 /// " (nearest: NAME)", to go on behind "unknown ... 'name'"; empty where no name is alike.
