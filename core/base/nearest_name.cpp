@@ -9,18 +9,21 @@ namespace fusebench {
 inline namespace base {
 
 namespace {
-/// Levenshtein distance, one row of the table at a time; of the part of b that is most like a, if only a part
-/// has to be.
+/// Damerau's distance (letters left out, put in, replaced, or neighbours exchanged), one row of the table at
+/// a time; of the part of b that is most like a, if only a part has to be.
 std::size_t edit_distance(std::string_view a, std::string_view b, bool of_a_part = false) {
   std::vector<std::size_t> row(b.size() + 1);
   if (!of_a_part) std::iota(row.begin(), row.end(), std::size_t{0});
+  std::vector<std::size_t> row_before;
   for (std::size_t i = 0; i < a.size(); ++i) {
     std::vector<std::size_t> next(row.size(), i + 1);
     for (std::size_t j = 0; j < b.size(); ++j) {
       const std::size_t substituted = row[j] + (a[i] == b[j] ? 0 : 1);
       next[j + 1] = std::min({next[j] + 1, row[j + 1] + 1, substituted});
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        next[j + 1] = std::min(next[j + 1], row_before[j - 1] + 1);
     }
-    row = std::move(next);
+    row_before = std::exchange(row, std::move(next));
   }
   return of_a_part ? *std::ranges::min_element(row) : row[b.size()];
 }

@@ -8,7 +8,7 @@
 namespace fusebench {
 inline namespace base {
 
-/// Of the names that are alike the one with the least Levenshtein distance (the first of equals), those that
+/// Of the names that are alike the one with the least edit distance (the first of equals), those that
 /// begin with `name` before others if that has at least 3 letters behind its dashes; empty where none is
 /// alike. Two are alike if one is such a beginning of the other, if at most half of the longer one differs,
 /// or less than a third of the shorter one from a part of the longer one.

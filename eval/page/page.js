@@ -188,6 +188,7 @@ function labelCells() {
 
 /// Of charts on paper, in pixels: such that texts are as large as those beside them. page.css has the same shapes.
 const paperSize = { view: [310, 310], chart: [410, 300] };
+const leastOnPaper = 120;  // height of what is drawn
 
 /// Paper is white, and its columns have other widths than a screen's. A view is fitted at once: paper does not wait.
 function drawForPaper(paper) {
@@ -196,8 +197,14 @@ function drawForPaper(paper) {
   if (dark) draw();
   drawn.forEach((made, index) => {
     const { equal } = description[index];
+    const place = made.canvas.parentElement;
+    const [width, height] = paperSize[equal ? "view" : "chart"];
     made.options.devicePixelRatio = paper ? 2 : undefined;
-    made.resize(...(paper ? paperSize[equal ? "view" : "chart"] : []));
+    made.resize(...(paper ? [width, height] : []));
+    // Long legends and names below the axis leave little room for what is drawn.
+    const missing = paper && !equal ? Math.max(0, leastOnPaper - made.chartArea.height) : 0;
+    if (missing > 0) made.resize(width, height + missing);
+    place.style.aspectRatio = missing > 0 ? `${width} / ${height + missing}` : "";
     if (equal) equalise(made, rangesOf(description[index]));
   });
 }

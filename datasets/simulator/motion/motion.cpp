@@ -52,11 +52,12 @@ Result<void> check_options(const MotionOptions& options, const MotionSpan& span)
   // A recording of 2 s ends a frame before: the motion itself goes on for longer than that.
   if (options.from_rest && moving_s + 1e-9 * static_cast<double>(MotionSpan::kTail_ns) < options.start_s) {
     const double least_s = options.rest_s + options.start_s;
-    return fail(ErrorCode::configuration,
-                fmt::format("{:.3f} s from the first frame to the last are too short to start from rest "
-                            "(allowed: durations from {:g} s)",
-                            moving_s + options.rest_s, least_s),
-                fmt::format("--duration {:g} or more, or --in-motion to begin in full motion", least_s));
+    return fail(
+        ErrorCode::configuration,
+        fmt::format("duration_s: {:.3f} s from the first frame to the last are too short to start from rest "
+                    "(allowed: durations from {:g} s)",
+                    moving_s + options.rest_s, least_s),
+        fmt::format("--duration {:g} or more, or --in-motion to begin in full motion", least_s));
   }
   return {};
 }

@@ -13,7 +13,12 @@ constexpr std::array<std::string_view, 4> kNames = {"full", "no-imu", "tsdf.voxe
 TEST(NearestName, OneThatIsMisspeltIsFound) {
   EXPECT_EQ(nearest_name("ful", kNames), "full");
   EXPECT_EQ(nearest_name("no_imu", kNames), "no-imu");
-  EXPECT_EQ(nearest_name("lufl", kNames), "full");
+  EXPECT_EQ(nearest_name("flul", kNames), "full") << "neighbours are exchanged";
+}
+
+TEST(NearestName, ExchangedLettersAreOneMistake) {
+  EXPECT_EQ(nearest_name("rnu", std::array<std::string_view, 2>{"list", "run"}), "run");
+  EXPECT_EQ(nearest_name("smi3", std::array<std::string_view, 2>{"se3", "sim3"}), "sim3");
 }
 
 TEST(NearestName, APartOfALongOneIsFoundAlsoMisspelt) {
