@@ -45,7 +45,8 @@ endfunction()
 # compiled at a time (FUSEBENCH_UNITY): most of the time goes into reading libraries and into their templates, once for each
 # compilation. With that off, a change of one source compiles that one alone, and a missing #include shows.
 #   APART     each source is compiled alone: most of them give the same names other meanings
-#   ALONE     sources (without .cpp) that are, since another one gives one of their names another meaning
+#   ALONE     sources (without .cpp) that are, since another one gives one of their names another meaning, or since they hide a class
+#             with members of types of their own, of which GCC warns wherever the source is not the file that it was given
 #   USES      last names of the rooms that its files include
 #   SOURCES   generated files beside those of the folder
 #   OPTIMIZE  level of a release build, 3 unless given. Rooms that only read, write and print take 1: half the time to compile,
