@@ -9,9 +9,10 @@ namespace fusebench {
 inline namespace base {
 
 /// Of the names that are alike the one with the least edit distance (the first of equals), those that
-/// begin with `name` before others if that has at least 3 letters behind its dashes; empty where none is
-/// alike. Two are alike if one is such a beginning of the other, if at most half of the longer one differs,
-/// or less than a third of the shorter one from a part of the longer one.
+/// begin with `name` before others if that has at least 2 letters behind its dashes; empty where none is
+/// alike (dashes in front make nothing alike). Two are alike if one is such a beginning of the other, if at
+/// most half of the longer one differs, or less than a third of the shorter one from a part of the longer
+/// one.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string_view> names);
 
 /// " (nearest: NAME)", to go on behind "unknown ... 'name'"; empty where no name is alike.

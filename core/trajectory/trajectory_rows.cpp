@@ -142,9 +142,8 @@ Result<Trajectory> ordered(TrajectoryRows rows, Duplicates duplicates, const std
         ErrorCode::data_corrupt,
         fmt::format("{}:{}: the stamp is the same as that of line {} ({} of {} rows repeat a stamp)",
                     file.string(), repeats.line, repeats.earlier_line, repeats.count, rows.poses.size()),
-        "remove one of the two rows, or say which one counts (--duplicates first or last; keep takes both, "
-        "as "
-        "evo does)");
+        "remove one of the two rows, or say which one counts (--duplicates first or last; keep takes "
+        "both, as evo does)");
   }
   Trajectory kept;
   kept.reserve(rows.poses.size());

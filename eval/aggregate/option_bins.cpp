@@ -1,5 +1,4 @@
 #include "eval/aggregate/option_bins.hpp"
-#include "eval/run_files/option_order.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +7,8 @@
 #include <optional>
 #include <set>
 #include <string>
+
+#include "eval/run_files/option_order.hpp"
 
 namespace fusebench::aggregate {
 
