@@ -217,9 +217,11 @@ struct ElasticfusionConfig {
            "a frame that fits badly is lost and not fused, and its place is looked for by ferns");
     v.flag("use_imu", self.use_imu,
            "tracking with the inertial term of Laidlow et al. 2017 and its prediction");
-    v.choice("defects", self.defects,
-             "as_published: intensities are weighed by the number of pixels in place of their deviation, "
-             "planes draw with a tenth of their weight, and blue weighs as red should");
+    v.choice(
+        "defects", self.defects,
+        "as_published: intensities are weighed by the number of pixels in place of their deviation, "
+        "compared at whole pixels of the model, planes draw with a tenth of their weight, and blue weighs as "
+        "red should");
   }
 };
 

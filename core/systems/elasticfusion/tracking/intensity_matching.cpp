@@ -18,16 +18,18 @@ constexpr float kMostDepthApart_m = 0.07F;
 /// Eight pixels and what the model has there.
 struct Match {
   Int8 valid;
-  Int8 column, row;  ///< of the nearest pixel of the view
-  Float8 depth_m;    ///< of the model
-  Float8 residual;   ///< frame less model
+  Float8 column, row;  ///< where the view sees it
+  Float8 depth_m;      ///< of the model
+  Float8 residual;     ///< frame less model
 };
 
 class IntensityMatcher {
  public:
-  IntensityMatcher(const TellingPixels& pixels, const ViewLevel& view, const SE3& T_view_camera)
+  IntensityMatcher(const TellingPixels& pixels, const ViewLevel& view, const SE3& T_view_camera,
+                   config::PeerDefects defects)
       : pixels_(pixels),
         view_(view),
+        at_whole_pixels_(defects == config::PeerDefects::as_published),
         fx_(static_cast<float>(pixels.camera.fx_px)),
         fy_(static_cast<float>(pixels.camera.fy_px)),
         cx_(static_cast<float>(view.camera.cx_px)),
@@ -43,15 +45,25 @@ class IntensityMatcher {
     const simd::Points seen = simd::moved(R_, t_, point);
     const auto width = static_cast<float>(view_.camera.width_px);
     const auto height = static_cast<float>(view_.camera.height_px);
-    const Float8 u = fx_ * seen.x / seen.z + (cx_ + 0.5F), v = fy_ * seen.y / seen.z + (cy_ + 0.5F);
+    const Float8 u = fx_ * seen.x / seen.z + cx_, v = fy_ * seen.y / seen.z + cy_;
     Match match{};
-    match.valid = (point.z > 0.0F) & (seen.z > 0.0F) & (u >= 0.0F) & (v >= 0.0F) & (u < width) & (v < height);
-    match.column = simd::to_int(simd::clamp(u, 0.0F, width - 1));
-    match.row = simd::to_int(simd::clamp(v, 0.0F, height - 1));
-    const Int8 at = match.row * view_.camera.width_px + match.column;
+    match.valid = (point.z > 0.0F) & (seen.z > 0.0F) & (u >= -0.5F) & (v >= -0.5F) & (u < width - 0.5F) &
+                  (v < height - 0.5F);
+    const Int8 column = simd::to_int(simd::clamp(u + 0.5F, 0.0F, width - 1));
+    const Int8 row = simd::to_int(simd::clamp(v + 0.5F, 0.0F, height - 1));
+    const Int8 at = row * view_.camera.width_px + column;
     match.depth_m = simd::gather(view_.depth_m.data.data(), at);
-    match.valid &= (match.depth_m > 0.0F) & (simd::abs(match.depth_m - seen.z) <= kMostDepthApart_m);
-    match.residual = simd::load(&pixels_.intensity[first]) - simd::gather(view_.intensity.data.data(), at);
+    match.valid &= is_near(match.depth_m, seen.z);
+    const Float8 measured = simd::load(&pixels_.intensity[first]);
+    if (at_whole_pixels_) {
+      match.column = simd::to_float(column);
+      match.row = simd::to_float(row);
+      match.residual = measured - simd::gather(view_.intensity.data.data(), at);
+    } else {
+      match.column = u;
+      match.row = v;
+      match.residual = measured - between_pixels(u, v, seen.z, match.valid);
+    }
     return match;
   }
 
@@ -66,8 +78,8 @@ class IntensityMatcher {
   void add(std::size_t first, float sigma, PoseSumLanes& sums) const {
     Match found = match(first);
     if (!simd::any(found.valid)) return;
-    const simd::Points point = {(simd::to_float(found.column) - cx_) / fx_ * found.depth_m,
-                                (simd::to_float(found.row) - cy_) / fy_ * found.depth_m, found.depth_m};
+    const simd::Points point = {(found.column - cx_) / fx_ * found.depth_m,
+                                (found.row - cy_) / fy_ * found.depth_m, found.depth_m};
     const simd::Points here = simd::moved(R_camera_view_, t_camera_view_, point);
     found.valid &= here.z > 0.0F;
     const Float8 gx = simd::load(&pixels_.dx[first]) * fx_ / here.z;
@@ -81,8 +93,34 @@ class IntensityMatcher {
   }
 
  private:
+  static Int8 is_near(Float8 model_m, Float8 seen_m) {
+    return (model_m > 0.0F) & (simd::abs(model_m - seen_m) <= kMostDepthApart_m);
+  }
+
+  /// The model's intensity by bilinear interpolation; not valid where one of the four pixels shows another
+  /// surface or none.
+  [[nodiscard]] Float8 between_pixels(Float8 u, Float8 v, Float8 seen_m, Int8& valid) const {
+    const PinholeCamera& camera = view_.camera;
+    const Int8 left = simd::to_int(simd::clamp(u, 0.0F, static_cast<float>(camera.width_px - 2)));
+    const Int8 top = simd::to_int(simd::clamp(v, 0.0F, static_cast<float>(camera.height_px - 2)));
+    const Float8 right_share = u - simd::to_float(left), lower_share = v - simd::to_float(top);
+    valid &= (right_share >= 0.0F) & (right_share <= 1.0F) & (lower_share >= 0.0F) & (lower_share <= 1.0F);
+    const auto pixel = [&](Int8 at) {
+      valid &= is_near(simd::gather(view_.depth_m.data.data(), at), seen_m);
+      return simd::gather(view_.intensity.data.data(), at);
+    };
+    const auto row = [&](Int8 at) {
+      const Float8 value = pixel(at);
+      return simd::multiply_add(right_share, pixel(at + 1) - value, value);
+    };
+    const Int8 at = top * camera.width_px + left;
+    const Float8 upper = row(at);
+    return simd::multiply_add(lower_share, row(at + camera.width_px) - upper, upper);
+  }
+
   const TellingPixels& pixels_;
   const ViewLevel& view_;
+  bool at_whole_pixels_;
   float fx_, fy_, cx_, cy_;
   Eigen::Matrix3f R_;
   Eigen::Vector3f t_;
@@ -125,7 +163,7 @@ TellingPixels telling_pixels(const LiveLevel& live, double min_gradient) {
 
 PoseSums match_intensities(const TellingPixels& pixels, const ViewLevel& view, const SE3& T_view_camera,
                            config::PeerDefects defects, const Workers& workers) {
-  const IntensityMatcher matcher(pixels, view, T_view_camera);
+  const IntensityMatcher matcher(pixels, view, T_view_camera, defects);
   ResidualCount residuals;
   for (const ResidualCount& part : workers.map_chunks<ResidualCount>(
            pixels.z.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {

@@ -25,9 +25,11 @@ struct TellingPixels {
 /// Those whose gradient is at least so long (grey levels per pixel), nearer than 6 m.
 [[nodiscard]] TellingPixels telling_pixels(const LiveLevel& live, double min_gradient);
 
-/// Sums over the pixels that have a match: each is moved into the view's camera, and the model's point at the
-/// nearest pixel, if its depth is within 7 cm, is seen from the frame. Residuals weigh 1 / (s + |r|), where s
-/// is the root of their mean square, or as published of their number. Steps as of match_planes().
+/// Sums over the pixels that have a match: each is moved into the view's camera, and the model's point there,
+/// if its depth is within 7 cm, is seen from the frame. The model's intensity is interpolated between four
+/// pixels, as the article's continuous image of the model has it; as published it is that of the nearest
+/// pixel. Residuals weigh 1 / (s + |r|), where s is the root of their mean square, or as published of their
+/// number. Steps as of match_planes().
 [[nodiscard]] PoseSums match_intensities(const TellingPixels& pixels, const ViewLevel& view,
                                          const SE3& T_view_camera, config::PeerDefects defects,
                                          const Workers& workers);
