@@ -60,12 +60,9 @@ values() {
 # value FILE KEY: the first of them.
 value() { values "$1" "$2" | sed -n 1p; }
 
-# The names of all recordings.
+# The names of all recordings: those of their files.
 names() {
-  local file
-  for file in "$catalogue"/*.toml; do
-    if [[ $(value "$file" kind) == recording ]]; then value "$file" name; fi
-  done
+  { grep -l '^kind[[:space:]]*=[[:space:]]*"recording"' "$catalogue"/*.toml || true; } | sed 's|.*/||; s|[.]toml$||'
 }
 
 # nearest NAME: the known name with the least edit distance.
