@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every check and test: formatting, include directions, references to files, a warning-free build (of every test there is),
-# generated pages, a minute of fuzzing and one of attacks, the baseline, instruction counts, tests (pages are read in headless Chromium, which
+# generated pages, 20 seconds of fuzzing and a minute of attacks, the baseline, instruction counts, tests (pages are read in headless Chromium, which
 # is installed); clang-tidy on request. Runs all of them even if one fails, and ends with the tests and a summary.
 # shellcheck disable=SC2317  # the checks are called through step
 set -euo pipefail
@@ -133,7 +133,7 @@ step tests-built ./scripts/check_tests_built.sh build/ci
 step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
 if $tidy; then step clang-tidy check_tidy; fi
 if $odr; then step one-definition ./scripts/check_odr.sh; fi
-step fuzz ./scripts/fuzz.sh 60
+step fuzz ./scripts/fuzz.sh 20
 step attack ./scripts/attack.sh --seconds 50
 step baseline ./scripts/check_baseline.sh --binary build/ci/fusebench
 step instructions ./scripts/check_instructions.sh
