@@ -2,14 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
+#include "core/io/abandoned.hpp"
+#include "core/io/temporary_name.hpp"
 #include "core/io/whole_file.hpp"
 
 namespace fusebench::io {
@@ -17,16 +17,6 @@ namespace fusebench::io {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Concurrent access is rare and short, so a few retries are enough.
-constexpr int kAttempts = 100;
-
-/// ".<name>.<process>[-<attempt>].tmp" beside a path; the dot keeps it out of listings. Processes of other
-/// machines can have the same number.
-fs::path hidden_sibling(const fs::path& path, int attempt) {
-  const std::string again = attempt == 0 ? "" : fmt::format("-{}", attempt);
-  return path.parent_path() / fmt::format(".{}.{}{}.tmp", path.filename().string(), getpid(), again);
-}
 
 tl::unexpected<Error> io_error(const fs::path& path, const std::error_code& error) {
   return fail(ErrorCode::io, fmt::format("{}: cannot be written: {}", path.string(), error.message()),
@@ -47,17 +37,6 @@ std::error_code create_parents(const fs::path& path, std::vector<fs::path>& crea
     if (fs::create_directory(*parent, error)) created.push_back(*parent);
   }
   return error;
-}
-
-/// Marks the folder as in use; the operating system releases the lock when the process ends for any reason.
-/// -1 where the file system has no locks, or another process holds this one.
-int lock_folder(const fs::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor >= 0 && flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  const int why = errno;
-  if (descriptor >= 0) close(descriptor);
-  errno = why;
-  return -1;
 }
 
 /// Syncs to the disk, so that it survives a power failure. EINVAL and ENOTSUP mean that the file system
@@ -116,41 +95,19 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-bool is_number(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-/// ".<name>.<process>[-<attempt>].tmp".
-bool is_hidden_sibling(std::string_view name) {
-  constexpr std::string_view kEnd = ".tmp";
-  if (!name.starts_with('.') || !name.ends_with(kEnd)) return false;
-  name = name.substr(1, name.size() - 1 - kEnd.size());
-  const std::size_t point = name.rfind('.');
-  if (point == std::string_view::npos || point == 0) return false;
-  const std::string_view numbers = name.substr(point + 1);
-  const std::size_t dash = numbers.find('-');
-  return is_number(numbers.substr(0, dash)) &&
-         (dash == std::string_view::npos || is_number(numbers.substr(dash + 1)));
-}
-
-bool is_older_than_a_day(const fs::path& folder) {
-  std::error_code error;
-  const auto written = fs::last_write_time(folder, error);
-  return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(24);
-}
-
 }  // namespace
 
 Result<StagedFolder> StagedFolder::create(const fs::path& final_folder) {
   StagedFolder folder;
   folder.final_ = final_folder.has_filename() ? final_folder : final_folder.parent_path();  // "folder/"
+  remove_abandoned_of(folder.final_);
   std::error_code error;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
     const fs::path temporary = hidden_sibling(folder.final_, attempt);
     error = create_parents(folder.final_, folder.created_);
     if (!error && fs::create_directory(temporary, error)) {
       folder.temporary_ = temporary;
-      folder.lock_ = lock_folder(temporary);
+      folder.lock_ = lock_place(temporary);
       // Another process regards the empty folder as abandoned and is removing it.
       if (folder.lock_ < 0 && errno == EWOULDBLOCK) continue;
       if (fs::create_directory(folder.path(), error)) return folder;
@@ -187,7 +144,7 @@ Result<void> StagedFolder::commit() {
   const fs::path old = temporary_ / "old";
   std::error_code error = sync_tree(path());
   if (error) return io_error(final_, error);
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
     fs::rename(final_, old, error);
     if (error && error != std::errc::no_such_file_or_directory) break;
     fs::rename(path(), final_, error);
@@ -231,7 +188,7 @@ std::error_code sync_names(const fs::path& path) {
 
 bool is_staged_folder(const fs::path& folder) {
   std::error_code error;
-  if (!is_hidden_sibling(folder.filename().string()) || !fs::is_directory(folder, error)) return false;
+  if (!name_of_hidden_sibling(folder.filename().string()) || !fs::is_directory(folder, error)) return false;
   if (fs::is_symlink(folder, error)) return false;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path name = entry->path().filename();
@@ -243,14 +200,14 @@ bool is_staged_folder(const fs::path& folder) {
 
 std::error_code remove_atomically(const fs::path& folder) {
   std::error_code error;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
     const fs::path hidden = hidden_sibling(folder, attempt);
     if (!fs::create_directory(hidden, error)) {
       if (error && error != std::errc::file_exists) return error;
       error = std::make_error_code(std::errc::file_exists);
       continue;
     }
-    const int lock = lock_folder(hidden);
+    const int lock = lock_place(hidden);
     fs::rename(folder, hidden / "old", error);
     std::error_code removing;
     fs::remove_all(hidden, removing);
@@ -258,27 +215,6 @@ std::error_code remove_atomically(const fs::path& folder) {
     return error ? error : removing;
   }
   return error;
-}
-
-std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
-  std::vector<fs::path> hidden;
-  std::error_code error;
-  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
-    if (is_staged_folder(entry->path())) hidden.push_back(entry->path());
-  }
-  std::vector<fs::path> abandoned;
-  for (const fs::path& folder : hidden) {
-    const int lock = lock_folder(folder);
-    const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
-    std::error_code ignored;
-    if (lock >= 0 || (unlockable && is_older_than_a_day(folder))) {
-      abandoned.push_back(folder);
-      // The lock is held meanwhile, so that a process that has just created the folder notices.
-      if (!only_look) fs::remove_all(folder, ignored);
-    }
-    if (lock >= 0) close(lock);
-  }
-  return abandoned;
 }
 
 }  // namespace fusebench::io

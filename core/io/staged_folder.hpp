@@ -55,10 +55,4 @@ class StagedFolder {
 /// middle leaves no half of it.
 [[nodiscard]] std::error_code remove_atomically(const std::filesystem::path& folder);
 
-/// Removes what processes that were killed left of their temporary folders in `parent`: those whose lock
-/// nobody holds. Where a file system has no locks, only those that are older than a day. Returns them, or, if
-/// it shall only look, those that there are to remove.
-std::vector<std::filesystem::path> remove_abandoned(const std::filesystem::path& parent,
-                                                    bool only_look = false);
-
 }  // namespace fusebench::io

@@ -19,8 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-fs::path invocations_folder(const fs::path& out) { return engine_folder(out) / "invocations"; }
-
 Result<std::string> text_of(const fs::path& file) {
   return io::whole_text(file, std::uintmax_t{1} << 26, "invocation");
 }
@@ -38,6 +36,8 @@ std::string absolute_text(const fs::path& path) {
 }
 
 }  // namespace
+
+fs::path invocations_folder(const fs::path& out) { return engine_folder(out) / "invocations"; }
 
 Result<suites::Suite> suite_of(const Invocation& invocation) {
   auto suite = suites::read_suite(invocation.suite);

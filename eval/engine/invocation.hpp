@@ -25,6 +25,9 @@ struct Invocation {
   std::filesystem::path working_folder = {};  ///< that relative folders in the suite are relative to
 };
 
+/// Where they are kept for a folder of runs: <out>/.fusebench/invocations.
+[[nodiscard]] std::filesystem::path invocations_folder(const std::filesystem::path& out);
+
 /// The suite as this invocation runs it. Errors: those of read_suite(), usage for overrides.
 [[nodiscard]] Result<suites::Suite> suite_of(const Invocation& invocation);
 

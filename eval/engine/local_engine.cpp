@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/io/staged_folder.hpp"
+#include "core/io/abandoned.hpp"
 #include "eval/engine/batch_ledger.hpp"
 #include "eval/engine/run_claim.hpp"
 #include "eval/process/forked_job.hpp"

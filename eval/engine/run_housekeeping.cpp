@@ -6,6 +6,8 @@
 #include <set>
 #include <system_error>
 
+#include "core/io/abandoned.hpp"
+#include "core/io/staged_file.hpp"
 #include "core/io/staged_folder.hpp"
 #include "eval/engine/invocation.hpp"
 #include "eval/engine/run_claim.hpp"
@@ -83,12 +85,14 @@ void verify_files(const fs::path& folder, run::RecordHead& head) {
   head.reason = checked.error().message;
 }
 
-std::set<fs::path> parents_of_staged_folders(const fs::path& root) {
-  std::set<fs::path> parents;
+/// The folders in which there is something under a temporary name, and that of kept invocations.
+std::set<fs::path> parents_of_temporaries(const fs::path& root) {
+  std::set<fs::path> parents = {invocations_folder(root)};
   std::error_code error;
   for (fs::recursive_directory_iterator entry(root, error), end; !error && entry != end;
        entry.increment(error)) {
     std::error_code ignored;
+    if (io::is_staged_file(entry->path())) parents.insert(entry->path().parent_path());
     if (!entry->is_directory(ignored)) continue;
     const bool is_staged = io::is_staged_folder(entry->path());
     if (is_staged) parents.insert(entry->path().parent_path());
@@ -136,7 +140,7 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
     report.paths.insert(report.paths.end(), paths.begin(), paths.end());
   };
   add_temporaries(remove_free_claims(root, garbage.only_look));
-  for (const fs::path& parent : parents_of_staged_folders(root))
+  for (const fs::path& parent : parents_of_temporaries(root))
     add_temporaries(io::remove_abandoned(parent, garbage.only_look));
   std::ranges::sort(report.paths);
   return report;

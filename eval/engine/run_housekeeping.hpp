@@ -31,7 +31,7 @@ struct Garbage {
   bool only_look = false;
 };
 struct GarbageReport {
-  std::size_t temporaries = 0;  ///< folders and claims that killed processes left
+  std::size_t temporaries = 0;  ///< folders, files and claims that killed processes left
   std::size_t runs = 0;
   std::uint64_t bytes = 0;
   std::vector<std::filesystem::path> paths;  ///< of all of them, sorted

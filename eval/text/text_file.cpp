@@ -1,10 +1,10 @@
 #include "eval/text/text_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <system_error>
 
+#include "core/io/staged_file.hpp"
 #include "core/io/whole_file.hpp"
 
 namespace fusebench::text {
@@ -31,14 +31,8 @@ Result<void> write_text_file(const std::filesystem::path& file, std::string_view
   error.clear();
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   if (error) return cannot_write(file, error);
-  // Other processes may write the same file at the same time: the last one stays.
-  const fs::path temporary =
-      file.parent_path() / fmt::format(".{}.{}.tmp", file.filename().string(), getpid());
-  std::error_code reason = io::write_whole_file(temporary, text);
-  if (!reason) fs::rename(temporary, file, reason);
-  if (!reason) return {};
-  fs::remove(temporary, error);
-  return cannot_write(file, reason);
+  if (const std::error_code reason = io::write_file_atomically(file, text)) return cannot_write(file, reason);
+  return {};
 }
 
 }  // namespace fusebench::text

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/io/abandoned.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
@@ -109,6 +110,7 @@ Result<int> run(const RunOptions& options) {
   if (!prepared) return tl::unexpected(prepared.error());
   console::print_warnings(prepared->recording.warnings);
 
+  io::remove_abandoned(prepared->folder.parent_path());  // what an earlier one that was killed left
   const std::string title = fmt::format("{} {}", prepared->recording.name, prepared->spec.variant);
   console::ProgressBar bar(title);
   const run::RunControl control = {

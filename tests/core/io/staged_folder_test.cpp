@@ -179,27 +179,6 @@ TEST_F(StagedFolderTest, EverythingIsOnTheDiskBeforeItHasItsName) {
   EXPECT_LT(at(root), missing);
 }
 
-TEST_F(StagedFolderTest, OnlyTemporaryFoldersOfThisProgramAreAbandonedOnes) {
-  for (const char* ours : {".a.77.tmp/new/record.json", ".b.77-3.tmp/old/record.json", ".c.d.5.tmp/new/f"})
-    write(ours, "");
-  std::filesystem::create_directories(folder_ / ".c.d.5.tmp" / "old");
-  const std::vector<std::string> theirs = {".notes.tmp/f",     ".rec1.tmp/full/01234567/record.json",
-                                           ".a.78.tmp/note",   ".b.x7.tmp/new/f",
-                                           ".77.tmp/new/f",    "a.77.tmp/new/f",
-                                           ".a.77-.tmp/new/f", ".a.79.tmp/new"};
-  for (const std::string& file : theirs) write(file, "theirs");
-  const auto seen = remove_abandoned(folder_, true);
-  EXPECT_EQ(seen.size(), 3U);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / ".a.77.tmp"));
-  auto removed = remove_abandoned(folder_);
-  std::ranges::sort(removed);
-  const std::vector<std::filesystem::path> expected = {folder_ / ".a.77.tmp", folder_ / ".b.77-3.tmp",
-                                                       folder_ / ".c.d.5.tmp"};
-  EXPECT_EQ(removed, expected);
-  for (const auto& path : expected) EXPECT_FALSE(std::filesystem::exists(path)) << path;
-  for (const std::string& file : theirs) EXPECT_EQ(testing::read_bytes(folder_ / file), "theirs") << file;
-}
-
 TEST_F(StagedFolderTest, AFolderIsRemovedWhole) {
   write("0123/images/1.png", "pixels");
   EXPECT_FALSE(remove_atomically(folder_ / "0123"));

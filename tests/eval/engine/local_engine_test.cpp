@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <fstream>
 #include <utility>
 #include <vector>
@@ -386,12 +387,18 @@ TEST_F(LocalEngineTest, OnlyItsOwnFoldersAreTidied) {
   const std::string claim = std::string(32, 'a') + "-1";
   write("out/.fusebench/claims/" + claim, "");
   EXPECT_EQ(list_runs(folder_ / "out")->size(), 3U);
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
+  const std::vector<fs::path> files = {write("out/.fusebench/invocations/.0123abcd.json.77.tmp", "half"),
+                                       write("out/rec1/.table.csv.77.tmp", "half")};
+  for (const fs::path& file : files) fs::last_write_time(file, long_ago);
+  write("out/rec1/.other.csv.78.tmp", "being written");
   const auto report = collect_garbage(folder_ / "out", {.failed = true});
   ASSERT_TRUE(report.has_value());
-  const std::vector<fs::path> expected = {folder_ / "out/.fusebench/claims" / claim,
+  const std::vector<fs::path> expected = {folder_ / "out/.fusebench/claims" / claim, files[0], files[1],
                                           folder_ / "out/rec1/full/.01234567.77.tmp"};
   EXPECT_EQ(report->paths, expected);
-  EXPECT_EQ(report->temporaries, 2U);
+  EXPECT_EQ(report->temporaries, 4U);
+  EXPECT_TRUE(fs::exists(folder_ / "out/rec1/.other.csv.78.tmp"));
   EXPECT_EQ(list_runs(folder_ / "out")->size(), 3U);
   EXPECT_TRUE(fs::exists(folder_ / "out/rec1/.notes.tmp/f"));
   EXPECT_TRUE(fs::exists(folder_ / "out/.fusebench/claims/notes"));

@@ -1,0 +1,80 @@
+#include "core/io/abandoned.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <system_error>
+
+#include "core/io/staged_file.hpp"
+#include "core/io/staged_folder.hpp"
+#include "core/io/temporary_name.hpp"
+
+namespace fusebench::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::chrono::hours kFileAge{1};
+constexpr std::chrono::hours kFolderAge{24};  // also of files where there are no locks
+
+struct Leftover {
+  fs::path path;
+  std::chrono::hours age{};  ///< for which it must have been unchanged if nobody holds its lock
+};
+
+/// Whether the path still leads to what was opened: its owner may have renamed it, and another have taken the
+/// name.
+bool is_still_there(int descriptor, const fs::path& path) {
+  struct stat opened {};
+  struct stat there {};
+  return fstat(descriptor, &opened) == 0 && lstat(path.c_str(), &there) == 0 &&
+         opened.st_ino == there.st_ino && opened.st_dev == there.st_dev;
+}
+
+/// Whether it is abandoned; removes it then, unless it shall only look.
+bool remove_if_abandoned(const Leftover& leftover, bool only_look) {
+  if (leftover.age.count() > 0 && !is_unchanged_for(leftover.path, leftover.age)) return false;
+  const int lock = lock_place(leftover.path);
+  const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
+  const bool abandoned = lock >= 0 ? is_still_there(lock, leftover.path)
+                                   : unlockable && is_unchanged_for(leftover.path, kFolderAge);
+  std::error_code ignored;
+  // The lock is held meanwhile, so that a process that has just created the folder notices.
+  if (abandoned && !only_look) fs::remove_all(leftover.path, ignored);
+  if (lock >= 0) close(lock);
+  return abandoned;
+}
+
+}  // namespace
+
+std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
+  std::vector<Leftover> hidden;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_staged_folder(entry->path())) hidden.push_back({entry->path(), std::chrono::hours(0)});
+    if (is_staged_file(entry->path())) hidden.push_back({entry->path(), kFileAge});
+  }
+  std::vector<fs::path> abandoned;
+  for (const Leftover& leftover : hidden) {
+    if (remove_if_abandoned(leftover, only_look)) abandoned.push_back(leftover.path);
+  }
+  return abandoned;
+}
+
+void remove_abandoned_of(const fs::path& place) {
+  const std::string name = place.filename().string();
+  const fs::path parent = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  std::vector<Leftover> hidden;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    if (name_of_hidden_sibling(entry->path().filename().string()) != name) continue;
+    if (is_staged_folder(entry->path())) hidden.push_back({entry->path(), kFolderAge});
+    if (is_staged_file(entry->path())) hidden.push_back({entry->path(), kFileAge});
+  }
+  for (const Leftover& leftover : hidden) remove_if_abandoned(leftover, false);
+}
+
+}  // namespace fusebench::io

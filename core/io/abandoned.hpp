@@ -1,0 +1,21 @@
+// What processes that were killed left under temporary names (StagedFolder, write_file_atomically()).
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace fusebench::io {
+
+/// Removes the abandoned temporary folders and files in `parent`. A living process holds a lock of each, so a
+/// folder whose lock nobody holds is abandoned, and a file if it also has not changed for an hour: it is
+/// written at once, and a machine that shares the folder but not the locks may be writing it. Where a file
+/// system has no locks (folders over NFS), what has not changed for a day. Returns them, or, if it shall only
+/// look, those that there are to remove.
+std::vector<std::filesystem::path> remove_abandoned(const std::filesystem::path& parent,
+                                                    bool only_look = false);
+
+/// Of one place that is about to be written again, those that have not changed for an hour (files) or for a
+/// day (folders: a run of another machine may write nothing for hours).
+void remove_abandoned_of(const std::filesystem::path& place);
+
+}  // namespace fusebench::io
