@@ -92,6 +92,10 @@ if command -v zsh >/dev/null; then
   zsh -n "$work/usr/share/zsh/vendor-completions/_fusebench" 2>log || failed "zsh does not understand its completion"
 fi
 
+if grep -E '(Needs|Excludes)\\:' "$work/usr/share/zsh/vendor-completions/_fusebench" >log; then
+  failed "zsh takes what an option needs for a part of its value"
+fi
+
 # expect PROPOSALS WORD...: what bash proposes for the last word.
 expect() {
   local wanted=$1 proposed
@@ -105,7 +109,9 @@ mkdir recordings
 touch recordings.txt
 expect "report reproduce rerun run" fusebench r
 expect "report" fusebench help repo
-expect "aie ate" fusebench eval a
+expect "aie ape ate" fusebench eval a
+expect "--align --align_origin" fusebench eval ape tum gt.txt est.txt --ali
+expect "none origin scale se3 sim3 yaw" fusebench eval ape gt.txt est.txt --align ""
 expect "recorded" fusebench run --imu r
 expect "recorded" fusebench run --imu = r
 expect "auto recorded synthetic" fusebench run --imu =

@@ -32,17 +32,27 @@ std::string proposal(const OptionDescription& option) {
   return "kind=text";
 }
 
-std::string verb_name(const VerbDescription& verb) { return fmt::format("{}", fmt::join(verb.path, " ")); }
+/// All names of a verb, each followed by an option or a place if there is one, as a pattern of `case`.
+std::string pattern(const VerbDescription& verb, const std::string& what = "") {
+  const std::string end = what.empty() ? "" : " " + what;
+  const std::string name = fmt::format("'{}{}'", fmt::join(verb.path, " "), end);
+  if (verb.other_name.empty()) return name;
+  const std::vector<std::string> above(verb.path.begin(), verb.path.end() - 1);
+  return fmt::format("{} | '{} {}{}'", name, fmt::join(above, " "), verb.other_name, end);
+}
 
 /// A line of the table for each verb: what can follow it.
 void add_verbs(std::string& text, const VerbDescription& verb) {
   std::vector<std::string> verbs;
   if (verb.path.empty()) verbs.emplace_back("help");
-  for (const VerbDescription& inner : verb.verbs) verbs.push_back(inner.path.back());
+  for (const VerbDescription& inner : verb.verbs) {
+    verbs.push_back(inner.path.back());
+    if (!inner.other_name.empty()) verbs.push_back(inner.other_name);
+  }
   std::vector<std::string> flags;
   for (const OptionDescription& option : verb.options)
     flags.insert(flags.end(), option.flags.begin(), option.flags.end());
-  text += fmt::format("    '{}') verbs={} flags={} ;;\n", verb_name(verb),
+  text += fmt::format("    {}) verbs={} flags={} ;;\n", pattern(verb),
                       verb.verbs.empty() ? "''" : quoted(verbs), quoted(flags));
   for (const VerbDescription& inner : verb.verbs) add_verbs(text, inner);
 }
@@ -52,13 +62,12 @@ void add_values(std::string& text, const VerbDescription& verb) {
   for (const OptionDescription& option : verb.options) {
     if (option.kind == ValueKind::none) continue;
     std::vector<std::string> patterns;
-    for (const std::string& flag : option.flags)
-      patterns.push_back(fmt::format("'{} {}'", verb_name(verb), flag));
+    for (const std::string& flag : option.flags) patterns.push_back(pattern(verb, flag));
     text += fmt::format("    {}) {} ;;\n", fmt::join(patterns, " | "), proposal(option));
   }
   for (std::size_t i = 0; i < verb.places.size(); ++i) {
     if (verb.places[i].kind == ValueKind::words)
-      text += fmt::format("    '{} {}') {} ;;\n", verb_name(verb), i, proposal(verb.places[i]));
+      text += fmt::format("    {}) {} ;;\n", pattern(verb, std::to_string(i)), proposal(verb.places[i]));
   }
   for (const VerbDescription& inner : verb.verbs) add_values(text, inner);
 }

@@ -6,6 +6,7 @@
 
 #include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
+#include "eval/cli/trajectories/evo_spelling.hpp"
 
 namespace fusebench::cli::shell {
 
@@ -69,7 +70,9 @@ OptionDescription describe(const CLI::Option& option, bool by_place) {
 }
 
 VerbDescription describe(const CLI::App& app, std::vector<std::string> path, const std::string& name) {
-  VerbDescription verb{std::move(path), app.get_description(), {}, app.get_footer(), {}, {}, {}};
+  VerbDescription verb{std::move(path), {}, app.get_description(), {}, app.get_footer(), {}, {}, {}};
+  if (verb.path.size() == 2 && verb.path[0] == "eval")
+    verb.other_name = trajectories::name_in_evo(verb.path[1]);
   const CLI::Formatter formatter;
   const std::string usage =
       formatter.make_usage(&app, name);  // "Usage: fusebench ...", with line breaks around

@@ -35,6 +35,7 @@ struct OptionDescription {
 /// Hidden verbs and options are left out.
 struct VerbDescription {
   std::vector<std::string> path;  ///< {"eval", "ate"}; empty of the program
+  std::string other_name;         ///< that the last word may have: "ape"; mostly empty
   std::string sentence;
   std::string usage;  ///< "fusebench eval ate [OPTIONS] GT EST"
   std::string footer;

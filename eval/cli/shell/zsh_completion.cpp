@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "eval/cli/shell/completion.hpp"
@@ -42,10 +43,11 @@ std::string action_of(const OptionDescription& option) {
   return "";
 }
 
-/// What follows a flag: ":message:action".
+/// What follows a flag: ":message:action". Which other options it needs or excludes is no part of a value.
 std::string value_of(const OptionDescription& option) {
   if (option.kind == ValueKind::none) return "";
-  const std::string message = option.kind == ValueKind::words ? "value" : option.value;
+  const std::size_t end = std::min(option.value.find(" Needs:"), option.value.find(" Excludes:"));
+  const std::string message = option.kind == ValueKind::words ? "value" : option.value.substr(0, end);
   return fmt::format(":{}:{}", described(message), action_of(option));
 }
 
@@ -83,12 +85,17 @@ void add_verb_function(std::string& text, const VerbDescription& verb) {
     return;
   }
   text += "    '1: :->verb' '*:: :->rest' && return 0\n  case $state in\n    verb)\n      local -a verbs=(\n";
-  for (const VerbDescription& inner : verb.verbs)
+  for (const VerbDescription& inner : verb.verbs) {
     text += fmt::format("        '{}:{}'\n", inner.path.back(), described(inner.sentence));
+    if (!inner.other_name.empty())
+      text += fmt::format("        '{}:The same as {}'\n", inner.other_name, inner.path.back());
+  }
   if (verb.path.empty()) text += "        'help:What a verb does and takes'\n";
   text += "      )\n      _describe verb verbs ;;\n    rest)\n      case $line[1] in\n";
-  for (const VerbDescription& inner : verb.verbs)
-    text += fmt::format("        {}) {} ;;\n", inner.path.back(), function_name(inner));
+  for (const VerbDescription& inner : verb.verbs) {
+    const std::string other = inner.other_name.empty() ? "" : "|" + inner.other_name;
+    text += fmt::format("        {}{}) {} ;;\n", inner.path.back(), other, function_name(inner));
+  }
   // What can follow is what can follow the program.
   if (verb.path.empty()) text += "        help) _fusebench ;;\n";
   text += "      esac ;;\n  esac\n}\n\n";

@@ -102,9 +102,11 @@ Result<void> check_no_bag(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
+std::string_view name_in_evo(std::string_view verb) { return verb == "ate" ? "ape" : ""; }
+
 Result<std::vector<std::string>> with_own_spelling(std::vector<std::string> arguments) {
   if (arguments.size() < 2 || arguments[0] != "eval") return arguments;
-  if (arguments[1] == "ape") arguments[1] = "ate";
+  if (arguments[1] == name_in_evo("ate")) arguments[1] = "ate";
   constexpr std::array<std::string_view, 4> kVerbs = {"ate", "rpe", "traj", "res"};
   if (std::ranges::find(kVerbs, arguments[1]) == kVerbs.end()) return arguments;
   if (auto read = check_no_bag(arguments); !read) return tl::unexpected(read.error());

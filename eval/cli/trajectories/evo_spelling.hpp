@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -17,6 +18,9 @@ namespace fusebench::cli::trajectories {
 /// Error usage: a bag (bag, bag2, mcap), a flag of evo's that has no counterpart here, with what to do
 /// instead, or a word behind --align that is neither a mode nor a format nor a file.
 [[nodiscard]] Result<std::vector<std::string>> with_own_spelling(std::vector<std::string> arguments);
+
+/// What evo calls a verb of `eval`, if that is another name; else empty.
+[[nodiscard]] std::string_view name_in_evo(std::string_view verb);
 
 /// Takes a format that stands before the files, as in `evo_ape tum ref.txt est.txt`, off the list. Error
 /// usage: it is given twice.
