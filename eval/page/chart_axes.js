@@ -95,9 +95,44 @@ function boxTicks(scale, boxes) {
   scale.afterBuildTicks = (built) => { built.ticks = places.map((x) => ({ value: x })); };
 }
 
+/// The stretch of time that a chart is zoomed to; paper shows all of it.
+function zoomOf(chart) {
+  return document.documentElement.classList.contains("paper") ? null : chart.zoom || null;
+}
+
 /// The ranges that a chart shows; null: all of it.
 function rangesOf(chart) {
-  return { x: chart.whole ? null : chart.xRange, y: chart.whole ? null : chart.yRange };
+  return { x: zoomOf(chart) || (chart.whole ? null : chart.xRange), y: chart.whole ? null : chart.yRange };
+}
+
+/// The values that points have within a range of x; lines also those at its ends, where no point may be.
+function valuesWithin(points, [low, high], line) {
+  const values = [];
+  points.forEach((point, i) => {
+    const next = points[i + 1];
+    if (point.y === null) return;
+    if (point.x >= low && point.x <= high) values.push(point.y);
+    if (!line || !next || next.y === null) return;
+    [low, high].filter((x) => point.x < x && x < next.x)
+      .forEach((x) => values.push(point.y + (next.y - point.y) * (x - point.x) / (next.x - point.x)));
+  });
+  return values;
+}
+
+/// Fits an axis of values to what its shown series reach within the zoom; a chart that was cut stays within its cut.
+function fitToZoom(scale, zoom, cut) {
+  const shown = scale.chart.data.datasets.filter((set, index) => set.yAxisID === scale.id && scale.chart.isDatasetVisible(index));
+  const values = shown.flatMap((set) => valuesWithin(set.data, zoom, set.showLine));
+  if (values.length === 0) return;
+  const least = values.reduce((a, b) => Math.min(a, b)), most = values.reduce((a, b) => Math.max(a, b));
+  const margin = 0.05 * (most - least) || Math.abs(most) / 10 || 0.5;
+  const zero = scale.options.beginAtZero;
+  scale.min = zero && least >= 0 ? 0 : least - margin;
+  scale.max = zero && most <= 0 ? 0 : most + margin;
+  if (!cut) return;
+  const beyond = scale.min >= cut[1] || scale.max <= cut[0];
+  scale.min = beyond ? cut[0] : Math.max(scale.min, cut[0]);
+  scale.max = beyond ? cut[1] : Math.min(scale.max, cut[1]);
 }
 
 function limit(scale, range) {
@@ -122,8 +157,13 @@ function scalesOf(chart) {
     shortTicks(scales.x, shortNumber).ticks.autoSkip = false;
   }
   const ranges = rangesOf(chart);
+  const zoom = zoomOf(chart);
   limit(scales.x, ranges.x);
-  limit(scales.left, ranges.y);
+  if (!zoom) limit(scales.left, ranges.y);
+  [scales.left, scales.right].filter((scale) => zoom && scale).forEach((scale) => {
+    const cut = scale === scales.left ? ranges.y : null;
+    Object.assign(scale, { bounds: "data", afterDataLimits: (made) => fitToZoom(made, zoom, cut) });
+  });
   const boxes = chart.series.filter((series) => series.style === "boxes");
   if (boxes.length > 0) boxTicks(scales.x, boxes);
   if (chart.names.length > 0) nameTicks(scales.x, chart.names);

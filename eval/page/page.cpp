@@ -328,9 +328,9 @@ std::string to_html(const Page& page) {
   std::string body = contents_of(page) + body_of(page, drawn);
   body += fmt::format(
       "<script type=\"application/json\" id=\"charts\">{}</script>\n<script>{}</script>\n"
-      "<script>\n{}{}{}{}</script>\n",
+      "<script>\n{}{}{}{}{}</script>\n",
       script_safe(drawn.charts), chart_library(), chart_axes_script(), chart_plugins_script(), page_script(),
-      timeline_script());
+      timeline_script(), zoom_script());
   if (!drawn.scenes.empty()) {
     body += fmt::format(
         "<script type=\"application/json\" "

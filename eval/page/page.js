@@ -159,6 +159,12 @@ function draw() {
   window.dispatchEvent(new Event("charts-drawn"));
 }
 
+/// Draws a chart again in other ranges.
+function rescale(chart, made) {
+  made.options.scales = scalesOf(chart);
+  made.update("none");
+}
+
 /// A button below each chart that was cut.
 function offerWhole(chart, index) {
   if (!chart.xRange && !chart.yRange) return;
@@ -199,6 +205,7 @@ function drawForPaper(paper) {
     const { equal } = description[index];
     const place = made.canvas.parentElement;
     const [width, height] = paperSize[equal ? "view" : "chart"];
+    if (description[index].zoom) rescale(description[index], made);
     made.options.devicePixelRatio = paper ? 2 : undefined;
     made.resize(...(paper ? [width, height] : []));
     // Long legends and names below the axis leave little room for what is drawn.

@@ -11,6 +11,7 @@ namespace fusebench::page {
 [[nodiscard]] std::string_view chart_plugins_script();  ///< eval/page/chart_plugins.js
 [[nodiscard]] std::string_view page_script();           ///< eval/page/page.js
 [[nodiscard]] std::string_view timeline_script();       ///< eval/page/timeline.js
+[[nodiscard]] std::string_view zoom_script();           ///< eval/page/zoom.js
 [[nodiscard]] std::string_view chart_library();         ///< Chart.js (MIT), with its notice
 
 // Of pages with meshes.

@@ -31,7 +31,7 @@ set(page_assets ${PROJECT_BINARY_DIR}/embedded/page_assets.cpp)
 set(page_sources ${page_folder}/page.css)
 set(page_files page_style=${page_folder}/page.css chart_library=${CHART_JS} scene_library=${THREE_JS}
   scene_controls=${ORBIT_CONTROLS_JS})
-foreach(script chart_axes chart_plugins page timeline scene_camera scene)
+foreach(script chart_axes chart_plugins page timeline zoom scene_camera scene)
   list(APPEND page_sources ${page_folder}/${script}.js)
   list(APPEND page_files ${script}_script=${page_folder}/${script}.js)
 endforeach()

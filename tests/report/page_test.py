@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Opens a page in headless Chromium as a reader would: scrolls to every part, in light and dark, turns the meshes, opens
-what is folded away, and fails on any message of the console, chart without a drawing or mesh without a picture.
+"""Opens a page in headless Chromium as a reader would: scrolls to every part, in light and dark, zooms the charts, turns the
+meshes, opens what is folded away, and fails on any message of the console, chart without a drawing or mesh without a picture.
 
 Usage: page_test.py PAGE.html [SCREENSHOT_FOLDER]
 
@@ -149,6 +149,28 @@ const [part, run] = arguments;
 return description.filter((chart, i) => chart.part === part
   && chart.series.some((series, place) => isOf(series.label, run) && drawn[i].isDatasetVisible(place))).length;
 """
+# Of the charts over time of a part: their ranges of x.
+TIME_RANGES = """
+return description.map((chart, i) => [chart, drawn[i].scales.x]).filter(([chart]) => chart.part === arguments[0]
+  && chart.x === "time [s]" && chart.categories.length === 0).map(([, x]) => [x.min, x.max]);
+"""
+# A place in a chart, as shares of its axes: the offset from its middle, and the time there.
+PLACE = """
+const made = drawn[Number(arguments[0].id.slice("chart-".length))], area = made.chartArea;
+const x = Math.round(area.left + arguments[1] * area.width), y = Math.round(area.top + area.height / 2);
+return [x - Math.floor(made.width / 2), y - Math.floor(made.height / 2), made.scales.x.getValueForPixel(x)];
+"""
+# Charts whose axis of values does not fit what is drawn: something is beyond it, or nothing needs most of it.
+UNFITTED = """
+return drawn.filter((made, i) => {
+  const chart = description[i];
+  if (!chart.zoom || chart.yRange) return false;
+  const { min, max } = made.scales.left;
+  const values = made.data.datasets.filter((set, k) => set.yAxisID === "left" && made.isDatasetVisible(k))
+    .flatMap((set) => set.data).filter((p) => p.y !== null && p.x >= chart.zoom[0] && p.x <= chart.zoom[1]).map((p) => p.y);
+  return values.some((y) => y < min || y > max) || max - min > 3 * (Math.max(...values, 0) - (chart.zero ? 0 : Math.min(...values))) + 1e-3;
+}).map((made) => made.canvas.getAttribute("aria-label"));
+"""
 PICTURE = "return arguments[0].toDataURL().length + ':' + arguments[0].toDataURL().slice(-4000);"
 
 
@@ -294,6 +316,65 @@ class Reader:
             if self.driver.execute_script(SHOWN, part, run) != shown:
                 self.complain(f"the legend does not bring '{run}' back")
 
+    def time_ranges(self, part, expected, what):
+        """Whether all charts over time of a part show the same range; None: any."""
+        settle(self.driver)
+        ranges = self.driver.execute_script(TIME_RANGES, part)
+        for found in ranges:
+            if expected and any(abs(a - b) > 0.01 * (expected[1] - expected[0]) for a, b in zip(found, expected)):
+                self.complain(f"{what}: a chart shows {found} in place of {expected}")
+        return ranges
+
+    def drag(self, canvas, share, to_share):
+        """Drags over a part of a chart and returns the range of time that this is."""
+        right, down, low = self.driver.execute_script(PLACE, canvas, share)
+        to_right, _, high = self.driver.execute_script(PLACE, canvas, to_share)
+        ActionChains(self.driver).move_to_element_with_offset(canvas, right, down).click_and_hold() \
+            .move_by_offset(to_right - right, 3).release().perform()
+        return sorted([low, high])
+
+    def zoom_charts(self):
+        """What is dragged over in one chart over time is shown by all of the recording, until it is reset."""
+        for bar in self.driver.find_elements(By.CSS_SELECTOR, ".timebar"):
+            section = bar.find_element(By.XPATH, "..")
+            part = int(section.get_attribute("id").split("-")[1])
+            whole = self.driver.execute_script(TIME_RANGES, part)
+            canvas = section.find_elements(By.CSS_SELECTOR, ".canvas canvas.zoomable")[1]
+            button = canvas.find_element(By.XPATH, "ancestor::figure").find_element(By.CSS_SELECTOR, ".unzoom")
+            self.show(canvas)
+
+            def all_of_it(what):
+                if self.time_ranges(part, None, what) != whole or button.is_displayed():
+                    self.complain(f"{what} does not show the whole run")
+
+            expected = self.drag(canvas, 0.6, 0.3)
+            self.time_ranges(part, expected, "a drag")
+            for chart in self.driver.execute_script(UNFITTED):
+                self.complain("values are not fitted to the zoom: " + chart)
+            self.shoot("zoom")
+            right, down, at = self.driver.execute_script(PLACE, canvas, 0.25)
+            self.driver.execute_script(LISTEN)
+            ActionChains(self.driver).move_to_element_with_offset(canvas, right, down).click().perform()
+            if abs(self.driver.execute_script("return window.chosenTimes.at(-1)") - at) > 0.01 * (expected[1] - expected[0]):
+                self.complain("a click in a zoomed chart does not choose its time")
+            self.time_ranges(part, expected, "a click")
+            self.driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
+            if self.driver.execute_script(TIME_RANGES, part) != whole:
+                self.complain("paper does not show the whole of a zoomed chart")
+            self.driver.execute_script("window.dispatchEvent(new Event('afterprint'))")
+            self.time_ranges(part, expected, "after a print")
+            canvas.send_keys("+")
+            length = (expected[1] - expected[0]) / 2
+            self.time_ranges(part, [at - length / 2, at + length / 2], "the key +")
+            canvas.send_keys(Keys.ESCAPE)
+            all_of_it("Escape")
+            self.drag(canvas, 0.2, 0.9)
+            ActionChains(self.driver).move_to_element_with_offset(canvas, right, down).double_click().perform()
+            all_of_it("a double click")
+            self.drag(canvas, 0.2, 0.9)
+            button.click()
+            all_of_it("the button")
+
     def print_in_dark(self):
         """Paper is white, also for who reads in the dark; tables are not cut, and charts can be read on A4 upright."""
         self.scheme("dark")
@@ -366,6 +447,7 @@ def main():
         asked = reader.ask_for_hidden_series()
         bars = reader.choose_times()
         reader.hide_a_run()
+        reader.zoom_charts()
         scenes = reader.turn_meshes()
         reader.unfold()
         reader.follow_links()
