@@ -237,6 +237,7 @@ Result<recording::Recording> with_png_images(recording::Recording recording,
                                              calibration::RigCalibration calibration,
                                              double published_units_per_metre) {
   const double units = calibration.depth_units_per_metre.value_or(published_units_per_metre);
+  calibration.depth_units_per_metre = units;
   const auto attached =
       attach_images(recording, {std::move(calibration), png_depth(units), fmt::format("png {}", units)});
   if (!attached) return tl::unexpected(attached.error());

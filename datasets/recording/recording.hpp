@@ -59,7 +59,8 @@ struct Recording {
   std::string truth_label;  ///< begins with "pseudo ground truth" and says whose estimate ground_truth is,
                             ///< e.g. kPseudoGroundTruth; empty where it is independent of the images
   std::optional<calibration::RigCalibration> calibration;  ///< as read, before undistortion; of what files
-                                                           ///< say, not of a synthetic IMU
+                                                           ///< say, not of a synthetic IMU; with the
+                                                           ///< format's scale of depth where nobody says it
   std::vector<std::string> notes;     ///< what was done to the data on reading, for the run's log
   std::vector<std::string> warnings;  ///< for the user (unmatched images, gaps)
   /// Loads, checks, undistorts one frame. Safe to call from several threads. Errors: data_missing,

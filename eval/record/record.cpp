@@ -11,6 +11,7 @@
 
 #include "core/io/bounded_text.hpp"
 #include "eval/record/histogram_json.hpp"
+#include "eval/record/record_camera.hpp"
 #include "eval/record/record_loops.hpp"
 #include "eval/record/record_metrics.hpp"
 #include "eval/text/json_text.hpp"
@@ -22,17 +23,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const RecordedRecording& recording) {
-  return {{"name", recording.name},
-          {"format", recording.format},
-          {"data", recording.data},
-          {"frames", recording.frames},
-          {"first_frame", recording.first_frame},
-          {"duration_s", recording.duration_s},
-          {"fingerprint", recording.fingerprint},
-          {"imu", recording.imu},
-          {"imu_note", recording.imu_note},
-          {"truth", recording.truth},
-          {"notes", recording.notes}};
+  Json json = {{"name", recording.name},
+               {"format", recording.format},
+               {"data", recording.data},
+               {"frames", recording.frames},
+               {"first_frame", recording.first_frame},
+               {"duration_s", recording.duration_s},
+               {"fingerprint", recording.fingerprint},
+               {"imu", recording.imu},
+               {"imu_note", recording.imu_note},
+               {"truth", recording.truth},
+               {"notes", recording.notes}};
+  if (recording.camera) json["camera"] = json_of_camera(*recording.camera);
+  return json;
 }
 
 void read(const Json& json, RecordedRecording& recording) {
@@ -47,6 +50,7 @@ void read(const Json& json, RecordedRecording& recording) {
   recording.imu_note = json.at("imu_note");
   recording.truth = json.value("truth", std::string());
   recording.notes = json.at("notes").get<std::vector<std::string>>();
+  if (const auto camera = json.find("camera"); camera != json.end()) recording.camera = camera_of(*camera);
 }
 
 Json json_of(const std::vector<RecordedOption>& config) {

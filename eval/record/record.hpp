@@ -14,6 +14,7 @@
 #include "core/base/error.hpp"
 #include "core/config/options.hpp"
 #include "core/filter/sensor_constants.hpp"
+#include "datasets/calibration/camera_model.hpp"
 #include "eval/loop_error/loop_error.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
@@ -76,6 +77,12 @@ struct RecordedProgram {
   int seed = 1;
 };
 
+/// The camera that images and depth were read with, whoever gave it.
+struct RecordedCamera {
+  calibration::CalibratedCamera color;          ///< before undistortion; with the timing of depth as well
+  std::optional<double> depth_units_per_metre;  ///< none where depth is stored in metres
+};
+
 struct RecordedRecording {
   std::string name;
   std::string format;
@@ -89,6 +96,7 @@ struct RecordedRecording {
   /// What trajectories are compared with: "none", "given", kPseudoTruthWord; empty in a record that is older.
   std::string truth = "none";
   std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
+  std::optional<RecordedCamera> camera = {};  ///< none in a record that is older
 };
 
 /// In the order of kStateParts.

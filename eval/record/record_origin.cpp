@@ -1,5 +1,7 @@
 #include "eval/record/record_origin.hpp"
 
+#include <optional>
+
 #include "eval/record/build_info.hpp"
 #include "eval/record/process_meter.hpp"
 #include "eval/record/true_camera.hpp"
@@ -11,6 +13,12 @@ namespace {
 std::string_view truth_word(const recording::Recording& recording) {
   if (recording.ground_truth.empty()) return "none";
   return recording.truth_label.empty() ? "given" : kPseudoTruthWord;
+}
+
+/// Nothing of a recording that was not read from images.
+std::optional<RecordedCamera> recorded_camera(const recording::Recording& recording) {
+  if (!recording.calibration) return std::nullopt;
+  return RecordedCamera{recording.calibration->color, recording.calibration->depth_units_per_metre};
 }
 
 }  // namespace
@@ -42,7 +50,8 @@ RecordedRecording recorded_recording(const recording::Recording& recording,
           .imu = std::string(recording::to_string(recording.imu_source)),
           .imu_note = recording.imu_note,
           .truth = std::string(truth_word(recording)),
-          .notes = reading_notes(recording, folder)};
+          .notes = reading_notes(recording, folder),
+          .camera = recorded_camera(recording)};
 }
 
 RecordedProvenance provenance_here(int threads) {

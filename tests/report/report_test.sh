@@ -73,6 +73,14 @@ done
 grep -q '<figcaption>largest error of full' with_images.html || failed "the worst frame is not shown"
 (($(grep -c '<figure data-time=' with_images.html) > 10)) || failed "there are no images over time"
 (($(stat -c %s with_images.html) < $(stat -c %s report.html) + 400000)) || failed "images take more than 400 kB"
+# A camera that only the command line said is in the record, and the report reads images with it.
+"$binary" simulate --preset fast --in-motion --duration 0.2 --size 160x120 --format tum --out uncalibrated >/dev/null 2>&1 ||
+  failed "the recording without a calibration is not made"
+rm uncalibrated/calibration.toml
+"$binary" run uncalibrated --camera 131.25,131,79.5,59.5 --depth-units 5001 --variant no-imu --out camera_runs >/dev/null 2>&1
+grep -q '"units_per_metre": 5001' camera_runs/uncalibrated/no-imu/*/record.json || failed "the record does not have the depth units"
+"$binary" report camera_runs --data . --out camera.html 2>stderr || failed "no report of a run with a given camera: $(cat stderr)"
+grep -q '<figure data-time=' camera.html || failed "images are not read with the camera of the record: $(cat stderr)"
 # Its rows are those that `table` prints, online and final apart.
 "$binary" table runs --systems | grep '^|' | tail -n +3 |
   sed -E 's/^\| */<td>/; s/ *\|$/<\/td>/; s/ *\| */<\/td><td>/g' >systems_rows

@@ -173,7 +173,7 @@ Result<recording::Recording> open_rosbag(const fs::path& place, const recording:
   const auto imu_frame = take_imu(*topics, *file, recording);
   if (!imu_frame) return tl::unexpected(imu_frame.error());
   const fs::path folder = file->parent_path();
-  const auto calibration = recording::choose_calibration(
+  auto calibration = recording::choose_calibration(
       folder, options, [&] { return calibration_of(*topics, *chosen, *imu_frame, *file); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
   auto images = pair_topics(*file, *topics, *chosen, options, recording);
@@ -185,6 +185,7 @@ Result<recording::Recording> open_rosbag(const fs::path& place, const recording:
       return tl::unexpected(read.error());
   }
   const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
+  calibration->depth_units_per_metre = units;
   const auto bag = std::make_shared<const BagImages>(std::move(*images));
   const auto attached = reading::attach_images(recording, *calibration, fmt::format("rosbag {}", units),
                                                reading::stored_images(stored_images(bag, units)));

@@ -192,7 +192,7 @@ Result<recording::Recording> open_stray(const fs::path& folder, const recording:
   if (!odometry) return tl::unexpected(odometry.error());
   const auto images = list_images(folder);
   if (!images) return tl::unexpected(images.error());
-  const auto calibration = recording::choose_calibration(
+  auto calibration = recording::choose_calibration(
       folder, options, [&] { return published_calibration(folder, *images); }, recording);
   if (!calibration) return tl::unexpected(calibration.error());
   if (const auto added = add_frames(*odometry, *images, recording); !added)
@@ -206,6 +206,7 @@ Result<recording::Recording> open_stray(const fs::path& folder, const recording:
   if (confident->count() > 0)
     recording.notes.emplace_back("depth: measurements of confidence 0 (low) are left out");
   const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
+  calibration->depth_units_per_metre = units;
   const auto attached = reading::attach_images(
       recording,
       {*calibration, confident->reader(units), fmt::format("stray {} {}", units, confident->identity())});

@@ -4,6 +4,7 @@
 
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "datasets/calibration/camera_presets.hpp"
@@ -38,23 +39,35 @@ Result<recording::Recording> open_window(const std::filesystem::path& folder,
   return recording;
 }
 
-/// With the camera that the run was given, if it is a published one: the record holds no more of it than what
-/// it contributes to the fingerprint.
+/// The camera of the run; a record that is older says no more of it than what it contributes to the
+/// fingerprint, so it may be a published one.
+std::vector<datasets::OpenOptions> cameras_of(const record::RecordedRecording& recorded) {
+  std::vector<datasets::OpenOptions> cameras;
+  if (recorded.camera) {
+    datasets::OpenOptions& options = cameras.emplace_back();
+    options.read.camera = recorded.camera->color;
+    options.read.depth_units_per_metre = recorded.camera->depth_units_per_metre;
+    return cameras;
+  }
+  for (const calibration::CameraPreset& preset : calibration::camera_presets())
+    cameras.emplace_back().read.camera = preset.camera;
+  return cameras;
+}
+
+/// With its own calibration, else with the camera that the run was given.
 Result<recording::Recording> open_as_run(const std::filesystem::path& folder,
                                          const record::RecordedRecording& recorded) {
   auto recording = open_window(folder, recorded, {});
   if (recording && recording->fingerprint == recorded.fingerprint) return recording;
   if (!recording && recording.error().code != ErrorCode::configuration) return recording;
-  for (const calibration::CameraPreset& preset : calibration::camera_presets()) {
-    datasets::OpenOptions options;
-    options.read.camera = preset.camera;
+  for (const datasets::OpenOptions& options : cameras_of(recorded)) {
     auto with_camera = open_window(folder, recorded, options);
     if (with_camera && with_camera->fingerprint == recorded.fingerprint) return with_camera;
   }
   if (!recording) {
     return fail(recording.error().code,
-                fmt::format("{}, and with no published camera is it the recording that was run",
-                            recording.error().message),
+                fmt::format("{}, and with {} it is not the recording that was run", recording.error().message,
+                            recorded.camera ? "the camera of the run" : "any published camera"),
                 "put a calibration.toml with the camera of the run into the folder");
   }
   return fail(ErrorCode::data_missing,

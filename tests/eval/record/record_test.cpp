@@ -318,6 +318,7 @@ RunRecord complete_record() {
   record.metrics.pose_intensity = {RecordedPoseIntensity{}, {}};
   for (Outcome<NeesResult>& nees : record.metrics.nees) nees = record.metrics.nees[1];
   record.final_metrics = record.metrics;
+  record.recording.camera = {calibration::CalibratedCamera{}, 5000};
   record.program = {"text", "1.2", 3};
   record.sensors = {{"imu_time_offset_s", 0.01, 0.002}};
   record.files = {{"mesh.ply", 12, "ff"}};

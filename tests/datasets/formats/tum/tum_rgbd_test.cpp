@@ -77,6 +77,8 @@ TEST(TumRgbd, FolderNameWithTrailingSlash) {
 TEST(TumRgbd, DepthFactor) {
   const TumFolder folder;
   ReadOptions options = small_camera();
+  EXPECT_EQ(open_tum_rgbd(folder.path(), options)->calibration->depth_units_per_metre, 5000)
+      << "the format's";
   options.depth_units_per_metre = 1000;
   EXPECT_EQ(open_tum_rgbd(folder.path(), options)->load_frame(0)->depth_m(0, 0), 5.0F);
   options.depth_units_per_metre = 0;
