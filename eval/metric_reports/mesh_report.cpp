@@ -125,13 +125,15 @@ Json culling_json(const mesh_error::MeshEvaluation& e, const mesh_error::MeshReq
           {"observed_share", observed_share(e)}};
 }
 
-Json icp_json(const mesh_error::RegistrationResult& icp, const mesh_error::MeshRequest& request) {
+Json icp_json(const mesh_error::MeshEvaluation& evaluation, const mesh_error::MeshRequest& request) {
+  const mesh_error::RegistrationResult& icp = *evaluation.icp;
   return {{"start", trajectory_error::json_of(request.start)},
           {"kept", request.icp->kept},
           {"steps", icp.steps},
           {"converged", icp.converged},
           {"kept_rms_m", icp.kept_rms_m},
-          {"free_directions", icp.free_directions}};
+          {"free_directions", icp.free_directions},
+          {"doubt", evaluation.icp_doubt.empty() ? Json(nullptr) : Json(evaluation.icp_doubt)}};
 }
 
 }  // namespace
@@ -179,7 +181,7 @@ std::string to_json(const mesh_error::MeshEvaluation& evaluation, const mesh_err
   json["surfreg_m"] = surfreg.vertex_mean_m;
   json["surfreg_icp_m"] =
       surfreg.after_icp_m ? Json(std::min(surfreg.vertex_mean_m, *surfreg.after_icp_m)) : Json(nullptr);
-  if (evaluation.icp) json["icp"] = icp_json(*evaluation.icp, request);
+  if (evaluation.icp) json["icp"] = icp_json(evaluation, request);
   if (evaluation.not_culled) json["not_culled"] = mesh_error::json_of(*evaluation.not_culled);
   return text::json_text(json) + "\n";
 }

@@ -23,7 +23,8 @@ struct ComparedMeshes {
 /// {"metric": "mesh", "unit": "m", "reconstruction", "truth", "alignment": {"mode", "matrix"}, "samples",
 /// "culling", "accuracy": {statistics, "p90", "p95"}, "completeness", "surfreg_m", "surfreg_icp_m",
 /// "chamfer_m", "thresholds": [{"tau_m", "precision", "recall", "fscore"}]}; with culling also "not_culled",
-/// after a registration "icp". Ends with a newline.
+/// after a registration "icp", whose "doubt" is null or says why it may have found another place. Ends with a
+/// newline.
 [[nodiscard]] std::string to_json(const mesh_error::MeshEvaluation& evaluation,
                                   const mesh_error::MeshRequest& request, const ComparedMeshes& files);
 

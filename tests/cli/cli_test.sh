@@ -804,6 +804,9 @@ check_meshes() {
   checks=$((checks + 1))
   "$binary" eval mesh turned.obj truth.obj --align icp >stdout 2>stderr || complain "icp from far: exit code $?"
   grep -q '^warning: icp had no start, moved .*--trajectories TRUTH ESTIMATE' stderr || complain "icp from far is not doubted"
+  prints '"doubt": "icp had no start, moved .*--trajectories TRUTH ESTIMATE' "the doubt of icp from far in JSON" \
+    eval mesh turned.obj truth.obj --align icp --json
+  prints '"doubt": null' "no doubt of icp in JSON" eval mesh rec.obj truth.obj --align icp --json
   refused "millimetres for metres" 3 'not to be in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
   refused "no such mesh" 3 'absent.ply' -- eval mesh absent.ply truth.obj
   refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj
