@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/trajectory/trajectory_file.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/record/process_meter.hpp"
 #include "eval/record/true_camera.hpp"
@@ -76,6 +77,10 @@ Trajectory evaluated_truth(const recording::Recording& recording) {
       truth.push_back(pose);
   }
   return truth;
+}
+
+std::string evaluated_truth_text(const recording::Recording& recording) {
+  return recording.ground_truth.empty() ? "" : trajectory::tum_text(evaluated_truth(recording));
 }
 
 std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording) {

@@ -32,6 +32,9 @@ namespace fusebench::record {
 /// the first frame, which is further than any association looks, to a second after the last.
 [[nodiscard]] Trajectory evaluated_truth(const recording::Recording& recording);
 
+/// The text of a run's truth.tum: evaluated_truth(); empty where the recording has no truth.
+[[nodiscard]] std::string evaluated_truth_text(const recording::Recording& recording);
+
 /// A stamp that outputs name a pose by, and the instant that it was taken at.
 using StampAndInstant = std::pair<std::int64_t, std::int64_t>;
 [[nodiscard]] std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording);

@@ -61,12 +61,12 @@ Result<std::string> hash_of(const ImportSpec& spec, const recording::Recording& 
   return identity.hex();
 }
 
-Result<void> write(ImportedRun& run, RunOutput& output, const Trajectory& truth) {
+Result<void> write(ImportedRun& run, RunOutput& output, const std::string& truth) {
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
   const std::array<NamedText, 3> texts = {
       {{"trajectory.tum", trajectory::tum_text(output.trajectory)},
-       {"truth.tum", trajectory::tum_text(truth)},
+       {"truth.tum", truth},
        {"log.txt", fmt::format("imported: {} of {} frames have a pose\n", run.record.frames.tracked,
                                run.record.frames.total)}}};
   return write_run_folder(*folder, output.mesh.vertices.empty() ? nullptr : &output.mesh, texts, run.record);
@@ -104,7 +104,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));
   record.provenance = record::provenance_here(spec.threads);
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
-  if (auto written = write(run, output, record::evaluated_truth(*recording)); !written)
+  if (auto written = write(run, output, record::evaluated_truth_text(*recording)); !written)
     return tl::unexpected(written.error());
   return run;
 }

@@ -69,10 +69,9 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   record.metrics = metrics_of(output, recording, run.spec.config.values, Workers(run.spec.threads));
   record.timing = program_timing(*results, total);
   record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
-  const std::array<NamedText, 3> texts = {
-      {{"trajectory.tum", trajectory::tum_text(output.trajectory)},
-       {"truth.tum", trajectory::tum_text(record::evaluated_truth(recording))},
-       {"log.txt", log_of(program.version, *results, record)}}};
+  const std::array<NamedText, 3> texts = {{{"trajectory.tum", trajectory::tum_text(output.trajectory)},
+                                           {"truth.tum", record::evaluated_truth_text(recording)},
+                                           {"log.txt", log_of(program.version, *results, record)}}};
   Mesh* const mesh =
       run.spec.kept == KeptFiles::all && !output.mesh.vertices.empty() ? &output.mesh : nullptr;
   if (auto written = write_run_folder(*folder, mesh, texts, record); !written)

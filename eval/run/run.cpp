@@ -142,7 +142,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
   const std::array<NamedText, 10> texts = {
       {{"trajectory.tum", trajectory::tum_text(progress->output.trajectory)},
-       {"truth.tum", trajectory::tum_text(record::evaluated_truth(run.recording))},
+       {"truth.tum", record::evaluated_truth_text(run.recording)},
        {"final.tum", *revised ? trajectory::tum_text(**revised) : ""},
        {"loops.csv", loops.candidates},
        {"places.csv", loops.places},

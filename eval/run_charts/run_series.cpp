@@ -77,7 +77,7 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
   } else {
     series.warnings.push_back(frames.error().message);
   }
-  // Without truth its file has a heading and no pose.
+  // Without truth there is no file, or one with a heading alone in older runs.
   if (run.record.recording.truth != "none") series.truth = trajectory_of(run, "truth.tum", series.warnings);
   const Trajectory estimate = trajectory_of(run, "trajectory.tum", series.warnings);
   if (!estimate.empty()) series.T_first_world = estimate.front().T_world_camera.inverse();

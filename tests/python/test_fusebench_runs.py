@@ -57,6 +57,14 @@ class AWrittenRun(unittest.TestCase):
         self.assertLessEqual(tracked, set(frames["timestamp_ns"]))
         self.assertEqual(len(next(iter(frames.rows()))), len(frames.keys()))
 
+    def test_a_run_without_truth_has_none(self):
+        self.assertTrue(self.run_of_test.truth())
+        with tempfile.TemporaryDirectory() as folder:
+            record = dict(self.run_of_test.record)
+            record["recording"] = {**record["recording"], "truth": "none"}
+            (pathlib.Path(folder) / "record.json").write_text(json.dumps(record), encoding="utf-8")
+            self.assertEqual(fusebench_runs.Run(folder).truth(), [])
+
     def test_the_label_has_the_options_that_were_edited(self):
         self.assertEqual(self.run_of_test.label, "no-imu patches.size_px=12")
         table = fusebench_runs.summary([self.run_of_test], frames=False)

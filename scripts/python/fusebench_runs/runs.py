@@ -118,7 +118,9 @@ class Run:
         return read_trajectory(self.folder / "final.tum")
 
     def truth(self):
-        """The ground truth as it was read, in its own world."""
+        """The ground truth as it was read, in its own world; nothing where there is none."""
+        if self.record["recording"].get("truth") == "none":
+            return []
         return read_trajectory(self.folder / "truth.tum")
 
 

@@ -99,7 +99,9 @@ TEST_F(RunTest, TheRecordSaysWhatTheTruthIs) {
     const auto record = prepared ? execute_run(*prepared) : Result<RunRecord>(RunRecord{});
     return record ? record->recording.truth : record.error().message;
   };
+  const auto has_file = [&] { return std::filesystem::exists(prepare_run(wanted)->folder / "truth.tum"); };
   EXPECT_EQ(truth_of(), "given");
+  EXPECT_TRUE(has_file());
   const std::filesystem::path file = wanted.recording / "groundtruth.txt";
   const std::string given = testing::read_bytes(file);
   std::filesystem::permissions(file, std::filesystem::perms::owner_write, std::filesystem::perm_options::add);
@@ -108,6 +110,7 @@ TEST_F(RunTest, TheRecordSaysWhatTheTruthIs) {
   EXPECT_EQ(truth_of(), kPseudoTruthWord);
   std::filesystem::remove(file);
   EXPECT_EQ(truth_of(), "none");
+  EXPECT_FALSE(has_file()) << "a heading alone is no truth";
 }
 
 TEST_F(RunTest, SameBytesWithAnyThreadCount) {
