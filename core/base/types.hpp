@@ -114,9 +114,13 @@ struct BasicMesh {
 
   template <class Other>
   [[nodiscard]] BasicMesh<Other> cast() const {
-    BasicMesh<Other> result{{}, normals, colors, triangles, quality, radii_m};
-    result.vertices.reserve(vertices.size());
-    for (const auto& vertex : vertices) result.vertices.push_back(vertex.template cast<Other>());
+    return {cast_vertices<Other>(), normals, colors, triangles, quality, radii_m};
+  }
+  template <class Other>
+  [[nodiscard]] std::vector<Eigen::Matrix<Other, 3, 1>> cast_vertices() const {
+    std::vector<Eigen::Matrix<Other, 3, 1>> result;
+    result.reserve(vertices.size());
+    for (const auto& vertex : vertices) result.push_back(vertex.template cast<Other>());
     return result;
   }
 };

@@ -158,7 +158,7 @@ Result<record::RecordedMesh> mesh_error_of(const RunOutput& output, const record
   mesh.poses = comparison->evaluate({"poses", *aligned}, workers);
   // Of the model's own vertices, which are the middles of discs.
   mesh.vertex_errors_m =
-      mesh_error::distances_m(output.mesh.cast<double>().vertices, *aligned, comparison->truth(), workers);
+      mesh_error::distances_m(output.mesh.cast_vertices<double>(), *aligned, comparison->truth(), workers);
   // Of the first known one: ICL-NUIM's truth begins with its second image.
   const SE3 by_first_camera = cameras.reference.front() * cameras.estimate.front().inverse();
   mesh.first_camera = comparison->evaluate({"first_camera", by_first_camera}, workers);
