@@ -67,6 +67,10 @@ std::string nearest_hint(std::string_view name, std::span<const std::string_view
   return nearest.empty() ? "" : " (nearest: " + nearest + ")";
 }
 
+std::string nearest_hint(std::string_view name, const std::vector<std::string>& names) {
+  return nearest_hint(name, std::vector<std::string_view>(names.begin(), names.end()));
+}
+
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> names) {
   const std::string nearest = nearest_name(name, names);
   return nearest.empty() ? "" : "did you mean " + nearest + "?";

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fusebench {
 inline namespace base {
@@ -17,6 +18,7 @@ inline namespace base {
 
 /// " (nearest: NAME)", to go on behind "unknown ... 'name'"; empty where no name is alike.
 [[nodiscard]] std::string nearest_hint(std::string_view name, std::span<const std::string_view> names);
+[[nodiscard]] std::string nearest_hint(std::string_view name, const std::vector<std::string>& names);
 
 /// "did you mean NAME?"; empty where no name is alike.
 [[nodiscard]] std::string did_you_mean(std::string_view name, std::span<const std::string_view> names);

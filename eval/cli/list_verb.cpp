@@ -177,9 +177,8 @@ Result<void> filter(Listing& listing, const std::string& what, const std::string
         row, [&](const Cell& cell) { return lower(cell.value_or("")).find(wanted) != std::string::npos; });
   });
   if (!listing.rows.empty()) return {};
-  const std::vector<std::string_view> views(names.begin(), names.end());
   return fail(ErrorCode::usage, fmt::format("none of the {} {} contains '{}'{}", names.size(), what, text,
-                                            nearest_hint(text, views)));
+                                            nearest_hint(text, names)));
 }
 
 Result<Listing> whole_listing(const ListOptions& options) {

@@ -67,11 +67,10 @@ Result<void> check_variants(const OnlyFilters& only, const std::string& suite,
     if (!filter.starts_with(kKey)) continue;
     const std::string name = filter.substr(kKey.size());
     if (std::ranges::binary_search(variants, name)) continue;
-    const std::vector<std::string_view> views(variants.begin(), variants.end());
-    return fail(
-        ErrorCode::usage,
-        fmt::format("--only {}: suite '{}' has no such variant{}", filter, suite, nearest_hint(name, views)),
-        fmt::format("it has {}", fmt::join(variants, ", ")));
+    return fail(ErrorCode::usage,
+                fmt::format("--only {}: suite '{}' has no such variant{}", filter, suite,
+                            nearest_hint(name, variants)),
+                fmt::format("it has {}", fmt::join(variants, ", ")));
   }
   return {};
 }

@@ -159,12 +159,11 @@ Result<void> check_groups(const Suite& suite) {
     if (recording.group.empty()) return {};
     groups.push_back(recording.group);
   }
-  const std::vector<std::string_view> known(groups.begin(), groups.end());
   for (const Criterion& criterion : suite.criteria) {
     for (const std::string& group : criterion.groups) {
       if (suite.all || std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
       return fail(ErrorCode::configuration, fmt::format("{}: no recording is in the group '{}'{}",
-                                                        criterion.place, group, nearest_hint(group, known)));
+                                                        criterion.place, group, nearest_hint(group, groups)));
     }
   }
   return {};

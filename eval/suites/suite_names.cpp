@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "core/base/nearest_name.hpp"
@@ -74,10 +73,9 @@ Result<fs::path> find_suite(const fs::path& name, const fs::path& configs) {
       names.push_back(file.stem().string());
     }
   }
-  const std::vector<std::string_view> views(names.begin(), names.end());
   return fail(
       ErrorCode::data_missing,
-      fmt::format("no suite '{}'{}", name.string(), nearest_hint(name.string(), views)),
+      fmt::format("no suite '{}'{}", name.string(), nearest_hint(name.string(), names)),
       "`fusebench list suites` lists those that are found by name; any other one is given by its file");
 }
 

@@ -43,8 +43,7 @@ Result<void> check_option(const std::string& key, const std::string& place) {
   std::vector<std::string> names;
   for (const config::OptionRow& row : config::describe_options(config::Config{})) names.push_back(row.key);
   if (std::ranges::find(names, key) != names.end()) return {};
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  return wrong(place, fmt::format("unknown option '{}' in a sweep{}", key, nearest_hint(key, known)),
+  return wrong(place, fmt::format("unknown option '{}' in a sweep{}", key, nearest_hint(key, names)),
                "`fusebench list options` names them; other keys of [[sweep]] are design, samples and seed");
 }
 

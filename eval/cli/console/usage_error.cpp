@@ -56,11 +56,6 @@ std::string flag_name(const std::string& argument) {
   return argument.substr(0, 2);
 }
 
-std::string nearest(const std::string& name, const std::vector<std::string>& names) {
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  return nearest_hint(name, views);
-}
-
 std::string help_of(const CLI::App& verb) {
   return fmt::format("`{} --help` says what is allowed", full_name(verb));
 }
@@ -70,7 +65,7 @@ Error unknown_verb(const CLI::App& app, const std::string& name) {
   for (const CLI::App* verb : shown_verbs(app)) names.push_back(verb->get_name());
   const std::string place = app.get_parent() == nullptr ? "" : fmt::format(" of `{}`", full_name(app));
   return {ErrorCode::usage,
-          fmt::format("unknown verb '{}'{}{}", printable(name), place, nearest(name, names)),
+          fmt::format("unknown verb '{}'{}{}", printable(name), place, nearest_hint(name, names)),
           fmt::format("`{} --help` lists the verbs", full_name(app))};
 }
 
@@ -80,7 +75,7 @@ Error unknown_flag(const CLI::App& verb, const std::string& argument) {
   std::vector<std::string> long_flags = flags_of(verb);
   std::erase_if(long_flags, [](const std::string& flag) { return !flag.starts_with("--"); });
   std::string message = fmt::format("`{}` has no option {}", full_name(verb), printable(given));
-  if (given.size() > 2 && !long_flags.empty()) message += nearest(given, long_flags);
+  if (given.size() > 2 && !long_flags.empty()) message += nearest_hint(given, long_flags);
   return {ErrorCode::usage, std::move(message), help_of(verb)};
 }
 
@@ -121,7 +116,7 @@ std::string reworded(const CLI::App& verb, const std::string& complaint) {
   if (std::regex_match(complaint, part, std::regex("(.+): (.*) not in \\{(.+)\\}"))) {
     const std::vector<std::string> allowed = CLI::detail::split(part[3].str(), ',');
     return fmt::format("{} {}: not one of {}{}", part[1].str(), printable(part[2].str()),
-                       fmt::join(allowed, ", "), nearest(part[2].str(), allowed));
+                       fmt::join(allowed, ", "), nearest_hint(part[2].str(), allowed));
   }
   if (complaint.starts_with("The following argument"))
     return fmt::format("`{}` does not take {}", full_name(verb),

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace fusebench {
 namespace {
@@ -49,6 +51,7 @@ TEST(NearestName, WhatIsLikeNothingHasNone) {
 TEST(NearestName, HintsAreSentencesOrNothing) {
   EXPECT_EQ(nearest_hint("ful", kNames), " (nearest: full)");
   EXPECT_EQ(nearest_hint("zzz", kNames), "");
+  EXPECT_EQ(nearest_hint("ful", std::vector<std::string>{"no-imu", "full"}), " (nearest: full)");
   EXPECT_EQ(did_you_mean("ful", kNames), "did you mean full?");
   EXPECT_EQ(did_you_mean("zzz", kNames), "");
 }
