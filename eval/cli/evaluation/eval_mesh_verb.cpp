@@ -10,6 +10,7 @@
 
 #include "core/mesh/mesh_file.hpp"
 #include "core/mesh/ply_file.hpp"
+#include "core/mesh/scaled_mesh.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/reading_options.hpp"
@@ -85,11 +86,7 @@ Result<int> run(const MeshVerbOptions& options) {
   auto truth = mesh::read_mesh(options.truth);
   if (!truth) return tl::unexpected(truth.error());
   const double scale = options.scale.value_or(1.0);
-  if (scale != 1) {
-    for (Vector3d& vertex : reconstruction->vertices) vertex *= scale;
-    for (float& radius_m : reconstruction->radii_m) radius_m *= static_cast<float>(scale);
-  }
-  reconstruction = mesh_error::with_discs(*std::move(reconstruction));
+  reconstruction = mesh_error::with_discs(mesh::scaled(*std::move(reconstruction), scale));
   truth = mesh_error::with_discs(*std::move(truth));
   const Workers workers(options.threads);
   const auto evaluation = mesh_error::evaluate_mesh(*reconstruction, *truth, *request, workers);
