@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -151,7 +152,7 @@ Result<void> StagedFolder::commit() {
     std::error_code ignored;
     if (!error) {
       // The replaced folder is removed once the new one is on the disk.
-      error = sync_folders();
+      error = sync_names(final_, created_);
       remove_folder(std::exchange(temporary_, {}));
       created_.clear();
       if (error) break;
@@ -168,21 +169,16 @@ Result<void> StagedFolder::commit() {
   return io_error(final_, error);
 }
 
-/// The names of the folder, and of those above it.
-std::error_code StagedFolder::sync_folders() const {
-  std::error_code error = sync_names(final_);
-  for (auto parent = created_.rbegin(); parent != created_.rend() && !error; ++parent)
-    error = sync_to_disk(folder_of(*parent));
-  return error;
-}
-
-std::error_code sync_names(const fs::path& path) {
+std::error_code sync_names(const fs::path& path, std::span<const fs::path> made) {
   fs::path folder = folder_of(path);
-  const std::error_code error = sync_to_disk(folder);
+  std::error_code error = sync_to_disk(folder);
   // Those above may have been made just now, by another process or for something else, and not been synced.
-  // What cannot be opened or synced there is not ours.
-  for (; !error && folder != folder_of(folder); folder = folder_of(folder))
-    static_cast<void>(sync_to_disk(folder_of(folder)));
+  // What cannot be opened or synced there is not ours, unless it holds the name of a folder that is. Each is
+  // synced once: a disk tells of a failure once only, and the second time nothing would be wrong.
+  for (; !error && folder != folder_of(folder); folder = folder_of(folder)) {
+    const std::error_code above = sync_to_disk(folder_of(folder));
+    if (std::ranges::find(made, folder) != made.end()) error = above;
+  }
   return error;
 }
 

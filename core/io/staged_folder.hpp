@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -34,7 +35,6 @@ class StagedFolder {
 
  private:
   StagedFolder() = default;
-  [[nodiscard]] std::error_code sync_folders() const;
 
   std::filesystem::path final_;
   // Nobody else's: holds "new" and, on commit, "old", the folder that is replaced. Empty once committed.
@@ -43,9 +43,12 @@ class StagedFolder {
   std::vector<std::filesystem::path> created_;  // parents that were not there before, outermost first
 };
 
-/// Syncs the names on a path to the disk: of its folder, whose error is returned, and of those above as far
-/// as they can be. Without them, what is in the folder would not be there after a power failure.
-[[nodiscard]] std::error_code sync_names(const std::filesystem::path& path);
+/// Syncs the names on a path to the disk: its folder, and then those above, each once. Without them, what is
+/// in the folder would not be there after a power failure. Ends at the first error of its folder, or of one
+/// that holds the name of a `made` folder (parents of `path`, spelt as there), and returns it; others above
+/// are synced as far as they can be.
+[[nodiscard]] std::error_code sync_names(const std::filesystem::path& path,
+                                         std::span<const std::filesystem::path> made = {});
 
 /// Whether a folder is a temporary one of StagedFolder or of remove_atomically(): ".<name>.<process>.tmp" or
 /// ".<name>.<process>-<attempt>.tmp" that holds nothing but folders "new" and "old".

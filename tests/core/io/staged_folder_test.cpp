@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-
 #include <atomic>
+#include <cerrno>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,13 +18,21 @@ namespace {
 
 /// What was written through to the disk while a test listened, in order, by the names that it had then.
 std::vector<std::filesystem::path>* synced = nullptr;
+/// What cannot be, while a test says so.
+const std::filesystem::path* unsyncable = nullptr;
 
 }  // namespace
 
 /// In place of the C library's, for this program.
 extern "C" int fsync(int descriptor) {
-  if (synced != nullptr)
-    synced->push_back(std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", descriptor)));
+  if (synced != nullptr || unsyncable != nullptr) {
+    const auto place = std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", descriptor));
+    if (synced != nullptr) synced->push_back(place);
+    if (unsyncable != nullptr && place == *unsyncable) {
+      errno = EIO;
+      return -1;
+    }
+  }
   return static_cast<int>(syscall(SYS_fsync, descriptor));
 }
 
@@ -177,6 +185,22 @@ TEST_F(StagedFolderTest, EverythingIsOnTheDiskBeforeItHasItsName) {
   EXPECT_LT(at(root / "out" / "recording"), missing);
   EXPECT_LT(at(root / "out"), missing);
   EXPECT_LT(at(root), missing);
+  for (const auto& place : order) EXPECT_EQ(std::ranges::count(order, place), 1) << place;
+}
+
+TEST_F(StagedFolderTest, ANameThatCannotBeSyncedIsAnErrorIfItIsOfANewFolder) {
+  const auto root = std::filesystem::canonical(folder_);
+  std::filesystem::create_directories(folder_ / "there");
+  const auto commits = [&](const std::filesystem::path& place) {
+    auto run = StagedFolder::create(place);
+    EXPECT_TRUE(run && run->write("record.json", "{}"));
+    unsyncable = &root;
+    const bool done = run->commit().has_value();
+    unsyncable = nullptr;
+    return done;
+  };
+  EXPECT_TRUE(commits(folder_ / "there" / "0123"));
+  EXPECT_FALSE(commits(folder_ / "new" / "0123"));
 }
 
 TEST_F(StagedFolderTest, AFolderIsRemovedWhole) {
