@@ -71,9 +71,13 @@ std::string edges_on_grey(const RgbdFrame& frame, const inspection::measures::Re
   return page::jpeg_source(picture, kQuality);
 }
 
-/// In the place of a frame that was there when it was inspected, and is no more.
-page::PageImage unread(std::size_t frame, const Error& error, const PinholeCamera& camera) {
-  return {fmt::format("frame {} could not be read again: {}", frame, error.message),
+/// A picture of a frame; of one that was there when it was inspected and is no more, black in its place.
+template <class Draw>
+page::PageImage picture_of(std::size_t number, const recording::Recording& recording, const Draw& draw) {
+  const auto frame = recording.load_frame(number);
+  if (frame) return draw(*frame);
+  const PinholeCamera& camera = recording.rig.camera;
+  return {fmt::format("frame {} could not be read again: {}", number, frame.error().message),
           page::jpeg_source(ColorImage(camera.width_px / 4, camera.height_px / 4), kQuality)};
 }
 
@@ -116,15 +120,12 @@ std::vector<page::PageImage> inspection_thumbnails(const inspection::Inspection&
   for (const inspection::FrameStatistics& frame : inspection.images) far.push_back(frame.depth_p95_m);
   const double far_m = *std::ranges::max_element(far);
   for (const Choice& choice : chosen_frames(inspection)) {
-    const auto frame = recording.load_frame(choice.frame);
-    if (!frame) {
-      result.push_back(unread(choice.frame, frame.error(), recording.rig.camera));
-      continue;
-    }
-    const double time_s = seconds_between(recording.frames.front().timestamp_ns, frame->timestamp_ns);
-    result.push_back({fmt::format("frame {} at {:.2f} s{}{}", choice.frame, time_s,
-                                  choice.why.empty() ? "" : "; ", choice.why),
-                      side_by_side(*frame, far_m)});
+    result.push_back(picture_of(choice.frame, recording, [&](const RgbdFrame& frame) -> page::PageImage {
+      const double time_s = seconds_between(recording.frames.front().timestamp_ns, frame.timestamp_ns);
+      return {fmt::format("frame {} at {:.2f} s{}{}", choice.frame, time_s, choice.why.empty() ? "" : "; ",
+                          choice.why),
+              side_by_side(frame, far_m)};
+    }));
   }
   return result;
 }
@@ -135,13 +136,10 @@ std::vector<page::PageImage> registration_pictures(const inspection::Inspection&
   if (!inspection.registration) return result;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t k = (2 * i + 1) * recording.frames.size() / 8;
-    const auto frame = recording.load_frame(k);
-    if (!frame) {
-      result.push_back(unread(k, frame.error(), recording.rig.camera));
-      continue;
-    }
-    result.push_back({fmt::format("frame {}", k),
-                      edges_on_grey(*frame, inspection.registration->model, recording.rig.camera)});
+    result.push_back(picture_of(k, recording, [&](const RgbdFrame& frame) -> page::PageImage {
+      return {fmt::format("frame {}", k),
+              edges_on_grey(frame, inspection.registration->model, recording.rig.camera)};
+    }));
   }
   return result;
 }
