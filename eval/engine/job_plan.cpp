@@ -10,85 +10,11 @@
 
 #include "eval/external/external_program.hpp"
 #include "eval/suites/only_filters.hpp"
+#include "eval/suites/suite_recordings.hpp"
 
 namespace fusebench::engine {
 
-namespace fs = std::filesystem;
-
 namespace {
-
-/// A recording of the suite with what its jobs need to know.
-struct Planned {
-  fs::path folder;
-  std::string group;
-  std::string split;
-  std::vector<std::string> variants;
-  std::optional<suites::SimulationRequest> simulation = {};
-};
-
-Result<std::vector<Planned>> existing_recordings(const suites::Suite& suite, const BatchOptions& options) {
-  std::vector<Planned> planned;
-  if (suite.all) {
-    if (options.data.empty()) {
-      return fail(ErrorCode::data_missing,
-                  fmt::format("suite '{}' runs over all recordings, and no folder is given", suite.name),
-                  "--data or FUSEBENCH_DATA names the folder of recordings");
-    }
-    const auto folders = suites::recordings_under(options.data);
-    if (!folders) return tl::unexpected(folders.error());
-    for (const fs::path& folder : *folders) {
-      planned.push_back(
-          {folder, folder.filename().string(), std::string(suites::kHeldOutSplit), suite.variants});
-    }
-  }
-  for (const suites::SuiteRecording& recording : suite.recordings) {
-    const auto folders = suites::find_recordings(recording.name, options.data);
-    if (!folders) {
-      if (!suites::recording_may_be_wanted(options.only, recording.name)) continue;
-      return tl::unexpected(folders.error());
-    }
-    for (const fs::path& folder : *folders) {
-      planned.push_back({folder, recording.group.empty() ? folder.filename().string() : recording.group,
-                         recording.split, recording.variants.empty() ? suite.variants : recording.variants});
-    }
-  }
-  return planned;
-}
-
-Result<Planned> simulated_recording(const suites::SuiteSimulation& simulation, const BatchOptions& options) {
-  suites::SimulationRequest request = simulation.request;
-  if (!request.trajectory.empty() && request.trajectory.is_relative()) {
-    if (options.data.empty()) {
-      return fail(ErrorCode::data_missing,
-                  fmt::format("{}: the trajectory {} is under --data, which is not given", simulation.place,
-                              request.trajectory.string()),
-                  "--data or FUSEBENCH_DATA names the folder of recordings");
-    }
-    request.trajectory = options.data / request.trajectory;
-  }
-  return Planned{options.simulated / simulation.name, simulation.group, simulation.split, simulation.variants,
-                 std::move(request)};
-}
-
-Result<std::vector<Planned>> recordings_of(const suites::Suite& suite, const BatchOptions& options) {
-  auto planned = existing_recordings(suite, options);
-  if (!planned) return planned;
-  for (const suites::SuiteSimulation& simulation : suite.simulations) {
-    if (!suites::recording_may_be_wanted(options.only, simulation.name)) continue;
-    auto recording = simulated_recording(simulation, options);
-    if (!recording) return tl::unexpected(recording.error());
-    planned->push_back(std::move(*recording));
-  }
-  // Runs go by the names of recordings: two of one name would overwrite each other's.
-  std::set<std::string> names;
-  for (const Planned& recording : *planned) {
-    const std::string name = recording.folder.filename().string();
-    if (names.insert(name).second || suite.all) continue;
-    return fail(ErrorCode::configuration,
-                fmt::format("suite '{}' has two recordings of the name '{}'", suite.name, name));
-  }
-  return planned;
-}
 
 /// The configuration of a variant at a point of the sweep, after --set.
 Result<config::EffectiveConfig> config_of(const suites::Suite& suite, const config::Variant& variant,
@@ -138,8 +64,8 @@ struct Common {
 };
 
 /// One run, but for its recording's window and its repetition.
-Result<BatchJob> job_of(const Common& common, const Planned& recording, const std::string& variant_name,
-                        const suites::SweepPoint& point) {
+Result<BatchJob> job_of(const Common& common, const suites::PlannedRecording& recording,
+                        const std::string& variant_name, const suites::SweepPoint& point) {
   const auto variant = config::find_variant(variant_name);
   if (!variant) return tl::unexpected(variant.error());
   auto config = config_of(common.suite, *variant, common.sets, point);
@@ -168,7 +94,7 @@ const suites::Exclusion* exclusion_of(const suites::Suite& suite, const BatchJob
 }
 
 /// One run of an external program, but for its window and its repetition.
-Result<BatchJob> job_of_program(const Common& common, const Planned& recording,
+Result<BatchJob> job_of_program(const Common& common, const suites::PlannedRecording& recording,
                                 const std::shared_ptr<const external::ExternalProgram>& program) {
   // Of the configuration it is the evaluation that counts.
   auto config = suites::suite_config(common.suite, config::all_variants().front());
@@ -188,8 +114,9 @@ Result<BatchJob> job_of_program(const Common& common, const Planned& recording,
 }
 
 /// The runs of external programs over one recording; those that cannot run here are excluded.
-Result<void> add_program_runs(const Common& common, const Planned& recording, BatchPlan& plan,
-                              std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
+Result<void> add_program_runs(const Common& common, const suites::PlannedRecording& recording,
+                              BatchPlan& plan, std::set<const suites::Exclusion*>& met,
+                              std::vector<BatchJob>& jobs) {
   for (const auto& program : common.programs) {
     const auto take = suites::wanted(common.options.only, recording.folder.filename().string(),
                                      recording.split, program->name);
@@ -229,7 +156,7 @@ Result<void> check_swept_once(const std::vector<suites::SweepBlock>& blocks,
 }
 
 /// All runs over one recording, once each.
-Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan& plan,
+Result<void> add_runs(const Common& common, const suites::PlannedRecording& recording, BatchPlan& plan,
                       std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const std::string& variant : recording.variants) {
     const auto take =
@@ -257,11 +184,11 @@ Result<void> add_runs(const Common& common, const Planned& recording, BatchPlan&
 }
 
 /// Before the runs are made: each holds its whole configuration.
-Result<void> check_count(const Common& common, const std::vector<Planned>& recordings) {
+Result<void> check_count(const Common& common, const std::vector<suites::PlannedRecording>& recordings) {
   const suites::Suite& suite = common.suite;
   const auto many = [](std::size_t count) { return static_cast<double>(count); };
   double runs = 0;
-  for (const Planned& recording : recordings) {
+  for (const suites::PlannedRecording& recording : recordings) {
     const auto wanted_variants = std::ranges::count_if(recording.variants, [&](const std::string& variant) {
       return suites::variant_may_be_wanted(common.options.only, variant);
     });
@@ -321,7 +248,7 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
   if (!points) return tl::unexpected(points.error());
   common.points = std::move(*points);
 
-  const auto recordings = recordings_of(suite, options);
+  const auto recordings = suites::planned_recordings(suite, {options.data, options.simulated, options.only});
   if (!recordings) return tl::unexpected(recordings.error());
   if (auto few = check_count(common, *recordings); !few) return tl::unexpected(few.error());
   BatchPlan plan;
@@ -329,7 +256,7 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
     if (!program->absent.empty()) plan.absent.push_back(program->name + ": " + program->absent);
   }
   std::set<const suites::Exclusion*> met;
-  for (const Planned& recording : *recordings) {
+  for (const suites::PlannedRecording& recording : *recordings) {
     std::vector<BatchJob> jobs;
     if (auto added = add_runs(common, recording, plan, met, jobs); !added)
       return tl::unexpected(added.error());
@@ -343,7 +270,7 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
           fmt::format("{}: the exclusion '{}' meets no run", exclusion.place, exclusion.reason));
   }
   if (plan.jobs.empty() && plan.excluded.empty()) {
-    for (const Planned& recording : *recordings)
+    for (const suites::PlannedRecording& recording : *recordings)
       variants.insert(variants.end(), recording.variants.begin(), recording.variants.end());
     if (auto known = suites::check_variants(options.only, suite.name, variants); !known)
       return tl::unexpected(known.error());

@@ -1,0 +1,80 @@
+#include "eval/suites/suite_recordings.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <utility>
+
+namespace fusebench::suites {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Result<std::vector<PlannedRecording>> existing_recordings(const Suite& suite, const RecordingChoice& choice) {
+  std::vector<PlannedRecording> planned;
+  if (suite.all) {
+    if (choice.data.empty()) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("suite '{}' runs over all recordings, and no folder is given", suite.name),
+                  "--data or FUSEBENCH_DATA names the folder of recordings");
+    }
+    const auto folders = recordings_under(choice.data);
+    if (!folders) return tl::unexpected(folders.error());
+    for (const fs::path& folder : *folders) {
+      planned.push_back({folder, folder.filename().string(), std::string(kHeldOutSplit), suite.variants});
+    }
+  }
+  for (const SuiteRecording& recording : suite.recordings) {
+    const auto folders = find_recordings(recording.name, choice.data);
+    if (!folders) {
+      if (!recording_may_be_wanted(choice.only, recording.name)) continue;
+      return tl::unexpected(folders.error());
+    }
+    for (const fs::path& folder : *folders) {
+      planned.push_back({folder, recording.group.empty() ? folder.filename().string() : recording.group,
+                         recording.split, recording.variants.empty() ? suite.variants : recording.variants});
+    }
+  }
+  return planned;
+}
+
+Result<PlannedRecording> simulated_recording(const SuiteSimulation& simulation,
+                                             const RecordingChoice& choice) {
+  SimulationRequest request = simulation.request;
+  if (!request.trajectory.empty() && request.trajectory.is_relative()) {
+    if (choice.data.empty()) {
+      return fail(ErrorCode::data_missing,
+                  fmt::format("{}: the trajectory {} is under --data, which is not given", simulation.place,
+                              request.trajectory.string()),
+                  "--data or FUSEBENCH_DATA names the folder of recordings");
+    }
+    request.trajectory = choice.data / request.trajectory;
+  }
+  return PlannedRecording{choice.simulated / simulation.name, simulation.group, simulation.split,
+                          simulation.variants, std::move(request)};
+}
+
+}  // namespace
+
+Result<std::vector<PlannedRecording>> planned_recordings(const Suite& suite, const RecordingChoice& choice) {
+  auto planned = existing_recordings(suite, choice);
+  if (!planned) return planned;
+  for (const SuiteSimulation& simulation : suite.simulations) {
+    if (!recording_may_be_wanted(choice.only, simulation.name)) continue;
+    auto recording = simulated_recording(simulation, choice);
+    if (!recording) return tl::unexpected(recording.error());
+    planned->push_back(std::move(*recording));
+  }
+  // Runs go by the names of recordings: two of one name would overwrite each other's.
+  std::set<std::string> names;
+  for (const PlannedRecording& recording : *planned) {
+    const std::string name = recording.folder.filename().string();
+    if (names.insert(name).second || suite.all) continue;
+    return fail(ErrorCode::configuration,
+                fmt::format("suite '{}' has two recordings of the name '{}'", suite.name, name));
+  }
+  return planned;
+}
+
+}  // namespace fusebench::suites
