@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <system_error>
 
 #include "core/mesh/obj_file.hpp"
 #include "core/mesh/ply_file.hpp"
@@ -11,6 +12,11 @@
 namespace fusebench::mesh {
 
 Result<PreciseMesh> read_mesh(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    return fail(ErrorCode::usage, fmt::format("{}: a folder, where a mesh is needed", file.string()),
+                "of a run it is mesh.ply; of a simulated recording the truth is scene.ply");
+  }
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -65,7 +65,9 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric&
                                   const std::set<std::string>& without_number) {
   std::vector<std::string> notes;
   if (const std::size_t damaged = unreadable_count(rows); damaged > 0)
-    notes.push_back(fmt::format("{} of {} records cannot be read and are left out.", damaged, rows.size()));
+    notes.push_back(fmt::format(
+        "{} of {} records cannot be read and are left out: `fusebench list runs FOLDER` says why.", damaged,
+        rows.size()));
   const auto unknown =
       std::ranges::count_if(rows, [](const RunRow& row) { return row.readable && !row.options_known; });
   if (unknown > 0) {

@@ -141,6 +141,13 @@ Result<std::vector<fs::path>> record_files(const fs::path& runs) {
   }
   if (linked.any()) leave_each_once(files);
   if (!error) return files;
+  std::error_code ignored;
+  if (!fs::is_directory(runs, ignored)) {
+    return fail(
+        ErrorCode::data_missing,
+        fmt::format("{}: {}", runs.string(), fs::exists(runs, ignored) ? "no folder" : "no such folder"),
+        "the folder of a run, or one that holds some (--out of `fusebench run` and `fusebench bench`)");
+  }
   return fail(ErrorCode::data_missing,
               fmt::format("{}: cannot be listed: {}", runs.string(), error.message()));
 }

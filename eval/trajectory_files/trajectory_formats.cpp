@@ -70,6 +70,12 @@ io::TimeUnit unit_of(const std::string& stamp) {
 }
 
 Result<FirstRow> first_row(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    return fail(
+        ErrorCode::data_missing, fmt::format("{}: a folder, where a trajectory is needed", file.string()),
+        "of a run it is trajectory.tum, and truth.tum beside it; of a recording mostly groundtruth.txt");
+  }
   std::ifstream stream = io::input_file(file);
   if (!stream) return fail(ErrorCode::data_missing, fmt::format("{}: cannot be opened", file.string()));
   std::string line;

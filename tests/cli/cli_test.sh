@@ -262,6 +262,9 @@ check_recordings() {
   listed "present" '^fr1_rpy +tum .* data/rgbd_dataset_freiburg1_rpy ' -- --data data
   listed "others" '^freiburg1_walk +tum .* data/scene/freiburg1_walk' -- --data data
   listed "json" '"recording": "dorm1_slow"' -- --data data --json
+  refused "no such folder of runs" 3 'nowhere: no such folder' 'hint:the folder of a run' -- table nowhere
+  refused "a record as a folder of runs" 3 'record.json: no folder' 'hint:the folder of a run' -- \
+    table "$(touch record.json && echo record.json)"
   refused "no such folder" 3 'nowhere' 'hint:--data' -- list recordings --data nowhere
 
   # By its published name, from any folder.
@@ -599,6 +602,7 @@ check_evaluation() {
   refused "a negative variance" 3 'openvins.txt:3: a variance is below zero' -- \
     eval nees gt.txt "$(sed -i '3s/1e-3$/-1e-3/' openvins.txt && echo openvins.txt)"
 
+  refused "a folder as a trajectory" 3 '\.: a folder, where a trajectory is needed' 'hint:trajectory\.tum' -- eval ate gt.txt .
   refused "no such trajectory" 3 'absent.txt' -- eval ate absent.txt est.txt
   refused "one file" 2 'GT and EST, and 1 is given' -- eval ate gt.txt
   refused "no metric" 2 'fusebench eval. is given without a verb' -- eval
@@ -808,6 +812,7 @@ check_meshes() {
     eval mesh turned.obj truth.obj --align icp --json
   prints '"doubt": null' "no doubt of icp in JSON" eval mesh rec.obj truth.obj --align icp --json
   refused "millimetres for metres" 3 'not to be in metres' 'hint:--scale 0.001' -- eval mesh millimetres.obj truth.obj
+  refused "a folder as a mesh" 2 '\.: a folder, where a mesh is needed' 'hint:mesh\.ply' -- eval mesh . truth.obj
   refused "no such mesh" 3 'absent.ply' -- eval mesh absent.ply truth.obj
   refused "another ending" 2 "mesh of the unknown ending '.stl'" 'hint:PLY' -- eval mesh rec.stl truth.obj
   refused "an empty mesh" 3 'no triangles' -- eval mesh "$(grep ^v rec.obj >points.obj && echo points.obj)" truth.obj

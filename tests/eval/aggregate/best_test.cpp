@@ -140,7 +140,8 @@ TEST(Best, RunsOfUnknownConfigurationAreCountedNotRanked) {
   rows.back().options_known = false;
   const BestTable table = best(rows, "none");
   EXPECT_EQ(table.groups[0].rows.size(), 3U);
-  EXPECT_EQ(table.notes.at(0), "1 of 8 records cannot be read and are left out.");
+  EXPECT_EQ(table.notes.at(0),
+            "1 of 8 records cannot be read and are left out: `fusebench list runs FOLDER` says why.");
   EXPECT_TRUE(table.notes.at(1).starts_with("1 failed runs never wrote their options"));
 }
 
