@@ -271,6 +271,7 @@ check_recordings() {
   checks=$((checks + 1))
   (mkdir elsewhere && cd elsewhere && "$binary" run fr1_rpy --data ../data --variant no-imu --frames 0:2 --out out) \
     >stdout 2>stderr || complain "run by a published name: exit code $?"
+  grep -q '^no ATE: the trajectory cannot be aligned: 2 matched positions' stderr || complain "run does not say why it has no ATE"
   grep -rq '"name": "rgbd_dataset_freiburg1_rpy"' --include record.json elsewhere/out || complain "another recording was run"
   grep -q '"frames": null' <("$binary" list recordings --data data --json) || complain "unknown is not null in JSON"
   listed "a text" '^fr3_office ' -- FR3_office
