@@ -5,17 +5,17 @@
 
 #include "core/base/bits.hpp"
 #include "core/base/error.hpp"
+#include "core/measurement/grey_residual.hpp"
 #include "core/measurement/patch_scatter.hpp"
 #include "core/measurement/patch_squares.hpp"
 #include "core/measurement/patch_translation.hpp"
+#include "core/measurement/posed_levels.hpp"
 #include "core/patches/posed_camera.hpp"
 #include "core/simd/image_lanes.hpp"
 
 namespace fusebench::measurement {
 
 namespace {
-// Patches per task: fixed, so that the chunks do not depend on the number of threads.
-constexpr std::size_t kPatchesPerChunk = 8;
 
 /// A local origin near the points of the patches.
 Vector3d origin_of(std::span<const patches::Patch> patches) {
@@ -27,44 +27,7 @@ Vector3d origin_of(std::span<const patches::Patch> patches) {
   return Vector3d::Zero();
 }
 
-/// A pixel's residual against the patch's grey level at this brightness, and its whitening factor.
-struct GreyResidual {
-  GreyResidual(const Vector2d& gain_and_offset, double noise_grey)
-      : gain(static_cast<float>(gain_and_offset.x())),
-        offset(static_cast<float>(gain_and_offset.y())),
-        per_noise(static_cast<float>(1.0 / noise_grey)) {}
-
-  [[nodiscard]] simd::Float8 operator()(simd::Float8 observed, simd::Float8 reference) const {
-    return observed - (gain * reference + offset);
-  }
-
-  float gain;
-  float offset;
-  float per_noise;
-};
-
-/// A coordinate at which the image is read: at a whole pixel cubic interpolation is the pixel itself, and its
-/// slope the central difference.
-simd::Float8 sampled_at(simd::Float8 coordinate, config::Sampling sampling) {
-  if (sampling == config::Sampling::bicubic) return coordinate;
-  return simd::to_float(simd::to_int(coordinate + 0.5F));
-}
 }  // namespace
-
-struct PatchMeasurement::PosedLevels {
-  PosedLevels(const SensorRig& rig, const filter::PoseHypothesis& poses, int levels,
-              const Vector3d& origin_world)
-      : by_model(patches::PosedCamera(rig.camera, poses.T_world_imu_by_model, rig.T_imu_camera),
-                 origin_world) {
-    for (int level = 0; level < levels; ++level) {
-      at.emplace_back(patches::PosedCamera(patches::camera_at_level(rig.camera, level),
-                                           poses.T_world_imu_by_reference, rig.T_imu_camera),
-                      origin_world);
-    }
-  }
-  std::vector<patches::PosedLanes> at;  ///< by reference
-  patches::PosedLanes by_model;
-};
 
 PatchMeasurement::PatchMeasurement(const config::Config& config, const SensorRig& rig, const Workers& workers)
     : config_(config),
@@ -289,79 +252,6 @@ void PatchMeasurement::move_patches_alone(const SE3& T_world_imu_predicted) {
       outcomes_[p].accepted &= outcomes_[p].tracked;
     }
   });
-}
-
-double PatchMeasurement::trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
-                                    double fraction) {
-  const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
-  std::vector<double> costs(states_.size(), 0.0);
-  workers_.for_chunks(states_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      states_[p].brightness.try_step(step.head<filter::kPoseSize>(), fraction);
-      costs[p] = patch_cost(p, posed);
-    }
-  });
-  double sum = 0;
-  for (const double cost : costs) sum += cost;
-  return sum;
-}
-
-double PatchMeasurement::patch_cost(std::size_t patch, const PosedLevels& posed) const {
-  const PatchState& state = states_[patch];
-  if (!state.counts) return 0;
-  return (brightness_prior_.cost(state.brightness.trial) + photometric_cost(patch, posed)) /
-             photometric_variance_ +
-         geometric_cost(patch, posed) / geometric_variance_;
-}
-
-double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& posed) const {
-  const Weighting weighting = geometric_weighting();
-  simd::Float8 cost{};
-  for (std::size_t l = finest_; l < levels_.size(); ++l) {
-    const Level& level = levels_[l];
-    for (std::size_t i = level.lanes.first[patch]; i < level.lanes.first[patch + 1]; ++i) {
-      const PlanePairs& pairs = level.fixed[i].pairs;
-      if (!simd::any(pairs.valid)) continue;
-      const simd::Float8 whitened = plane_residual(posed.by_model, pairs, level.lanes.pixels[i]) /
-                                    (pairs.valid ? pairs.sigma_m : simd::all_lanes(1.0F));
-      cost += pairs.valid ? huber(whitened, weighting.robust_sigmas).cost : simd::Float8{};
-    }
-  }
-  return static_cast<double>(weighting.share) * simd::sum_of_lanes(cost);
-}
-
-double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
-  const Weighting weighting = photometric_weighting();
-  const config::Sampling sampling = config_.photometric.sampling;
-  const GreyResidual residual_of(states_[patch].brightness.trial,
-                                 scale_.photometric * config_.photometric.noise_grey);
-  simd::Float8 cost{};
-  for (std::size_t l = finest_; l < levels_.size(); ++l) {
-    const patches::LevelLanes& lanes = levels_[l].lanes;
-    const GreyImage& image = frame_->pyramid[l];
-    const patches::PosedLanes& camera = posed.at[l];
-    for (std::size_t i = lanes.first[patch]; i < lanes.first[patch + 1]; ++i) {
-      const simd::Int8 used = levels_[l].fixed[i].photometric;
-      if (!simd::any(used)) continue;
-      // A pixel that leaves the image, or passes behind the camera, keeps its cost at the border: leaving the
-      // image must not lower the cost.
-      const simd::Points point = camera.to_camera(lanes.projected(i));
-      const simd::Float8 inverse_z =
-          1.0F / simd::max(used ? point.z : simd::all_lanes(1.0F), simd::all_lanes(1e-3F));
-      simd::Float8 x = camera.fx_px * point.x * inverse_z + camera.cx_px;
-      simd::Float8 y = camera.fy_px * point.y * inverse_z + camera.cy_px;
-      if (!lanes.warp_points.empty()) {
-        x += lanes.warp_points[i].offset_x;
-        y += lanes.warp_points[i].offset_y;
-      }
-      x = sampled_at(simd::clamp(x, 1.0F, static_cast<float>(image.width - 2)), sampling);
-      y = sampled_at(simd::clamp(y, 1.0F, static_cast<float>(image.height - 2)), sampling);
-      const simd::Float8 observed = simd::sample_bicubic_value(image, x, y);
-      const simd::Float8 whitened = residual_of(observed, lanes.pixels[i].intensity) * residual_of.per_noise;
-      cost += used ? huber(whitened, weighting.robust_sigmas).cost : simd::Float8{};
-    }
-  }
-  return static_cast<double>(weighting.share) * simd::sum_of_lanes(cost);
 }
 
 void PatchMeasurement::accept() {

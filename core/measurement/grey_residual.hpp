@@ -1,0 +1,33 @@
+// The photometric residual of eight pixels, as the sums and the costs of a patch are made of it.
+#pragma once
+
+#include "core/base/types.hpp"
+#include "core/config/config.hpp"
+#include "core/simd/lanes.hpp"
+
+namespace fusebench::measurement {
+
+/// A pixel's residual against the patch's grey level at this brightness, and its whitening factor.
+struct GreyResidual {
+  GreyResidual(const Vector2d& gain_and_offset, double noise_grey)
+      : gain(static_cast<float>(gain_and_offset.x())),
+        offset(static_cast<float>(gain_and_offset.y())),
+        per_noise(static_cast<float>(1.0 / noise_grey)) {}
+
+  [[nodiscard]] simd::Float8 operator()(simd::Float8 observed, simd::Float8 reference) const {
+    return observed - (gain * reference + offset);
+  }
+
+  float gain;
+  float offset;
+  float per_noise;
+};
+
+/// A coordinate at which the image is read: at a whole pixel cubic interpolation is the pixel itself, and its
+/// slope the central difference.
+inline simd::Float8 sampled_at(simd::Float8 coordinate, config::Sampling sampling) {
+  if (sampling == config::Sampling::bicubic) return coordinate;
+  return simd::to_float(simd::to_int(coordinate + 0.5F));
+}
+
+}  // namespace fusebench::measurement

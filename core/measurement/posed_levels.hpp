@@ -1,0 +1,29 @@
+// A hypothesis of the poses, as all patches are measured at it.
+#pragma once
+
+#include <vector>
+
+#include "core/measurement/patch_measurement.hpp"
+#include "core/patches/posed_camera.hpp"
+
+namespace fusebench::measurement {
+
+/// Patches per task: fixed, so that the chunks do not depend on the number of threads.
+inline constexpr std::size_t kPatchesPerChunk = 8;
+
+struct PatchMeasurement::PosedLevels {
+  PosedLevels(const SensorRig& rig, const filter::PoseHypothesis& poses, int levels,
+              const Vector3d& origin_world)
+      : by_model(patches::PosedCamera(rig.camera, poses.T_world_imu_by_model, rig.T_imu_camera),
+                 origin_world) {
+    for (int level = 0; level < levels; ++level) {
+      at.emplace_back(patches::PosedCamera(patches::camera_at_level(rig.camera, level),
+                                           poses.T_world_imu_by_reference, rig.T_imu_camera),
+                      origin_world);
+    }
+  }
+  std::vector<patches::PosedLanes> at;  ///< by reference
+  patches::PosedLanes by_model;
+};
+
+}  // namespace fusebench::measurement
