@@ -188,8 +188,11 @@ def of_json(rng, data):
             owner["unknown"] = owner[place[-1]]
         return json.dumps(document, indent=2).encode()
     # What Python's numbers cannot say is put in as text.
+    new = json_text(rng)
+    if new == "\"nan\"" and isinstance(owner[place[-1]], str):
+        new = "\"x\""  # a name may be "nan", and is printed
     owner[place[-1]] = "@here@"
-    return json.dumps(document, indent=2).replace("\"@here@\"", json_text(rng), 1).encode("utf-8", "surrogateescape")
+    return json.dumps(document, indent=2).replace("\"@here@\"", new, 1).encode("utf-8", "surrogateescape")
 
 
 def of_png(rng, data):
