@@ -102,10 +102,22 @@ function tooltipTitle(chart, items) {
   return chart.x + ": " + shortNumber(items[0].parsed.x);
 }
 
-/** Dots are round in a legend, too, whose other symbols are wide. */
+/** A text that is no wider than the room (px) in the chart's font: the middle of a long name is left out, since its end tells runs apart as well. */
+function shortened(context, text, room) {
+  context.save();
+  context.font = `${Chart.defaults.font.size}px ${Chart.defaults.font.family}`;
+  let short = text;
+  for (let kept = text.length - 1; kept > 8 && context.measureText(short).width > room; --kept)
+    short = text.slice(0, Math.ceil(kept / 2)) + "\u2026" + text.slice(text.length - Math.floor(kept / 2));
+  context.restore();
+  return short;
+}
+
+/** Names fit the chart. Dots are round in a legend, too, whose other symbols are wide. */
 function legendLabels(made) {
   const labels = Chart.defaults.plugins.legend.labels.generateLabels(made);
   for (const label of labels) {
+    label.text = shortened(made.ctx, label.text, made.width - 60);
     if (label.pointStyle === "circle") label.pointStyle = dotOf(label.fillStyle);
   }
   return labels;
@@ -141,9 +153,12 @@ function drawChart(chart, index) {
         cut: { y: rangesOf(chart).y, equal: chart.equal },
         legend: {
           labels: { color: colour("--text"), sort: (a, b) => a.datasetIndex - b.datasetIndex, usePointStyle: true, pointStyleWidth: 26, boxHeight: 5, generateLabels: legendLabels },
-          onClick: (event, item) => showRun(chart.part, item.text, !made.isDatasetVisible(item.datasetIndex)),
+          onClick: (event, item) => showRun(chart.part, made.data.datasets[item.datasetIndex].label, !made.isDatasetVisible(item.datasetIndex)),
         },
-        tooltip: { callbacks: { title: (items) => tooltipTitle(chart, items) } },
+        tooltip: { callbacks: {
+          title: (items) => tooltipTitle(chart, items),
+          label: (item) => [shortened(made.ctx, item.dataset.label || "", made.width - 150), item.formattedValue].filter(Boolean).join(": "),
+        } },
       },
       scales: scalesOf(chart),
     },

@@ -178,6 +178,13 @@ return drawn.filter((made, i) => {
   return values.some((y) => y < min || y > max) || max - min > 3 * (Math.max(...values, 0) - (chart.zero ? 0 : Math.min(...values))) + 1e-3;
 }).map((made) => made.canvas.getAttribute("aria-label"));
 """
+# Charts whose legend is wider than they are; symbols and margins take the rest.
+CUT_NAMES = """
+return drawn.filter((made) => {
+  made.ctx.font = Chart.defaults.font.size + "px " + Chart.defaults.font.family;
+  return made.legend.legendItems.some((item) => made.ctx.measureText(item.text).width > made.width - 50);
+}).map((made) => made.canvas.getAttribute("aria-label"));
+"""
 PICTURE = "return arguments[0].toDataURL().length + ':' + arguments[0].toDataURL().slice(-4000);"
 
 
@@ -221,6 +228,8 @@ class Reader:
                 self.complain(f"{scheme}: nothing is drawn: {canvas.get_attribute('aria-label')}")
         for chart in self.driver.execute_script(ASTRAY):
             self.complain(f"{scheme}: triangles stand beside their boxes: {chart}")
+        for chart in self.driver.execute_script(CUT_NAMES):
+            self.complain(f"{scheme}: names of its legend are cut: {chart}")
         return len(canvases)
 
     def ask_for_hidden_series(self):
