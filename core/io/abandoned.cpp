@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <chrono>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include "core/io/staged_file.hpp"
@@ -24,6 +26,19 @@ struct Leftover {
   fs::path path;
   std::chrono::hours age{};  ///< for which it must have been unchanged if nobody holds its lock
 };
+
+/// The temporary folders and files in `parent`, of this name or, without one, of all.
+std::vector<Leftover> leftovers_in(const fs::path& parent, std::chrono::hours folder_age,
+                                   const std::optional<std::string>& name = std::nullopt) {
+  std::vector<Leftover> hidden;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    if (name && name_of_hidden_sibling(entry->path().filename().string()) != name) continue;
+    if (is_staged_folder(entry->path())) hidden.push_back({entry->path(), folder_age});
+    if (is_staged_file(entry->path())) hidden.push_back({entry->path(), kFileAge});
+  }
+  return hidden;
+}
 
 /// Whether the path still leads to what was opened: its owner may have renamed it, and another have taken the
 /// name.
@@ -51,30 +66,17 @@ bool remove_if_abandoned(const Leftover& leftover, bool only_look) {
 }  // namespace
 
 std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
-  std::vector<Leftover> hidden;
-  std::error_code error;
-  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
-    if (is_staged_folder(entry->path())) hidden.push_back({entry->path(), std::chrono::hours(0)});
-    if (is_staged_file(entry->path())) hidden.push_back({entry->path(), kFileAge});
-  }
   std::vector<fs::path> abandoned;
-  for (const Leftover& leftover : hidden) {
+  for (const Leftover& leftover : leftovers_in(parent, std::chrono::hours(0))) {
     if (remove_if_abandoned(leftover, only_look)) abandoned.push_back(leftover.path);
   }
   return abandoned;
 }
 
 void remove_abandoned_of(const fs::path& place) {
-  const std::string name = place.filename().string();
   const fs::path parent = place.has_parent_path() ? place.parent_path() : fs::path(".");
-  std::vector<Leftover> hidden;
-  std::error_code error;
-  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
-    if (name_of_hidden_sibling(entry->path().filename().string()) != name) continue;
-    if (is_staged_folder(entry->path())) hidden.push_back({entry->path(), kFolderAge});
-    if (is_staged_file(entry->path())) hidden.push_back({entry->path(), kFileAge});
-  }
-  for (const Leftover& leftover : hidden) remove_if_abandoned(leftover, false);
+  for (const Leftover& leftover : leftovers_in(parent, kFolderAge, place.filename().string()))
+    remove_if_abandoned(leftover, false);
 }
 
 }  // namespace fusebench::io
