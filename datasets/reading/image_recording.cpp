@@ -233,11 +233,16 @@ Result<void> attach_images(recording::Recording& recording, const calibration::R
   return {};
 }
 
+double settled_depth_units(calibration::RigCalibration& calibration, double published_units_per_metre) {
+  const double units = calibration.depth_units_per_metre.value_or(published_units_per_metre);
+  calibration.depth_units_per_metre = units;
+  return units;
+}
+
 Result<recording::Recording> with_png_images(recording::Recording recording,
                                              calibration::RigCalibration calibration,
                                              double published_units_per_metre) {
-  const double units = calibration.depth_units_per_metre.value_or(published_units_per_metre);
-  calibration.depth_units_per_metre = units;
+  const double units = settled_depth_units(calibration, published_units_per_metre);
   const auto attached =
       attach_images(recording, {std::move(calibration), png_depth(units), fmt::format("png {}", units)});
   if (!attached) return tl::unexpected(attached.error());

@@ -21,6 +21,11 @@ struct ImageDecoding {
   ColorReader read_color = images::read_color;
 };
 
+/// The scale of depth by which a recording is read: what the calibration says, else that of the format, which
+/// the calibration says from then on.
+[[nodiscard]] double settled_depth_units(calibration::RigCalibration& calibration,
+                                         double published_units_per_metre);
+
 /// Completes a recording whose frames, truth and inertial samples are in place: checks the size of the first
 /// image against the calibration, sets rig (camera, timing, IMU), applies the delay of depth and the offset
 /// of the IMU's clock, takes the fingerprint (every used image is read once), and provides load_frame,

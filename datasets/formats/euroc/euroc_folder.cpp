@@ -133,8 +133,7 @@ Result<recording::Recording> open_euroc(const fs::path& folder, const recording:
   if (const auto read = read_truth(mav0, rig ? std::optional(*rig) : std::nullopt, recording); !read)
     return tl::unexpected(read.error());
   if (const auto read = read_imu(mav0, recording); !read) return tl::unexpected(read.error());
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  calibration->depth_units_per_metre = units;
+  const double units = reading::settled_depth_units(*calibration, kUnitsPerMetre);
   const auto attached =
       reading::attach_images(recording, {std::move(*calibration), reading::png_depth(units),
                                          fmt::format("png {}", units), images::read_color_or_grey});

@@ -130,8 +130,7 @@ Result<recording::Recording> open_icl_povray(const std::filesystem::path& folder
     return tl::unexpected(read.error());
   if (const auto read = reading::read_imu_beside(folder, recording); !read)
     return tl::unexpected(read.error());
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  calibration->depth_units_per_metre = units;
+  const double units = reading::settled_depth_units(*calibration, kUnitsPerMetre);
   const auto reader =
       ray_depth(calibration->depth ? calibration->depth->pinhole : calibration->color.pinhole, units);
   const auto attached = reading::attach_images(

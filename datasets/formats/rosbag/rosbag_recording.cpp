@@ -184,8 +184,7 @@ Result<recording::Recording> open_rosbag(const fs::path& place, const recording:
     if (const auto read = reading::read_imu_beside(folder, recording); !read)
       return tl::unexpected(read.error());
   }
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  calibration->depth_units_per_metre = units;
+  const double units = reading::settled_depth_units(*calibration, kUnitsPerMetre);
   const auto bag = std::make_shared<const BagImages>(std::move(*images));
   const auto attached = reading::attach_images(recording, *calibration, fmt::format("rosbag {}", units),
                                                reading::stored_images(stored_images(bag, units)));

@@ -215,8 +215,7 @@ Result<recording::Recording> open_sens(const fs::path& place, const recording::R
   } else if (const auto imu = take_imu_frames(*path, file->imu, *unit_ns, recording); !imu) {
     return tl::unexpected(imu.error());
   }
-  const double units = calibration->depth_units_per_metre.value_or(file->header.depth_units_per_metre);
-  calibration->depth_units_per_metre = units;
+  const double units = reading::settled_depth_units(*calibration, file->header.depth_units_per_metre);
   const auto attached = reading::attach_images(recording, *calibration, fmt::format("sens {}", units),
                                                reading::stored_images(images_of(file, units)));
   if (!attached) return tl::unexpected(attached.error());

@@ -205,8 +205,7 @@ Result<recording::Recording> open_stray(const fs::path& folder, const recording:
   if (!confident) return tl::unexpected(confident.error());
   if (confident->count() > 0)
     recording.notes.emplace_back("depth: measurements of confidence 0 (low) are left out");
-  const double units = calibration->depth_units_per_metre.value_or(kUnitsPerMetre);
-  calibration->depth_units_per_metre = units;
+  const double units = reading::settled_depth_units(*calibration, kUnitsPerMetre);
   const auto attached = reading::attach_images(
       recording,
       {*calibration, confident->reader(units), fmt::format("stray {} {}", units, confident->identity())});
