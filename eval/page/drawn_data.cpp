@@ -46,6 +46,8 @@ Json json_of(const std::optional<Vector2d>& range) {
   return range ? Json{number(range->x()), number(range->y())} : Json(nullptr);
 }
 
+Json json_of(const Vector3d& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
+
 std::string bytes_text(const void* data, std::size_t size) {
   const auto* bytes = static_cast<const std::uint8_t*>(data);
   return text::base64({bytes, size});
@@ -85,8 +87,8 @@ Json json_of(const SceneMesh& scene) {
     }
   }
   return {{"label", scene.label},
-          {"low", {number(box.min().x()), number(box.min().y()), number(box.min().z())}},
-          {"size", {number(box.sizes().x()), number(box.sizes().y()), number(box.sizes().z())}},
+          {"low", json_of(Vector3d(box.min()))},
+          {"size", json_of(Vector3d(box.sizes()))},
           {"positions", bytes_text(positions.data(), positions.size() * sizeof(std::uint16_t))},
           {"triangles", bytes_text(scene.mesh.triangles.data(),
                                    scene.mesh.triangles.size() * sizeof(scene.mesh.triangles[0]))},
@@ -94,8 +96,6 @@ Json json_of(const SceneMesh& scene) {
           {"colors", colors_text(scene.mesh.colors)},
           {"errors", colors_text(scene.error_colors)}};
 }
-
-Json json_of(const Vector3d& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
 
 /// Eight numbers a pose: time, position, quaternion (x, y, z, w).
 Json json_of(const ScenePath& path) {
