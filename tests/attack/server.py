@@ -34,6 +34,7 @@ class Program:
         module = pathlib.Path(binary).parent / "lib" / "fusebench" / "fusebench_images.so"
         if module.exists():
             environment["FUSEBENCH_FORK_SERVER_LOADS"] = str(module)
+        environment["LD_BIND_NOW"] = "1"  # else every child looks up again what it calls
         environment["LD_PRELOAD"] = ":".join([*preload, str(library)])
         self.process = subprocess.Popen([binary], env=environment, pass_fds=[there.fileno()],
                                         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
