@@ -58,7 +58,10 @@ struct Pipeline::State final : RestartableEstimator {
   bool track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
                    health::FrameReport& report);
   bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
-  Result<void> fuse(health::StageTimes& stages);
+  Result<void> fuse(health::FrameReport& report);
+  Result<void> integrate(const RgbdFrame& frame) {
+    return tracking->model.integrate(frame, rig.camera, T_world_camera(), config.depth, workers);
+  }
   void refresh(health::StageTimes& stages);
   void cut_patches();
   void begin_again(const SE3& T_corrected_current);
@@ -122,7 +125,7 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
   if (now.occlusion_gate.admits(report, config.health) && novelty.complete()) {
     const filter::FilterState& state = now.estimate->mean;
     preparation.prepare_again(state, velocity_tolerance_to_fuse(config.compensation), report.stages);
-    const Result<void> fused = fuse(report.stages);  // Sec. 2.3: M_k(X)
+    const Result<void> fused = fuse(report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
     refresh(report.stages);  // Sec. 2.3: patch update
   }
@@ -279,11 +282,19 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
   return false;
 }
 
-/// Sec. 2.3: the depth image goes into the model at the updated pose.
-Result<void> Pipeline::State::fuse(health::StageTimes& stages) {
-  preparation.prepare_color(stages);
-  const health::StageClock clock(stages, health::Stage::fuse);
-  return tracking->model.integrate(preparation.frame(), rig.camera, T_world_camera(), config.depth, workers);
+/// Sec. 2.3: the depth image goes into the model at the updated pose. Where loops are closed online, without
+/// what an old surface contradicts: the loop will tell.
+Result<void> Pipeline::State::fuse(health::FrameReport& report) {
+  preparation.prepare_color(report.stages);
+  const health::StageClock clock(report.stages, health::Stage::fuse);
+  const RgbdFrame& frame = preparation.frame();
+  if (!tracking->loops.may_correct_online()) return integrate(frame);
+  auto rest_m = tracking->revisits.depth_to_fuse(tracking->model, frame, T_world_camera(), workers);
+  if (!rest_m) return integrate(frame);
+  if (report.health == health::FrameHealth::good) report.health = health::FrameHealth::revisit_pending;
+  RgbdFrame rest = frame;
+  rest.depth_m = std::move(*rest_m);
+  return integrate(rest);
 }
 
 /// Sec. 2.3: surviving patches are cut again as squares, new corners join them, depth comes from the model.
@@ -337,7 +348,8 @@ Result<void> Pipeline::fuse_again(const RgbdFrame& frame) {
   health::StageTimes stages;
   state_->tracking->estimate->mean = *state;
   state_->preparation.prepare(frame, *state, stages);
-  return state_->fuse(stages);
+  state_->preparation.prepare_color(stages);
+  return state_->integrate(state_->preparation.frame());
 }
 
 bool Pipeline::wants_frames_again() const { return state_->corrected.has_value(); }

@@ -12,6 +12,7 @@
 #include "core/filter/filter_state.hpp"
 #include "core/health/update_acceptance.hpp"
 #include "core/loops/loop_closure.hpp"
+#include "core/loops/pending_revisits.hpp"
 #include "core/measurement/residual_scale.hpp"
 #include "core/patches/patches.hpp"
 #include "core/relocalisation/relocalisation.hpp"
@@ -24,11 +25,12 @@ namespace fusebench::core {
 /// workspaces) are elsewhere.
 struct Tracking {
   Tracking(const config::Config& config, const SensorRig& rig)
-      : model(config.tsdf), relocalisation(config, rig), loops(config, rig) {}
+      : model(config.tsdf), relocalisation(config, rig), loops(config, rig), revisits(config, rig.camera) {}
 
   tsdf::TsdfVolume model;
   relocalisation::Relocalisation relocalisation;
   loops::LoopClosure loops;
+  loops::PendingRevisits revisits;
   std::optional<filter::GaussianState> estimate;  ///< after the last frame
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
   int frames = 0;                                 ///< since the start

@@ -219,6 +219,7 @@ struct LoopsConfig {
   double online_rotation_deg = 0.5;
   int online_every = 100;
   int max_online_corrections = 5;
+  double max_pending_s = 5.0;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.choice(
@@ -298,6 +299,10 @@ struct LoopsConfig {
              "again each time, and");
     v.number("max_online_corrections", self.max_online_corrections, 0, 1000,
              "at most so often in a recording");
+    v.number(
+        "max_pending_s", self.max_pending_s, 0.0, 1000.0,
+        "as long as such a correction may come, surfaces that were seen least_age_s ago and do not fit are "
+        "not fused over for so many seconds (0: they are at once)");
   }
 };
 

@@ -54,6 +54,8 @@ std::string_view to_string(FrameHealth health) {
       return "diverged";
     case FrameHealth::repeated:
       return "repeated";
+    case FrameHealth::revisit_pending:
+      return "revisit-pending";
     case FrameHealth::good:
       break;
   }

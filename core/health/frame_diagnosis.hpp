@@ -22,6 +22,7 @@ enum class FrameHealth {
   blurred,           ///< the predicted blur is longer than a patch
   diverged,          ///< the images were not asked: the state is not finite (state_validity.hpp)
   repeated,          ///< colour, depth or both are those of the frame before
+  revisit_pending,   ///< surfaces seen long ago do not fit, and are not fused over until a loop is accepted
   good,
 };
 [[nodiscard]] std::string_view to_string(FrameHealth health);

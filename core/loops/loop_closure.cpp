@@ -288,8 +288,7 @@ bool LoopClosure::is_large(const SE3& motion) const {
 
 Result<std::optional<SE3>> LoopClosure::correct_online() {
   const config::LoopsConfig& config = config_.loops;
-  if (config.mode != config::LoopMode::online || !poses_are_wrong_ ||
-      corrections_ >= config.max_online_corrections ||
+  if (!may_correct_online() || !poses_are_wrong_ ||
       fused_.size() - fused_at_attempt_ < static_cast<std::size_t>(config.online_every))
     return std::nullopt;
   poses_are_wrong_ = false;

@@ -72,6 +72,11 @@ class LoopClosure {
   /// The pose of a frame that has one, fused or not.
   void add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera);
 
+  /// With mode online, as long as there is a correction left.
+  [[nodiscard]] bool may_correct_online() const {
+    return config_.loops.mode == config::LoopMode::online &&
+           corrections_ < config_.loops.max_online_corrections;
+  }
   /// With mode online, after the last calls of these two: how the world of the estimate moves
   /// (T_corrected_current), if the frame showed that the poses are wrong. All that is in it, estimate, model
   /// and keyframes, then has to move. Errors: those of optimised_poses().

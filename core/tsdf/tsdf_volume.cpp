@@ -48,6 +48,7 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
 
   const VoxelUpdate update(frame, camera, T_world_camera, depth, config_, frame_count_++);
   const std::vector<BlockIndex>& touched = touched_.blocks();
+  for (const int slot : touched_slots_) last_fused_ns_[static_cast<std::size_t>(slot)] = frame.timestamp_ns;
   workers.for_chunks(touched.size(), kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       update.apply(touched[i], block(static_cast<std::size_t>(touched_slots_[i])));
@@ -102,6 +103,7 @@ void TsdfVolume::add_block(const BlockIndex& index) {
                 place_in_region(index)] = static_cast<std::int32_t>(block_count());
   table_.insert(index);
   indices_.push_back(index);
+  last_fused_ns_.push_back(0);
 }
 
 BlockVoxels TsdfVolume::block(std::size_t slot) {
@@ -121,8 +123,8 @@ Voxel TsdfVolume::voxel(std::size_t slot, std::size_t offset) const {
 
 std::size_t TsdfVolume::memory_bytes() const {
   return distances_m_.memory_bytes() + weights_.memory_bytes() + colors_.memory_bytes() +
-         indices_.capacity() * sizeof(BlockIndex) + table_.memory_bytes() + regions_.memory_bytes() +
-         region_slots_.capacity() * sizeof(std::int32_t);
+         indices_.capacity() * sizeof(BlockIndex) + last_fused_ns_.capacity() * sizeof(std::int64_t) +
+         table_.memory_bytes() + regions_.memory_bytes() + region_slots_.capacity() * sizeof(std::int32_t);
 }
 
 double TsdfVolume::measurement_weight(double depth_m, const config::DepthConfig& depth) const {

@@ -86,6 +86,9 @@ class TsdfVolume {
   /// As BlockVoxels has them, by slot from 0 on, like the weights.
   [[nodiscard]] const std::uint32_t* colors() const { return colors_.data(); }
 
+  /// Stamp of the last frame that touched a block.
+  [[nodiscard]] std::int64_t last_fused_ns(std::size_t slot) const { return last_fused_ns_[slot]; }
+
   /// Slot of a block in storage order, or -1.
   [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }
   /// Number of a region with an allocated block, or -1; regions are cubes of 4x4x4 blocks: floor(block / 4).
@@ -113,7 +116,8 @@ class TsdfVolume {
   std::vector<Eigen::Vector3i> region_indices_;
   std::vector<std::int32_t> region_slots_;  // by number + 1
   std::vector<BlockIndex> indices_;         // by slot
-  GrowingArray<simd::Half> distances_m_;    // by slot + 1
+  std::vector<std::int64_t> last_fused_ns_;
+  GrowingArray<simd::Half> distances_m_;  // by slot + 1
   GrowingArray<simd::Half> weights_;
   GrowingArray<std::uint32_t> colors_;
   BandBlocks touched_;  // by the last frame

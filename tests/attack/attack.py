@@ -63,7 +63,7 @@ class Case:
 
 
 def suite_of_all(name):
-    return f'name = "s"\nrecordings = ["{name}"]\nvariants = ["no-imu", "full"]\nimu = "auto"\n[config]\niekf.min_patches = 1\n'
+    return f'name = "s"\nrecordings = ["{name}"]\nvariants = ["no-imu", "full"]\nimu = "auto"\n[config]\niekf.min_patches = 1\ntsdf.max_blocks = 50000\n'
 
 
 class Maker:
