@@ -123,13 +123,17 @@ function legendLabels(made) {
   return labels;
 }
 
+const dots = new Map();  // by colour: a legend asks for them at each update
+
 function dotOf(fill) {
+  if (dots.has(fill)) return dots.get(fill);
   const dot = document.createElement("canvas");
   dot.width = dot.height = 8;
   const context = dot.getContext("2d");
   context.fillStyle = fill;
   context.arc(4, 4, 3, 0, 2 * Math.PI);
   context.fill();
+  dots.set(fill, dot);
   return dot;
 }
 
