@@ -3,6 +3,9 @@
 "use strict";
 (function () {
   const scenes = JSON.parse(document.getElementById("scenes").textContent);
+  const unprepared = new Set(scenes.keys());
+  const inSight = new Set();
+  const refreshers = new Map();  // of prepared scenes: brings their pictures up to date
 
   function bytes(text) {
     const binary = atob(text);
@@ -133,7 +136,15 @@
       view.scene.add(view.path);
     });
 
+    // Out of sight, a picture is made only once it comes into view or is printed.
+    let stale = false;
     function render() {
+      stale = !inSight.has(index);
+      if (!stale) renderViews();
+    }
+    refreshers.set(index, () => { if (stale) renderViews(); stale = false; });
+
+    function renderViews() {
       views.forEach((view) => {
         if (view.figure.hidden) return;
         const scale = window.devicePixelRatio || 1;
@@ -146,7 +157,8 @@
         camera.aspect = width / height;
         camera.updateProjectionMatrix();
         view.light.position.copy(camera.position).sub(centre);
-        renderer.setSize(width, height, false);
+        // Of the same size, it would be made anew for each view.
+        if (renderer.domElement.width !== width || renderer.domElement.height !== height) renderer.setSize(width, height, false);
         renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue("--scene").trim());
         renderer.render(view.scene, camera);
         view.canvas.getContext("2d").drawImage(renderer.domElement, 0, 0);
@@ -251,13 +263,20 @@
   }
 
   // A scene is prepared when it comes into view, or is printed.
-  const unprepared = new Set(scenes.keys());
   function prepare(index) {
     if (unprepared.delete(index)) start(scenes[index], index);
+    refreshers.get(index)();
   }
   const observer = new IntersectionObserver((entries) => entries.forEach((entry) => {
-    if (entry.isIntersecting) prepare(Number(entry.target.id.slice("scene-".length)));
+    const index = Number(entry.target.id.slice("scene-".length));
+    if (!entry.isIntersecting) {
+      inSight.delete(index);
+      return;
+    }
+    inSight.add(index);
+    prepare(index);
   }), { rootMargin: "300px" });
   scenes.forEach((_, index) => observer.observe(document.getElementById("scene-" + index)));
+  // After page.js, which draws in the colours of paper.
   window.addEventListener("beforeprint", () => scenes.forEach((_, index) => prepare(index)));
 })();
