@@ -81,7 +81,7 @@ class Blocks {
   }
 
   int pixels(std::string_view what) {
-    const double value = positive(what, 100'000);
+    const double value = positive(what, kMostSize_px);
     if (value == std::floor(value)) return static_cast<int>(value);
     complain(fmt::format("{} = {} is no whole number", what, value));
     return 1;

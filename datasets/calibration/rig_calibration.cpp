@@ -42,11 +42,11 @@ struct Range {
 };
 constexpr Range kPixels{1e-3, 1e6};
 constexpr Range kCentre{-1e6, 1e6};
-constexpr Range kSize{1, 100'000};
+constexpr Range kSize{1, kMostSize_px};
 constexpr Range kWhiteNoise{1e-9, 100};  // a sensor without noise would override all others
 constexpr Range kWalk{0, 100};
-constexpr Range kReadout{0, 1};
-constexpr Range kOffset{-10, 10};
+constexpr Range kReadout{0, kMostReadout_s};
+constexpr Range kDelay{-kMostDelay_s, kMostDelay_s};  // also of the IMU's stamps
 constexpr Range kScale{0.5, 2};
 
 /// One of the three tables: its entries by key, and the first error.
@@ -222,8 +222,8 @@ void read_depth_table(Section& section, RigCalibration& calibration) {
   SensorTiming& timing = calibration.color.timing;
   timing.depth_readout_s = section.number("readout_s", kReadout, kUnknownReadout_s);
   timing.depth_readout_sigma_s = sigma_of(section, "readout", kReadout, kUnknownReadoutSigma_s);
-  timing.depth_delay_s = section.number("delay_s", kOffset, 0.0);
-  timing.depth_delay_sigma_s = sigma_of(section, "delay", kOffset, kUnknownDelaySigma_s);
+  timing.depth_delay_s = section.number("delay_s", kDelay, 0.0);
+  timing.depth_delay_sigma_s = sigma_of(section, "delay", kDelay, kUnknownDelaySigma_s);
   const bool own_camera = std::ranges::any_of(
       kDepthCameraKeys, [&](std::string_view key) { return section.has(std::string(key)); });
   if (!own_camera) return;
@@ -251,7 +251,7 @@ ImuCalibration read_imu_table(Section& section, const std::optional<DepthCamera>
   imu.noise.accelerometer_mps2_sqrthz = section.number("accelerometer_noise_mps2_sqrthz", kWhiteNoise);
   imu.noise.gyroscope_bias_radps2_sqrthz = section.number("gyroscope_bias_walk_radps2_sqrthz", kWalk);
   imu.noise.accelerometer_bias_mps3_sqrthz = section.number("accelerometer_bias_walk_mps3_sqrthz", kWalk);
-  imu.time_offset_s = section.number("time_offset_s", kOffset, 0.0);
+  imu.time_offset_s = section.number("time_offset_s", kDelay, 0.0);
   imu.gyroscope_scale = section.scale("gyroscope_scale");
   imu.accelerometer_scale = section.scale("accelerometer_scale");
   return imu;

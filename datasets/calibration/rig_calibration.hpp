@@ -70,6 +70,13 @@ inline constexpr std::string_view kRigidTransformRule =
 /// Between sensors of one rig: more is another unit, or damaged.
 inline constexpr double kMostLeverArm_m = 1000;
 
+/// Of a side of an image: no sensor has more.
+inline constexpr int kMostSize_px = 1'000'000;
+
+/// A frame is not read out for longer, and its depth not later or earlier than its colour by more.
+inline constexpr double kMostReadout_s = 1;
+inline constexpr double kMostDelay_s = 10;
+
 /// Of any pose in metres, also in the coordinates of a map: beyond, doubles no longer tell micrometres apart.
 inline constexpr double kMostTranslation_m = 1e8;
 

@@ -13,10 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// As in calibration files: stamps are moved by these.
-constexpr double kMostReadout_s = 1;
-constexpr double kMostDelay_s = 10;
-constexpr int kMostSize_px = 1'000'000;
+using calibration::kMostDelay_s;
+using calibration::kMostReadout_s;
 
 double number_in(const Json& table, const std::string& key, double least, double most) {
   const double value = table.at(key);
@@ -32,7 +30,7 @@ double positive(const Json& table, const std::string& key) {
 }
 
 int size_of(const Json& table, const std::string& key) {
-  return static_cast<int>(number_in(table, key, 1, kMostSize_px));
+  return static_cast<int>(number_in(table, key, 1, calibration::kMostSize_px));
 }
 
 PinholeCamera pinhole_of(const Json& color) {

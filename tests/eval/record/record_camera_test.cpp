@@ -1,10 +1,12 @@
 #include "eval/record/record_camera.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "datasets/calibration/rig_calibration.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/record/record_origin.hpp"
 #include "tests/support/expect_text.hpp"
@@ -63,6 +65,23 @@ TEST(RecordCamera, IsThatOfTheRecordingAsItWasRead) {
   EXPECT_EQ(recorded.camera->depth_units_per_metre, 1000);
 }
 
+TEST(RecordCamera, WhatACalibrationMayAtMostSayComesBack) {
+  const auto document = config::parse_toml(
+      fmt::format("[color]\nwidth_px = {0}\nheight_px = {0}\nfx_px = 500\nfy_px = 500\ncx_px = 320\n"
+                  "cy_px = 240\nreadout_s = {1}\n[depth]\nreadout_s = {1}\ndelay_s = -{2}\n",
+                  calibration::kMostSize_px, calibration::kMostReadout_s, calibration::kMostDelay_s),
+      "c.toml");
+  ASSERT_TRUE(document) << document.error().message;
+  const auto widest = calibration::rig_calibration(*document, "c.toml");
+  ASSERT_TRUE(widest) << widest.error().message;
+  RunRecord record;
+  record.recording.camera = RecordedCamera{widest->color, {}};
+  const auto back = parse_record(to_json(record), "record.json");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->recording.camera->color.pinhole.width_px, calibration::kMostSize_px);
+  EXPECT_EQ(back->recording.camera->color.timing.depth_delay_s, -calibration::kMostDelay_s);
+}
+
 TEST(RecordCamera, NumbersThatNoCameraHasAreDamage) {
   RunRecord record;
   record.recording.camera = awkward_camera();
@@ -77,7 +96,8 @@ TEST(RecordCamera, NumbersThatNoCameraHasAreDamage) {
             "record.json: fx_px of the camera = 0 (allowed: above 0)");
   EXPECT_EQ(message_with("/recording/camera/depth/delay_s", -1e9),
             "record.json: delay_s of the camera = -1000000000 (allowed: -10 to 10)");
-  testing::expect_contains(message_with("/recording/camera/color/width_px", 1e12), "width_px");
+  testing::expect_contains(message_with("/recording/camera/color/width_px", calibration::kMostSize_px + 1),
+                           "width_px");
   testing::expect_contains(message_with("/recording/camera/color/distortion", nlohmann::json::array({1})),
                            "index");
   testing::expect_contains(message_with("/recording/camera/depth/units_per_metre", -1), "units_per_metre");
