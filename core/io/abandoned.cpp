@@ -49,34 +49,35 @@ bool is_still_there(int descriptor, const fs::path& path) {
          opened.st_ino == there.st_ino && opened.st_dev == there.st_dev;
 }
 
-/// Whether it is abandoned; removes it then, unless it shall only look.
-bool remove_if_abandoned(const Leftover& leftover, bool only_look) {
-  if (leftover.age.count() > 0 && !is_unchanged_for(leftover.path, leftover.age)) return false;
+/// Removes it if it is abandoned, unless it shall only look.
+void remove_if_abandoned(const Leftover& leftover, bool only_look, Abandoned& found) {
+  if (leftover.age.count() > 0 && !is_unchanged_for(leftover.path, leftover.age)) return;
   const int lock = lock_place(leftover.path);
   const bool unlockable = lock < 0 && errno != EWOULDBLOCK && errno != ENOENT;
   const bool abandoned = lock >= 0 ? is_still_there(lock, leftover.path)
                                    : unlockable && is_unchanged_for(leftover.path, kFolderAge);
-  std::error_code ignored;
+  std::error_code error;
   // The lock is held meanwhile, so that a process that has just created the folder notices.
-  if (abandoned && !only_look) fs::remove_all(leftover.path, ignored);
+  if (abandoned && !only_look) fs::remove_all(leftover.path, error);
   if (lock >= 0) close(lock);
-  return abandoned;
+  if (error) found.kept.push_back({leftover.path, error});
+  if (abandoned && !error) found.removed.push_back(leftover.path);
 }
 
 }  // namespace
 
-std::vector<fs::path> remove_abandoned(const fs::path& parent, bool only_look) {
-  std::vector<fs::path> abandoned;
-  for (const Leftover& leftover : leftovers_in(parent, std::chrono::hours(0))) {
-    if (remove_if_abandoned(leftover, only_look)) abandoned.push_back(leftover.path);
-  }
-  return abandoned;
+Abandoned remove_abandoned(const fs::path& parent, bool only_look) {
+  Abandoned found;
+  for (const Leftover& leftover : leftovers_in(parent, std::chrono::hours(0)))
+    remove_if_abandoned(leftover, only_look, found);
+  return found;
 }
 
 void remove_abandoned_of(const fs::path& place) {
   const fs::path parent = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  Abandoned ignored;  // what stays is no obstacle: a name that is taken is not used
   for (const Leftover& leftover : leftovers_in(parent, kFolderAge, place.filename().string()))
-    remove_if_abandoned(leftover, false);
+    remove_if_abandoned(leftover, false, ignored);
 }
 
 }  // namespace fusebench::io

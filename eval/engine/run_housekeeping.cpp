@@ -85,6 +85,11 @@ void verify_files(const fs::path& folder, run::RecordHead& head) {
   head.reason = checked.error().message;
 }
 
+tl::unexpected<Error> cannot_be_removed(const fs::path& path, const std::error_code& error) {
+  return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", path.string(), error.message()),
+              "everything before it is removed; gc goes on from there once it may write to its folder");
+}
+
 /// The folders in which there is something under a temporary name, and that of kept invocations.
 std::set<fs::path> parents_of_temporaries(const fs::path& root) {
   std::set<fs::path> parents = {invocations_folder(root)};
@@ -132,16 +137,19 @@ Result<GarbageReport> collect_garbage(const fs::path& root, const Garbage& garba
     report.bytes += size_of(folder);
     report.paths.push_back(folder);
     const auto error = garbage.only_look ? std::error_code() : io::remove_atomically(folder);
-    if (error)
-      return fail(ErrorCode::io, fmt::format("{}: cannot be removed: {}", folder.string(), error.message()));
+    if (error) return cannot_be_removed(folder, error);
   }
   const auto add_temporaries = [&](const std::vector<fs::path>& paths) {
     report.temporaries += paths.size();
     report.paths.insert(report.paths.end(), paths.begin(), paths.end());
   };
   add_temporaries(remove_free_claims(root, garbage.only_look));
-  for (const fs::path& parent : parents_of_temporaries(root))
-    add_temporaries(io::remove_abandoned(parent, garbage.only_look));
+  for (const fs::path& parent : parents_of_temporaries(root)) {
+    const io::Abandoned abandoned = io::remove_abandoned(parent, garbage.only_look);
+    if (!abandoned.kept.empty())
+      return cannot_be_removed(abandoned.kept.front().path, abandoned.kept.front().reason);
+    add_temporaries(abandoned.removed);
+  }
   std::ranges::sort(report.paths);
   return report;
 }

@@ -150,7 +150,17 @@ check_disks() {
   status=$?
   ((status == 4)) || complain "a read-only folder: exit code $status instead of 4"
   grep -q 'Read-only' stderr || complain "a read-only folder: not said"
+  local left=disk/out/.left.77.tmp
   mount -o remount,rw disk
+  mkdir -p "$left/new"
+  mount -o remount,ro disk
+  "$binary" gc disk/out >stdout 2>stderr
+  status=$?
+  ((status == 4)) || complain "gc in a read-only folder: exit code $status instead of 4"
+  grep -q "$left: cannot be removed: Read-only" stderr || complain "gc in a read-only folder: what it left is not said"
+  mount -o remount,rw disk
+  "$binary" gc disk/out | grep -q 'removed 1 left' || complain "gc with a folder that can be written to again"
+  [[ ! -e $left ]] || complain "gc leaves what it says it removed"
   engine disk/out || complain "with room again: exit code $?"
   same_as_undisturbed disk/out disk
 }
