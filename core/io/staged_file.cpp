@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <utility>
 
 #include "core/io/abandoned.hpp"
 #include "core/io/temporary_name.hpp"
@@ -13,39 +14,54 @@ namespace fusebench::io {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// An empty file beside the place that no other process has, and its lock (-1: the file system has none).
-struct NewFile {
-  fs::path path;
-  int lock = -1;
-};
-
-std::error_code create_hidden(const fs::path& file, NewFile& created) {
+tl::expected<StagedFile, std::error_code> StagedFile::create(const fs::path& place) {
+  StagedFile file;
+  file.place_ = place;
+  file.path_ = place;
+  std::error_code error;
+  if (fs::exists(place, error) && !fs::is_regular_file(place, error)) return file;
+  const fs::path final_place = fs::is_symlink(place, error) ? fs::canonical(place, error) : place;
+  if (final_place.empty()) return tl::unexpected(error);
+  remove_abandoned_of(final_place);
   for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
-    const fs::path path = hidden_sibling(file, attempt);
-    const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const fs::path hidden = hidden_sibling(final_place, attempt);
+    const int descriptor = open(hidden.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST) continue;
-    if (descriptor < 0) return {errno, std::generic_category()};
+    if (descriptor < 0) return tl::unexpected(std::error_code(errno, std::generic_category()));
     close(descriptor);
-    created = {path, lock_place(path)};
-    return {};
+    file.path_ = hidden;
+    file.final_ = final_place;
+    file.lock_ = lock_place(hidden);
+    return file;
   }
-  return std::make_error_code(std::errc::file_exists);
+  return tl::unexpected(std::make_error_code(std::errc::file_exists));
 }
 
-}  // namespace
+StagedFile::StagedFile(StagedFile&& other) noexcept
+    : place_(std::move(other.place_)),
+      path_(std::move(other.path_)),
+      final_(std::exchange(other.final_, {})),
+      lock_(std::exchange(other.lock_, -1)) {}
+
+StagedFile::~StagedFile() {
+  std::error_code ignored;
+  if (!final_.empty()) fs::remove(path_, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+std::error_code StagedFile::commit() {
+  std::error_code error;
+  if (final_.empty()) return error;
+  fs::rename(path_, final_, error);
+  if (!error) final_.clear();
+  return error;
+}
 
 std::error_code write_file_atomically(const fs::path& file, std::string_view text) {
-  remove_abandoned_of(file);
-  NewFile hidden;
-  if (const std::error_code error = create_hidden(file, hidden)) return error;
-  std::error_code error = write_whole_file(hidden.path, text);
-  if (!error) fs::rename(hidden.path, file, error);
-  std::error_code ignored;
-  if (error) fs::remove(hidden.path, ignored);
-  if (hidden.lock >= 0) close(hidden.lock);
-  return error;
+  auto staged = StagedFile::create(file);
+  if (!staged) return staged.error();
+  if (const std::error_code error = write_whole_file(staged->path(), text)) return error;
+  return staged->commit();
 }
 
 bool is_staged_file(const fs::path& file) {

@@ -4,15 +4,46 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <tl/expected.hpp>
 
 namespace fusebench::io {
 
-/// Several writers of one file, also in other processes, do not conflict: the last one stays. What killed
-/// processes left of earlier ones is removed (remove_abandoned() says which). Nothing is left of a file that
-/// cannot be written; its folder must be there.
+/// A file that is being written. Several writers of one file, also in other processes, do not conflict: the
+/// last one stays. What killed processes left of earlier ones is removed (remove_abandoned() says which), and
+/// nothing is left of a file that was not committed.
+class StagedFile {
+ public:
+  /// An empty file beside the place, whose folder must be there. A link is followed; what is there and no
+  /// plain file (a device, a pipe) is written to as it is. What the operating system said if that failed.
+  [[nodiscard]] static tl::expected<StagedFile, std::error_code> create(const std::filesystem::path& place);
+
+  StagedFile(StagedFile&& other) noexcept;
+  StagedFile& operator=(StagedFile&&) = delete;
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+  ~StagedFile();
+
+  /// Where to write.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// As it was named: for messages.
+  [[nodiscard]] const std::filesystem::path& place() const { return place_; }
+
+  /// Gives the file its name.
+  [[nodiscard]] std::error_code commit();
+
+ private:
+  StagedFile() = default;
+
+  std::filesystem::path place_;
+  std::filesystem::path path_;
+  std::filesystem::path final_;  ///< empty if path_ needs no other name
+  int lock_ = -1;                ///< -1: the file system has none
+};
+
+/// All of a file as a StagedFile.
 [[nodiscard]] std::error_code write_file_atomically(const std::filesystem::path& file, std::string_view text);
 
-/// Whether this is a file under a temporary name of write_file_atomically(): a plain one, no link.
+/// Whether this is a file under a temporary name of a StagedFile: a plain one, no link.
 [[nodiscard]] bool is_staged_file(const std::filesystem::path& file);
 
 }  // namespace fusebench::io

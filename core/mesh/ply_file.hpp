@@ -5,6 +5,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
+#include "core/io/staged_file.hpp"
 
 namespace fusebench::mesh {
 
@@ -12,6 +13,9 @@ namespace fusebench::mesh {
 /// float quality and radius (if present; so MeshLab calls them), and triangles. Error io when it cannot be
 /// written.
 [[nodiscard]] Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file);
+
+/// The same into a file that gets its name when all of it is written; errors name its place.
+[[nodiscard]] Result<void> write_ply(const Mesh& mesh, const io::StagedFile& file);
 
 /// Reads a PLY mesh or point cloud, ascii or binary of either byte order: vertices with x y z and, if
 /// present, nx ny nz, red green blue (integers 0-255), quality and, where there are normals and no faces,

@@ -42,16 +42,16 @@ tl::unexpected<Error> cannot_write(const std::filesystem::path& file, int error_
               "check that the folder exists, may be written to, and has space left");
 }
 
-}  // namespace
-
-Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
+/// `name`: of the file in messages.
+Result<void> write_to(const std::filesystem::path& file, const Mesh& mesh,
+                      const std::filesystem::path& name) {
   check(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size(), "no normals or one a vertex");
   check(mesh.colors.empty() || mesh.colors.size() == mesh.vertices.size(), "no colours or one a vertex");
   check(mesh.quality.empty() || mesh.quality.size() == mesh.vertices.size(), "no quality or one a vertex");
   check(mesh.radii_m.empty() || mesh.radii_m.size() == mesh.vertices.size(), "no radius or one a vertex");
   errno = 0;
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  if (!stream) return cannot_write(file, errno);
+  if (!stream) return cannot_write(name, errno);
   std::string bytes = header_of(mesh);
   int reason = 0;
   // A piece at a time: the file of a room has hundreds of megabytes. False once the disk is full.
@@ -77,8 +77,18 @@ Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
   write_from(0);
   errno = 0;
   stream.close();  // a full disk may show only here
-  if (!stream) return cannot_write(file, reason != 0 ? reason : errno);
+  if (!stream) return cannot_write(name, reason != 0 ? reason : errno);
   return {};
+}
+
+}  // namespace
+
+Result<void> write_ply(const Mesh& mesh, const std::filesystem::path& file) {
+  return write_to(file, mesh, file);
+}
+
+Result<void> write_ply(const Mesh& mesh, const io::StagedFile& file) {
+  return write_to(file.path(), mesh, file.place());
 }
 
 }  // namespace fusebench::mesh

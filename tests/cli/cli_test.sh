@@ -801,6 +801,14 @@ check_meshes() {
   [[ $(head -c 3 colored.ply) == ply ]] || complain "a coloured mesh was not written"
   "$binary" eval mesh rec.obj truth.obj --colored absent/deep/colored.ply >stdout 2>stderr && [[ -s absent/deep/colored.ply ]] ||
     complain "--colored does not make its folder"
+  printf half >.again.ply.77.tmp
+  touch -d '2 hours ago' .again.ply.77.tmp
+  ln -s kept.ply again_link.ply
+  "$binary" eval mesh rec.obj truth.obj --colored again.ply >stdout 2>stderr && cmp -s again.ply colored.ply &&
+    [[ ! -e .again.ply.77.tmp ]] || complain "--colored leaves what a killed one left"
+  printf old >kept.ply
+  "$binary" eval mesh rec.obj truth.obj --colored again_link.ply >stdout 2>stderr && [[ -L again_link.ply ]] &&
+    cmp -s kept.ply colored.ply || complain "--colored does not follow a link"
 
   awk '/^v/ { print "v", -$3 + 2, $2 * 0.9 - $4 * 0.4 + 3, $2 * 0.4 + $4 * 0.9 - 1; next } { print }' truth.obj >first_camera.obj
   refused "an icp that sticks" 3 'stuck in a wrong place' 'hint:--trajectories TRUTH ESTIMATE' -- \

@@ -131,4 +131,4 @@ def scratch_folder():
 
 def is_temporary(name):
     """Whether it is, or is in, what a kill may leave and nobody reads."""
-    return any((part.startswith(".") and part.endswith(".tmp")) or part.endswith(".ply.part") for part in name.split("/"))
+    return any(part.startswith(".") and part.endswith(".tmp") for part in name.split("/"))

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/staged_file.hpp"
 #include "core/mesh/mesh_file.hpp"
 #include "core/mesh/ply_file.hpp"
 #include "core/mesh/scaled_mesh.hpp"
@@ -26,6 +27,11 @@ namespace fusebench::cli::evaluation {
 
 namespace {
 
+tl::unexpected<Error> cannot_write(const std::filesystem::path& file, const std::error_code& error) {
+  return fail(ErrorCode::io, fmt::format("{}: cannot be written: {}", file.string(), error.message()),
+              "choose a file in a folder that can be written");
+}
+
 Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
                            const mesh_error::MeshEvaluation& evaluation) {
   const double largest_m = options.colored_max_m.value_or(evaluation.errors.thresholds.back().tau_m);
@@ -34,22 +40,14 @@ Result<void> write_colored(const MeshVerbOptions& options, PreciseMesh mesh,
   mesh.normals.clear();
   mesh.colors = mesh_error::error_colors(evaluation.vertex_errors_m, largest_m);
   mesh.quality.assign(evaluation.vertex_errors_m.begin(), evaluation.vertex_errors_m.end());
-  const std::filesystem::path unfinished = options.colored.string() + ".part";
-  std::error_code error;
   std::error_code ignored;
   // Writing says if the folder is not there afterwards.
   if (options.colored.has_parent_path())
     std::filesystem::create_directories(options.colored.parent_path(), ignored);
-  if (auto written = mesh::write_ply(mesh.cast<float>(), unfinished); !written) {
-    std::filesystem::remove(unfinished, ignored);
-    return written;
-  }
-  std::filesystem::rename(unfinished, options.colored, error);
-  if (error) {
-    std::filesystem::remove(unfinished, ignored);
-    return fail(ErrorCode::io,
-                fmt::format("{}: cannot be written: {}", options.colored.string(), error.message()));
-  }
+  auto file = io::StagedFile::create(options.colored);
+  if (!file) return cannot_write(options.colored, file.error());
+  if (auto written = mesh::write_ply(mesh.cast<float>(), *file); !written) return written;
+  if (const std::error_code error = file->commit()) return cannot_write(options.colored, error);
   console::print_progress(
       fmt::format("{}: the reconstruction in the truth's world, dark blue on the true surface to yellow at "
                   "{:g} m from it and beyond",
