@@ -328,10 +328,14 @@ RunRow damaged_row(RunRow row, std::string reason) {
 RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* files) {
   RunRow row;
   RecordHandler handler(json, row, files);
-  if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler))
-    return damaged_row(std::move(row), reason_of(handler.problem()));
+  const auto damaged = [&](const std::string& problem) {
+    row.data = record::kUnknownWord;
+    row.truth = record::kUnknownWord;
+    return damaged_row(std::move(row), reason_of(problem));
+  };
+  if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler)) return damaged(handler.problem());
   if (const auto missing = handler.missing(); !missing.empty())
-    return damaged_row(std::move(row), reason_of(fmt::format("{} is missing", missing)));
+    return damaged(fmt::format("{} is missing", missing));
   std::ranges::sort(row.options);
   row.wrote_options = handler.has_config() && !handler.has_program();
   if (row.fingerprint.empty()) row.imu.clear();  // what stands there is the default

@@ -33,6 +33,8 @@ RunRow read_row(const fs::path& root, const fs::path& file) {
       row = damaged_row(std::move(row), std::move(damage));
   } else {
     row.readable = false;
+    row.data = record::kUnknownWord;
+    row.truth = record::kUnknownWord;
     row.reason = "record.json: cannot be read";
   }
   if (!row.readable) {

@@ -26,7 +26,7 @@ inline constexpr std::string_view kUnsetOption = "unset";
 /// One run, without what no aggregation asks for.
 struct RunRow : RunNumbers {
   std::string recording;
-  std::string data = "recorded";  ///< "recorded", "simulated"
+  std::string data = "recorded";  ///< "recorded", "simulated", kUnknownWord
   std::string imu = "none";       ///< that it used: "none", "recorded", "synthetic IMU"; empty: not known
   std::string truth;              ///< "none", "given", kPseudoTruthWord
   std::string fingerprint;        ///< of the recording; empty: it was never opened

@@ -69,14 +69,23 @@ std::set<std::string> recordings_with_shared_frames(std::span<const run_files::R
   return sharing;
 }
 
+/// A run whose record is damaged failed among those of its recording.
+std::string data_of(const tables::TableRow& row, const tables::ResultTable& table) {
+  if (row.data != record::kUnknownWord) return row.data;
+  const auto known = std::ranges::find_if(table.rows, [&](const tables::TableRow& other) {
+    return other.recording == row.recording && other.data != record::kUnknownWord;
+  });
+  return known == table.rows.end() ? row.data : known->data;
+}
+
 std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> runs,
                                        const tables::ResultTable& table) {
   const std::vector<std::string> windows = run_files::window_labels(runs);
   const std::set<std::string> sharing = recordings_with_shared_frames(runs);
   std::vector<Comparable> comparables;
   for (std::size_t i = 0; i < table.rows.size(); ++i)
-    comparables.push_back(
-        {table.rows[i].data, sharing.contains(table.rows[i].recording) ? windows[i] : std::string()});
+    comparables.push_back({data_of(table.rows[i], table),
+                           sharing.contains(table.rows[i].recording) ? windows[i] : std::string()});
   return comparables;
 }
 

@@ -34,6 +34,8 @@ inline constexpr std::uintmax_t kMostRecordBytes = std::uintmax_t{1} << 28;
 
 /// The word for a ground truth that `fusebench smooth` made from the recording itself.
 inline constexpr std::string_view kPseudoTruthWord = "pseudo ground truth";
+/// In the place of such words where a record cannot be read.
+inline constexpr std::string_view kUnknownWord = "unknown";
 
 enum class RunStatus {
   failed,  ///< ended by an error

@@ -34,6 +34,9 @@ record::RunRecord failed_record(const fs::path& folder, std::string reason) {
   record::RunRecord record;
   record.reason = std::move(reason);
   record.recording.name = place.recording;
+  record.recording.data = record::kUnknownWord;
+  record.recording.imu = record::kUnknownWord;
+  record.recording.truth = record::kUnknownWord;
   record.variant = place.variant;
   return record;
 }

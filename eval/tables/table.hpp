@@ -41,8 +41,8 @@ struct TableColumn {
 /// One run.
 struct TableRow : TableValues {
   std::string recording;
-  std::string data;   ///< "recorded", "simulated"
-  std::string imu;    ///< "none", "recorded", "synthetic IMU"
+  std::string data;   ///< "recorded", "simulated", kUnknownWord
+  std::string imu;    ///< "none", "recorded", "synthetic IMU", kUnknownWord
   std::string truth;  ///< "none", "given", kPseudoTruthWord
   std::string variant;
   std::string label;  ///< the variant, with what tells the run from others (run_files::run_labels)

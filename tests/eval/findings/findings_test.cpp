@@ -57,6 +57,22 @@ TEST_F(FindingsTest, OneRecordingIsNoEvidence) {
   EXPECT_FALSE(found[0].configurations[1].to_best->interval.has_value());
 }
 
+TEST_F(FindingsTest, ARunWithADamagedRecordFailedAmongThoseOfItsRecording) {
+  add_run("a", "full", 0.01);
+  add_run("a", "dm", 0.02);
+  record::RunRecord damaged;
+  damaged.recording.name = "a";
+  damaged.recording.data = record::kUnknownWord;
+  damaged.recording.imu = record::kUnknownWord;
+  damaged.variant = "dm";
+  runs_.push_back({folder_ / "runs/a/dm/89abcdef", damaged, run_files::RunState::damaged});
+  const auto found = rankings();
+  ASSERT_EQ(found.size(), 1U);
+  ASSERT_EQ(found[0].configurations.size(), 2U);
+  EXPECT_EQ(found[0].configurations[1].runs, 2U);
+  EXPECT_EQ(found[0].configurations[1].ok, 1U);
+}
+
 TEST_F(FindingsTest, ADifferenceIsJudgedByItsIntervalOverRecordings) {
   const double noise[] = {0.02, -0.01, 0.015, -0.025};
   for (int i = 0; i < 4; ++i) {

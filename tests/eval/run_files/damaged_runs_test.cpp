@@ -7,6 +7,7 @@
 
 #include "core/io/staged_folder.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/aggregate/record_scan.hpp"
 #include "eval/aggregate/run_rows.hpp"
 #include "eval/compare/comparison.hpp"
 #include "eval/engine/run_housekeeping.hpp"
@@ -151,6 +152,20 @@ TEST_F(DamagedRunsTest, ARecordOfZerosAfterItsHead) {
 TEST_F(DamagedRunsTest, ARecordThatEndsEarly) {
   overwrite("record.json", testing::read_bytes(damaged("record.json")).substr(0, 1000));
   expect_row("record.json is damaged: not JSON at byte 1000, where it ends; run it again");
+}
+
+TEST_F(DamagedRunsTest, OfWhichKindTheDataOfALostRecordAreIsUnknown) {
+  overwrite("record.json", "{ half");
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value());
+  EXPECT_EQ(table->rows[1].data, kUnknownWord);
+  EXPECT_EQ(table->rows[1].imu, kUnknownWord);
+  EXPECT_NE(render_table(*table, TableFormat::markdown).find("| unknown"), std::string::npos);
+  EXPECT_EQ(scan_record("{ half").data, kUnknownWord);
+  // Of a run that lost another file only the numbers are in doubt.
+  overwrite("record.json", testing::read_bytes(folder_ / "base/desk/dm/dddddddd/record.json"));
+  overwrite("mesh.ply", "");
+  EXPECT_EQ(collect_table(folder_ / "runs")->rows[1].data, "recorded");
 }
 
 TEST_F(DamagedRunsTest, AnEmptyRecord) {
