@@ -1,10 +1,14 @@
 #include "eval/aggregate/run_metrics.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/base/nearest_name.hpp"
 
 namespace fusebench::aggregate {
 
@@ -32,14 +36,14 @@ std::span<const RunMetric> run_metrics() {
 }
 
 Result<const RunMetric*> find_run_metric(std::string_view name) {
-  std::string allowed;
+  std::vector<std::string> allowed;
   for (const RunMetric& metric : run_metrics()) {
     if (!metric.less_is_better) continue;
     if (name == metric.key || (!metric.word.empty() && name == metric.word)) return &metric;
-    allowed +=
-        fmt::format("{}{}", allowed.empty() ? "" : " | ", metric.word.empty() ? metric.key : metric.word);
+    allowed.emplace_back(metric.word.empty() ? metric.key : metric.word);
   }
-  return fail(ErrorCode::usage, fmt::format("{} is no metric to rank by (allowed: {})", name, allowed));
+  return fail(ErrorCode::usage, fmt::format("{} is no metric to rank by (allowed: {}){}", name,
+                                            fmt::join(allowed, " | "), nearest_hint(name, allowed)));
 }
 
 }  // namespace fusebench::aggregate

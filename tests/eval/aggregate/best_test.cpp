@@ -170,6 +170,7 @@ TEST(Best, ErrorsAreTyped) {
   EXPECT_EQ(refused.error().code, ErrorCode::usage);
   EXPECT_NE(refused.error().message.find("none | levels"), std::string::npos) << refused.error().message;
   EXPECT_EQ(find_run_metric("fps").error().code, ErrorCode::usage);  // more is better
+  EXPECT_TRUE(find_run_metric("atee").error().message.ends_with("cpu_ms_per_frame) (nearest: ate)"));
   EXPECT_EQ(parse_best_format("pdf").error().code, ErrorCode::usage);
 }
 
