@@ -48,9 +48,8 @@ sed -e 's/"status": "ok"/"status": "failed"/' -e 's/"reason": ""/"reason": "<b>n
 # From where the recording is not, since it is looked for by its name.
 mkdir elsewhere
 report_from_elsewhere() { (cd elsewhere && "$binary" report ../runs "$@") 2>stderr; }
-figures_as() { if command -v gnuplot >/dev/null; then figures=(--figures ../figures --figure-format "$1"); else figures=(); fi; }
-figures_as svg
-report_from_elsewhere --out ../report.html "${figures[@]}" || failed "no report: $(cat stderr)"
+figures_as() { if command -v gnuplot >/dev/null; then figures=(--figures "$1" --figure-format "$2"); else figures=(); fi; }
+report_from_elsewhere --out ../report.html || failed "no report: $(cat stderr)"
 cp stderr stderr.report
 (($(stat -c %s report.html) < 15000000)) || failed "the report is larger than 15 MB"
 # Pictures are letters too, among which there may be any three by chance.
@@ -81,7 +80,8 @@ grep -q '<figcaption>largest error of full' with_images.html || failed "the wors
 rm uncalibrated/calibration.toml
 "$binary" run uncalibrated --camera 131.25,131,79.5,59.5 --depth-units 5001 --variant no-imu --out camera_runs >/dev/null 2>&1
 grep -q '"units_per_metre": 5001' camera_runs/uncalibrated/no-imu/*/record.json || failed "the record does not have the depth units"
-"$binary" report camera_runs --data . --out camera.html 2>stderr || failed "no report of a run with a given camera: $(cat stderr)"
+figures_as camera_figures pdf
+"$binary" report camera_runs --data . --out camera.html "${figures[@]}" 2>stderr || failed "no report of a run with a given camera: $(cat stderr)"
 grep -q '<figure data-time=' camera.html || failed "images are not read with the camera of the record: $(cat stderr)"
 # Its rows are those that `table` prints, online and final apart.
 "$binary" table runs --systems | grep '^|' | tail -n +3 |
@@ -92,17 +92,16 @@ sed 's/<td class="best">/<td>/g' report.html >plain.html
 while IFS= read -r row; do
   grep -qF -- "$row" plain.html || failed "the report does not have the row of systems $row"
 done <systems_rows
-figures_as pdf
+figures_as ../figures svg
 report_from_elsewhere --out ../again.html "${figures[@]}" || failed "no figures: $(cat stderr)"
 cmp report.html again.html || failed "the report is not the same twice"
 if command -v gnuplot >/dev/null; then
-  for format in svg pdf; do
-    for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error \
-      time_of_the_stages_over_the_frames_no_imu x_z_view_with_loops_full candidates_for_loops_full \
-      position_error_before_and_after_full; do
-      # A run with edited options has them in its name.
-      compgen -G "figures/recording-$figure*.$format" >/dev/null || failed "no figure $figure.$format: $(ls figures)"
-    done
+  for figure in x_y_view position_error relative_error_over_segments_of_the_path time_of_the_stages average_intensity_error \
+    time_of_the_stages_over_the_frames_no_imu x_z_view_with_loops_full candidates_for_loops_full \
+    position_error_before_and_after_full; do
+    # A run with edited options has them in its name.
+    compgen -G "figures/recording-$figure*.svg" >/dev/null || failed "no figure $figure: $(ls figures)"
   done
+  [[ $(head -c 4 camera_figures/*-position_error.pdf) == %PDF ]] || failed "no figure as PDF: $(ls camera_figures)"
 fi
 exec /usr/bin/python3 -B "$here/page_test.py" with_images.html "${screenshots[@]}"
