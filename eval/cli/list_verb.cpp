@@ -20,6 +20,8 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/engine/run_housekeeping.hpp"
+#include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/run_labels.hpp"
 #include "eval/suites/suite_file.hpp"
 #include "eval/suites/suite_names.hpp"
 #include "eval/text/json_text.hpp"
@@ -148,6 +150,7 @@ Result<Listing> list_runs_of(const ListOptions& options) {
   const std::filesystem::path folder = options.of.empty() ? "results/runs" : options.of;
   const auto runs = engine::list_runs(folder, options.verify);
   if (!runs) return tl::unexpected(runs.error());
+  if (runs->empty()) return run_files::holds_no_runs(folder);
   std::vector<run_files::RunTraits> traits;
   for (const engine::ListedRun& run : *runs) traits.push_back(run.traits);
   const std::vector<std::string> labels = run_files::run_labels(traits);

@@ -241,6 +241,7 @@ check_verbs() {
   mkdir -p theirs/.notes.tmp
   touch theirs/.notes.tmp/file
   says 3 'holds no runs' gc theirs
+  says 3 'holds no runs' list runs theirs
   [[ -e theirs/.notes.tmp/file ]] || complain "gc removes what is not its own"
 
   # After a power cut the end of a record is zeros: the run is a row that says so, and is run again.

@@ -186,7 +186,7 @@ class PowerCuts(StepRunner):
         """Before the second try: what the program takes for results."""
         runs = runs_of(cut.tree, root)
         code, said, output = self.command(["list", "runs", root, "--json"])
-        if code != (0 if root in cut.tree else 3):
+        if code != (0 if runs else 3):
             self.complain(cut, f"`list runs {root}` of {len(runs)} runs ends with {code}", said)
             return
         rows = json.loads(output)["runs"] if code == 0 else []
