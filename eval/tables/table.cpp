@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "core/base/geometry.hpp"
@@ -106,6 +107,8 @@ void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable
 std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::vector<std::string>& labels) {
   std::vector<TableMean> means;
   std::vector<std::set<std::string>> recordings;
+  // Of a run that failed early or is damaged the frames may be unknown: it is no window of its own.
+  std::vector<std::set<std::tuple<std::string, std::size_t, std::size_t>>> windows;
   std::vector<std::array<std::size_t, 6>> counts;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const TableRow& row = rows[i];
@@ -114,12 +117,14 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::ve
     };
     const auto at = static_cast<std::size_t>(std::ranges::find_if(means, same) - means.begin());
     if (at == means.size()) {
-      means.push_back({row.data, row.imu, row.truth, row.variant, labels[i], 0, 0, 0, 0, {}});
+      means.push_back({row.data, row.imu, row.truth, row.variant, labels[i], 0, 0, 0, 0, {}, 0});
       recordings.emplace_back();
+      windows.emplace_back();
       counts.emplace_back();
     }
     TableMean& mean = means[at];
     recordings[at].insert(row.recording);
+    if (row.total > 0) windows[at].emplace(row.recording, row.first_frame, row.total);
     ++mean.total;
     if (row.status != record::RunStatus::ok) continue;
     ++mean.ok;
@@ -133,6 +138,7 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::ve
   }
   for (std::size_t at = 0; at < means.size(); ++at) {
     means[at].recordings = recordings[at].size();
+    means[at].windows = windows[at].size();
     for (std::size_t c = 0; c < table_columns().size(); ++c) {
       auto& value = means[at].values.*(table_columns()[c].value);
       if (counts[at][c] < means[at].ok) value.reset();
@@ -170,7 +176,7 @@ std::vector<std::string> footer_of(const ResultTable& table) {
         "mean: arithmetic, of the variant's runs that are ok, whose number stands before that of all; over "
         "data of one "
         "kind. "
-        "Means over different recordings do not compare.");
+        "Means over different recordings, or over other frames of them, do not compare.");
   }
   std::vector<record::DataWords> words;
   for (const TableRow& row : table.rows) words.push_back({row.data, row.imu, row.truth});

@@ -69,8 +69,9 @@ struct TableMean {
   std::size_t recordings = 0;  ///< different ones
   std::size_t ok = 0;
   std::size_t total = 0;
-  std::size_t silent = 0;  ///< runs with silent failures among the ok ones
-  TableValues values;      ///< each over all ok runs; absent where one of them does not have it
+  std::size_t silent = 0;   ///< runs with silent failures among the ok ones
+  TableValues values;       ///< each over all ok runs; absent where one of them does not have it
+  std::size_t windows = 0;  ///< different stretches of frames of these recordings, together
 };
 
 struct ResultTable {

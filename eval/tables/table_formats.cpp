@@ -42,9 +42,14 @@ Cells shown_cells(const TableRow& row) {
   return cells;
 }
 
+/// Parts of one recording are counted as such: a mean over them is another one than over whole recordings.
+std::string mean_over(const TableMean& mean) {
+  if (mean.windows <= mean.recordings) return fmt::format("mean over {} recordings", mean.recordings);
+  return fmt::format("mean over {} windows of {} recordings", mean.windows, mean.recordings);
+}
+
 Cells shown_cells(const TableMean& mean) {
-  Cells cells = {fmt::format("mean over {} recordings", mean.recordings),
-                 record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
+  Cells cells = {mean_over(mean), record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
                  mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} silent)", mean.ok, mean.total, mean.silent,
                                                mean.silent == 1 ? "" : "s")
                                  : fmt::format("{}/{} ok", mean.ok, mean.total)};
@@ -171,7 +176,8 @@ std::string json(const ResultTable& table) {
   for (const TableMean& mean : table.means) {
     Json json = {{"data", mean.data},       {"imu", mean.imu},       {"truth", mean.truth},
                  {"variant", mean.variant}, {"label", mean.label},   {"recordings", mean.recordings},
-                 {"n_ok", mean.ok},         {"n_total", mean.total}, {"n_silent", mean.silent}};
+                 {"n_ok", mean.ok},         {"n_total", mean.total}, {"n_silent", mean.silent},
+                 {"windows", mean.windows}};
     json.update(json_of(mean.values));
     means.push_back(std::move(json));
   }

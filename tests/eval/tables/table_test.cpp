@@ -156,9 +156,30 @@ TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("| 1/2 ok |"), std::string::npos);
 }
 
+TEST_F(TableTest, AMeanOverPartsOfARecordingSaysSo) {
+  add_run("full", RunStatus::ok, "", 0.01, {}, "aaaaaaaa");
+  add_run("full", RunStatus::ok, "", 0.03, {}, "bbbbbbbb");
+  const auto part = std::filesystem::path("runs") / recording_ / "full/bbbbbbbb/record.json";
+  RunRecord record = *read_record(folder_ / part);
+  record.frames = {100, 100, 0};
+  write(part, to_json(record));
+  recording_ = "fr1_xyz";
+  add_run("full", RunStatus::ok, "", 0.02, {});
+  add_run("dm", RunStatus::ok, "", 0.02, {});
+  recording_ = "fr1_rpy";
+  add_run("dm", RunStatus::ok, "", 0.02, {});
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value());
+  ASSERT_EQ(table->means.size(), 2U);
+  EXPECT_EQ(table->means[0].windows, 3U);
+  const auto cells = table_cells(*table);
+  EXPECT_EQ(cells[cells.size() - 2][0], "mean over 3 windows of 2 recordings");
+  EXPECT_EQ(cells.back()[0], "mean over 2 recordings");
+}
+
 TEST_F(TableTest, AMeanSaysThatItCountsRunsAsSilentAndARowFrames) {
   ResultTable table;
-  table.means.push_back({"recorded", "none", "given", "full", "full", 2, 2, 2, 1, {}});
+  table.means.push_back({"recorded", "none", "given", "full", "full", 2, 2, 2, 1, {}, 2});
   EXPECT_EQ(table_cells(table).back()[4], "2/2 ok (1 run silent)");
 }
 
