@@ -28,6 +28,8 @@ constexpr int kRounds = 3;
 // much. The test is not significant where the truth itself hardly moves: turn plus baseline over depth.
 constexpr double kStaticFactor = 1.1;
 constexpr double kMinMotion_rad = radians(3);
+// A camera that stands still is explained by any poses, depth scale, focal length and clock alike.
+constexpr double kStill_rad = radians(0.3);
 
 bool clear(const Comparison& c, double factor) { return c.factor < factor && c.wins >= kMinShareOfPairs; }
 
@@ -241,8 +243,17 @@ void check_reprojection(const recording::Recording& recording, const Workers& wo
   measures::Reading still;
   still.pose = [](const SE3&) { return SE3{}; };
   measured.static_factor = test.compare(test.residuals({}), still).factor;
-  search_misreadings(recording, test, measured, out);
-  report_inconsistency(measured, out);
+  if (const double motion_rad = median_motion_rad(measured, out.depth.median_m); motion_rad < kStill_rad) {
+    out.add("reprojection-untested", Severity::note,
+            fmt::format("by the ground truth the camera hardly moves between the frames that are compared "
+                        "({:.1f} deg of view): "
+                        "poses, calibration and stamps are not tested by the images",
+                        degrees(motion_rad)),
+            "with --frames A:B choose a part in which it moves");
+  } else {
+    search_misreadings(recording, test, measured, out);
+    report_inconsistency(measured, out);
+  }
   out.reprojection = std::move(measured);
 }
 

@@ -67,6 +67,21 @@ TEST(Inspection, FiveRightFramesDoNotSayThatDepthIsMisregistered) {
   EXPECT_FALSE(result.has("depth-misregistered"));
 }
 
+TEST(Inspection, ACameraThatStandsStillTestsNoCalibration) {
+  Recording recording = clean_recording({.frames = 10, .imu = false});
+  recording.load_frame = [still = *recording.load_frame(0), frames = recording.frames](std::size_t k) {
+    RgbdFrame frame = still;
+    frame.timestamp_ns = frames[k].timestamp_ns;
+    return Result<RgbdFrame>(std::move(frame));
+  };
+  for (auto& pose : recording.ground_truth) pose.T_world_camera = {};
+  const Inspection result = inspected(recording);
+  ASSERT_TRUE(result.reprojection);
+  EXPECT_TRUE(result.reprojection->hypotheses.empty());
+  ASSERT_NE(find(result, "reprojection-untested"), nullptr);
+  EXPECT_THAT(find(result, "reprojection-untested")->hint, ::testing::HasSubstr("--frames"));
+}
+
 TEST(Inspection, AFrameThatCannotBeLoadedIsAFinding) {
   Recording recording = clean_recording({.frames = 20});
   recording.load_frame = [whole = recording.load_frame](std::size_t k) -> Result<RgbdFrame> {
