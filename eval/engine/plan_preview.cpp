@@ -81,6 +81,8 @@ std::string summary(const PlanPreview& preview, const BatchPlan& plan, int at_on
       "{} runs: {} finished, {} failed before, {} to do, {} unknown; {} excluded\n", preview.runs.size(),
       preview.finished, preview.failed, preview.waiting, preview.unknown, plan.excluded.size());
   if (preview.finished == preview.runs.size()) return text;
+  if (preview.finished + preview.unknown == preview.runs.size())
+    return text + "how long they take is known when their recordings are there\n";
   text += fmt::format("about {} of work, {} with {} at a time", text::duration_text(preview.time_s),
                       text::duration_text(preview.time_s / at_once), at_once);
   if (preview.guessed > 0)

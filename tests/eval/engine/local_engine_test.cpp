@@ -239,6 +239,15 @@ TEST_F(LocalEngineTest, ExclusionsHaveReasons) {
       << text;
 }
 
+TEST_F(LocalEngineTest, NoTimeIsPromisedWhereNoRecordingIsThere) {
+  PlanPreview preview;
+  preview.runs = {{"a full", JobState::unknown, "its recording will be simulated first", 0}};
+  preview.unknown = 1;
+  const std::string text = to_text(preview, {}, 2);
+  EXPECT_EQ(text.find("about 0 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("is known when their recordings are there"), std::string::npos) << text;
+}
+
 TEST_F(LocalEngineTest, WindowsThatAreNotThereAreRowsOfTheirOwn) {
   BatchPlan planned = plan();
   const BatchJob first = planned.jobs[0];
