@@ -42,6 +42,7 @@ void append(std::string& text, std::string_view words) {
 
 std::string imu_words(const std::string& imu) {
   if (imu == "none") return "no IMU";
+  if (imu == "not said") return "IMU not said";  // an imported run
   return imu == "recorded" ? "recorded IMU" : imu;
 }
 

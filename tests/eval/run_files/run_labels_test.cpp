@@ -43,6 +43,13 @@ TEST(RunLabelsTest, RunsThatDoNotKnowTheirOptionsHaveNoSayInWhatIsShared) {
   EXPECT_EQ(run_labels(runs), (Texts{"full", "imported"}));
 }
 
+TEST(RunLabelsTest, AnImportedRunOfUnknownImuSaysWhatIsNotSaid) {
+  std::vector runs = {run_of("ORB-SLAM3"), run_of("ORB-SLAM3")};
+  runs[0].imu = "not said";
+  runs[1].imu = "none";
+  EXPECT_EQ(run_labels(runs), (Texts{"ORB-SLAM3 IMU not said", "ORB-SLAM3 no IMU"}));
+}
+
 TEST(RunLabelsTest, WindowsRepetitionsAndImusAreToldWhereTheyDiffer) {
   std::vector runs = {run_of("full"), run_of("full"), run_of("full"), run_of("dm")};
   runs[1].repetition = 2;
