@@ -330,7 +330,8 @@ Result<std::vector<fs::path>> find_recordings(const std::string& name, const fs:
   if (!found.empty()) return found;
   return fail(ErrorCode::data_missing,
               fmt::format("no recording whose name begins with '{}' under '{}'", beginning, data.string()),
-              "--data or FUSEBENCH_DATA names the folder of recordings");
+              "--data or FUSEBENCH_DATA names the folder of recordings; scripts/fetch_datasets.sh downloads "
+              "published ones, and --only recording=TEXT leaves out those without TEXT in their name");
 }
 
 Result<fs::path> find_recording(const std::string& name, const fs::path& data) {

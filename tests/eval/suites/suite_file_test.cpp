@@ -53,6 +53,14 @@ TEST_F(SuiteTest, ReadsEveryKey) {
   EXPECT_TRUE(config->origin("iekf.max_iterations").ends_with("suite.toml:6"));
 }
 
+TEST_F(SuiteTest, OfAMissingRecordingItSaysHowToGoOn) {
+  add_recording("slow");
+  const auto found = find_recordings("rgbd_dataset_freiburg1_rpy*", folder_);
+  ASSERT_FALSE(found.has_value());
+  EXPECT_NE(found.error().hint.find("fetch_datasets.sh"), std::string::npos) << found.error().hint;
+  EXPECT_NE(found.error().hint.find("--only recording="), std::string::npos) << found.error().hint;
+}
+
 TEST_F(SuiteTest, ItsNameIsThatOfAFolder) {
   const std::vector<std::string> wrong = {"../x", "/tmp/x", "a/b",    "..",
                                           ".x",   "a b",    "a\\\\b", std::string(201, 'a')};
