@@ -1,11 +1,11 @@
 #include "core/loops/loop_closure.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "core/base/solvers.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 
@@ -26,7 +26,7 @@ Matrix6d position_in(const Matrix6d& covariance, const SE3& T_world_a) {
 
 /// The covariance without what is negative in it.
 Matrix6d not_negative(const Matrix6d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(0.5 * (covariance + covariance.transpose()));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Matrix6d(0.5 * (covariance + covariance.transpose())));
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
          eigen.eigenvectors().transpose();
 }

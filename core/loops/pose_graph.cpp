@@ -6,10 +6,10 @@
 #include <ceres/solver.h>
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <array>
 
 #include "core/base/geometry.hpp"
+#include "core/base/solvers.hpp"
 #include "core/smoother/manifolds.hpp"
 #include "core/smoother/residuals.hpp"
 

@@ -1,8 +1,9 @@
 #include "core/measurement/patch_scatter.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench::measurement {
 

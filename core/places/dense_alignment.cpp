@@ -1,11 +1,10 @@
 #include "core/places/dense_alignment.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "core/base/solvers.hpp"
 #include "core/places/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 

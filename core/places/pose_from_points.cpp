@@ -1,12 +1,13 @@
 #include "core/places/pose_from_points.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <opencv2/calib3d.hpp>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench::places {
 
@@ -149,7 +150,7 @@ NormalEquations normal_equations(std::span<const SeenPoint> seen, std::span<cons
 SE3 stepped(std::span<const SeenPoint> seen, std::span<const std::size_t> inliers, const SE3& T_a_camera,
             const PinholeCamera& camera, double huber_px) {
   const NormalEquations sum = normal_equations(seen, inliers, T_a_camera, camera, huber_px);
-  const Vector6d step = sum.information.ldlt().solve(-sum.gradient);
+  const Vector6d step = sum.information.ldlt().solve(Vector6d(-sum.gradient));
   if (!step.allFinite()) return T_a_camera;
   return T_a_camera * SE3{so3_exp(step.head<3>()), step.tail<3>()};
 }

@@ -1,10 +1,10 @@
 #include "core/relocalisation/relocalisation_update.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/base/solvers.hpp"
 #include "core/filter/pose_clones.hpp"
 
 namespace fusebench::relocalisation {

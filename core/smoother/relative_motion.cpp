@@ -1,8 +1,9 @@
 #include "core/smoother/relative_motion.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench::smoother {
 

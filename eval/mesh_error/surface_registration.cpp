@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/base/solvers.hpp"
 
 namespace fusebench::mesh_error {
 

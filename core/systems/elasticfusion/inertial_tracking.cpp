@@ -1,9 +1,8 @@
 #include "core/systems/elasticfusion/inertial_tracking.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <optional>
 
+#include "core/base/solvers.hpp"
 #include "core/prediction/initialisation.hpp"
 #include "core/prediction/motion_prior.hpp"
 

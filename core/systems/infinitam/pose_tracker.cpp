@@ -1,10 +1,10 @@
 #include "core/systems/infinitam/pose_tracker.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/base/solvers.hpp"
 #include "core/systems/infinitam/depth_pyramid.hpp"
 
 namespace fusebench::systems::infinitam {

@@ -1,10 +1,9 @@
 #include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
+#include "core/base/solvers.hpp"
 #include "core/systems/elasticfusion/tracking/intensity_matching.hpp"
 #include "core/systems/elasticfusion/tracking/plane_matching.hpp"
 
