@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench {
 

@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <random>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench {
 

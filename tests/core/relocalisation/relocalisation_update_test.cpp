@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/base/solvers.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/filter/pose_clones.hpp"
 

@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "core/base/solvers.hpp"
 #include "core/prediction/smoothed_sample.hpp"
 #include "core/smoother/manifolds.hpp"
 #include "core/smoother/relative_motion.hpp"

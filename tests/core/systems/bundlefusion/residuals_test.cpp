@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-
+#include "core/base/solvers.hpp"
 #include "core/systems/bundlefusion/dense_verification.hpp"
 #include "tests/core/systems/bundlefusion/made_views.hpp"
 #include "tests/support/numeric_jacobian.hpp"
