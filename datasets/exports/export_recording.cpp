@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "core/base/nearest_name.hpp"
@@ -16,6 +17,7 @@
 #include "datasets/exports/open3d_export.hpp"
 #include "datasets/exports/sens_export.hpp"
 #include "datasets/exports/tum_export.hpp"
+#include "datasets/reading/side_files.hpp"
 
 namespace fusebench::exports {
 
@@ -66,6 +68,14 @@ Result<void> check_frames(const recording::Recording& recording, const FormatRow
   return {};
 }
 
+/// The file by which simulated data keep that label when the export is opened as a recording.
+Result<void> write_label(const recording::Recording& recording, PlaceKind kind, const ExportPlace& place) {
+  if (!recording.simulated) return {};
+  const std::string_view file = reading::kSimulationFile;
+  return place.write(kind == PlaceKind::folder ? std::string(file) : place.beside(file),
+                     fmt::format("# exported from the simulated recording {}\n", recording.name));
+}
+
 }  // namespace
 
 std::string_view to_string(ExportFormat format) { return row_of(format).name; }
@@ -93,6 +103,8 @@ Result<ExportSummary> export_recording(const recording::Recording& recording, Ex
   if (!place) return tl::unexpected(place.error());
   auto written = row.write(recording, *place);
   if (!written) return tl::unexpected(written.error());
+  if (const auto labelled = write_label(recording, row.kind, *place); !labelled)
+    return tl::unexpected(labelled.error());
   if (const auto done = place->commit(); !done) return tl::unexpected(done.error());
   // Files are in the folder of the export, or beside its file.
   const std::filesystem::path folder = std::filesystem::is_directory(out) ? out : out.parent_path();

@@ -93,10 +93,6 @@ Result<void> write_sensors(const recording::Recording& recording, const ExportPl
   if (auto written = place.write("calibration.toml", toml); !written) return written;
   if (auto written = place.write("orbslam3.yaml", orbslam3_settings(recording, kTumDepth)); !written)
     return written;
-  if (recording.simulated) {  // the file by which simulated data keep that label
-    const std::string text = fmt::format("# exported from the simulated recording {}\n", recording.name);
-    if (auto written = place.write("simulation.toml", text); !written) return written;
-  }
   if (!recording.accelerometer.empty()) {
     if (auto written = place.write("accelerometer.txt", accelerometer_text(recording)); !written)
       return written;

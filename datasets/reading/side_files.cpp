@@ -128,8 +128,13 @@ Result<void> read_exact_truth_beside(const std::filesystem::path& folder, record
 }
 
 void note_simulation(const std::filesystem::path& folder, recording::Recording& recording) {
-  recording.simulated = io::is_named(folder / "simulation.toml");
-  if (recording.simulated) recording.notes.emplace_back("simulated: simulation.toml says how it was made");
+  for (const std::string& name :
+       {std::string(kSimulationFile), fmt::format("{}.{}", recording.name, kSimulationFile)}) {
+    if (!io::is_named(folder / name)) continue;
+    recording.simulated = true;
+    recording.notes.push_back(fmt::format("simulated: {} says how it was made", name));
+    return;
+  }
 }
 
 }  // namespace fusebench::reading

@@ -45,7 +45,11 @@ void label_truth(std::string_view label, recording::Recording& recording);
 [[nodiscard]] Result<void> read_exact_truth_beside(const std::filesystem::path& folder,
                                                    recording::Recording& recording);
 
-/// simulation.toml: marks a simulated recording. Sets recording.simulated.
+/// Marks a simulated recording by being there: in the recording's folder, or beside a file that is one, as
+/// NAME.simulation.toml beside NAME.sens.
+inline constexpr std::string_view kSimulationFile = "simulation.toml";
+
+/// Looks for that file by the recording's name. Sets recording.simulated.
 void note_simulation(const std::filesystem::path& folder, recording::Recording& recording);
 
 }  // namespace fusebench::reading

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/exports/quantised_frames.hpp"
+#include "datasets/open_recording.hpp"
 #include "tests/datasets/exports/made_recording.hpp"
 #include "tests/support/expect_text.hpp"
 
@@ -81,6 +82,27 @@ TEST_P(EveryFormat, ReplacesNothing) {
   expect_contains(done.error().message, "room: exists already");
   expect_contains(done.error().hint, "--out");
   EXPECT_EQ(testing::files_below(folder_), (std::map<std::string, std::string>{{"room", "precious"}}));
+}
+
+TEST_P(EveryFormat, SimulatedDataKeepTheirLabel) {
+  recording::Recording recording = whole();
+  const bool is_sens = GetParam() == ExportFormat::sens;
+  for (const bool simulated : {false, true}) {
+    recording.simulated = simulated;
+    const std::filesystem::path out =
+        folder_ / (simulated ? "made" : "seen") / (is_sens ? "room.sens" : "room");
+    const auto done = export_recording(recording, GetParam(), out);
+    ASSERT_TRUE(done) << done.error().message;
+    const bool is_folder = std::filesystem::is_directory(out);
+    const std::filesystem::path label =
+        is_folder ? out / "simulation.toml" : out.parent_path() / "room.simulation.toml";
+    EXPECT_EQ(std::filesystem::exists(label), simulated);
+    if (simulated) expect_contains(testing::read_bytes(label), "simulated recording made");
+    if (!datasets::recognise_format(out)) continue;  // only other programs read it
+    const auto read = datasets::open_recording(out);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->simulated, simulated);
+  }
 }
 
 TEST_P(EveryFormat, RefusesARecordingWithoutFrames) {
