@@ -59,10 +59,11 @@ template <class T>
 struct Outcome {
   std::optional<T> value;
   std::string reason = "not computed";
+  std::string hint = {};  ///< what to do then; records do not hold it
 
   [[nodiscard]] static Outcome from(Result<T> result) {
     if (result) return {std::move(*result), {}};
-    return {std::nullopt, result.error().message};
+    return {std::nullopt, result.error().message, result.error().hint};
   }
 };
 

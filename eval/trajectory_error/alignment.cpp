@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace fusebench::trajectory_error {
@@ -31,7 +34,25 @@ std::vector<Vector3d> positions_of(std::span<const SE3> poses) {
 tl::unexpected<Error> undetermined(const std::string& why) {
   return fail(
       ErrorCode::data_corrupt, fmt::format("the trajectory cannot be aligned: {}", why),
-      "alignment of positions needs three that are not on one line; --align origin or none needs one");
+      "take more frames: alignment of positions needs three that are not on one line; `fusebench eval ape` "
+      "with --align origin or none needs one");
+}
+
+bool hardly_move(std::span<const Vector3d> positions) {
+  constexpr double kStill_m = 0.001;
+  return std::ranges::all_of(
+      positions, [&](const Vector3d& position) { return (position - positions[0]).norm() < kStill_m; });
+}
+
+/// Why positions of which one set lies on a line or in a point do not tell a rotation.
+std::string why_flat(std::span<const Vector3d> reference, std::span<const Vector3d> estimate) {
+  const auto still = [&](std::string_view whose) {
+    return fmt::format("the camera hardly moves in {} between its {} matched positions", whose,
+                       reference.size());
+  };
+  if (hardly_move(reference)) return still("the ground truth");
+  if (hardly_move(estimate)) return still("the estimate");
+  return fmt::format("its {} matched positions lie on a line", reference.size());
 }
 
 /// Rotation about z that turns the estimate's positions closest to the reference's.
@@ -92,9 +113,7 @@ Result<Similarity> align_positions(std::span<const Vector3d> reference, std::spa
   const Vector3d singular = svd.singularValues();
   // Written so that NaN and all-zero fail.
   if (!(singular[1] > kRankTolerance * singular[0])) {
-    return undetermined(fmt::format(
-        "its {} matched positions lie on a line or in a point (singular values {:.3g}, {:.3g}, {:.3g})",
-        reference.size(), singular[0], singular[1], singular[2]));
+    return undetermined(why_flat(reference, estimate));
   }
   Vector3d signs = Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;  // no reflections

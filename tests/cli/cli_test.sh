@@ -272,6 +272,7 @@ check_recordings() {
   (mkdir elsewhere && cd elsewhere && "$binary" run fr1_rpy --data ../data --variant no-imu --frames 0:2 --out out) \
     >stdout 2>stderr || complain "run by a published name: exit code $?"
   grep -q '^no ATE: the trajectory cannot be aligned: 2 matched positions' stderr || complain "run does not say why it has no ATE"
+  grep -q '^  hint: take more frames' stderr || complain "run without ATE does not say what to do"
   grep -rq '"name": "rgbd_dataset_freiburg1_rpy"' --include record.json elsewhere/out || complain "another recording was run"
   grep -q '"frames": null' <("$binary" list recordings --data data --json) || complain "unknown is not null in JSON"
   listed "a text" '^fr3_office ' -- FR3_office
@@ -285,7 +286,7 @@ check_recordings() {
     complain "an open window: exit code $?"
   grep -q '"first_frame": 3' "$first/record.json" || complain "an open window: another first frame"
   again=$("$binary" run --like "$first" --data data --out again 2>stderr) || complain "run --like: exit code $?"
-  [[ $(grep -vc '^no ATE: ' stderr) == 1 && ${first#like/} == "${again#again/}" ]] || complain "run --like: another run, $again"
+  [[ $(grep -vcE '^(no ATE|  hint): ' stderr) == 1 && ${first#like/} == "${again#again/}" ]] || complain "run --like: another run, $again"
   cmp -s "$first/trajectory.tum" "$again/trajectory.tum" || complain "run --like: another trajectory"
   again=$("$binary" run scene/freiburg1_walk --data data --like "$first/record.json" --set iekf.max_iterations=2 \
     --out again --json 2>stderr) || complain "run --like with changes: exit code $?"

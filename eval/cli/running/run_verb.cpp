@@ -127,8 +127,10 @@ Result<int> run(const RunOptions& options) {
   console::print_progress(fmt::format("{}: {}", title, ending));
   // Where there is a truth, a dash in the table is a surprise.
   const auto& ate = record->metrics.ate;
-  if (record->status == record::RunStatus::ok && !ate.value && record->recording.truth != "none")
+  if (record->status == record::RunStatus::ok && !ate.value && record->recording.truth != "none") {
     console::print_progress("no ATE: " + ate.reason);
+    if (!ate.hint.empty()) console::print_progress("  hint: " + ate.hint);
+  }
   console::print_output(options.json ? record::to_json(*record) : prepared->folder.string() + "\n");
   return record->status == record::RunStatus::ok ? 0 : console::kExitRunFailed;
 }

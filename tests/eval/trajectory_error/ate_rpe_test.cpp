@@ -150,6 +150,22 @@ TEST(Ate, DegenerateInputIsATypedError) {
   EXPECT_EQ(code_of(absolute_trajectory_error(truth, still)), ErrorCode::data_corrupt);
 }
 
+TEST(Ate, WhoeverDoesNotMoveIsNamed) {
+  const Trajectory path = wavy_path(20);
+  Trajectory still = path;
+  for (std::size_t i = 0; i < still.size(); ++i)
+    still[i].T_world_camera.translation = Vector3d(1, 2, 3) + static_cast<double>(i) * Vector3d(1e-17, 0, 0);
+  const auto at_rest = absolute_trajectory_error(still, path);
+  ASSERT_FALSE(at_rest);
+  EXPECT_EQ(at_rest.error().message,
+            "the trajectory cannot be aligned: the camera hardly moves in the ground truth between its 20 "
+            "matched positions");
+  EXPECT_NE(at_rest.error().hint.find("more frames"), std::string::npos);
+  const auto stuck = absolute_trajectory_error(path, still);
+  ASSERT_FALSE(stuck);
+  EXPECT_NE(stuck.error().message.find("hardly moves in the estimate"), std::string::npos);
+}
+
 TEST(Ate, AReflectionIsNotAnAlignment) {
   Trajectory truth = wavy_path(100);
   Trajectory mirrored = truth;
