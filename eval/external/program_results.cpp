@@ -57,6 +57,13 @@ Result<void> read_poses(const ExternalProgram& program, const recording::Recordi
                         const fs::path& output, ProgramResults& results) {
   SystemTrajectory trajectory = program.trajectory;
   trajectory.file = output / trajectory.file;
+  std::error_code ignored;
+  if (!fs::exists(trajectory.file, ignored)) {
+    return fail(
+        ErrorCode::data_missing,
+        fmt::format("{} wrote no trajectory: there is no {}, which trajectory.file of {} names", program.name,
+                    program.trajectory.file.string(), program.file.filename().string()));
+  }
   auto frames = read_system_trajectory(trajectory, recording, results.notes);
   if (!frames) return tl::unexpected(frames.error());
   results.frames = std::move(*frames);

@@ -92,7 +92,7 @@ if ! grep -rq 'assertion failed in mapping' runs/freiburg1_copy/die/*/log.txt; t
 definition crash crash
 row crash 4 'signal 11'
 definition none none
-row none 4 'poses.txt'
+row none 4 'none wrote no trajectory: there is no poses.txt, which trajectory.file of none.toml names'
 definition half half
 row half 4 'poses.txt:4'
 definition nan nan
@@ -108,6 +108,16 @@ definition loud loud
 row loud 4 'sh: exit code 3: the reason is this'
 definition absent good
 sed -i 's/"--version"/"--no-such-word", "nothing"/; s/"sh", "{folder}\/mine.sh", "--no/"no-such-program", "--no/' absent.toml
+
+# The name of a system in place of its file.
+for named in 'open3d:did you mean .*configs/systems/open3d.toml' 'infinitam:--variant infinitam' 'mien.toml:those of .*rtabmap'; do
+  checks=$((checks + 1))
+  "$binary" run freiburg1_copy --system "${named%%:*}" --out runs >stdout 2>stderr
+  status=$?
+  if ((status != 3)) || ! grep -q 'there is no such file' stderr || ! grep -qE -- "${named#*:}" stderr; then
+    complain "--system ${named%%:*}: exit code $status, or another hint"
+  fi
+done
 
 # In a suite: repetitions with seeds, rows with reasons, and what is not installed is excluded with its reason.
 cat >suite.toml <<'TEXT'

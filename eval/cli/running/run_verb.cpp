@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "core/base/nearest_name.hpp"
 #include "core/io/abandoned.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/run_request.hpp"
@@ -11,7 +14,9 @@
 #include "eval/cli/running/run_like.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/external/external_program.hpp"
+#include "eval/external/system_name.hpp"
 #include "eval/run/run.hpp"
+#include "eval/suites/suite_names.hpp"
 
 namespace fusebench::cli::running {
 
@@ -40,9 +45,38 @@ Result<void> check_options(const RunOptions& options) {
   return {};
 }
 
+/// What is no file may be the name of a shipped system, or a variant of this program.
+tl::unexpected<Error> no_system_file(const std::filesystem::path& file) {
+  const std::string message = fmt::format("--system {}: there is no such file", file.string());
+  const std::string name = file.stem().string();
+  if (external::fault_of_system_name(name) == external::NameFault::is_variant)
+    return fail(ErrorCode::data_missing, message,
+                fmt::format("it is a variant of this program: --variant {}", name));
+  const std::filesystem::path folder = suites::shipped_configs() / "systems";
+  std::vector<std::string> shipped;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".toml") shipped.push_back(entry->path().stem().string());
+  }
+  std::ranges::sort(shipped);
+  const std::vector<std::string_view> names(shipped.begin(), shipped.end());
+  const std::string nearest = nearest_name(name, names);
+  if (!nearest.empty())
+    return fail(ErrorCode::data_missing, message,
+                fmt::format("did you mean {}?", (folder / (nearest + ".toml")).string()));
+  return fail(ErrorCode::data_missing, message,
+              shipped.empty()
+                  ? "a system is a TOML file (docs/systems.md)"
+                  : fmt::format("a system is a TOML file (docs/systems.md); in {} are those of {}",
+                                folder.string(), fmt::join(shipped, ", ")));
+}
+
 /// Puts an external program in place of the variant.
 Result<void> take_program(const RunOptions& options, run::RunSpec& spec) {
   if (options.system.empty()) return {};
+  std::error_code ignored;
+  if (!std::filesystem::exists(options.system, ignored)) return no_system_file(options.system);
   auto program = external::read_external_program(options.system);
   if (!program) return tl::unexpected(program.error());
   if (auto sensible = check_options(options); !sensible) return sensible;
