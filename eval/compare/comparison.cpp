@@ -16,7 +16,7 @@ namespace fusebench::compare {
 
 namespace {
 
-constexpr const char* kUpdate = "update the baseline: scripts/update_baseline.sh \"REASON\"";
+constexpr const char* kUpdate = "take NEW as the next BASE (docs/ci.md)";
 
 GateResult regression(std::string gate, std::string message) {
   return {std::move(gate), GateVerdict::regression, true, std::move(message)};
@@ -221,8 +221,8 @@ std::string other_data_text(const record::RunRecord& base, const record::RunReco
   const record::RecordedRecording& before = base.recording;
   const record::RecordedRecording& after = fresh.recording;
   return fmt::format(
-      "the data{} changed: not comparable (fingerprint {}, {} frames -> {}, {} frames); get the baseline's "
-      "recording back, or {}",
+      "the data{} changed: not comparable (fingerprint {}, {} frames -> {}, {} frames); run both over "
+      "the same recording and --frames, or {}",
       before.frames == after.frames ? "" : " or the frame window", before.fingerprint, before.frames,
       after.fingerprint, after.frames, kUpdate);
 }
