@@ -35,7 +35,7 @@ struct BatchJob {
   std::string group;      ///< of the recording, for summaries
   std::string split;      ///< "tuning" or "held-out"
   std::optional<suites::SimulationRequest> simulation = {};  ///< that makes the recording if it is not there
-  suites::SweepPoint edits = {};                             ///< those of the sweep
+  suites::SweepPoint edits = {};                             ///< those of the sweep, or of a reading
 };
 
 /// "fr1_rpy full tsdf.voxel_m=0.02 frames 0:100 repetition 2", as far as it says something.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -46,7 +47,15 @@ Result<engine::BatchPlan> plan_side(const suites::Suite& recordings, const std::
   for (suites::SuiteSimulation& simulation : suite.simulations) simulation.variants = {variant};
   for (suites::SuiteRecording& recording : suite.recordings) recording.variants.clear();
   options.sets.insert(options.sets.end(), edits.begin(), edits.end());
-  return engine::plan_batch(suite, options);
+  auto plan = engine::plan_batch(suite, options);
+  if (!plan) return plan;
+  for (engine::BatchJob& job : plan->jobs) {  // by which its name differs from those of other readings
+    for (const std::string& edit : edits) {
+      const std::size_t equals = edit.find('=');
+      job.edits.emplace_back(edit.substr(0, equals), edit.substr(equals + 1));
+    }
+  }
+  return plan;
 }
 
 /// Jobs without those that are there already, by what they are.

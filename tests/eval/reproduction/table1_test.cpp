@@ -130,6 +130,12 @@ TEST(Table1, WithoutDataEveryRowOfThePaperHasASpeedAndEachRunIsPlannedOnce) {
   EXPECT_EQ(plan_table1(*protocol, *suite, options, {.readings = {cell}})->compared.size(), 4U);
   const auto everywhere = plan_table1(*protocol, *suite, options, {{cell}, true});
   EXPECT_EQ(everywhere->compared.size(), recordings);
+  // Runs that differ have names that differ.
+  const auto whole = plan_table1(*protocol, *suite, options, {});
+  ASSERT_TRUE(whole.has_value());
+  std::set<std::string> names;
+  for (const engine::BatchJob& job : whole->jobs)
+    EXPECT_TRUE(names.insert(to_string(job)).second) << to_string(job);
   const auto unknown = plan_table1(*protocol, *suite, options, {.readings = {"kept"}});
   ASSERT_FALSE(unknown.has_value());
   testing::expect_contains(unknown.error().message, "no reading 'kept' (nearest: keep)");
