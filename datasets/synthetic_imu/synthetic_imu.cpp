@@ -151,7 +151,7 @@ Result<void> add_synthetic_imu(recording::Recording& recording, const SyntheticI
   if (recording.ground_truth.empty()) {
     return fail(ErrorCode::data_missing,
                 fmt::format("{}: has no ground truth to make a synthetic IMU from", recording.name),
-                "choose a variant that needs no IMU");
+                "choose a variant that needs no IMU, as --variant no-imu");
   }
   if (const auto covered = check_coverage(recording); !covered) return covered;
   const Result<SplineFit> fit = fit_pose_spline(recording.ground_truth, options.fit);

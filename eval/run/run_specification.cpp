@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/config/variants.hpp"
@@ -27,6 +28,32 @@ std::optional<std::string> edit_that_needs_imu(const config::EffectiveConfig& co
   return std::nullopt;
 }
 
+/// What is needed and not there; without a truth nothing can be made from it.
+tl::unexpected<Error> no_imu(const recording::Recording& recording, const RunSpec& spec) {
+  const bool has_truth = !recording.ground_truth.empty();
+  const std::string_view no_truth = "there is no ground truth to make an IMU from";
+  if (spec.program)
+    return fail(ErrorCode::usage,
+                fmt::format("{}: imu = \"recorded\", and recording '{}' has no inertial samples",
+                            spec.program->file.string(), recording.name),
+                has_truth ? "--imu synthetic makes some from the ground truth and says so in every table"
+                          : fmt::format("imu = \"none\" runs it without; {}", no_truth));
+  if (const auto edit = edit_that_needs_imu(spec.config)) {
+    return fail(ErrorCode::usage,
+                fmt::format("{} needs an IMU, and recording '{}' has none", *edit, recording.name),
+                fmt::format("take that option away (it edits variant '{}'){}", spec.variant,
+                            has_truth ? ", or make an IMU from the ground truth with --imu synthetic"
+                                      : fmt::format("; {}", no_truth)));
+  }
+  return fail(
+      ErrorCode::usage,
+      fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
+      has_truth
+          ? "--imu synthetic (or auto, where there is none) makes one from the ground truth and says so "
+            "in every table; --variant no-imu does without"
+          : fmt::format("--variant no-imu and dm-no-imu do without; {}", no_truth));
+}
+
 Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
   if (!wants_imu(spec)) {
     recording.imu.clear();
@@ -38,23 +65,7 @@ Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
   if (spec.imu == ImuChoice::synthetic || (spec.imu == ImuChoice::automatic && !recorded))
     return synthetic_imu::add_synthetic_imu(recording);
   if (recorded) return {};
-  if (spec.program)
-    return fail(ErrorCode::usage,
-                fmt::format("{}: imu = \"recorded\", and recording '{}' has no inertial samples",
-                            spec.program->file.string(), recording.name),
-                "--imu synthetic makes some from the ground truth and says so in every table");
-  if (const auto edit = edit_that_needs_imu(spec.config)) {
-    return fail(ErrorCode::usage,
-                fmt::format("{} needs an IMU, and recording '{}' has none", *edit, recording.name),
-                fmt::format("take that option away (it edits variant '{}'), or make an IMU from the ground "
-                            "truth with --imu synthetic",
-                            spec.variant));
-  }
-  return fail(
-      ErrorCode::usage,
-      fmt::format("variant '{}' needs an IMU, and recording '{}' has none", spec.variant, recording.name),
-      "--imu synthetic (or auto, where there is none) makes one from the ground truth and says so in every "
-      "table; --variant no-imu does without");
+  return no_imu(recording, spec);
 }
 
 }  // namespace

@@ -84,11 +84,14 @@ Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
   }
   auto prepared = run::prepare_run(std::move(*spec));
   // What a run could do without an IMU of its own, a calibration cannot.
-  if (!prepared && prepared.error().hint.starts_with("--imu synthetic"))
-    prepared.error().hint =
-        "a calibration of camera and IMU needs recorded inertial samples (--depth-camera needs none); with "
-        "--imu synthetic and without --out it only shows "
-        "what it finds in those that the ground truth gives";
+  if (!prepared && prepared.error().message.find(" needs an IMU") != std::string::npos) {
+    const bool has_truth = prepared.error().hint.starts_with("--imu synthetic");
+    prepared.error().hint = fmt::format(
+        "a calibration of camera and IMU needs recorded inertial samples (--depth-camera needs none){}",
+        has_truth ? "; with --imu synthetic and without --out it only shows what it finds in those that the "
+                    "ground truth gives"
+                  : "");
+  }
   return prepared;
 }
 

@@ -302,6 +302,18 @@ TEST_F(RunTest, AVariantThatNeedsAnImuSaysHowToGetOne) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
+TEST_F(RunTest, WithoutTruthNoImuIsOfferedThatNeedsOne) {
+  const std::filesystem::path copy = folder_ / "freiburg1_walk";
+  std::filesystem::copy(kGolden, copy, std::filesystem::copy_options::recursive);
+  std::filesystem::remove(copy / "groundtruth.txt");
+  RunSpec without = spec("full");
+  without.recording = copy;
+  const auto prepared = prepare_run(without);
+  ASSERT_FALSE(prepared.has_value());
+  EXPECT_EQ(prepared.error().hint,
+            "--variant no-imu and dm-no-imu do without; there is no ground truth to make an IMU from");
+}
+
 TEST_F(RunTest, AnEditedOptionThatNeedsAnImuIsNamedWithItsPlace) {
   RunSpec edited = spec("no-imu");
   ASSERT_TRUE(edited.config.set("terms.prior", std::string("imu"), "mine.toml:12"));
