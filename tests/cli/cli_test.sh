@@ -292,6 +292,8 @@ check_recordings() {
     --out again --json 2>stderr) || complain "run --like with changes: exit code $?"
   grep -q 'another content' stderr && complain "run --like: the same images have another content"
   refused "like, and something else" 2 '--like and --variant exclude' 'hint:--set' -- run --like "$first" --variant dm --data data --out out
+  refused "like, of a recording that is elsewhere" 3 "the record is of 'rgbd_dataset_freiburg1_rpy'" 'hint:--data or FUSEBENCH_DATA' \
+    -- run --like "$first" --out out
   refused "like nothing" 3 'absent' -- run --like absent --data data --out out
   refused "no recording" 2 'no recording is given' 'hint:--like' -- run --variant no-imu --out out
   "$binary" table again --format csv >stdout 2>stderr || complain "table: exit code $?"

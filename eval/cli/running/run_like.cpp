@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -40,6 +41,17 @@ run::ImuChoice imu_of(const record::RunRecord& record) {
   return record.recording.imu == "synthetic IMU" ? run::ImuChoice::synthetic : run::ImuChoice::recorded;
 }
 
+/// A record knows the name of its recording, and not its place.
+tl::unexpected<Error> not_found(const record::RunRecord& record, const fs::path& data, const Error& error) {
+  const std::string and_so = data.empty() || error.hint.empty() ? "" : fmt::format("; {}", error.hint);
+  return fail(
+      error.code,
+      fmt::format("the record is of '{}', which is not there: {}", record.recording.name, error.message),
+      fmt::format("it is looked for by that name here and in the folder of --data or FUSEBENCH_DATA; `run "
+                  "RECORDING --like RECORD` names its place{}",
+                  and_so));
+}
+
 }  // namespace
 
 Result<record::RunRecord> record_to_repeat(const fs::path& place) {
@@ -63,6 +75,7 @@ Result<run::RunSpec> spec_like(const record::RunRecord& record, const console::R
   }
   const auto folder = suites::find_recording(
       request.recording.empty() ? record.recording.name : request.recording, request.data);
+  if (!folder && request.recording.empty()) return not_found(record, request.data, folder.error());
   if (!folder) return tl::unexpected(folder.error());
   auto open = console::open_options(request.reading);
   if (!open) return tl::unexpected(open.error());
