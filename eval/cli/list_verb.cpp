@@ -22,6 +22,7 @@
 #include "eval/engine/run_housekeeping.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/run_labels.hpp"
+#include "eval/suites/recording_names.hpp"
 #include "eval/suites/suite_file.hpp"
 #include "eval/suites/suite_names.hpp"
 #include "eval/text/json_text.hpp"

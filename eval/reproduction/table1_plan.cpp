@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/base/nearest_name.hpp"
+#include "eval/suites/recording_names.hpp"
 
 namespace fusebench::reproduction {
 

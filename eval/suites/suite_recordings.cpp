@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "eval/suites/recording_names.hpp"
+
 namespace fusebench::suites {
 
 namespace fs = std::filesystem;

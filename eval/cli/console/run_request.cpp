@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/suites/recording_names.hpp"
 #include "eval/suites/suite_file.hpp"
 
 namespace fusebench::cli::console {

@@ -11,7 +11,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/trajectories/loaded_sides.hpp"
 #include "eval/mesh_error/transform_file.hpp"
-#include "eval/suites/suite_file.hpp"
+#include "eval/suites/recording_names.hpp"
 #include "eval/trajectory_error/pose_alignment.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 #include "eval/trajectory_files/trajectory_pair.hpp"

@@ -8,7 +8,8 @@
 #include "datasets/exports/export_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
-#include "eval/suites/suite_file.hpp"
+#include "eval/run/run_specification.hpp"
+#include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::recordings {
 

@@ -12,7 +12,8 @@
 #include "eval/inspection_report/inspection_json.hpp"
 #include "eval/inspection_report/inspection_page.hpp"
 #include "eval/inspection_report/inspection_text.hpp"
-#include "eval/suites/suite_file.hpp"
+#include "eval/run/run_specification.hpp"
+#include "eval/suites/recording_names.hpp"
 #include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::recordings {

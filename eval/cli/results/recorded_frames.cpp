@@ -11,7 +11,7 @@
 #include "datasets/open_recording.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/record/record.hpp"
-#include "eval/suites/suite_file.hpp"
+#include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::results {
 

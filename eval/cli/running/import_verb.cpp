@@ -10,7 +10,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/run/imported_run.hpp"
-#include "eval/suites/suite_file.hpp"
+#include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::running {
 

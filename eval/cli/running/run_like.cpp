@@ -9,7 +9,7 @@
 #include "core/config/variants.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/run_files/run_labels.hpp"
-#include "eval/suites/suite_file.hpp"
+#include "eval/suites/recording_names.hpp"
 
 namespace fusebench::cli::running {
 

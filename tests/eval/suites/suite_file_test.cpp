@@ -53,14 +53,6 @@ TEST_F(SuiteTest, ReadsEveryKey) {
   EXPECT_TRUE(config->origin("iekf.max_iterations").ends_with("suite.toml:6"));
 }
 
-TEST_F(SuiteTest, OfAMissingRecordingItSaysHowToGoOn) {
-  add_recording("slow");
-  const auto found = find_recordings("rgbd_dataset_freiburg1_rpy*", folder_);
-  ASSERT_FALSE(found.has_value());
-  EXPECT_NE(found.error().hint.find("fetch_datasets.sh"), std::string::npos) << found.error().hint;
-  EXPECT_NE(found.error().hint.find("--only recording="), std::string::npos) << found.error().hint;
-}
-
 TEST_F(SuiteTest, ItsNameIsThatOfAFolder) {
   const std::vector<std::string> wrong = {"../x", "/tmp/x", "a/b",    "..",
                                           ".x",   "a b",    "a\\\\b", std::string(201, 'a')};
@@ -213,53 +205,6 @@ TEST_F(SuiteTest, OfAllOnlyWhatCanBeOpenedIsARow) {
     EXPECT_EQ(outcomes->front().skipped, skipped) << outcomes->front().reason;
     EXPECT_EQ(std::filesystem::exists(folder_ / "out"), !skipped);
   }
-}
-
-TEST_F(SuiteTest, RecordingsAreFoundByNameOrFolder) {
-  add_recording("data/fr1_rpy");
-  EXPECT_EQ(*find_recording("fr1_rpy", folder_ / "data"), folder_ / "data" / "fr1_rpy");
-  EXPECT_EQ(find_recording((folder_ / "data" / "fr1_rpy").string() + "/", {})->filename(), "fr1_rpy");
-  const auto missing = find_recording("fr1_rpx", folder_ / "data");
-  ASSERT_FALSE(missing.has_value());
-  EXPECT_EQ(missing.error().code, ErrorCode::data_missing);
-  EXPECT_NE(missing.error().hint.find("fr1_rpy"), std::string::npos);
-  EXPECT_EQ(recordings_under(folder_ / "absent").error().code, ErrorCode::data_missing);
-  std::filesystem::create_directories(folder_ / "empty" / "scene" / "inner");
-  EXPECT_EQ(recordings_under(folder_ / "empty").error().code, ErrorCode::data_missing);
-}
-
-TEST_F(SuiteTest, RecordingsMayLieOneLevelDeeper) {
-  add_recording("data/scene/walk");
-  add_recording("data/plain");
-  add_recording("data/.hidden/walk2");
-  add_recording("data/a/b/too_deep");
-  const std::vector<std::filesystem::path> expected = {folder_ / "data" / "plain",
-                                                       folder_ / "data" / "scene" / "walk"};
-  EXPECT_EQ(recordings_under(folder_ / "data").value(), expected);
-  EXPECT_EQ(find_recording("walk", folder_ / "data").value(), expected[1]);
-  EXPECT_EQ(find_recording("scene/walk", folder_ / "data").value(), expected[1]);
-}
-
-TEST_F(SuiteTest, PublishedRecordingsAreFoundByTheirName) {
-  add_recording("data/rgbd_dataset_freiburg1_desk");
-  EXPECT_EQ(find_recording("fr1_desk", folder_ / "data").value(),
-            folder_ / "data" / "rgbd_dataset_freiburg1_desk");
-  // A folder of that very name goes first.
-  add_recording("data/fr1_desk");
-  EXPECT_EQ(find_recording("fr1_desk", folder_ / "data").value(), folder_ / "data" / "fr1_desk");
-
-  const auto absent = find_recording("fr2_desk", folder_ / "data");
-  ASSERT_FALSE(absent.has_value());
-  EXPECT_EQ(absent.error().code, ErrorCode::data_missing);
-  EXPECT_NE(absent.error().message.find("rgbd_dataset_freiburg2_desk"), std::string::npos)
-      << absent.error().message;
-  EXPECT_NE(absent.error().hint.find("fetch_datasets.sh fr2_desk"), std::string::npos) << absent.error().hint;
-  // No address: the sentence says where it is published.
-  EXPECT_NE(find_recording("dorm1_slow", folder_ / "data").error().hint.find("Google Drive"),
-            std::string::npos);
-  EXPECT_NE(find_recording("fr2_desk", {}).error().message.find("known recording"), std::string::npos);
-  EXPECT_NE(find_recording("fr2_dsk", folder_ / "data").error().hint.find("did you mean fr2_desk"),
-            std::string::npos);
 }
 
 }  // namespace
