@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "core/io/fingerprint.hpp"
@@ -16,6 +18,7 @@
 #include "eval/run/foreign_output.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_folder.hpp"
+#include "eval/run_files/found_runs.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
 namespace fusebench::run {
@@ -61,6 +64,30 @@ Result<std::string> hash_of(const ImportSpec& spec, const recording::Recording& 
   return identity.hex();
 }
 
+/// Two imports of one name over the same frames would be rows that nobody can tell apart.
+Result<void> check_first_of_its_name(const ImportedRun& run) {
+  const record::RunRecord& record = run.record;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(run.folder.parent_path(), error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (entry->path().filename() == run.folder.filename()) continue;
+    const auto other = run_files::found_run(entry->path());
+    if (!other || other->record.program) continue;
+    const record::RecordedRecording& recording = other->record.recording;
+    if (other->record.poses != record.poses || recording.imu != record.recording.imu ||
+        recording.fingerprint != record.recording.fingerprint)
+      continue;
+    return fail(
+        ErrorCode::usage,
+        fmt::format("{} of '{}' is imported already with other files: {}", record.variant,
+                    record.recording.name, entry->path().string()),
+        fmt::format("remove that folder, so that these take its place, or give these another NAME, as "
+                    "{}-2",
+                    record.variant));
+  }
+  return {};
+}
+
 Result<void> write(ImportedRun& run, RunOutput& output, const std::string& truth) {
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
@@ -100,10 +127,11 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   record.variant = spec.name;
   record.poses = spec.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   record.config_hash = *hash;
+  run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
+  if (auto first = check_first_of_its_name(run); !first) return tl::unexpected(first.error());
   describe_foreign_output(output, *recording, record);
   record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));
   record.provenance = record::provenance_here(spec.threads);
-  run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
   if (auto written = write(run, output, record::evaluated_truth_text(*recording)); !written)
     return tl::unexpected(written.error());
   return run;

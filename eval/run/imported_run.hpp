@@ -36,7 +36,8 @@ struct ImportedRun {
 /// pose belongs to the frame whose stamp is nearest, within 0.02 s; a frame without one counts as lost. Poses
 /// without stamps (KITTI) must be as many as the frames.
 ///
-/// Errors: usage for a name that is a variant of ours or no name of a folder; those of open_recording,
+/// Errors: usage for a name that is a variant of ours or no name of a folder, or under which other files are
+/// imported already for the same frames, IMU and kind of poses; those of open_recording,
 /// external::read_system_trajectory() and read_foreign_mesh(); io.
 [[nodiscard]] Result<ImportedRun> import_run(const ImportSpec& spec);
 

@@ -868,6 +868,18 @@ check_imports() {
   "$binary" report runs --out report.html >stdout 2>stderr || complain "a report of an import: exit code $?"
   grep -q warning stderr && complain "a report of an import warns"
 
+  # The same files again are the same run; corrected ones are no second row of the same name.
+  checks=$((checks + 1))
+  "$binary" import Other other.txt other.obj --recording freiburg1_copy --imu none --out runs >stdout 2>stderr ||
+    complain "an import again: exit code $?"
+  [[ $(<stdout) == "$run" ]] || complain "an import again is another run"
+  sed 1d other.txt >corrected.txt
+  refused "a corrected import" 2 "Other of 'freiburg1_copy' is imported already with other files: $run" 'hint:remove .*Other-2' -- \
+    import Other corrected.txt other.obj --recording freiburg1_copy --imu none --out runs
+  checks=$((checks + 1))
+  "$binary" import Other corrected.txt other.obj --recording freiburg1_copy --imu none --frames 1:5 --out runs >stdout 2>stderr ||
+    complain "an import of other frames: exit code $?"
+
   refused "a variant of ours" 2 'is a variant of this program' 'hint:name of its own' -- \
     import full other.txt --recording freiburg1_copy --out out
   refused "no name of a folder" 2 'no name of a system' -- import a/b other.txt --recording freiburg1_copy --out out
