@@ -118,10 +118,9 @@ Result<void> add_program_runs(const Common& common, const suites::PlannedRecordi
                               BatchPlan& plan, std::set<const suites::Exclusion*>& met,
                               std::vector<BatchJob>& jobs) {
   for (const auto& program : common.programs) {
-    const auto take = suites::wanted(common.options.only, recording.folder.filename().string(),
-                                     recording.split, program->name);
-    if (!take) return tl::unexpected(take.error());
-    if (!*take) continue;
+    if (!suites::wanted(common.options.only, recording.folder.filename().string(), recording.split,
+                        program->name))
+      continue;
     auto job = job_of_program(common, recording, program);
     if (!job) return tl::unexpected(job.error());
     const suites::Exclusion* const exclusion = exclusion_of(common.suite, *job);
@@ -159,10 +158,8 @@ Result<void> check_swept_once(const std::vector<suites::SweepBlock>& blocks,
 Result<void> add_runs(const Common& common, const suites::PlannedRecording& recording, BatchPlan& plan,
                       std::set<const suites::Exclusion*>& met, std::vector<BatchJob>& jobs) {
   for (const std::string& variant : recording.variants) {
-    const auto take =
-        suites::wanted(common.options.only, recording.folder.filename().string(), recording.split, variant);
-    if (!take) return tl::unexpected(take.error());
-    if (!*take) continue;
+    if (!suites::wanted(common.options.only, recording.folder.filename().string(), recording.split, variant))
+      continue;
     for (const suites::SweepPoint& point : common.points) {
       auto job = job_of(common, recording, variant, point);
       if (!job) return tl::unexpected(job.error());
@@ -235,9 +232,13 @@ std::string to_string(const BatchJob& job) {
 }
 
 Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& options) {
-  std::vector<std::string> variants;
-  auto programs = programs_of(suite, options.only, variants);
+  // A mistyped filter is said before a recording that is not there.
+  if (auto known = suites::check_filters(options.only); !known) return tl::unexpected(known.error());
+  std::vector<std::string> names = suites::variants_of(suite);
+  auto programs = programs_of(suite, options.only, names);
   if (!programs) return tl::unexpected(programs.error());
+  if (auto known = suites::check_variants(options.only, suite.name, names); !known)
+    return tl::unexpected(known.error());
   Common common{suite, options, std::move(*programs), options.sets, {}};
   std::vector<suites::SweepBlock> blocks = suite.sweeps;
   auto swept = suites::take_swept_sets(common.sets);
@@ -270,10 +271,6 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
           fmt::format("{}: the exclusion '{}' meets no run", exclusion.place, exclusion.reason));
   }
   if (plan.jobs.empty() && plan.excluded.empty()) {
-    for (const suites::PlannedRecording& recording : *recordings)
-      variants.insert(variants.end(), recording.variants.begin(), recording.variants.end());
-    if (auto known = suites::check_variants(options.only, suite.name, variants); !known)
-      return tl::unexpected(known.error());
     return fail(ErrorCode::usage, fmt::format("--only leaves nothing of suite '{}'", suite.name),
                 "recording=TEXT keeps the recordings whose name contains it, variant=NAME one variant, "
                 "split=held-out or tuning one split");

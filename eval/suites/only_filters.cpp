@@ -37,8 +37,7 @@ bool recording_may_be_wanted(const OnlyFilters& only, std::string_view name) {
       only, "recording=", [&](std::string_view value) { return name.find(value) != std::string_view::npos; });
 }
 
-Result<bool> wanted(const OnlyFilters& only, const std::string& recording, const std::string& split,
-                    const std::string& variant) {
+Result<void> check_filters(const OnlyFilters& only) {
   for (const std::string& filter : only) {
     const auto equals = filter.find('=');
     const std::string key = filter.substr(0, equals);
@@ -51,6 +50,11 @@ Result<bool> wanted(const OnlyFilters& only, const std::string& recording, const
                                                 filter, is_key ? "" : nearest_hint(key, kKeys)));
     }
   }
+  return {};
+}
+
+bool wanted(const OnlyFilters& only, const std::string& recording, const std::string& split,
+            const std::string& variant) {
   return suits_one(only, "recording=",
                    [&](std::string_view value) { return recording.find(value) != std::string::npos; }) &&
          suits_one(only, "split=", [&](std::string_view value) { return split == value; }) &&

@@ -19,9 +19,12 @@ using OnlyFilters = std::vector<std::string>;
 /// Whether they can leave something of a recording that the suite calls by that name ("begin*" as well).
 [[nodiscard]] bool recording_may_be_wanted(const OnlyFilters& only, std::string_view name);
 
-/// Whether a job is among those asked for. Error usage: another key or a wrong value, with the nearest key.
-[[nodiscard]] Result<bool> wanted(const OnlyFilters& only, const std::string& recording,
-                                  const std::string& split, const std::string& variant);
+/// Error usage: another key or a wrong value, with the nearest key.
+[[nodiscard]] Result<void> check_filters(const OnlyFilters& only);
+
+/// Whether a job is among those asked for, by filters that check_filters() has seen.
+[[nodiscard]] bool wanted(const OnlyFilters& only, const std::string& recording, const std::string& split,
+                          const std::string& variant);
 
 /// Error usage: a variant that is none of the suite's, with the nearest and all of them.
 [[nodiscard]] Result<void> check_variants(const OnlyFilters& only, const std::string& suite,

@@ -133,19 +133,6 @@ Result<void> read_tables(const config::TomlDocument& document, Suite& suite) {
   return {};
 }
 
-/// The suite's variants, and those of its recordings.
-std::vector<std::string> variants_of(const Suite& suite) {
-  std::vector<std::string> all = suite.variants;
-  const auto add = [&](const std::vector<std::string>& more) {
-    for (const std::string& name : more) {
-      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
-    }
-  };
-  for (const SuiteRecording& recording : suite.recordings) add(recording.variants);
-  for (const SuiteSimulation& simulation : suite.simulations) add(simulation.variants);
-  return all;
-}
-
 /// A criterion on a group that no recording is in would never decide anything.
 Result<void> check_groups(const Suite& suite) {
   std::vector<std::string> groups;
@@ -222,6 +209,18 @@ Result<Suite> parse_suite(std::string_view text, const std::string& name) {
   const auto document = config::parse_toml(text, name);
   if (!document) return tl::unexpected(document.error());
   return suite_of(*document, name);
+}
+
+std::vector<std::string> variants_of(const Suite& suite) {
+  std::vector<std::string> all = suite.variants;
+  const auto add = [&](const std::vector<std::string>& more) {
+    for (const std::string& name : more) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+  };
+  for (const SuiteRecording& recording : suite.recordings) add(recording.variants);
+  for (const SuiteSimulation& simulation : suite.simulations) add(simulation.variants);
+  return all;
 }
 
 Result<config::EffectiveConfig> suite_config(const Suite& suite, const config::Variant& variant) {

@@ -76,6 +76,9 @@ struct Suite {
 /// The same of a text; `name` stands for the file in messages.
 [[nodiscard]] Result<Suite> parse_suite(std::string_view text, const std::string& name);
 
+/// The suite's variants, and those of its recordings, each once.
+[[nodiscard]] std::vector<std::string> variants_of(const Suite& suite);
+
 /// The configuration of one of the suite's variants, before --set.
 [[nodiscard]] Result<config::EffectiveConfig> suite_config(const Suite& suite,
                                                            const config::Variant& variant);

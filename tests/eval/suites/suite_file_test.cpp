@@ -165,6 +165,17 @@ TEST_F(SuiteTest, OnlyFiltersJobs) {
   EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::configuration);
 }
 
+TEST_F(SuiteTest, AMistypedFilterIsSaidBeforeAMissingRecording) {
+  const auto suite = read("name = \"x\"\nrecordings = [\"nowhere\"]\nvariants = [\"full\", \"dm\"]\n");
+  BatchOptions options;
+  options.data = folder_;
+  EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::data_missing);
+  for (const char* const only : {"varient=full", "variant=fll", "split=both"}) {
+    options.only = {only};
+    EXPECT_EQ(plan_batch(*suite, options).error().code, ErrorCode::usage) << only;
+  }
+}
+
 TEST_F(SuiteTest, ABrokenRecordingIsAnOutcomeAndARecord) {
   write("data/freiburg1_broken/rgb.txt", "not a list\n");
   write("data/freiburg1_broken/depth.txt", "");
