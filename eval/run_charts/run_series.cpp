@@ -27,7 +27,8 @@ Trajectory trajectory_of(const run_files::FoundRun& run, const char* name,
   }
   auto read = trajectory::read_tum_trajectory(file, warnings);
   if (read) return std::move(*read);
-  warnings.push_back(read.error().message);
+  // That of a run that tracked nothing has a heading alone, as the run wrote it.
+  if (run.record.frames.tracked > 0) warnings.push_back(read.error().message);
   return {};
 }
 
