@@ -19,8 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 tl::unexpected<Error> exists_already(const fs::path& place) {
-  return fail(ErrorCode::usage,
-              fmt::format("{}: exists already, and exports replace nothing", place.string()),
+  return fail(ErrorCode::usage, fmt::format("{}: exists already, and nothing is replaced", place.string()),
               "remove it, or choose another place with --out");
 }
 

@@ -267,7 +267,7 @@ std::string latex(const SystemsTable& table, const LatexLayout& layout) {
 std::string markdown(const SystemsTable& table) {
   std::string text = text::markdown_table(systems_table_cells(table), kTextColumns) + "\n";
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
-  text += "\n";
+  if (!table.notes.empty()) text += "\n";
   for (const std::string& line : table.footer) text += line + "\n";
   return text;
 }

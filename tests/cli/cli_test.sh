@@ -195,6 +195,7 @@ check_bad_usage() {
   refused "help of an unknown verb" 2 "unknown verb 'evall' .nearest: eval" 'hint:lists the verbs' -- help evall
   refused "help of what is like no verb" 2 "unknown verb 'frobz'$" 'hint:lists the verbs' -- help frobz
   refused "help of an unknown verb of eval" 2 "unknown verb 'foo' of .fusebench eval" -- help eval foo
+  refused "nearly a name of evo's" 2 "unknown verb 'apee' of .fusebench eval. \(nearest: ape\)" -- eval apee gt.txt est.txt
   refused "unknown verb of eval" 2 "unknown verb 'atee' of .fusebench eval. \(nearest: ate\)" -- eval atee gt.txt est.txt
   refused "no threads" 2 'threads' -- run freiburg1_copy --variant no-imu --out out --threads 0
 
@@ -940,6 +941,8 @@ check_exports() {
   refused "no such format" 2 'format = euroq' 'hint:euroc' -- export freiburg1_copy --format euroq --out out
   refused "a place that is taken" 2 'exported: exists already' 'hint:--out' -- \
     export freiburg1_copy --format tum --out exported
+  refused "a place that is taken, of convert" 2 'exported: exists already, and nothing is replaced' 'hint:--out' -- \
+    convert freiburg1_copy --out exported
   refused "no such frames" 2 'frames = 4:9' -- export freiburg1_copy --format tum --frames 4:9 --out out
   refused "no such recording to export" 3 'nowhere' -- export nowhere --format tum --out out
   truncate -s 60000 freiburg1_copy/rgb/1305031229.628753.png

@@ -63,6 +63,8 @@ std::string help_of(const CLI::App& verb) {
 Error unknown_verb(const CLI::App& app, const std::string& name) {
   std::vector<std::string> names;
   for (const CLI::App* verb : shown_verbs(app)) names.push_back(verb->get_name());
+  if (app.get_name() == "eval")
+    names.emplace_back("ape");  // evo's name of `eval ate`, which is taken as well
   const std::string place = app.get_parent() == nullptr ? "" : fmt::format(" of `{}`", full_name(app));
   return {ErrorCode::usage,
           fmt::format("unknown verb '{}'{}{}", printable(name), place, nearest_hint(name, names)),

@@ -55,6 +55,10 @@ TEST(SystemsTable, HasTheMedianAndTheRangeOfRepetitionsAndTheirFailures) {
   testing::expect_contains(text, "3.00 [2.00, 5.00]");
   testing::expect_contains(text, "3/4 ok");
   testing::expect_contains(text, "drawing: 1 of 4 runs not ok: drawing: signal 9 (Killed)");
+  const std::string without_notes =
+      render_systems_table(systems_table_of({run_of("full", 0.01)}), TableFormat::markdown);
+  EXPECT_NE(text.find("\n\nMedians"), std::string::npos);
+  EXPECT_NE(without_notes.find("|\n\nMedians"), std::string::npos) << without_notes;
   testing::expect_contains(render_systems_table(table, TableFormat::json), "\"least\": 0.02");
   testing::expect_contains(render_systems_table(table, TableFormat::csv), ",0.03,0.02,0.05,");
 }
