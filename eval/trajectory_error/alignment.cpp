@@ -31,11 +31,11 @@ std::vector<Vector3d> positions_of(std::span<const SE3> poses) {
   return positions;
 }
 
-tl::unexpected<Error> undetermined(const std::string& why) {
-  return fail(
-      ErrorCode::data_corrupt, fmt::format("the trajectory cannot be aligned: {}", why),
-      "take more frames: alignment of positions needs three that are not on one line; `fusebench eval ape` "
-      "with --align origin or none needs one");
+tl::unexpected<Error> undetermined(const std::string& why, std::string_view remedy = "take more frames") {
+  return fail(ErrorCode::data_corrupt, fmt::format("the trajectory cannot be aligned: {}", why),
+              fmt::format("{}: alignment of positions needs three that are not on one line; `fusebench eval "
+                          "ape` with --align origin or none needs one",
+                          remedy));
 }
 
 bool hardly_move(std::span<const Vector3d> positions) {
@@ -44,15 +44,16 @@ bool hardly_move(std::span<const Vector3d> positions) {
       positions, [&](const Vector3d& position) { return (position - positions[0]).norm() < kStill_m; });
 }
 
-/// Why positions of which one set lies on a line or in a point do not tell a rotation.
-std::string why_flat(std::span<const Vector3d> reference, std::span<const Vector3d> estimate) {
+/// Of positions of which one set lies on a line or in a point, so that they do not tell a rotation.
+tl::unexpected<Error> flat_positions(std::span<const Vector3d> reference,
+                                     std::span<const Vector3d> estimate) {
   const auto still = [&](std::string_view whose) {
     return fmt::format("the camera hardly moves in {} between its {} matched positions", whose,
                        reference.size());
   };
-  if (hardly_move(reference)) return still("the ground truth");
-  if (hardly_move(estimate)) return still("the estimate");
-  return fmt::format("its {} matched positions lie on a line", reference.size());
+  if (hardly_move(reference)) return undetermined(still("the ground truth"));
+  if (hardly_move(estimate)) return undetermined(still("the estimate"), "look why it stands still");
+  return undetermined(fmt::format("its {} matched positions lie on a line", reference.size()));
 }
 
 /// Rotation about z that turns the estimate's positions closest to the reference's.
@@ -112,9 +113,7 @@ Result<Similarity> align_positions(std::span<const Vector3d> reference, std::spa
   const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vector3d singular = svd.singularValues();
   // Written so that NaN and all-zero fail.
-  if (!(singular[1] > kRankTolerance * singular[0])) {
-    return undetermined(why_flat(reference, estimate));
-  }
+  if (!(singular[1] > kRankTolerance * singular[0])) return flat_positions(reference, estimate);
   Vector3d signs = Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;  // no reflections
   Similarity result;

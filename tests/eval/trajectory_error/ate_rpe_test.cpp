@@ -164,6 +164,7 @@ TEST(Ate, WhoeverDoesNotMoveIsNamed) {
   const auto stuck = absolute_trajectory_error(path, still);
   ASSERT_FALSE(stuck);
   EXPECT_NE(stuck.error().message.find("hardly moves in the estimate"), std::string::npos);
+  EXPECT_EQ(stuck.error().hint.find("more frames"), std::string::npos);
 }
 
 TEST(Ate, AReflectionIsNotAnAlignment) {
