@@ -62,6 +62,17 @@ fs::path longer_place(const fs::path& target, const std::string& run_id) {
          (run_id.substr(0, kDigits) + (repetition == std::string::npos ? "" : name.substr(repetition)));
 }
 
+/// A link would bring in what is elsewhere, and a pipe or device never ends: no run has them.
+bool holds_plain_files_only(const fs::path& folder) {
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::file_status status = entry->symlink_status(error);
+    if (!fs::is_regular_file(status) && !fs::is_directory(status)) return false;
+  }
+  return !error;
+}
+
 Result<void> copy_run(const fs::path& from, const fs::path& to) {
   auto staged = io::StagedFolder::create(to);
   if (!staged) return tl::unexpected(staged.error());
@@ -159,7 +170,7 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
   if (!runs) return tl::unexpected(runs.error());
   MergeReport report;
   for (const ListedRun& run : *runs) {
-    if (run.head.state != run_files::RunState::whole) {
+    if (run.head.state != run_files::RunState::whole || !holds_plain_files_only(from / run.folder)) {
       ++report.damaged;
       continue;
     }

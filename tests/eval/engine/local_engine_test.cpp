@@ -427,6 +427,22 @@ TEST_F(LocalEngineTest, DamagedRunsAreNotMergedAndGiveWay) {
   EXPECT_EQ(list_runs(folder_ / "all")->front().head.status, RunStatus::ok);
 }
 
+TEST_F(LocalEngineTest, RunsWithLinksAreNotMerged) {
+  const BatchPlan one = plan();
+  ASSERT_TRUE(run_locally(one.jobs, {}).has_value());
+  const fs::path place = folder_ / "out" / list_runs(folder_ / "out")->front().folder;
+  fs::remove(place / "log.txt");
+  for (const fs::path& target : {fs::path("/dev/zero"), write("elsewhere.txt", "not of this run")}) {
+    fs::create_symlink(target, place / "log.txt");
+    const auto merged = merge_runs(folder_ / "out", folder_ / "all");
+    ASSERT_TRUE(merged.has_value()) << merged.error().message;
+    EXPECT_EQ(merged->damaged, 1U);
+    EXPECT_EQ(merged->copied, 0U);
+    EXPECT_FALSE(fs::exists(folder_ / "all"));
+    fs::remove(place / "log.txt");
+  }
+}
+
 TEST_F(LocalEngineTest, FoldersAreMergedAndTidied) {
   const BatchPlan three = plan(kThree);
   ASSERT_TRUE(run_locally(three.jobs, {}).has_value());
