@@ -33,6 +33,7 @@ import oracle
 import seeds
 import server
 
+CASES_A_REPORT = 200
 KINDS = {"recording": 40, "trajectory": 14, "mesh": 8, "text": 12, "runs": 18, "archive": 4, "options": 4}
 
 
@@ -268,19 +269,22 @@ def work(options, seeds_folder, files, helps, worker, results, deadline):
     number = worker
     seen = collections.Counter()
     statuses = collections.Counter()
-    done = 0
     while number < options.count and time.monotonic() < deadline:
         case = maker.make(options.seed, number, options.only)
         answer, problems, _, errors = runner.run(case)
         statuses[answer.status] += 1
-        done += 1
+        # A worker that dies later must not take with it what it has done.
+        if statuses.total() == CASES_A_REPORT:
+            results.put(("done so far", dict(statuses)))
+            statuses.clear()
         for problem in problems:
             name = signature(case, problem, errors)
             seen[name] += 1
             if seen[name] <= 2:
                 results.put(("finding", name, number, case.to_json(), errors[:400].decode(errors="replace")))
         number += options.workers
-    results.put(("done", done, dict(statuses), dict(seen)))
+    results.put(("done so far", dict(statuses)))
+    results.put(("ended", dict(seen)))
     runner.program.close()
 
 
@@ -310,7 +314,7 @@ def attack(options, seeds_folder, files, helps):
                for worker in range(options.workers)]
     for worker in workers:
         worker.start()
-    cases, statuses, seen, shown = 0, collections.Counter(), collections.Counter(), set()
+    statuses, seen, shown = collections.Counter(), collections.Counter(), set()
     left = len(workers)
     while left > 0:
         try:
@@ -320,13 +324,14 @@ def attack(options, seeds_folder, files, helps):
                 print("attack: a worker has died", file=sys.stderr)
                 for worker in workers:
                     worker.kill()
-                return 1
+                break
             continue
-        if result[0] == "done":
+        if result[0] == "ended":
             left -= 1
-            cases += result[1]
-            statuses.update(result[2])
-            seen.update(result[3])
+            seen.update(result[1])
+            continue
+        if result[0] == "done so far":
+            statuses.update(result[1])
             continue
         _, name, number, case, errors = result
         if name in shown:
@@ -339,11 +344,12 @@ def attack(options, seeds_folder, files, helps):
         print(f"FINDING {name}\n    {kept}: fusebench {' '.join(map(ascii, case['arguments']))}\n    {errors[:200]!r}", flush=True)
     took = time.monotonic() - begun
     codes = ", ".join(f"{status}: {count}" for status, count in sorted(statuses.items()))
+    cases = statuses.total()
     print(f"attack: {cases} cases with seed {options.seed} in {took:.0f} s ({cases / max(took, 1e-9):.0f} a second); exit codes {codes}; "
           f"{sum(seen.values())} findings of {len(seen)} kinds")
     for name, count in seen.most_common():
         print(f"  {count:6} {name}")
-    return 1 if seen or any(worker.exitcode for worker in workers) else 0
+    return 1 if seen or shown or left > 0 else 0
 
 
 def named(text, files):
