@@ -80,4 +80,13 @@ void remove_abandoned_of(const fs::path& place) {
     remove_if_abandoned(leftover, false, ignored);
 }
 
+void remove_abandoned_of(const fs::path& place, pid_t ended_process) {
+  Abandoned ignored;
+  for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
+    const fs::path hidden = hidden_sibling(place, attempt, ended_process);
+    if (!is_staged_folder(hidden) && !is_staged_file(hidden)) return;  // a later name was not needed
+    remove_if_abandoned({hidden}, false, ignored);
+  }
+}
+
 }  // namespace fusebench::io

@@ -1,6 +1,8 @@
 // What processes that were killed left under temporary names (StagedFolder, write_file_atomically()).
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -25,5 +27,8 @@ Abandoned remove_abandoned(const std::filesystem::path& parent, bool only_look =
 /// Of one place that is about to be written again, those that have not changed for an hour (files) or for a
 /// day (folders: a run of another machine may write nothing for hours).
 void remove_abandoned_of(const std::filesystem::path& place);
+
+/// Of one place, what a process of this machine that has ended left: of any age, where there are locks.
+void remove_abandoned_of(const std::filesystem::path& place, pid_t ended_process);
 
 }  // namespace fusebench::io

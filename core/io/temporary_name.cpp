@@ -21,9 +21,9 @@ bool is_number(std::string_view text) {
 
 }  // namespace
 
-fs::path hidden_sibling(const fs::path& path, int attempt) {
+fs::path hidden_sibling(const fs::path& path, int attempt, pid_t process) {
   const std::string again = attempt == 0 ? "" : fmt::format("-{}", attempt);
-  return path.parent_path() / fmt::format(".{}.{}{}.tmp", path.filename().string(), getpid(), again);
+  return path.parent_path() / fmt::format(".{}.{}{}.tmp", path.filename().string(), process, again);
 }
 
 std::optional<std::string> name_of_hidden_sibling(std::string_view name) {

@@ -2,6 +2,9 @@
 // marks them as in use.
 #pragma once
 
+#include <sys/types.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -12,7 +15,8 @@ namespace fusebench::io {
 
 /// ".<name>.<process>[-<attempt>].tmp" beside a path; the dot keeps it out of listings. Processes of other
 /// machines can have the same number, so it may be taken: the next attempt has another one.
-[[nodiscard]] std::filesystem::path hidden_sibling(const std::filesystem::path& path, int attempt);
+[[nodiscard]] std::filesystem::path hidden_sibling(const std::filesystem::path& path, int attempt,
+                                                   pid_t process = getpid());
 
 /// The <name> of what hidden_sibling() gives; nothing for any other name.
 [[nodiscard]] std::optional<std::string> name_of_hidden_sibling(std::string_view name);

@@ -110,7 +110,7 @@ class Engine {
     prepare_place(job, run);
     auto process = process::ForkedJob::start(
         [&](const process::JobReporter& reporter) { work(run, reporter); },
-        {options_.limits.time_s, options_.limits.stall_s, options_.limits.memory_bytes});
+        {options_.limits.time_s, options_.limits.stall_s, options_.limits.memory_bytes}, run.folder);
     if (!process) {
       fatal_ = process.error();
       return true;
@@ -193,7 +193,6 @@ class Engine {
     }
     running_.clear();  // kills what would not stop
     for (const fs::path& place : places) {
-      io::remove_abandoned(place);
       // Those that several runs were about to use, none of them could remove.
       std::error_code ignored;
       fs::remove(place, ignored);

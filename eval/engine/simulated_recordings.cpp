@@ -92,7 +92,8 @@ Result<void> make_simulated_recordings(const std::vector<BatchJob>& jobs, int th
     const std::string name = job.recording.filename().string();
     if (control.started) control.started(name, i, recordings.size());
     auto process = process::ForkedJob::start(
-        [&](const process::JobReporter& reporter) { work(job, threads, control.stop, reporter); }, {});
+        [&](const process::JobReporter& reporter) { work(job, threads, control.stop, reporter); }, {},
+        job.recording);
     if (!process) return tl::unexpected(process.error());
     const process::JobEnd end = wait_for(*process, control);
     if (!end.finished) {

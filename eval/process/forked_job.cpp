@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/abandoned.hpp"
 #include "eval/process/child_setup.hpp"
 #include "eval/process/process_usage.hpp"
 
@@ -102,7 +103,7 @@ void JobReporter::finished(std::string_view text) const {
 }
 
 Result<ForkedJob> ForkedJob::start(const std::function<void(const JobReporter& reporter)>& work,
-                                   const JobLimits& limits) {
+                                   const JobLimits& limits, const std::filesystem::path& writes_to) {
   NamelessFile output = nameless_file();
   std::array<int, 2> ends{};
   if (!output || pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -122,7 +123,7 @@ Result<ForkedJob> ForkedJob::start(const std::function<void(const JobReporter& r
                 "fewer at a time (-j) may help");
   }
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return ForkedJob(process, ends[0], std::move(output), limits);
+  return ForkedJob(process, ends[0], std::move(output), limits, writes_to);
 }
 
 ForkedJob::ForkedJob(ForkedJob&& other) noexcept
@@ -130,6 +131,7 @@ ForkedJob::ForkedJob(ForkedJob&& other) noexcept
       pipe_(std::exchange(other.pipe_, -1)),
       output_(std::move(other.output_)),
       limits_(other.limits_),
+      writes_to_(std::move(other.writes_to_)),
       start_(other.start_),
       last_sign_(other.last_sign_),
       interrupted_(other.interrupted_),
@@ -146,8 +148,15 @@ ForkedJob::~ForkedJob() {
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
     }
+    forget_process();
   }
   if (pipe_ >= 0) close(pipe_);
+}
+
+/// Of one that has been waited for.
+void ForkedJob::forget_process() {
+  const pid_t ended_process = std::exchange(process_, -1);
+  if (!writes_to_.empty()) io::remove_abandoned_of(writes_to_, ended_process);
 }
 
 void ForkedJob::interrupt() {
@@ -212,7 +221,7 @@ std::optional<JobEnd> ForkedJob::poll() {
   const pid_t ended_process = wait4(process_, &status, WNOHANG, &usage);
   if (ended_process == 0 || (ended_process < 0 && errno == EINTR)) return std::nullopt;
   static_cast<void>(hear());  // what came between
-  process_ = -1;
+  forget_process();
   return ended(status, usage);
 }
 

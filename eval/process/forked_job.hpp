@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.hpp"
 #include "eval/process/nameless_file.hpp"
@@ -54,9 +56,11 @@ struct JobEnd {
 class ForkedJob {
  public:
   /// Runs `work` in a child. This process must have a single thread then: a fork takes no other with it. The
-  /// child dies with this process. Error io.
+  /// child dies with this process. Where it `writes_to` a staged folder or file, what is left of that when it
+  /// has been killed or has crashed is removed. Error io.
   [[nodiscard]] static Result<ForkedJob> start(const std::function<void(const JobReporter& reporter)>& work,
-                                               const JobLimits& limits);
+                                               const JobLimits& limits,
+                                               const std::filesystem::path& writes_to = {});
 
   ForkedJob(ForkedJob&& other) noexcept;
   ForkedJob& operator=(ForkedJob&&) = delete;
@@ -75,8 +79,14 @@ class ForkedJob {
 
  private:
   using Clock = std::chrono::steady_clock;
-  ForkedJob(pid_t process, int pipe, NamelessFile output, const JobLimits& limits)
-      : process_(process), pipe_(pipe), output_(std::move(output)), limits_(limits) {}
+  ForkedJob(pid_t process, int pipe, NamelessFile output, const JobLimits& limits,
+            std::filesystem::path writes_to)
+      : process_(process),
+        pipe_(pipe),
+        output_(std::move(output)),
+        limits_(limits),
+        writes_to_(std::move(writes_to)) {}
+  void forget_process();
   bool hear();
   void take(std::string_view line);
   void enforce_limits();
@@ -87,6 +97,7 @@ class ForkedJob {
   int pipe_ = -1;
   NamelessFile output_;
   JobLimits limits_;
+  std::filesystem::path writes_to_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_sign_ = start_;
   bool interrupted_ = false;

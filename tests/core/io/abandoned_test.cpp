@@ -103,6 +103,22 @@ TEST_F(AbandonedTest, WhatCannotBeRemovedIsNotCountedAsRemoved) {
   EXPECT_TRUE(again.kept.empty());
 }
 
+TEST_F(AbandonedTest, OfOneProcessThatHasEndedOnlyItsOwnGoes) {
+  write(".run.77.tmp/new/frames.csv", "half");
+  write(".run.77-1.tmp/new/frames.csv", "half");
+  write(".run.78.tmp/new/frames.csv", "of another process");
+  write(".other.77.tmp/new/frames.csv", "of another place");
+  remove_abandoned_of(folder_ / "run", 77);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / ".run.77.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / ".run.77-1.tmp"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / ".run.78.tmp"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / ".other.77.tmp"));
+  write(".run.77.tmp/new/frames.csv", "of a process of another machine with this number");
+  const Held held(folder_ / ".run.77.tmp");
+  remove_abandoned_of(folder_ / "run", 77);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / ".run.77.tmp"));
+}
+
 TEST_F(AbandonedTest, FilesOfDeadProcessesGoAfterAnHour) {
   const auto dead = write_old(".table.csv.77.tmp", 2);
   const auto again = write_old(".page.html.78-2.tmp", 2);

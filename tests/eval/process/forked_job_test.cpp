@@ -8,8 +8,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <vector>
+
+#include "core/io/staged_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
 
@@ -120,6 +126,44 @@ TEST(ForkedJob, OutputIsKeptFromItsEnd) {
   });
   EXPECT_TRUE(end.output.ends_with("99999\n"));
   EXPECT_LT(end.output.size(), 20'000U);
+}
+
+class ForkedJobThatWrites : public testing::InTemporaryFolder {
+ protected:
+  /// Fills a staged folder, says so, and never gets to its end.
+  [[nodiscard]] Work writes_until(const std::function<void()>& what_happens) const {
+    return [this, what_happens](const JobReporter& reporter) {
+      auto folder = io::StagedFolder::create(place_);
+      if (!folder || !folder->write("frames.csv", "half")) _exit(4);
+      reporter.progress(1, 2);
+      what_happens();
+    };
+  }
+  [[nodiscard]] bool is_clean() const { return std::filesystem::is_empty(place_.parent_path()); }
+
+  std::filesystem::path place_ = folder_ / "run";
+};
+
+TEST_F(ForkedJobThatWrites, LeavesNothingWhenItCrashes) {
+  auto job = ForkedJob::start(writes_until([] { std::raise(SIGSEGV); }), {}, place_);
+  ASSERT_TRUE(job.has_value());
+  std::optional<JobEnd> end;
+  while (!(end = job->poll())) usleep(1000);
+  EXPECT_EQ(end->reason, "ended by signal 11 (Segmentation fault) after frame 1 of 2");
+  EXPECT_TRUE(is_clean());
+}
+
+TEST_F(ForkedJobThatWrites, LeavesNothingWhenItIsNotWantedAnyMore) {
+  {
+    auto job = ForkedJob::start(writes_until([] { pause(); }), {}, place_);
+    ASSERT_TRUE(job.has_value());
+    while (job->done() == 0) {
+      ASSERT_FALSE(job->poll().has_value());
+      usleep(1000);
+    }
+    EXPECT_FALSE(is_clean());
+  }
+  EXPECT_TRUE(is_clean());
 }
 
 }  // namespace
