@@ -68,6 +68,39 @@ void halve_points(const ViewLevel& fine, ViewLevel& coarse) {
   }
 }
 
+/// Levels without intensities.
+LivePyramid surface_levels(const DepthImage& depth_m, const PointMap& normal, const PinholeCamera& camera,
+                           const Workers& workers) {
+  LivePyramid levels;
+  for (int number = 0; number < kLevels; ++number) {
+    const auto at = static_cast<std::size_t>(number);
+    LiveLevel& level = levels[at];
+    level.camera = camera_of_level(camera, number);
+    level.depth_m = number == 0 ? depth_m : half_depth(levels[at - 1].depth_m);
+    level.normal = number == 0 ? normal : surfels::normals_of(level.depth_m, level.camera, workers);
+  }
+  return levels;
+}
+
+/// No gradient where one of the eight neighbours has no surface, and so no intensity.
+void flatten_beside_holes(const DepthImage& depth_m, Gradient& gradient) {
+  const auto has_hole = [&](int x, int y) {
+    for (int v = std::max(0, y - 1); v <= std::min(depth_m.height - 1, y + 1); ++v) {
+      for (int u = std::max(0, x - 1); u <= std::min(depth_m.width - 1, x + 1); ++u) {
+        if (!(depth_m(u, v) > 0)) return true;
+      }
+    }
+    return false;
+  };
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x) {
+      if (!has_hole(x, y)) continue;
+      const std::size_t pixel = depth_m.index(x, y);
+      gradient.dx.data[pixel] = gradient.dy.data[pixel] = 0;
+    }
+  }
+}
+
 }  // namespace
 
 PinholeCamera camera_of_level(const PinholeCamera& camera, int level) {
@@ -85,16 +118,27 @@ DepthImage half_depth(const DepthImage& depth_m) { return half_of_surface(depth_
 
 LivePyramid live_pyramid(const surfels::LiveFrame& live, const PinholeCamera& camera,
                          const Workers& workers) {
-  LivePyramid levels;
+  LivePyramid levels = surface_levels(live.smooth_m, live.normal, camera, workers);
   const std::vector<GreyImage> grey = build_pyramid(live.grey, kLevels);
-  for (int number = 0; number < kLevels; ++number) {
-    const auto at = static_cast<std::size_t>(number);
-    LiveLevel& level = levels[at];
-    level.camera = camera_of_level(camera, number);
-    level.depth_m = number == 0 ? live.smooth_m : half_depth(levels[at - 1].depth_m);
-    level.normal = number == 0 ? live.normal : surfels::normals_of(level.depth_m, level.camera, workers);
-    level.intensity = as_float(grey[at]);
+  for (std::size_t number = 0; number < levels.size(); ++number) {
+    levels[number].intensity = as_float(grey[number]);
+    levels[number].gradient = gradient_of(levels[number].intensity);
+  }
+  return levels;
+}
+
+LivePyramid live_pyramid(const surfels::SurfelView& view, config::PeerDefects defects,
+                         const Workers& workers) {
+  const GreyImage grey = surfels::intensity_of(view.color, defects);
+  if (defects == config::PeerDefects::as_published)
+    return live_pyramid({view.point.z, view.point.z, view.normal, view.color, grey}, view.camera, workers);
+  LivePyramid levels = surface_levels(view.point.z, view.normal, view.camera, workers);
+  for (std::size_t number = 0; number < levels.size(); ++number) {
+    LiveLevel& level = levels[number];
+    level.intensity = number == 0 ? as_float(grey)
+                                  : half_of_surface(levels[number - 1].intensity, levels[number - 1].depth_m);
     level.gradient = gradient_of(level.intensity);
+    flatten_beside_holes(level.depth_m, level.gradient);
   }
   return levels;
 }

@@ -31,6 +31,10 @@ struct LiveLevel {
 using LivePyramid = std::array<LiveLevel, kLevels>;
 [[nodiscard]] LivePyramid live_pyramid(const surfels::LiveFrame& live, const PinholeCamera& camera,
                                        const Workers& workers);
+/// Of a view of the model that stands in for a frame. Its holes have no intensity: nothing is averaged over
+/// them, and beside them there is no gradient. As published, they are black.
+[[nodiscard]] LivePyramid live_pyramid(const surfels::SurfelView& view, config::PeerDefects defects,
+                                       const Workers& workers);
 
 /// Its points may be means of several, so that they do not lie on the rays of the pixels.
 struct ViewLevel {

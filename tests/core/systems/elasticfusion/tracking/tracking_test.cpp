@@ -8,37 +8,18 @@
 #include "core/systems/elasticfusion/tracking/intensity_matching.hpp"
 #include "core/systems/elasticfusion/tracking/plane_matching.hpp"
 #include "core/systems/elasticfusion/tracking/rotation_start.hpp"
-#include "tests/support/textured_room.hpp"
+#include "tests/core/systems/elasticfusion/room_views.hpp"
 
 namespace fusebench {
 
 using namespace systems;
 using namespace systems::elasticfusion;
+using testing::kFixed;
+using testing::live_at;
 using testing::small_camera;
+using testing::view_of;
 
 namespace {
-
-constexpr auto kFixed = config::PeerDefects::fixed;
-
-surfels::LiveFrame live_at(const SE3& T_world_camera, const Workers& workers) {
-  config::DepthConfig depth;
-  depth.max_m = 6;
-  return surfels::make_live_frame(testing::TexturedRoom{}.render(small_camera(), T_world_camera, 0),
-                                  small_camera(), depth, kFixed, workers);
-}
-
-/// As if the model were exactly what the camera saw.
-surfels::SurfelView view_of(const surfels::LiveFrame& live) {
-  surfels::SurfelView view;
-  view.camera = small_camera();
-  const int width = view.camera.width_px, height = view.camera.height_px;
-  view.point.resize(width, height);
-  view.normal.resize(width, height);
-  view.color = ColorImage(width, height);
-  view.surfel = Image<std::int32_t>(width, height, surfels::kNoSurfel);
-  fill_in(live, view);
-  return view;
-}
 
 SE3 stepped(const SE3& T_view_camera, const Vector6d& step) {
   return SE3{so3_exp(step.head<3>()), step.tail<3>()} * T_view_camera;
