@@ -71,6 +71,7 @@ bool PendingRevisits::do_not_fit() const {
 std::optional<DepthImage> PendingRevisits::depth_to_fuse(const tsdf::TsdfVolume& model,
                                                          const RgbdFrame& frame, const SE3& T_world_camera,
                                                          const Workers& workers) {
+  if (config_.loops.max_pending_s == 0) return std::nullopt;  // whatever was seen, so nothing is looked at
   look(model, frame, T_world_camera, workers);
   if (!do_not_fit()) {
     pending_since_ns_.reset();

@@ -23,7 +23,7 @@ class PendingRevisits {
   /// What of the frame's depth (metres) may be fused at this pose: all of it but what is seen before, on or
   /// behind surfaces that nothing was fused into for loops.least_age_s, if these do not fit (by median, more
   /// than 1 cm and two standard deviations of the depth noise apart). Nothing if all of it may be, as after
-  /// loops.max_pending_s of frames that did not fit.
+  /// loops.max_pending_s of frames that did not fit; where that is 0, neither model nor frame is looked at.
   [[nodiscard]] std::optional<DepthImage> depth_to_fuse(const tsdf::TsdfVolume& model, const RgbdFrame& frame,
                                                         const SE3& T_world_camera, const Workers& workers);
 

@@ -99,6 +99,9 @@ TEST(PendingRevisits, WaitsForALoopOnlySoLong) {
   RevisitedWall never(testing::small_camera().width_px);
   never.config.loops.max_pending_s = 0;
   EXPECT_FALSE(never.to_fuse(never.at(20, kWall_m + 0.06)));
+  RgbdFrame no_depth;  // which would be missed where the rays hit
+  no_depth.timestamp_ns = never.at(20, kWall_m).timestamp_ns;
+  EXPECT_FALSE(never.to_fuse(no_depth));
 }
 
 }  // namespace fusebench
