@@ -19,14 +19,6 @@ constexpr double kMisfitSigmas = 2.0;
 int cells(int pixels) { return (pixels + kCell_px - 1) / kCell_px; }
 int middle_px(int cell, int pixels) { return std::min(cell * kCell_px + kCell_px / 2, pixels - 1); }
 
-/// In which block a surface lies, and when something was fused there.
-std::optional<std::int64_t> last_fused_ns(const tsdf::TsdfVolume& model, const Vector3d& point_world) {
-  const tsdf::VoxelIndex voxel = (point_world / model.voxel_m()).array().round().cast<int>();
-  const int slot = model.find_block(tsdf::block_of(voxel));
-  if (slot < 0) return std::nullopt;
-  return model.last_fused_ns(static_cast<std::size_t>(slot));
-}
-
 }  // namespace
 
 /// Rays through the middles of the cells.
@@ -49,9 +41,11 @@ void PendingRevisits::look(const tsdf::TsdfVolume& model, const RgbdFrame& frame
     const raycast::SurfacePoint& surface = surfaces_[cell];
     const raycast::PixelRay& ray = rays[cell];
     if (!surface.valid) continue;
-    const auto fused_ns =
-        last_fused_ns(model, T_world_camera * camera_.back_project(ray.u_px, ray.v_px, surface.depth_m));
-    if (!fused_ns || seconds_between(*fused_ns, frame.timestamp_ns) < config_.loops.least_age_s) continue;
+    const auto place =
+        model.nearest_voxel(T_world_camera * camera_.back_project(ray.u_px, ray.v_px, surface.depth_m));
+    if (!place ||
+        seconds_between(model.last_fused_ns(place->slot), frame.timestamp_ns) < config_.loops.least_age_s)
+      continue;
     old_[cell] = true;
     const auto measured_m =
         static_cast<double>(frame.depth_m(static_cast<int>(ray.u_px), static_cast<int>(ray.v_px)));

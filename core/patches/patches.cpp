@@ -12,7 +12,6 @@
 #include "core/patches/measured_surfaces.hpp"
 #include "core/patches/patch_deformation.hpp"
 #include "core/preprocessing/depth_gates.hpp"
-#include "core/tsdf/block_slots.hpp"
 
 namespace fusebench::patches {
 
@@ -308,19 +307,15 @@ std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::Tsdf
 double fused_share(const tsdf::TsdfVolume& model, std::span<const Patch> patches, const ReferenceFrame& frame,
                    const config::DepthConfig& depth) {
   const SE3 T_camera_world = frame.T_world_camera.inverse();
-  tsdf::BlockSlots slots(model);
   double sum = 0;
   std::size_t count = 0;
   for (const Patch& patch : patches) {
     for (const PatchPixel& pixel : patch.levels.front().pixels) {
       ++count;
       if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
-      const Vector3d lattice = pixel.point_world / model.voxel_m();
-      const tsdf::VoxelIndex voxel = lattice.array().round().cast<int>();
-      const int slot = slots.find(tsdf::block_of(voxel));
-      if (slot < 0) continue;
-      const float weight_there =
-          model.voxel(static_cast<std::size_t>(slot), tsdf::offset_in_block(voxel)).weight;
+      const auto place = model.nearest_voxel(pixel.point_world);
+      if (!place) continue;
+      const float weight_there = model.voxel(place->slot, place->offset).weight;
       if (!(weight_there > 0)) continue;
       const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
       sum += std::min(1.0, weight / static_cast<double>(weight_there));

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -38,6 +39,12 @@ struct Voxel {
 };
 
 using VoxelIndex = Eigen::Vector3i;  ///< lattice coordinates of a voxel
+
+/// Where a voxel is stored.
+struct VoxelPlace {
+  std::size_t slot = 0;    ///< of its block
+  std::size_t offset = 0;  ///< within the block, see offset_in_block()
+};
 
 /// The voxels of one block where they are stored: each of these points to kBlockVoxels values, x fastest,
 /// then y, then z. What is read together lies together: rays read distances alone, and colour is seldom read.
@@ -91,6 +98,9 @@ class TsdfVolume {
 
   /// Slot of a block in storage order, or -1.
   [[nodiscard]] int find_block(const BlockIndex& index) const { return table_.find(index); }
+  /// Where the voxel nearest to a point of the world (metres, closer than reach_m()) is stored; nothing if no
+  /// block is allocated there.
+  [[nodiscard]] std::optional<VoxelPlace> nearest_voxel(const Vector3d& point_world) const;
   /// Number of a region with an allocated block, or -1; regions are cubes of 4x4x4 blocks: floor(block / 4).
   [[nodiscard]] int find_region(const Eigen::Vector3i& region) const { return regions_.find(region); }
   [[nodiscard]] const std::vector<Eigen::Vector3i>& region_indices() const { return region_indices_; }
@@ -140,6 +150,13 @@ class TsdfVolume {
 [[nodiscard]] inline std::size_t offset_in_block(const VoxelIndex& voxel) {
   return static_cast<std::size_t>((voxel.x() & 7) +
                                   kBlockSide * ((voxel.y() & 7) + kBlockSide * (voxel.z() & 7)));
+}
+
+inline std::optional<VoxelPlace> TsdfVolume::nearest_voxel(const Vector3d& point_world) const {
+  const VoxelIndex voxel = (point_world / config_.voxel_m).array().round().matrix().cast<int>();
+  const int slot = find_block(block_of(voxel));
+  if (slot < 0) return std::nullopt;
+  return VoxelPlace{static_cast<std::size_t>(slot), offset_in_block(voxel)};
 }
 
 }  // namespace fusebench::tsdf

@@ -15,9 +15,8 @@ constexpr double kNearNeighbours_m = 0.15;
 
 /// Of the voxel nearest to the point; 0 if it was never observed.
 float weight_at(const tsdf::TsdfVolume& model, const Vector3d& point_world) {
-  const tsdf::VoxelIndex voxel = (point_world / model.voxel_m()).array().round().matrix().cast<int>();
-  const int slot = model.find_block(tsdf::block_of(voxel));
-  return slot < 0 ? 0.0F : model.voxel(static_cast<std::size_t>(slot), tsdf::offset_in_block(voxel)).weight;
+  const auto place = model.nearest_voxel(point_world);
+  return place ? model.voxel(place->slot, place->offset).weight : 0.0F;
 }
 
 /// Differences of the points around a pixel, right less left and below less above.

@@ -57,6 +57,25 @@ TEST(TsdfVolume, IsEmptyAtFirst) {
   EXPECT_FALSE(testing::find_voxel(volume, {1, 2, 3}));
 }
 
+TEST(TsdfVolume, TheVoxelNearestToAPointIsFoundWhereItIsStored) {
+  const TsdfVolume volume = fuse(ball_scene(), kCamera, {look_at({0.31, -0.42, -0.93}, {0.05, 0.02, 0.0})});
+  int seen = 0;
+  for_each_voxel(volume, [&](const VoxelIndex& index, const Voxel& voxel) {
+    for (const double aside : {-0.49, 0.0, 0.49}) {
+      const Vector3d point = (index.cast<double>() + Vector3d(aside, -aside, aside)) * volume.voxel_m();
+      const auto place = volume.nearest_voxel(point);
+      ASSERT_TRUE(place);
+      EXPECT_EQ(volume.block_indices()[place->slot], block_of(index));
+      EXPECT_EQ(place->offset, offset_in_block(index));
+      EXPECT_EQ(volume.voxel(place->slot, place->offset).weight, voxel.weight);
+    }
+    seen += voxel.weight > 0.0F ? 1 : 0;
+  });
+  EXPECT_GT(seen, 1000);
+  EXPECT_FALSE(volume.nearest_voxel({0.0, 0.0, 5.0}));
+  EXPECT_FALSE(TsdfVolume{TsdfConfig{}}.nearest_voxel({0.0, 0.0, 0.0}));
+}
+
 TEST(TsdfVolume, HoldsTheClampedProjectiveDistanceOfAWall) {
   const double depth_m = 1.003;
   const TsdfVolume volume = fuse(wall(depth_m), kCamera, {kOrigin});
