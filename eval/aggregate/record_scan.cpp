@@ -318,24 +318,24 @@ RunRow damaged_row(RunRow row, std::string reason) {
   row.reason = std::move(reason);
   row.options.clear();
   row.wrote_options = false;
-  row.fingerprint.clear();
-  row.imu.clear();
+  row.fingerprint = row.imu = "";
   row.total = row.tracked = row.lost = row.first_frame = row.frames = 0;
   row.repetition = 1;
   return row;
 }
 
+RunRow row_without_record(RunRow row, std::string reason) {
+  row.data = row.truth = record::kUnknownWord;
+  return damaged_row(std::move(row), std::move(reason));
+}
+
 RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* files) {
   RunRow row;
   RecordHandler handler(json, row, files);
-  const auto damaged = [&](const std::string& problem) {
-    row.data = record::kUnknownWord;
-    row.truth = record::kUnknownWord;
-    return damaged_row(std::move(row), reason_of(problem));
-  };
-  if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler)) return damaged(handler.problem());
+  if (!nlohmann::json::sax_parse(json.begin(), json.end(), &handler))
+    return row_without_record(std::move(row), reason_of(handler.problem()));
   if (const auto missing = handler.missing(); !missing.empty())
-    return damaged(fmt::format("{} is missing", missing));
+    return row_without_record(std::move(row), reason_of(fmt::format("{} is missing", missing)));
   std::ranges::sort(row.options);
   row.wrote_options = handler.has_config() && !handler.has_program();
   if (row.fingerprint.empty()) row.imu.clear();  // what stands there is the default

@@ -14,7 +14,11 @@ namespace fusebench::aggregate {
 /// files that stand in the record (without hashes) are added to `files`, if there is one.
 [[nodiscard]] RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* files = nullptr);
 
-/// The row of a run that is not whole: failed, without numbers and options.
+/// The row of a run that is not whole: failed, without numbers and options. What its record says of its data
+/// and their truth stays.
 [[nodiscard]] RunRow damaged_row(RunRow row, std::string reason);
+
+/// The row of a run whose record is lost: of which kind its data and their truth are is not known either.
+[[nodiscard]] RunRow row_without_record(RunRow row, std::string reason);
 
 }  // namespace fusebench::aggregate

@@ -32,10 +32,7 @@ RunRow read_row(const fs::path& root, const fs::path& file) {
     if (std::string damage = row.readable ? run_files::changed_size(folder, files) : ""; !damage.empty())
       row = damaged_row(std::move(row), std::move(damage));
   } else {
-    row.readable = false;
-    row.data = record::kUnknownWord;
-    row.truth = record::kUnknownWord;
-    row.reason = "record.json: cannot be read";
+    row = row_without_record(std::move(row), "record.json: cannot be read");
   }
   if (!row.readable) {
     const run_files::PlaceOfRun place = run_files::place_of_run(folder);

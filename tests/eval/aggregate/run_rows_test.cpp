@@ -219,6 +219,20 @@ TEST_F(RunRowsTest, ADamagedRecordIsARow) {
   EXPECT_FALSE(read[0].attributable());
 }
 
+TEST_F(RunRowsTest, ARecordThatCannotBeReadSaysNothing) {
+  write_record("desk/dm/01234567", sample_record("desk", "dm", 0.0123));
+  write("runs/desk/dm/89abcdef/record.json", "");
+  std::filesystem::resize_file(folder_ / "runs/desk/dm/89abcdef/record.json", kMostRecordBytes + 1);
+  const auto read = rows();
+  ASSERT_EQ(read.size(), 2U);
+  const RunRow& lost = *std::ranges::find(read, "89abcdef", &RunRow::run);
+  const RunRow& whole = *std::ranges::find(read, "01234567", &RunRow::run);
+  EXPECT_EQ(std::tie(lost.readable, lost.reason), std::tuple(false, "record.json: cannot be read"));
+  EXPECT_EQ(std::tie(lost.data, lost.truth), std::tuple(kUnknownWord, kUnknownWord));
+  EXPECT_EQ(lost.imu, "recorded");                                       // as the other run of the method
+  EXPECT_EQ(whole.label.find("IMU"), std::string::npos) << whole.label;  // no run has another one
+}
+
 TEST_F(RunRowsTest, ARunThatNeverStartedHasTheOptionsOfItsConfiguration) {
   write_record("desk/full/01234567", sample_record("desk", "full", 0.0123));
   RunRecord failed;
