@@ -170,8 +170,10 @@ check_bad_usage() {
     calibrate freiburg1_copy --imu synthetic --out out
   refused "a calibration from the truth, automatic" 2 'made from its ground truth' -- \
     calibrate freiburg1_copy --imu auto --out out
-  refused "a calibration without samples" 2 'needs an IMU' 'hint:needs recorded inertial samples' -- \
+  refused "a calibration without samples" 2 'needs an IMU' 'hint:recorded inertial samples .*with --imu synthetic' -- \
     calibrate freiburg1_copy --out out
+  refused "a calibration by edit without samples" 2 'needs an IMU' 'hint:recorded inertial samples .*with --imu synthetic' -- \
+    calibrate freiburg1_copy --variant no-imu --set terms.prior=imu --out out
   refused "one round" 2 'rounds' '2 (-|to) 20' -- calibrate freiburg1_copy --imu synthetic --rounds 1
   refused "frames backwards" 2 '4:2' -- "${run[@]}" --frames 4:2
   refused "an open window behind the end" 2 "frames 1000: begins behind the end: 'freiburg1_copy' has 5 frames, 0 to 4" -- "${run[@]}" --frames 1000:

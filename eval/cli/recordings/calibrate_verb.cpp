@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "core/base/printable.hpp"
+#include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
+#include "datasets/open_recording.hpp"
 #include "eval/batch_estimation/calibration.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
@@ -74,7 +76,26 @@ Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
   return 0;
 }
 
-Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
+/// What is calibrated, and how the estimator runs over it.
+struct CalibrateTask {
+  config::Config config;
+  recording::Recording recording;
+};
+
+/// What a run could do without an IMU of its own, a calibration cannot.
+tl::unexpected<Error> no_samples(const recording::Recording& recording) {
+  return fail(
+      ErrorCode::usage,
+      fmt::format("a calibration of camera and IMU needs an IMU, and recording '{}' has none",
+                  recording.name),
+      fmt::format("take one with recorded inertial samples (--depth-camera needs none){}",
+                  recording.ground_truth.empty()
+                      ? ""
+                      : "; with --imu synthetic and without --out it only shows what it finds in those "
+                        "that the ground truth gives"));
+}
+
+Result<CalibrateTask> prepare(const CalibrateVerbOptions& options) {
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
   if (!config::needs_imu(spec->config.values)) {
@@ -82,24 +103,22 @@ Result<run::PreparedRun> prepare(const CalibrateVerbOptions& options) {
                 fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.request.variant),
                 "take --variant full: the IMU only helps to find the poses, which are the images' own");
   }
-  auto prepared = run::prepare_run(std::move(*spec));
-  // What a run could do without an IMU of its own, a calibration cannot.
-  if (!prepared && prepared.error().message.find(" needs an IMU") != std::string::npos) {
-    const bool has_truth = prepared.error().hint.starts_with("--imu synthetic");
-    prepared.error().hint = fmt::format(
-        "a calibration of camera and IMU needs recorded inertial samples (--depth-camera needs none){}",
-        has_truth ? "; with --imu synthetic and without --out it only shows what it finds in those that the "
-                    "ground truth gives"
-                  : "");
-  }
-  return prepared;
+  if (auto related = config::check_relations(spec->config.values); !related)
+    return tl::unexpected(related.error());
+  auto whole = datasets::open_recording(spec->recording, spec->open);
+  if (!whole) return tl::unexpected(whole.error());
+  if (spec->imu == run::ImuChoice::recorded && whole->imu_source == recording::ImuSource::none)
+    return no_samples(*whole);
+  auto view = run::view_for_run(std::move(*whole), *spec);
+  if (!view) return tl::unexpected(view.error());
+  return CalibrateTask{std::move(spec->config.values), std::move(*view)};
 }
 
 Result<int> run(const CalibrateVerbOptions& options) {
   if (options.depth_camera) return run_depth_camera(options);
-  const auto prepared = prepare(options);
-  if (!prepared) return tl::unexpected(prepared.error());
-  const recording::Recording& recording = prepared->recording;
+  const auto task = prepare(options);
+  if (!task) return tl::unexpected(task.error());
+  const recording::Recording& recording = task->recording;
   if (recording.imu_source == recording::ImuSource::synthetic && !options.out.empty()) {
     return fail(ErrorCode::usage,
                 fmt::format("the IMU of '{}' is made from its ground truth, so that a calibration file would "
@@ -118,8 +137,7 @@ Result<int> run(const CalibrateVerbOptions& options) {
                                                  .scale_prior = 0.01 * options.scale_prior_percent,
                                                  .max_rounds = options.rounds};
   const Workers workers(options.request.threads);
-  const auto calibration =
-      batch_estimation::calibrate(recording, prepared->spec.config.values, how, workers, control);
+  const auto calibration = batch_estimation::calibrate(recording, task->config, how, workers, control);
   bar.clear();
   if (!calibration) return tl::unexpected(calibration.error());
   const auto written =
