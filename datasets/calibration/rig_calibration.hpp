@@ -70,8 +70,8 @@ inline constexpr std::string_view kRigidTransformRule =
 /// Between sensors of one rig: more is another unit, or damaged.
 inline constexpr double kMostLeverArm_m = 1000;
 
-/// Of a side of an image: no sensor has more.
-inline constexpr int kMostSize_px = 1'000'000;
+/// Of a side of an image, in calibrations and records: no sensor has more.
+inline constexpr int kMostSize_px = 100'000;
 
 /// A frame is not read out for longer, and its depth not later or earlier than its colour by more.
 inline constexpr double kMostReadout_s = 1;

@@ -176,6 +176,8 @@ TEST(RigCalibration, ErrorsNameThePlace) {
   EXPECT_EQ(refusal(with_color("width_px = 640\n")), "c.toml:1: [color] needs the key height_px");
   EXPECT_EQ(refusal(with_color("width_px = 640.5\nheight_px = 480\n")),
             "c.toml:6: color.width_px must be a whole number");
+  EXPECT_EQ(refusal(with_color("width_px = 100001\nheight_px = 480\n")),
+            "c.toml:6: color.width_px must be a number from 1 to 100000");
   EXPECT_EQ(refusal(with_color("distortion = [1, 2, 3, 4]\n")),
             "c.toml:6: color.distortion must be a list of 5 finite numbers");
   EXPECT_EQ(refusal("[color]\nfx_px = -500\n"),
