@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/io/input_file.hpp"
+#include "datasets/images/exr_check.hpp"
 #include "datasets/images/file_content.hpp"
 #include "datasets/images/image_library_loader.hpp"
 #include "datasets/images/plain_png.hpp"
@@ -41,19 +42,30 @@ tl::unexpected<Error> no_library(const std::string& image, Error error) {
 /// Of one image: those of any camera are a tenth of it.
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
 
-/// A header may claim any size. PNG's compression makes at most 1032 bytes of one, and JPEG's less in
-/// practice, so that memory stays in proportion to the file; a file of one colour needs the other limit.
+/// Bytes of pixels that a byte of a file can stand for at most. Deflate makes 1032 of one
+/// (zlib.net/zlib_tech.html), and a PNG of one bit with a palette has a bit for three bytes; a JPEG spends at
+/// least a bit on a block of 64 samples. OpenEXR's PXR24 has dropped one of four bytes before it deflates;
+/// its PIZ counts 255 equal halves in 9 bits (ImfHuf.cpp), its other methods do less. DWAA and DWAB deflate
+/// what is already 64 times less: runs of 128 bytes in two, or 64 samples as a coefficient and a mark
+/// (ImfDwaCompressor.cpp).
+std::uint64_t most_per_byte(const ImageHeader& header) {
+  constexpr std::uint64_t kDeflate = 1032;
+  if (header.compression.starts_with("dwa")) return 64 * kDeflate;
+  return header.type == SampleType::float32 ? 4 * kDeflate / 3 : 24 * kDeflate;
+}
+
+/// A header may claim any size. Memory stays in proportion to the file, or, as one of a single colour can be
+/// tiny, below the other limit.
 Result<void> check_claim(const std::string& image, const ImageHeader& header, std::uintmax_t bytes) {
-  constexpr std::uintmax_t kMaxPerByte = 1032;
   const auto width = static_cast<std::uint64_t>(std::max(header.width_px, 0));
   const auto height = static_cast<std::uint64_t>(std::max(header.height_px, 0));
   if (width * height > kMostPixels) {
     return corrupt(image, fmt::format("its header claims {}x{} pixels (allowed: up to {} of them)",
                                       header.width_px, header.height_px, kMostPixels));
   }
-  if (header.pixel_bytes / kMaxPerByte <= bytes) return {};
-  return corrupt(image, fmt::format("damaged image (its header claims {}x{} "
-                                    "pixels, too many for {} bytes)",
+  if (header.stored_bytes / most_per_byte(header) <= bytes) return {};
+  return corrupt(image, fmt::format("damaged image (its header claims {}x{} pixels, and its {} bytes are too "
+                                    "few for so many)",
                                     header.width_px, header.height_px, bytes));
 }
 
@@ -82,6 +94,7 @@ Result<OpenedImage> open_image(const std::filesystem::path& file) {
   if (const auto sized = check_image_bytes(file); !sized) return tl::unexpected(sized.error());
   if (const auto known = check_kind(file); !known) return tl::unexpected(known.error());
   if (const std::string damage = png_damage(file); !damage.empty()) return corrupt(file.string(), damage);
+  if (const std::string damage = exr_damage(file); !damage.empty()) return corrupt(file.string(), damage);
   const Result<const ImageLibrary*>& library = image_library();
   if (!library) return no_library(file.string(), library.error());
   return sound_image(file.string(), (*library)->open(file.string()),
@@ -127,7 +140,8 @@ Result<Image<Pixel>> pixels_of(const std::string& name, const OpenedImage& opene
   }
   if (const auto fits = check_size(name, header, expected); !fits) return tl::unexpected(fits.error());
   Image<Pixel> image(header.width_px, header.height_px);
-  if (const auto read = opened.read_pixels(std::as_writable_bytes(std::span(image.data))); !read)
+  if (const auto read = opened.read_pixels(layout.channels, std::as_writable_bytes(std::span(image.data)));
+      !read)
     return damaged_pixels(name, read.error());
   return image;
 }
@@ -262,12 +276,9 @@ Result<Image<float>> read_float(const std::filesystem::path& file, std::optional
   }
   if (const auto fits = check_size(file.string(), header, expected); !fits)
     return tl::unexpected(fits.error());
-  const auto channels = static_cast<std::size_t>(header.channels);
   Image<float> first(header.width_px, header.height_px);
-  std::vector<float> samples(first.data.size() * channels);
-  if (const auto read = image->read_pixels(std::as_writable_bytes(std::span(samples))); !read)
+  if (const auto read = image->read_pixels(1, std::as_writable_bytes(std::span(first.data))); !read)
     return damaged_pixels(file.string(), read.error());
-  for (std::size_t i = 0; i < first.data.size(); ++i) first.data[i] = samples[i * channels];
   return first;
 }
 

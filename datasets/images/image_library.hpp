@@ -22,14 +22,16 @@ struct ImageHeader {
   int height_px = 0;
   int channels = 0;
   SampleType type = SampleType::other;
-  std::string type_name;          ///< as the library names it: "uint8", "float"
-  std::uint64_t pixel_bytes = 0;  ///< of all pixels, decoded
+  std::string type_name;           ///< as the library names it: "uint8", "float"
+  std::uint64_t stored_bytes = 0;  ///< of all pixels before their compression: a half has two
+  std::string compression;         ///< as the library names it: "zip", "dwaa"
 };
 
 struct OpenedImage {
   ImageHeader header;
-  /// Decodes into header.pixel_bytes bytes, laid out as those of a PixelView.
-  std::function<LibraryResult<void>(std::span<std::byte> pixels)> read_pixels;
+  /// Decodes the first so many channels into as many bytes as their samples have, laid out as those of a
+  /// PixelView.
+  std::function<LibraryResult<void>(int channels, std::span<std::byte> pixels)> read_pixels;
 };
 
 /// May be used by several threads at once. Not a class with virtual functions: a module that is loaded late
@@ -47,7 +49,7 @@ struct ImageLibrary {
 
 /// Equal in a program and a module that fit together: what is above is laid out by the compiler. The number
 /// counts the changes of this file.
-inline constexpr const char* kImageLibraryBuild = "images 2, compiler " __VERSION__;
+inline constexpr const char* kImageLibraryBuild = "images 3, compiler " __VERSION__;
 
 /// All that the module exports.
 inline constexpr const char* kImageLibraryFunction = "fusebench_image_library";

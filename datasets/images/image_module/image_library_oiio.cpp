@@ -23,18 +23,13 @@ SampleType sample_type_of(const OIIO::TypeDesc& type) {
   return SampleType::other;
 }
 
-/// Of all pixels, in that type.
-std::uint64_t pixel_bytes_of(const OIIO::ImageSpec& spec) {
-  return spec.image_bytes() / spec.format.size() * read_type_of(spec).size();
-}
-
-LibraryResult<void> read_pixels(OIIO::ImageInput& input, std::span<std::byte> pixels) {
+LibraryResult<void> read_pixels(OIIO::ImageInput& input, int channels, std::span<std::byte> pixels) {
   const OIIO::ImageSpec& spec = input.spec();
+  const OIIO::TypeDesc type = read_type_of(spec);
   // An image may have a depth besides width and height.
-  if (pixels.size() != pixel_bytes_of(spec))
+  if (pixels.size() != spec.image_pixels() * static_cast<std::uint64_t>(channels) * type.size())
     return tl::unexpected(std::string("it has other pixels than its width and height say"));
-  if (!input.read_image(0, 0, 0, spec.nchannels, read_type_of(spec), pixels.data()))
-    return tl::unexpected(input.geterror());
+  if (!input.read_image(0, 0, 0, channels, type, pixels.data())) return tl::unexpected(input.geterror());
   return {};
 }
 
@@ -44,9 +39,11 @@ LibraryResult<OpenedImage> opened(std::shared_ptr<OIIO::ImageInput> input, Owned
   if (!input) return tl::unexpected(OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   const OIIO::TypeDesc type = read_type_of(spec);
-  return OpenedImage{
-      {spec.width, spec.height, spec.nchannels, sample_type_of(type), type.c_str(), pixel_bytes_of(spec)},
-      [owned, input](std::span<std::byte> pixels) { return read_pixels(*input, pixels); }};
+  return OpenedImage{{spec.width, spec.height, spec.nchannels, sample_type_of(type), type.c_str(),
+                      spec.image_bytes(true), std::string(spec.get_string_attribute("compression"))},
+                     [owned, input](int channels, std::span<std::byte> pixels) {
+                       return read_pixels(*input, channels, pixels);
+                     }};
 }
 
 LibraryResult<OpenedImage> open_image(const std::string& file) {

@@ -1,0 +1,79 @@
+#include "datasets/images/exr_check.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <system_error>
+
+#include "core/base/printable.hpp"
+#include "core/io/input_file.hpp"
+
+namespace fusebench::images {
+
+namespace {
+
+constexpr std::size_t kMostName = 255;  // of the format, without the zero behind it
+
+std::optional<std::uint32_t> little_endian(std::istream& stream) {
+  std::array<char, 4> bytes{};
+  if (!stream.read(bytes.data(), bytes.size())) return std::nullopt;
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    value |= std::uint32_t{static_cast<std::uint8_t>(bytes[i])} << (8 * i);
+  return value;
+}
+
+/// A text with a zero behind it.
+std::optional<std::string> name_of(std::istream& stream) {
+  std::string name;
+  for (char c = 0; stream.get(c);) {
+    if (c == '\0') return name;
+    if (name.size() == kMostName) return std::nullopt;
+    name += c;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+// The decoder makes room for an attribute of any size, and fills it with zeros, before it reads it.
+std::string exr_damage(const std::filesystem::path& file) {
+  constexpr std::uint32_t kMagic = 20000630;
+  constexpr std::uint32_t kHasParts = 0x1000;
+  constexpr std::uint64_t kFrame = 8;  // the magic number and the version
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  std::ifstream stream = io::input_file(file);
+  if (error || little_endian(stream) != kMagic) return {};
+  const std::uint32_t version = little_endian(stream).value_or(0);
+
+  // An attribute: its name, its type, the size of its value, the value. An empty name ends a header, and an
+  // empty header those of several parts.
+  std::uint64_t at = kFrame;
+  bool first_of_header = true;
+  while (true) {
+    const auto name = name_of(stream);
+    if (name && name->empty()) {
+      if ((version & kHasParts) == 0 || first_of_header) return {};
+      first_of_header = true;
+      ++at;
+      continue;
+    }
+    const auto type = name ? name_of(stream) : std::nullopt;
+    const auto size = type ? little_endian(stream) : std::nullopt;
+    if (!size) return fmt::format("damaged OpenEXR (its header has no end in {} bytes)", bytes);
+    at += name->size() + type->size() + 2 + sizeof(*size);
+    if (at + *size > bytes)
+      return fmt::format(
+          "damaged OpenEXR (its header claims {} bytes for '{}', and the file is too small for so many: {})",
+          *size, printable(*name, 40), bytes);
+    at += *size;
+    stream.seekg(static_cast<std::streamoff>(at));
+    first_of_header = false;
+  }
+}
+
+}  // namespace fusebench::images
