@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include "core/systems/image_rows.hpp"
+
 namespace fusebench::systems::infinitam {
 
 namespace {
-
-constexpr std::size_t kRowsAtOnce = 8;
 
 double bilinear(const Image<float>& image, double x, double y) {
   const auto left = static_cast<int>(x), top = static_cast<int>(y);
@@ -74,7 +74,7 @@ PoseSums match_color(const ColorLevel& level, const SE3& T_world_camera, const S
   };
   PoseSums sums;
   for (const PoseSums& part :
-       workers.map_chunks<PoseSums>(static_cast<std::size_t>(level.depth_m->height), kRowsAtOnce, rows))
+       workers.map_chunks<PoseSums>(static_cast<std::size_t>(level.depth_m->height), kRowsASum, rows))
     sums += part;
   return sums;
 }

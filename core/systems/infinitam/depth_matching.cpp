@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "core/simd/lane_points.hpp"
+#include "core/systems/image_rows.hpp"
 
 namespace fusebench::systems::infinitam {
 
 namespace {
-
-constexpr std::size_t kRowsAtOnce = 8;
 
 /// A camera and its pose in single precision.
 struct PosedCamera {
@@ -152,7 +151,7 @@ PoseSums match_depth(const DepthImage& depth_m, const PinholeCamera& camera, con
   };
   PoseSums sums;
   for (const PoseSums& part :
-       workers.map_chunks<PoseSums>(static_cast<std::size_t>(depth_m.height), kRowsAtOnce, rows))
+       workers.map_chunks<PoseSums>(static_cast<std::size_t>(depth_m.height), kRowsASum, rows))
     sums += part;
   return sums;
 }

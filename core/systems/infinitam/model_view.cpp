@@ -5,11 +5,12 @@
 #include <cmath>
 #include <optional>
 
+#include "core/systems/image_rows.hpp"
+
 namespace fusebench::systems::infinitam {
 
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 8;
 constexpr int kBorder_px = 3;  // no normals there
 constexpr double kNearNeighbours_m = 0.15;
 

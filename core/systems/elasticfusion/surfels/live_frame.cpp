@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "core/systems/elasticfusion/surfels/smooth_depth.hpp"
+#include "core/systems/image_rows.hpp"
 
 namespace fusebench::systems::elasticfusion::surfels {
 
 namespace {
-
-constexpr std::size_t kRowsAtOnce = 16;
 
 Eigen::Vector3f point_at(const DepthImage& depth_m, const PinholeCamera& camera, int x, int y) {
   return camera.back_project(x, y, static_cast<double>(depth_m(x, y))).cast<float>();

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/simd/lanes.hpp"
+#include "core/systems/image_rows.hpp"
 
 namespace fusebench::systems::elasticfusion::surfels {
 
@@ -18,7 +19,6 @@ constexpr int kReach_px = 6;
 constexpr int kSide = 2 * kReach_px + 1;
 constexpr double kSigma_px = 4.5;
 constexpr float kSigma_m = 0.03F;
-constexpr std::size_t kRowsAtOnce = 16;
 constexpr int kLanes = static_cast<int>(simd::kLanes);
 
 /// exp(-e) as (1 - e/32)^32: 3 % off at one standard deviation and a half, 0 beyond eight.

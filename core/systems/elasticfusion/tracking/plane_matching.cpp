@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/simd/lane_points.hpp"
+#include "core/systems/image_rows.hpp"
 
 namespace fusebench::systems::elasticfusion::tracking {
 
@@ -12,7 +13,6 @@ namespace {
 using simd::Float8;
 using simd::Int8;
 
-constexpr std::size_t kRowsAtOnce = 8;
 constexpr float kMostApart_m = 0.1F;
 constexpr float kMostSine = 0.342020143F;  // of 20 degrees
 constexpr int kLanes = static_cast<int>(simd::kLanes);
@@ -101,7 +101,7 @@ PoseSums match_planes(const LiveLevel& live, const ViewLevel& view, const SE3& T
   };
   PoseSums sums;
   for (const PoseSums& part :
-       workers.map_chunks<PoseSums>(static_cast<std::size_t>(live.depth_m.height), kRowsAtOnce, rows))
+       workers.map_chunks<PoseSums>(static_cast<std::size_t>(live.depth_m.height), kRowsASum, rows))
     sums += part;
   return sums;
 }
