@@ -54,7 +54,7 @@ enum class BestFormat { markdown, csv, json };
 /// Error usage.
 [[nodiscard]] Result<BestFormat> parse_best_format(std::string_view text);
 
-/// Markdown shows the units of headings; CSV (RFC 4180) and JSON are SI.
-[[nodiscard]] std::string render_best(const BestTable& table, BestFormat format);
+/// Markdown shows the units of headings; CSV (RFC 4180) and JSON are SI. width: of a line of Markdown.
+[[nodiscard]] std::string render_best(const BestTable& table, BestFormat format, std::size_t width = 0);
 
 }  // namespace fusebench::aggregate

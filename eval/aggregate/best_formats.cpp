@@ -21,7 +21,7 @@ std::string option_cell(const RunOptions& options, const std::string& key) {
   return {};
 }
 
-std::string markdown(const BestTable& table) {
+std::string markdown(const BestTable& table, std::size_t width) {
   text::TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant", "imu"};
   header.insert(header.end(), table.options.begin(), table.options.end());
   const std::size_t text_columns = header.size();
@@ -46,7 +46,8 @@ std::string markdown(const BestTable& table) {
     }
   }
   // No run has the number: the notes say so.
-  std::string text = table.groups.empty() ? "" : text::markdown_table(lines, text_columns) + "\n" + more;
+  std::string text =
+      table.groups.empty() ? "" : text::markdown_table(lines, text_columns, width) + "\n" + more;
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   return text;
 }
@@ -116,10 +117,10 @@ Result<BestFormat> parse_best_format(std::string_view text) {
   return fail(ErrorCode::usage, fmt::format("--format {} (allowed: markdown | csv | json)", text));
 }
 
-std::string render_best(const BestTable& table, BestFormat format) {
+std::string render_best(const BestTable& table, BestFormat format, std::size_t width) {
   switch (format) {
     case BestFormat::markdown:
-      return markdown(table);
+      return markdown(table, width);
     case BestFormat::csv:
       return csv(table);
     case BestFormat::json:

@@ -18,6 +18,7 @@
 #include "datasets/open_recording.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/console/table_width.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/engine/run_housekeeping.hpp"
 #include "eval/run_files/found_runs.hpp"
@@ -50,6 +51,7 @@ struct ListOptions {
   std::filesystem::path configs;
   bool markdown = false;
   bool json = false;
+  std::optional<std::size_t> width;
 };
 
 Listing list_variants() {
@@ -245,9 +247,7 @@ Result<int> list(const ListOptions& options) {
       lines.emplace_back();
       for (const Cell& cell : row) lines.back().push_back(cell.value_or("-"));
     }
-    // Elsewhere than on a terminal a row is a line.
-    const auto width = console::terminal_width();
-    console::print_output(width ? text::fitted_columns(lines, *width) : text::aligned_columns(lines));
+    console::print_output(text::fitted_columns(lines, console::table_width(options.width)));
   }
   return 0;
 }
@@ -275,6 +275,7 @@ console::Verb add_list_verb(CLI::App& app) {
       ->type_name("DIR");
   verb->add_flag("--markdown", options->markdown, "As a page of the documentation");
   console::add_json_flag(*verb, options->json);
+  console::add_width_option(*verb, options->width);
   return {verb, [options] { return list(*options); }};
 }
 

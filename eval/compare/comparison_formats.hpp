@@ -1,6 +1,7 @@
 // A comparison for people, for pull requests and for the programs that watch numbers.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +23,10 @@ enum class ComparisonFormat {
 /// Error usage.
 [[nodiscard]] Result<ComparisonFormat> parse_comparison_format(std::string_view text);
 
-/// all: also gates that are unchanged (of table and markdown; the others have what they have).
+/// all: also gates that are unchanged (of table and markdown; the others have what they have). width: of a
+/// line of table, 0: any.
 [[nodiscard]] std::string render_comparison(const RunComparison& comparison, ComparisonFormat format,
-                                            bool all = false);
+                                            bool all = false, std::size_t width = 0);
 
 /// One gate as people read it.
 struct ComparisonLine {
@@ -43,7 +45,7 @@ struct ComparisonLine {
 /// Sentences beneath the lines: where runs diverge, the earliest first; times that were not gated; notes.
 [[nodiscard]] std::vector<std::string> comparison_remarks(const RunComparison& comparison);
 
-[[nodiscard]] std::string comparison_text(const RunComparison& comparison, bool all);
+[[nodiscard]] std::string comparison_text(const RunComparison& comparison, bool all, std::size_t width);
 [[nodiscard]] std::string comparison_markdown(const RunComparison& comparison, bool all);
 [[nodiscard]] std::string comparison_json(const RunComparison& comparison);
 [[nodiscard]] std::string comparison_junit(const RunComparison& comparison);

@@ -71,10 +71,11 @@ Result<ComparisonFormat> parse_comparison_format(std::string_view text) {
   return fail(ErrorCode::usage, fmt::format("--format {} (allowed: {})", text, fmt::join(names, " | ")));
 }
 
-std::string render_comparison(const RunComparison& comparison, ComparisonFormat format, bool all) {
+std::string render_comparison(const RunComparison& comparison, ComparisonFormat format, bool all,
+                              std::size_t width) {
   switch (format) {
     case ComparisonFormat::table:
-      return comparison_text(comparison, all);
+      return comparison_text(comparison, all, width);
     case ComparisonFormat::markdown:
       return comparison_markdown(comparison, all);
     case ComparisonFormat::json:
@@ -129,12 +130,12 @@ std::vector<std::string> comparison_remarks(const RunComparison& comparison) {
   return remarks;
 }
 
-std::string comparison_text(const RunComparison& comparison, bool all) {
+std::string comparison_text(const RunComparison& comparison, bool all, std::size_t width) {
   std::string text = comparison_summary(comparison) + "\n";
   std::vector<std::vector<std::string>> cells;
   for (const ComparisonLine& line : comparison_lines(comparison, all))
     cells.push_back({std::string(to_string(line.verdict)), line.run, line.gate, line.message});
-  if (!cells.empty()) text += fmt::format("\n{}", text::aligned_columns(cells));
+  if (!cells.empty()) text += fmt::format("\n{}", text::fitted_columns(cells, width));
   const std::vector<std::string> remarks = comparison_remarks(comparison);
   if (!remarks.empty()) text += "\n";
   for (const std::string& remark : remarks) text += remark + "\n";

@@ -155,10 +155,10 @@ std::vector<std::string> notes_of(const PublishedTable& table) {
   return notes;
 }
 
-std::string markdown(const PaperTable& table) {
+std::string markdown(const PaperTable& table, std::size_t width) {
   std::vector<text::TableCells> lines = {heading_of(table)};
   for (const PaperRow& row : table.rows) lines.push_back(cells_of(table.of, row));
-  std::string text = text::markdown_table(lines, kTextColumns) + "\n";
+  std::string text = text::markdown_table(lines, kTextColumns, width) + "\n";
   for (const std::string& note : table.notes) text += note + "\n";
   return text;
 }
@@ -252,10 +252,11 @@ PaperTable paper_table(const PublishedTable& published, const std::vector<run_fi
   return table;
 }
 
-std::string render_paper_table(const PaperTable& table, TableFormat format, const LatexLayout& layout) {
+std::string render_paper_table(const PaperTable& table, TableFormat format, const LatexLayout& layout,
+                               std::size_t width) {
   switch (format) {
     case TableFormat::markdown:
-      return markdown(table);
+      return markdown(table, width);
     case TableFormat::csv:
     case TableFormat::csv_long:
       return csv(table);

@@ -38,8 +38,8 @@ struct PaperTable {
                                      const std::vector<run_files::FoundRun>& runs);
 
 /// CSV has a line for each number, with "published" or "here" beside it; numbers of CSV and JSON are in the
-/// value's unit. layout: of LaTeX.
+/// value's unit. layout: of LaTeX. width: of a line of Markdown.
 [[nodiscard]] std::string render_paper_table(const PaperTable& table, TableFormat format,
-                                             const LatexLayout& layout = {});
+                                             const LatexLayout& layout = {}, std::size_t width = 0);
 
 }  // namespace fusebench::tables

@@ -264,8 +264,8 @@ std::string latex(const SystemsTable& table, const LatexLayout& layout) {
   return latex_table(latex, layout);
 }
 
-std::string markdown(const SystemsTable& table) {
-  std::string text = text::markdown_table(systems_table_cells(table), kTextColumns) + "\n";
+std::string markdown(const SystemsTable& table, std::size_t width) {
+  std::string text = text::markdown_table(systems_table_cells(table), kTextColumns, width) + "\n";
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   if (!table.notes.empty()) text += "\n";
   for (const std::string& line : table.footer) text += line + "\n";
@@ -343,7 +343,8 @@ std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& ta
   return lines;
 }
 
-std::string render_systems_table(const SystemsTable& table, TableFormat format, const LatexLayout& layout) {
+std::string render_systems_table(const SystemsTable& table, TableFormat format, const LatexLayout& layout,
+                                 std::size_t width) {
   switch (format) {
     case TableFormat::csv:
     case TableFormat::csv_long:
@@ -355,7 +356,7 @@ std::string render_systems_table(const SystemsTable& table, TableFormat format, 
     case TableFormat::markdown:
       break;
   }
-  return markdown(table);
+  return markdown(table, width);
 }
 
 }  // namespace fusebench::tables

@@ -54,8 +54,8 @@ struct SystemsTable {
 /// The heading, then a line a row, as people see them.
 [[nodiscard]] std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& table);
 
-/// csv_long is as csv here. layout: of LaTeX.
+/// csv_long is as csv here. layout: of LaTeX. width: of a line of Markdown.
 [[nodiscard]] std::string render_systems_table(const SystemsTable& table, TableFormat format,
-                                               const LatexLayout& layout = {});
+                                               const LatexLayout& layout = {}, std::size_t width = 0);
 
 }  // namespace fusebench::tables

@@ -101,8 +101,8 @@ enum class TableFormat { markdown, csv, csv_long, json, latex };
 /// Markdown is aligned for a terminal; LaTeX uses booktabs and has the best of each recording in bold; both
 /// show cm and degrees. CSV and JSON are SI with an empty cell or null for what does not exist; csv_long has
 /// a line for each number of each run, and leaves out what does not exist.
-/// layout: of LaTeX.
+/// layout: of LaTeX. width: of a line of Markdown, as text::markdown_table() has it.
 [[nodiscard]] std::string render_table(const ResultTable& table, TableFormat format,
-                                       const LatexLayout& layout = {});
+                                       const LatexLayout& layout = {}, std::size_t width = 0);
 
 }  // namespace fusebench::tables

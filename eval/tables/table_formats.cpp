@@ -67,8 +67,8 @@ std::string count_line(const ResultTable& table) {
                      silent > 0 ? fmt::format(", {} with silent failures", silent) : "");
 }
 
-std::string markdown(const ResultTable& table) {
-  std::string text = text::markdown_table(table_cells(table), kTextColumns);
+std::string markdown(const ResultTable& table, std::size_t width) {
+  std::string text = text::markdown_table(table_cells(table), kTextColumns, width);
   text += fmt::format("\n{}\n", count_line(table));
   for (const std::string& note : table.notes) text += fmt::format("- {}\n", note);
   text += "\n";
@@ -238,10 +238,11 @@ Result<TableFormat> parse_table_format(std::string_view text) {
               fmt::format("--format {} (allowed: markdown | csv | csv-long | json | latex)", text));
 }
 
-std::string render_table(const ResultTable& table, TableFormat format, const LatexLayout& layout) {
+std::string render_table(const ResultTable& table, TableFormat format, const LatexLayout& layout,
+                         std::size_t width) {
   switch (format) {
     case TableFormat::markdown:
-      return markdown(table);
+      return markdown(table, width);
     case TableFormat::csv:
       return csv(table);
     case TableFormat::csv_long:

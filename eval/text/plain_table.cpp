@@ -6,6 +6,7 @@
 #include <charconv>
 #include <system_error>
 
+#include "eval/text/folded_table.hpp"
 #include "eval/text/text_layout.hpp"
 
 namespace fusebench::text {
@@ -27,36 +28,51 @@ bool is_number(std::string_view text) {
   return read.ec == std::errc{} && read.ptr == text.data() + text.size();
 }
 
+/// A line of the table, and those that its cells go on in.
+std::string markdown_line(const TableCells& line, const TableBlock& block, std::size_t text_columns) {
+  std::string text;
+  for (const TableCells& cells : lines_in_block(line, block)) {
+    text += "|";
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      text += block.columns[i] < text_columns ? fmt::format(" {:<{}} |", cells[i], block.widths[i])
+                                              : fmt::format(" {:>{}} |", cells[i], block.widths[i]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// The line below the heading.
+std::string markdown_rule(const TableBlock& block, std::size_t text_columns) {
+  std::string text = "|";
+  for (std::size_t i = 0; i < block.columns.size(); ++i) {
+    text += block.columns[i] < text_columns ? fmt::format(" {:-<{}} |", "", block.widths[i])
+                                            : fmt::format(" {:->{}}: |", "", block.widths[i] - 1);
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string number_cell(const std::optional<double>& value, double factor, int decimals) {
   return value ? fmt::format("{:.{}f}", *value * factor, decimals) : "-";
 }
 
-std::string markdown_table(const std::vector<TableCells>& lines, std::size_t text_columns) {
+std::string markdown_table(const std::vector<TableCells>& lines, std::size_t text_columns,
+                           std::size_t width) {
   std::vector<TableCells> escaped = lines;
-  std::vector<std::size_t> widths(lines.front().size(), 3);
   for (TableCells& line : escaped) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      line[i] = markdown_cell(line[i]);
-      widths[i] = std::max(widths[i], line[i].size());
-    }
+    for (std::string& cell : line) cell = markdown_cell(cell);
   }
+  // "| a | b |"; the narrowest column that is one is "--:".
+  const TableLook look{
+      .text_columns = text_columns, .around = 4, .between = 3, .narrowest = 3, .heading_on_one_line = true};
   std::string text;
-  for (std::size_t k = 0; k < escaped.size(); ++k) {
-    text += "|";
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      text += i < text_columns ? fmt::format(" {:<{}} |", escaped[k][i], widths[i])
-                               : fmt::format(" {:>{}} |", escaped[k][i], widths[i]);
-    }
-    text += "\n";
-    if (k > 0) continue;
-    text += "|";
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      text += i < text_columns ? fmt::format(" {:-<{}} |", "", widths[i])
-                               : fmt::format(" {:->{}}: |", "", widths[i] - 1);
-    }
-    text += "\n";
+  for (const TableBlock& block : folded_blocks(escaped, look, width)) {
+    if (!text.empty()) text += "\n";
+    text += markdown_line(escaped.front(), block, text_columns);
+    text += markdown_rule(block, text_columns);
+    for (std::size_t k = 1; k < escaped.size(); ++k) text += markdown_line(escaped[k], block, text_columns);
   }
   return text;
 }

@@ -15,8 +15,11 @@ using TableCells = std::vector<std::string>;
 [[nodiscard]] std::string number_cell(const std::optional<double>& value, double factor, int decimals);
 
 /// The first line is the heading; `text_columns` columns are left-aligned, the others right-aligned. Columns
-/// are as wide as their longest cell, so that a terminal shows a table, too.
-[[nodiscard]] std::string markdown_table(const std::vector<TableCells>& lines, std::size_t text_columns);
+/// are as wide as their longest cell, so that a terminal shows a table, too. With a `width` (characters of a
+/// line, 0: any number) that is not enough, the table is folded (folded_table.hpp): cells go on in rows of
+/// their own, and blocks of columns are tables, one after the other.
+[[nodiscard]] std::string markdown_table(const std::vector<TableCells>& lines, std::size_t text_columns,
+                                         std::size_t width = 0);
 
 /// A cell as LaTeX text.
 [[nodiscard]] std::string latex_escaped(std::string_view text);

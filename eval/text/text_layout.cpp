@@ -2,65 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
+#include <limits>
+
+#include "eval/text/folded_table.hpp"
 
 namespace fusebench::text {
 
 namespace {
 
 constexpr std::size_t kGap = 2;
-constexpr std::size_t kNarrowest = 12;
-constexpr std::size_t kLongestWord = 48;  // what is longer is broken within
-
-std::vector<std::size_t> natural_widths(const std::vector<std::vector<std::string>>& lines) {
-  std::vector<std::size_t> widths;
-  for (const auto& line : lines) {
-    widths.resize(std::max(widths.size(), line.size()), 0);
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  }
-  return widths;
-}
-
-std::size_t longest_word(std::string_view cell) {
-  std::size_t longest = 0;
-  while (!cell.empty()) {
-    const std::size_t end = std::min(cell.find(' '), cell.size());
-    longest = std::max(longest, end);
-    cell.remove_prefix(std::min(end + 1, cell.size()));
-  }
-  return longest;
-}
-
-/// Below what a column's words need, it is not made narrower.
-std::vector<std::size_t> least_widths(const std::vector<std::vector<std::string>>& lines,
-                                      const std::vector<std::size_t>& natural) {
-  std::vector<std::size_t> least(natural.size(), kNarrowest);
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i)
-      least[i] = std::max(least[i], std::min(longest_word(line[i]), kLongestWord));
-  }
-  return least;
-}
 
 std::vector<std::vector<std::string>> without_controls(std::vector<std::vector<std::string>> lines) {
   for (auto& line : lines) {
     for (std::string& cell : line) cell = text::without_controls(cell);
   }
   return lines;
-}
-
-/// The pieces of a cell, each of at most `width` characters.
-std::vector<std::string> broken(std::string_view cell, std::size_t width) {
-  std::vector<std::string> pieces;
-  while (cell.size() > width) {
-    const std::size_t blank = cell.rfind(' ', width);
-    const bool at_blank = blank != std::string_view::npos && blank > 0;
-    pieces.emplace_back(cell.substr(0, at_blank ? blank : width));
-    cell.remove_prefix(at_blank ? blank + 1 : width);
-  }
-  pieces.emplace_back(cell);
-  return pieces;
 }
 
 }  // namespace
@@ -85,7 +41,7 @@ std::string without_controls(std::string_view text) {
 
 std::string aligned_columns(const std::vector<std::vector<std::string>>& given) {
   const std::vector<std::vector<std::string>> lines = without_controls(given);
-  const std::vector<std::size_t> widths = natural_widths(lines);
+  const std::vector<std::size_t> widths = folded_blocks(lines, {}, 0).front().widths;
   std::string text;
   for (const auto& line : lines) {
     for (std::size_t i = 0; i < line.size(); ++i) {
@@ -97,37 +53,21 @@ std::string aligned_columns(const std::vector<std::vector<std::string>>& given) 
 }
 
 std::string fitted_columns(const std::vector<std::vector<std::string>>& given, std::size_t width) {
+  if (width == 0) return aligned_columns(given);
   const std::vector<std::vector<std::string>> lines = without_controls(given);
-  std::vector<std::size_t> widths = natural_widths(lines);
-  const auto total = [&] {
-    std::size_t sum = widths.empty() ? 0 : kGap * (widths.size() - 1);
-    for (const std::size_t w : widths) sum += w;
-    return sum;
-  };
-  const std::vector<std::size_t> least = least_widths(lines, widths);
-  while (total() > width) {
-    std::optional<std::size_t> widest;
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      if (widths[i] > least[i] && (!widest || widths[i] > widths[*widest])) widest = i;
-    }
-    if (!widest) break;
-    --widths[*widest];
-  }
-  std::vector<std::vector<std::string>> fitted;
-  for (const auto& line : lines) {
-    const std::size_t first = fitted.size();
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const std::vector<std::string> pieces = broken(line[i], std::max<std::size_t>(widths[i], 1));
-      while (fitted.size() < first + pieces.size()) fitted.emplace_back(line.size());
-      for (std::size_t k = 0; k < pieces.size(); ++k) fitted[first + k][i] = pieces[k];
-    }
-  }
+  const TableLook look{.text_columns = std::numeric_limits<std::size_t>::max(), .between = kGap};
   std::string text;
-  for (const auto& line : fitted) {
-    std::string row;
-    for (std::size_t i = 0; i < line.size(); ++i) row += fmt::format("{:<{}}", line[i], widths[i] + kGap);
-    row.erase(row.find_last_not_of(' ') + 1);
-    text += row + "\n";
+  for (const TableBlock& block : folded_blocks(lines, look, width)) {
+    if (!text.empty()) text += "\n";
+    for (const auto& given_line : lines) {
+      for (const auto& line : lines_in_block(given_line, block)) {
+        std::string row;
+        for (std::size_t i = 0; i < line.size(); ++i)
+          row += fmt::format("{:<{}}", line[i], block.widths[i] + kGap);
+        row.erase(row.find_last_not_of(' ') + 1);
+        text += row + "\n";
+      }
+    }
   }
   return text;
 }

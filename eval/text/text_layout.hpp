@@ -16,8 +16,7 @@ namespace fusebench::text {
 /// not padded.
 [[nodiscard]] std::string aligned_columns(const std::vector<std::vector<std::string>>& lines);
 
-/// aligned_columns() in lines of at most `width` characters, as far as the words allow it: the widest columns
-/// become narrower, and their cells go on in the lines below, broken at blanks.
+/// aligned_columns() in lines of at most `width` characters (0: any number), folded as in folded_table.hpp.
 [[nodiscard]] std::string fitted_columns(const std::vector<std::vector<std::string>>& lines,
                                          std::size_t width);
 

@@ -256,6 +256,52 @@ listed() {
   grep -qE -- "$pattern" stdout || complain "$name: no line matches '$pattern'"
 }
 
+# on_terminal COLUMNS ARGUMENT...: what the program prints on a terminal of that width (0: one that does not tell) as ./stdout.
+on_terminal() {
+  local columns=$1
+  shift
+  checks=$((checks + 1))
+  script -qec "stty cols $columns && $(printf '%q ' "$binary" "$@")" /dev/null </dev/null | tr -d '\r' >stdout
+  [[ ${PIPESTATUS[0]} == 0 ]] || complain "$* on a terminal of $columns: $(cat stdout)"
+}
+
+# fits WIDTH PATTERN: no line of ./stdout that matches the extended regular expression is wider.
+fits() {
+  awk -v width="$1" -v of="$2" '$0 ~ of && length > width' stdout | grep . >&2 && complain "wider than $1"
+}
+
+# check_folded_tables RUNS: tables fit a terminal, or --width; elsewhere, and of formats, a row is a line.
+check_folded_tables() {
+  local runs=$1 verb
+  for verb in "table $runs" "table $runs --systems" "best $runs --by cpu"; do
+    # shellcheck disable=SC2086
+    on_terminal 70 $verb
+    fits 70 '^\|'
+    [[ $(grep -c '^| recording ' stdout) -gt 1 ]] || complain "$verb on a terminal: no blocks of columns"
+    # shellcheck disable=SC2086
+    [[ $("$binary" $verb --width 70) == "$(cat stdout)" ]] || complain "$verb: --width 70 is not as a terminal of 70"
+    # shellcheck disable=SC2086
+    [[ $("$binary" $verb | grep -c '^| recording ') == 1 ]] || complain "$verb into a pipe is folded"
+    # shellcheck disable=SC2086
+    on_terminal 70 $verb --format markdown
+    [[ $(grep -c '^| recording ' stdout) == 1 ]] || complain "$verb --format markdown on a terminal is folded"
+  done
+  for verb in "list suites --configs $here/../../configs" 'list recordings' "list runs $runs" 'list metrics' "compare $runs $runs --all"; do
+    # shellcheck disable=SC2086
+    on_terminal 90 $verb
+    fits 90 '  '
+    # shellcheck disable=SC2086
+    on_terminal 90 $verb --width 0
+    # shellcheck disable=SC2086
+    [[ $("$binary" $verb) == "$(cat stdout)" ]] || complain "$verb: --width 0 is not as into a pipe"
+  done
+  COLUMNS=60 on_terminal 0 list recordings dorm
+  fits 60 .
+  COLUMNS=wide on_terminal 0 list recordings dorm
+  fits 100 .
+  refused "a width that is none" 2 'width.*10001' -- list recordings --width 10001
+}
+
 check_recordings() {
   mkdir -p data/scene
   cp -r "$golden" data/rgbd_dataset_freiburg1_rpy
@@ -303,6 +349,7 @@ check_recordings() {
   grep -q 'iekf.max_iterations=2,3,1' stdout || complain "table: options and window of a run are not told"
   "$binary" list runs again >stdout 2>stderr || complain "list runs: exit code $?"
   grep -q 'no-imu iekf.max_iterations=3 ' stdout || complain "list runs: the options are not told"
+  check_folded_tables again
 
   # A file beyond the limit of the shell is a sentence, too.
   checks=$((checks + 1))

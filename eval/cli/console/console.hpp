@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,8 +29,6 @@ void print_output(std::string_view text);  ///< standard output
 /// Once, at the end: false, with an error, if standard output could not take all of it (a full disk, a closed
 /// descriptor). Where it is a pipe whose reader has left, the process ends by SIGPIPE.
 [[nodiscard]] bool output_arrived();
-/// Characters in a line of standard output; nothing where that is no terminal.
-[[nodiscard]] std::optional<std::size_t> terminal_width();
 void print_progress(std::string_view line);                  ///< a line on standard error
 void print_warnings(std::span<const std::string> warnings);  ///< a line each: "warning: ..."
 void print_status(std::string_view text);  ///< on standard error, as it is: of a line that is redrawn

@@ -1,10 +1,13 @@
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/cli/console/console.hpp"
+#include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/compare/comparison.hpp"
 #include "eval/compare/comparison_formats.hpp"
@@ -26,6 +29,7 @@ struct CompareOptions {
   std::filesystem::path out;
   std::string format = "table";
   bool all = false;
+  std::optional<std::size_t> width;
 };
 
 Result<int> compare(const CompareOptions& options) {
@@ -42,7 +46,10 @@ Result<int> compare(const CompareOptions& options) {
                                                   : run_files::find_runs(options.confirm);
   if (!confirming) return tl::unexpected(confirming.error());
   const compare::RunComparison comparison = compare::compare_runs(*base, *fresh, *gates, *confirming);
-  const std::string text = compare::render_comparison(comparison, *format, options.all);
+  // A file is no terminal, whatever standard output is.
+  const std::size_t width =
+      options.out.empty() ? console::table_width(options.width) : options.width.value_or(0);
+  const std::string text = compare::render_comparison(comparison, *format, options.all, width);
   if (options.out.empty()) {
     console::print_output(text);
   } else {
@@ -78,6 +85,7 @@ console::Verb add_compare_verb(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--out", options->out, "Writes there instead of standard output")->type_name("FILE");
   verb->add_flag("--all", options->all, "Shows gates that are unchanged, too (table and markdown)");
+  console::add_width_option(*verb, options->width);
   return {verb, [options] { return compare(*options); }};
 }
 

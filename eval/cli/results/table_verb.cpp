@@ -1,9 +1,13 @@
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/console/table_width.hpp"
 #include "eval/cli/results/result_verbs.hpp"
 #include "eval/tables/paper_table.hpp"
 #include "eval/tables/systems_table.hpp"
@@ -20,28 +24,31 @@ struct TableOptions {
   std::string format = "markdown";
   tables::LatexLayout layout;
   bool json = false;
+  std::optional<std::size_t> width;
+  const CLI::Option* named_format = nullptr;
 };
 
 Result<int> table(const TableOptions& options) {
   const auto format = tables::parse_table_format(options.json ? "json" : options.format);
   if (!format) return tl::unexpected(format.error());
   const auto runs = run_files::find_runs(options.runs);
+  const std::size_t width = console::table_width(options.width, options.named_format->count() > 0);
   if (options.systems) {
     if (!runs) return tl::unexpected(runs.error());
     console::print_output(
-        tables::render_systems_table(tables::systems_table_of(*runs), *format, options.layout));
+        tables::render_systems_table(tables::systems_table_of(*runs), *format, options.layout, width));
     return 0;
   }
   if (options.paper.empty()) {
     if (!runs) return tl::unexpected(runs.error());
-    console::print_output(tables::render_table(tables::table_of(*runs), *format, options.layout));
+    console::print_output(tables::render_table(tables::table_of(*runs), *format, options.layout, width));
     return 0;
   }
   const auto published = tables::published_table(options.paper);
   if (!published) return tl::unexpected(published.error());
   if (!runs) return tl::unexpected(runs.error());
   console::print_output(
-      tables::render_paper_table(tables::paper_table(*published, *runs), *format, options.layout));
+      tables::render_paper_table(tables::paper_table(*published, *runs), *format, options.layout, width));
   return 0;
 }
 
@@ -51,10 +58,11 @@ console::Verb add_table_verb(CLI::App& app) {
   auto options = std::make_shared<TableOptions>();
   CLI::App* verb = app.add_subcommand("table", "Prints the table of a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder that holds runs at any depth")->required();
-  verb->add_option("--format", options->format,
-                   "markdown, csv (a line a run), csv-long (a line a number), json or latex")
-      ->check(CLI::IsMember({"markdown", "csv", "csv-long", "json", "latex"}))
-      ->capture_default_str();
+  options->named_format =
+      verb->add_option("--format", options->format,
+                       "markdown, csv (a line a run), csv-long (a line a number), json or latex")
+          ->check(CLI::IsMember({"markdown", "csv", "csv-long", "json", "latex"}))
+          ->capture_default_str();
   verb->add_option("--paper", options->paper,
                    "A published table (table1, ate_tum, ate_icl, surface_icl) beside what was run here")
       ->type_name("NAME");
@@ -71,6 +79,7 @@ console::Verb add_table_verb(CLI::App& app) {
       ->capture_default_str();
   verb->add_flag("--rotated", options->layout.rotated, "LaTeX: turned, on a page of its own");
   console::add_json_flag(*verb, options->json);
+  console::add_width_option(*verb, options->width);
   return {verb, [options] { return table(*options); }};
 }
 

@@ -1,12 +1,15 @@
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/base/parallel.hpp"
 #include "eval/aggregate/best.hpp"
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/console/table_width.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 
 namespace fusebench::cli::running {
@@ -19,6 +22,8 @@ struct BestOptions {
   aggregate::BestRequest request;
   std::string format = "markdown";
   bool json = false;
+  std::optional<std::size_t> width;
+  const CLI::Option* named_format = nullptr;
   int threads = 1;
 };
 
@@ -33,7 +38,8 @@ Result<int> best(const BestOptions& options) {
   if (!rows) return tl::unexpected(rows.error());
   const auto table = aggregate::best_configurations(*rows, request);
   if (!table) return tl::unexpected(table.error());
-  console::print_output(aggregate::render_best(*table, *format));
+  const std::size_t width = console::table_width(options.width, options.named_format->count() > 0);
+  console::print_output(aggregate::render_best(*table, *format, width));
   return 0;
 }
 
@@ -54,10 +60,11 @@ console::Verb add_best_verb(CLI::App& app) {
   verb->add_option("-n", options->request.most, "Configurations shown of each group; 0: all")
       ->type_name("N")
       ->capture_default_str();
-  verb->add_option("--format", options->format, "markdown, csv or json")
-      ->check(CLI::IsMember({"markdown", "csv", "json"}))
-      ->capture_default_str();
+  options->named_format = verb->add_option("--format", options->format, "markdown, csv or json")
+                              ->check(CLI::IsMember({"markdown", "csv", "json"}))
+                              ->capture_default_str();
   console::add_json_flag(*verb, options->json);
+  console::add_width_option(*verb, options->width);
   console::add_threads_option(*verb, options->threads);
   return {verb, [options] { return best(*options); }};
 }

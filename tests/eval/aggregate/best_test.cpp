@@ -160,6 +160,8 @@ TEST(Best, FormatsCarryTheSameNumbers) {
   EXPECT_EQ(document.at("groups").at(0).at("rows").at(1).at("mean"), 0.04);
   EXPECT_EQ(document.at("groups").at(0).at("configurations"), 3);
   const std::string markdown = render_best(table, BestFormat::markdown);
+  EXPECT_NE(render_best(table, BestFormat::markdown, 50).find("\n\n| "), std::string::npos)
+      << "blocks of columns";
   EXPECT_NE(markdown.find("4.00 | 2/2 |"), std::string::npos) << markdown;
   EXPECT_NE(markdown.find("2 of 3 configurations shown"), std::string::npos) << markdown;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 
 #include "eval/compare/comparison_formats.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -443,6 +444,10 @@ TEST_F(ComparisonTest, SeriesHaveTheNumbersOfNew) {
     const std::string text = render_comparison(comparison, format, true);
     EXPECT_EQ(text.find("nan"), std::string::npos) << text;
     EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+  }
+  std::istringstream table(render_comparison(comparison, ComparisonFormat::table, true, 70));
+  for (std::string line; std::getline(table, line);) {
+    EXPECT_TRUE(line.size() <= 70 || line.find("  ") == std::string::npos) << line;
   }
 }
 

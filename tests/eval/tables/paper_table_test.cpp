@@ -53,6 +53,7 @@ TEST(PaperTable, StandsBesideWhatWasRunHereAndIsNotMixed) {
   const std::string text = render_paper_table(table, TableFormat::markdown);
   EXPECT_NE(text.find("DM (published)"), std::string::npos) << text;
   EXPECT_NE(text.find("dm (here)"), std::string::npos);
+  EXPECT_NE(render_paper_table(table, TableFormat::markdown, {}, 80).find("\n\n| group"), std::string::npos);
   EXPECT_NE(text.find("not run"), std::string::npos);
   const std::string lines = render_paper_table(table, TableFormat::csv);
   EXPECT_NE(lines.find("table1,aie_grey,slow,TUM_freiburg1_desk,published,true,DM,13.3756\n"),

@@ -59,6 +59,8 @@ TEST(SystemsTable, HasTheMedianAndTheRangeOfRepetitionsAndTheirFailures) {
       render_systems_table(systems_table_of({run_of("full", 0.01)}), TableFormat::markdown);
   EXPECT_NE(text.find("\n\nMedians"), std::string::npos);
   EXPECT_NE(without_notes.find("|\n\nMedians"), std::string::npos) << without_notes;
+  const std::string folded = render_systems_table(table, TableFormat::markdown, {}, 80);
+  EXPECT_NE(folded.find("\n\n| recording"), std::string::npos) << folded;
   testing::expect_contains(render_systems_table(table, TableFormat::json), "\"least\": 0.02");
   testing::expect_contains(render_systems_table(table, TableFormat::csv), ",0.03,0.02,0.05,");
 }

@@ -50,6 +50,8 @@ TEST_F(TableTest, ALostRunIsARowWithItsReasonAndNoNumbers) {
   EXPECT_EQ(lost.tracked, 12U);
   const std::string text = render_table(*table, TableFormat::markdown);
   EXPECT_NE(text.find("2 of 3 runs ok"), std::string::npos) << text;
+  const std::string folded = render_table(*table, TableFormat::markdown, {}, 80);
+  EXPECT_NE(folded.find("\n\n| recording"), std::string::npos) << folded;
   EXPECT_NE(text.find("lost at frame 12"), std::string::npos) << text;
   EXPECT_NE(text.find("synthetic IMU: made from the ground truth"), std::string::npos) << text;
 }
