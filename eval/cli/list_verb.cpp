@@ -75,16 +75,44 @@ Listing list_systems() {
 }
 
 Listing list_metrics() {
-  return {{"metric", "unit", "definition"},
-          {{"aie", "grey levels",
-            "average intensity error: mean over frames of the mean over visible pixels of tracked patches, "
-            "before any "
-            "rejection"},
-           {"aie common", "grey levels", "the same on the pixels that all compared runs share"},
-           {"ate", "m", "positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM)"},
-           {"rpe frame", "m, rad", "relative pose over one frame (TUM, fixed delta)"},
-           {"rpe second", "m, rad", "relative pose over one second (TUM, fixed delta)"},
-           {"coverage", "", "tracked frames / frames of the recording"}}};
+  return {
+      {"metric", "unit", "definition"},
+      {{"aie", "grey levels",
+        "average intensity error: mean over frames of the mean over visible pixels of tracked patches, "
+        "before any "
+        "rejection"},
+       {"aie common", "grey levels", "the same on the pixels that all compared runs share"},
+       {"aie of poses", "grey levels",
+        "intensity error of the poses alone, by probe patches that depend on no estimate "
+        "(evaluation.pose_intensity)"},
+       {"ate", "m", "positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM)"},
+       {"ate fitted", "m",
+        "the same after the offset of the body that the truth is of was fitted as well, where the motion "
+        "tells it"},
+       {"rpe frame", "m, rad", "relative pose over one frame (TUM, fixed delta)"},
+       {"rpe second", "m, rad", "relative pose over one second (TUM, fixed delta)"},
+       {"silent", "frames",
+        "silent failures: frames with a pose whose motion over the second before is off by more than 5 cm or "
+        "3 degrees (evaluation.silent_*)"},
+       {"mesh accuracy", "m",
+        "distances from samples of the reconstruction to the true surface, aligned by the poses; tables show "
+        "the mean"},
+       {"mesh completeness", "m",
+        "distances from observed samples of the true surface to the reconstruction, aligned by the poses"},
+       {"mesh chamfer", "m", "mean of the means of accuracy and completeness"},
+       {"mesh precision, recall, fscore", "",
+        "shares of the reconstruction's and of the truth's samples that are closer than 5, 10, 20 and 50 mm, "
+        "and their harmonic mean"},
+       {"mesh ghost share", "",
+        "samples of the reconstruction more than 3 cm from the truth in space that a true camera sees to be "
+        "free"},
+       {"nees", "",
+        "error^T covariance^-1 error / dimensions of a part of the state, against true states: 1 is "
+        "consistent, more overconfident, less too cautious; of orientation, position, pose, velocity and the "
+        "biases of gyroscope and accelerometer"},
+       {"chi2 photometric, geometric", "",
+        "mean squared whitened residual of accepted patches, 1 where the noise model is right"},
+       {"coverage", "", "tracked frames / frames of the recording"}}};
 }
 
 Listing list_options() {

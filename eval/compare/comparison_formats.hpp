@@ -45,7 +45,7 @@ struct ComparisonLine {
 /// Sentences beneath the lines: where runs diverge, the earliest first; times that were not gated; notes.
 [[nodiscard]] std::vector<std::string> comparison_remarks(const RunComparison& comparison);
 
-[[nodiscard]] std::string comparison_text(const RunComparison& comparison, bool all, std::size_t width);
+[[nodiscard]] std::string comparison_text(const RunComparison& comparison, bool all, std::size_t width = 0);
 [[nodiscard]] std::string comparison_markdown(const RunComparison& comparison, bool all);
 [[nodiscard]] std::string comparison_json(const RunComparison& comparison);
 [[nodiscard]] std::string comparison_junit(const RunComparison& comparison);

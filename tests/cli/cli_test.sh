@@ -326,6 +326,12 @@ check_recordings() {
   grep -q '"frames": null' <("$binary" list recordings --data data --json) || complain "unknown is not null in JSON"
   listed "a text" '^fr3_office ' -- FR3_office
   [[ $(grep -c . stdout) == 2 ]] || complain "list recordings FR3_office: other rows as well"
+  checks=$((checks + 1))
+  "$binary" list metrics >stdout 2>stderr || complain "list metrics: exit code $?"
+  local metric
+  for metric in 'aie of poses' 'ate fitted' silent 'mesh accuracy' 'mesh completeness' nees coverage; do
+    grep -q "^$metric  " stdout || complain "list metrics: not $metric"
+  done
   refused "a text that is nowhere" 2 "none of .* options contains 'voxl'" 'nearest' -- list options voxl
 
   # What was run is run again by its record, and a window may be open.
