@@ -220,8 +220,8 @@ struct ElasticfusionConfig {
     v.choice(
         "defects", self.defects,
         "as_published: intensities are weighed by the number of pixels in place of their deviation, "
-        "compared at whole pixels of the model, planes draw with a tenth of their weight, and blue weighs as "
-        "red should");
+        "compared at whole pixels of the model, planes draw with a tenth of their weight, blue weighs as red "
+        "should, and holes of a view that is registered for a loop are black; fixed: none of these");
   }
 };
 
