@@ -115,8 +115,7 @@ tracking::TrackedMotion ElasticfusionSystem::track(const surfels::LiveFrame& liv
   }
   if (before_ && config_.elasticfusion.rotation_start) {
     T_view_start.rotation = tracking::rotation_between(
-        build_pyramid(before_->grey, kRotationLevel + 1).back(),
-        build_pyramid(live.grey, kRotationLevel + 1).back(), levels[kRotationLevel].camera);
+        build_pyramid(before_->grey, kRotationLevel + 1).back(), levels[kRotationLevel]);
   }
   return tracker_.track(levels, model, T_view_start);
 }

@@ -1,6 +1,8 @@
 #include "core/systems/elasticfusion/tracking/rotation_start.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fusebench::systems::elasticfusion::tracking {
@@ -17,20 +19,32 @@ struct RotationSums {
   double pixels = 0;
 };
 
-RotationSums sums_at(const GreyImage& before, const GreyImage& now, const PinholeCamera& camera,
-                     const Quaterniond& R_before_now) {
+/// The frame before: intensities, and their gradient.
+struct Before {
+  GreyImage grey;
+  Gradient gradient;
+};
+
+RotationSums sums_at(const Before& before, const LiveLevel& now, const Quaterniond& R_before_now) {
   RotationSums sums;
   const Matrix3d R = R_before_now.toRotationMatrix();
-  for (int y = 0; y < now.height; ++y) {
-    for (int x = 0; x < now.width; ++x) {
-      const Vector3d ray = R * camera.back_project(x, y, 1.0);
+  for (int y = 0; y < now.camera.height_px; ++y) {
+    for (int x = 0; x < now.camera.width_px; ++x) {
+      const Vector3d ray = R * now.camera.back_project(x, y, 1.0);
       if (!(ray.z() > 0)) continue;
-      const Vector2d at = camera.project(ray);
-      if (!(at.x() >= 0) || !(at.y() >= 0) || !(at.x() <= before.width - 1) || !(at.y() <= before.height - 1))
+      const Vector2d at = now.camera.project(ray);
+      if (!(at.x() >= 0) || !(at.y() >= 0) || !(at.x() <= before.grey.width - 1) ||
+          !(at.y() <= before.grey.height - 1))
         continue;
-      const IntensitySample sample = sample_bilinear(before, at.x(), at.y());
-      const double residual = static_cast<double>(now(x, y)) - sample.value;
-      const Vector3d slope = camera.projection_jacobian(ray).transpose() * Vector2d(sample.dx, sample.dy);
+      const std::size_t pixel = now.intensity.index(x, y);
+      const std::size_t pixel_before =
+          before.grey.index(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())));
+      const double residual =
+          static_cast<double>(now.intensity.data[pixel]) - sample_bilinear(before.grey, at.x(), at.y()).value;
+      const Eigen::Vector2f mean_gradient =
+          0.5F * Eigen::Vector2f(before.gradient.dx.data[pixel_before] + now.gradient.dx.data[pixel],
+                                 before.gradient.dy.data[pixel_before] + now.gradient.dy.data[pixel]);
+      const Vector3d slope = now.camera.projection_jacobian(ray).transpose() * mean_gradient.cast<double>();
       const Vector3d direction = ray.cross(slope);
       sums.information += direction * direction.transpose();
       sums.descent += residual * direction;
@@ -43,12 +57,15 @@ RotationSums sums_at(const GreyImage& before, const GreyImage& now, const Pinhol
 
 }  // namespace
 
-Quaterniond rotation_between(const GreyImage& before, const GreyImage& now, const PinholeCamera& camera) {
+Quaterniond rotation_between(const GreyImage& grey_before, const LiveLevel& now) {
+  Image<float> intensity_before(grey_before.width, grey_before.height);
+  std::ranges::copy(grey_before.data, intensity_before.data.begin());
+  const Before before{grey_before, gradient_of(intensity_before)};
   Quaterniond rotation = Quaterniond::Identity(), best = rotation;
   double best_mean = std::numeric_limits<double>::infinity();
-  const double fewest = kLeastOverlap * static_cast<double>(now.data.size());
+  const double fewest = kLeastOverlap * static_cast<double>(now.intensity.data.size());
   for (int step = 0; step <= kMostSteps; ++step) {
-    const RotationSums sums = sums_at(before, now, camera, rotation);
+    const RotationSums sums = sums_at(before, now, rotation);
     if (sums.pixels < fewest || !(sums.cost / sums.pixels < best_mean)) break;
     best_mean = sums.cost / sums.pixels;
     best = rotation;

@@ -7,7 +7,6 @@
 #include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
 #include "core/systems/elasticfusion/tracking/intensity_matching.hpp"
 #include "core/systems/elasticfusion/tracking/plane_matching.hpp"
-#include "core/systems/elasticfusion/tracking/rotation_start.hpp"
 #include "tests/core/systems/elasticfusion/room_views.hpp"
 
 namespace fusebench {
@@ -136,17 +135,6 @@ TEST_F(Tracking, IsTheSameForAnyNumberOfThreads) {
   const auto b = tracking::CameraTracker(config, three).track(live, view, SE3{});
   EXPECT_EQ(a.T_view_camera.translation, b.T_view_camera.translation);
   EXPECT_EQ(a.information, b.information);
-}
-
-TEST(RotationStart, FindsAPureRotation) {
-  const PinholeCamera camera = tracking::camera_of_level(small_camera(), 1);
-  const testing::TexturedRoom room;
-  const Quaterniond turn = so3_exp({0.012, -0.02, 0.015});
-  const GreyImage before = room.render(camera, SE3{}, 0).grey;
-  const GreyImage now = room.render(camera, {turn, Vector3d::Zero()}, 0).grey;
-  EXPECT_LT(rotation_angle_rad(tracking::rotation_between(before, now, camera), turn), 0.002);
-  const GreyImage blank(camera.width_px, camera.height_px, 90);
-  EXPECT_EQ(tracking::rotation_between(blank, blank, camera).coeffs(), Quaterniond::Identity().coeffs());
 }
 
 }  // namespace
