@@ -1,15 +1,16 @@
 #include "core/filter/iekf.hpp"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/patches/posed_camera.hpp"
 #include "core/prediction/motion_prior.hpp"
+#include "tests/support/large_matrices.hpp"
 #include "tests/support/scalar_residuals.hpp"
 #include "tests/support/textured_room.hpp"
 
@@ -22,14 +23,19 @@ using namespace patches;
 
 namespace {
 
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::distance;
+using testing::relative_distance;
+
 /// A correlated, positive definite covariance in which every state depends on the pose.
 StateMatrix some_covariance(double scale) {
-  StateMatrix root;
+  MatrixXd root(kStateSize, kStateSize);
   for (int i = 0; i < kStateSize; ++i) {
     for (int j = 0; j < kStateSize; ++j)
       root(i, j) = std::sin(1.0 + 3.0 * i + 7.0 * j) * 0.3 + (i == j ? 1.0 : 0.0);
   }
-  return scale * root * root.transpose();
+  return testing::carried(root, scale * MatrixXd::Identity(kStateSize, kStateSize));
 }
 
 FilterState some_state() {
@@ -98,16 +104,16 @@ TEST(Iekf, AScalarEnergyIsThePapersGainTimesItself) {
   // the model is measured against the pose, of which the position is the last three.
   const Vector3d error = prior.mean.T_world_imu.translation - z;
   const double energy = 0.5 * error.squaredNorm() / (kSigma * kSigma);
-  StateVector gradient = StateVector::Zero();
-  gradient.segment<3>(kPosition) = error / (kSigma * kSigma);
-  const StateVector gain = prior.covariance * gradient / (gradient.dot(prior.covariance * gradient) + 1.0);
-  const FilterState expected = plus(prior.mean, -gain * energy);
+  MatrixXd gradient = MatrixXd::Zero(1, kStateSize);
+  gradient.block<1, 3>(0, kPosition) = error.transpose() / (kSigma * kSigma);
+  const MatrixXd gain = testing::kalman_gain(prior.covariance, gradient, MatrixXd::Ones(1, 1));
+  const FilterState expected = plus(prior.mean, StateVector(-gain * energy));
   EXPECT_LT((result.posterior.mean.T_world_imu.translation - expected.T_world_imu.translation).norm(), 1e-9);
   EXPECT_LT((result.posterior.mean.velocity_world_mps - expected.velocity_world_mps).norm(), 1e-9);
   // Where the energy is least it has no gradient: the posterior is the prior.
   PositionMeasurement at_rest(prior.mean.T_world_imu.translation, kSigma);
   const IekfResult nothing = iekf_update(prior, at_rest, config);
-  EXPECT_LT((nothing.posterior.covariance - prior.covariance).norm(), 1e-12);
+  EXPECT_LT(distance(nothing.posterior.covariance, prior.covariance), 1e-12);
 }
 
 TEST(Iekf, LinearisesOnceAStepAndOnceMoreForThePosterior) {
@@ -142,15 +148,12 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
   const double sigma = 0.02;
-  // The textbook update: K = P H^T (H P H^T + U)^-1, d = K (z - h), P+ = (I - K H) P.
-  Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
+  MatrixXd H = MatrixXd::Zero(3, kStateSize);
   H.block<3, 3>(0, kPosition).setIdentity();
-  const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
-  const Eigen::Matrix<double, kStateSize, 3> K = prior.covariance * H.transpose() * S.inverse();
-  const StateVector delta = K * (z - prior.mean.T_world_imu.translation);
-  const StateMatrix in_chart = (StateMatrix::Identity() - K * H) * prior.covariance;
-  const StateMatrix transport = chart_transport(prior.mean, delta);
-  const StateMatrix expected = transport * in_chart * transport.transpose();
+  const MatrixXd K = testing::kalman_gain(prior.covariance, H, sigma * sigma * Matrix3d::Identity());
+  const StateVector delta(testing::product(K, z - prior.mean.T_world_imu.translation));
+  const MatrixXd expected =
+      testing::carried(chart_transport(prior.mean, delta), testing::after_update(prior.covariance, K, H));
 
   MeasuredVector far_start;
   far_start << 300, -500, 200, 800, -400, 900, -200, 400, 700, -600, 500, 300, 200, -100, 400, 100, -300, 600,
@@ -159,8 +162,8 @@ TEST(Iekf, EqualsOneKalmanUpdateOnALinearProblemFromAnyStart) {
     PositionMeasurement measurement(z, sigma);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{}, start);
     EXPECT_TRUE(result.converged);
-    EXPECT_LT((minus(result.posterior.mean, prior.mean) - delta).norm(), 1e-9);
-    EXPECT_LT((result.posterior.covariance - expected).norm() / expected.norm(), 1e-9);
+    EXPECT_LT(distance(minus(result.posterior.mean, prior.mean), delta), 1e-9);
+    EXPECT_LT(relative_distance(result.posterior.covariance, expected), 1e-9);
   }
 }
 
@@ -202,9 +205,9 @@ class ReadOutMeasurement final : public PoseMeasurement {
 /// z = p + by_readout * errors + noise, by the textbook. The errors of the rate are those against what is
 /// wrong with reference and model.
 struct ReadOutUpdate {
-  Eigen::Matrix<double, 3, kStateSize> H = Eigen::Matrix<double, 3, kStateSize>::Zero();
-  Eigen::Matrix<double, kStateSize, 3> K;
-  StateVector delta;
+  MatrixXd H = MatrixXd::Zero(3, kStateSize);
+  MatrixXd K;
+  VectorXd delta;
 
   ReadOutUpdate(const GaussianState& prior, const Vector3d& z, double sigma, const ByReadout& by_readout) {
     H.block<3, 3>(0, kPosition).setIdentity();
@@ -221,9 +224,8 @@ struct ReadOutUpdate {
     // Between timing and rates is what is known: it has no error.
     add_rate(kTimingSize + 1, kReferenceRate, prior.mean.reference_rate_offset);
     add_rate(kTimingSize + 1 + kPoseSize, kModelRate, prior.mean.model_rate_offset);
-    const Matrix3d S = H * prior.covariance * H.transpose() + sigma * sigma * Matrix3d::Identity();
-    K = prior.covariance * H.transpose() * S.inverse();
-    delta = K * (z - expected);
+    K = testing::kalman_gain(prior.covariance, H, sigma * sigma * Matrix3d::Identity());
+    delta = testing::product(K, z - expected);
   }
 };
 
@@ -250,17 +252,17 @@ TEST(Iekf, EqualsOneKalmanUpdateOfPoseAndReadout) {
   const GaussianState prior{state_with_distorted_images(), some_covariance(1e-3)};
   const Vector3d z(0.13, -0.68, 0.47);
   const ReadOutUpdate expected(prior, z, 0.02, kByReadout);
-  const StateMatrix transport = chart_transport(prior.mean, expected.delta);
-  const StateMatrix covariance = transport * (StateMatrix::Identity() - expected.K * expected.H) *
-                                 prior.covariance * transport.transpose();
+  const MatrixXd covariance =
+      testing::carried(chart_transport(prior.mean, StateVector(expected.delta)),
+                       testing::after_update(prior.covariance, expected.K, expected.H));
   ReadoutVector undone;
   undone << 0.01, -0.02, 0.015, -1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1, 0.5, -0.4, 0.3, 0.1, 0.2, -0.1;
   for (const ReadoutVector& prepared_for : {ReadoutVector(ReadoutVector::Zero()), undone}) {
     ReadOutMeasurement measurement(z, 0.02, kByReadout, prepared_for);
     const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
     EXPECT_TRUE(result.converged);
-    EXPECT_LT((minus(result.posterior.mean, prior.mean) - expected.delta).norm(), 1e-9);
-    EXPECT_LT((result.posterior.covariance - covariance).norm() / covariance.norm(), 1e-9);
+    EXPECT_LT(distance(minus(result.posterior.mean, prior.mean), expected.delta), 1e-9);
+    EXPECT_LT(relative_distance(result.posterior.covariance, covariance), 1e-9);
   }
 }
 
@@ -269,26 +271,25 @@ TEST(Iekf, ConsideredConstantsStayAndAreNotForgotten) {
   const Vector3d z(0.13, -0.68, 0.47);
   ReadOutUpdate schmidt(prior, z, 0.02, kByReadout);
   // Schmidt's filter: their rows of the gain are zero, and the covariance is Joseph's for that gain.
-  schmidt.K.middleRows<kSensorSize>(kImuTimeOffset).setZero();
-  schmidt.delta.segment<kSensorSize>(kImuTimeOffset).setZero();
+  schmidt.K.middleRows(kImuTimeOffset, kSensorSize).setZero();
+  schmidt.delta.segment(kImuTimeOffset, kSensorSize).setZero();
   ReadOutMeasurement measurement(z, 0.02, kByReadout);
   const IekfResult result =
       iekf_update(prior, measurement, IekfConfig{}, MeasuredVector::Zero(), SensorConstants::considered);
-  EXPECT_LT((minus(result.posterior.mean, prior.mean) - schmidt.delta).norm(), 1e-9);
-  const StateMatrix rest = StateMatrix::Identity() - schmidt.K * schmidt.H;
-  const StateMatrix joseph =
-      rest * prior.covariance * rest.transpose() + 0.02 * 0.02 * schmidt.K * schmidt.K.transpose();
-  const StateMatrix transport = chart_transport(prior.mean, schmidt.delta);
-  const StateMatrix covariance = transport * joseph * transport.transpose();
-  EXPECT_LT((result.posterior.covariance - covariance).norm() / covariance.norm(), 1e-9);
+  EXPECT_LT(distance(minus(result.posterior.mean, prior.mean), schmidt.delta), 1e-9);
+  const MatrixXd in_chart =
+      testing::joseph(prior.covariance, schmidt.K, schmidt.H, 0.02 * 0.02 * Matrix3d::Identity());
+  const MatrixXd covariance =
+      testing::carried(chart_transport(prior.mean, StateVector(schmidt.delta)), in_chart);
+  EXPECT_LT(relative_distance(result.posterior.covariance, covariance), 1e-9);
 }
 
 TEST(Iekf, WithoutInformationKeepsThePriorToTheLastBit) {
   const GaussianState prior{some_state(), some_covariance(1e-3)};
   PositionMeasurement nothing(Vector3d::Zero(), 1e30);
   const IekfResult result = iekf_update(prior, nothing, IekfConfig{});
-  EXPECT_LT(minus(result.posterior.mean, prior.mean).norm(), 1e-15);
-  EXPECT_LT((result.posterior.covariance - prior.covariance).norm(), 1e-15);
+  EXPECT_LT(distance(minus(result.posterior.mean, prior.mean), VectorXd::Zero(kStateSize)), 1e-15);
+  EXPECT_LT(distance(result.posterior.covariance, prior.covariance), 1e-15);
 }
 
 TEST(Iekf, AcceptsASingularPrior) {
@@ -298,7 +299,7 @@ TEST(Iekf, AcceptsASingularPrior) {
   PositionMeasurement measurement(Vector3d(5, 5, 5), 0.01);
   const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
   EXPECT_EQ((result.posterior.mean.T_world_imu.translation - prior.mean.T_world_imu.translation).norm(), 0.0);
-  EXPECT_TRUE(result.posterior.covariance.allFinite());
+  EXPECT_TRUE(MatrixXd(result.posterior.covariance).allFinite());
 }
 
 /// Points on known planes, seen from an unknown pose: point-to-plane residuals with Huber's loss and some
@@ -349,24 +350,16 @@ class PlaneMeasurement final : public PoseMeasurement {
   const PlaneProblem& problem_;
 };
 
-/// The same cost for Ceres, written apart: |d|^2_P for d in the full chart at the prior, and the planes.
-struct PriorCost {
-  Eigen::Matrix<double, kStateSize, kStateSize> root_information;
-  template <class T>
-  bool operator()(const T* delta, T* residual) const {
-    Eigen::Map<Eigen::Matrix<T, kStateSize, 1>> r(residual);
-    r = root_information.cast<T>() * Eigen::Map<const Eigen::Matrix<T, kStateSize, 1>>(delta);
-    return true;
-  }
-};
+/// The same cost for Ceres, written apart: |d|^2_P for d in the full chart at the prior is its NormalPrior,
+/// and the planes.
 struct PlaneCost {
   SE3 T_world_imu_prior;
   Vector3d point_imu, plane_point, normal;
   double sigma_m;
   template <class T>
   bool operator()(const T* delta, T* residual) const {
-    const Eigen::Map<const Eigen::Matrix<T, kStateSize, 1>> d(delta);
-    const Eigen::Matrix<T, 3, 1> phi = d.template segment<3>(kRotation);
+    const Eigen::Map<const Eigen::Matrix<T, 3, 1>> phi(delta + kRotation);
+    const Eigen::Map<const Eigen::Matrix<T, 3, 1>> shift(delta + kPosition);
     const T angle = sqrt(phi.squaredNorm() + T(1e-30));
     const Eigen::Matrix<T, 3, 1> p = point_imu.cast<T>();
     const Eigen::Matrix<T, 3, 1> axis = phi / angle;
@@ -374,10 +367,24 @@ struct PlaneCost {
         p * cos(angle) + axis.cross(p) * sin(angle) + axis * (axis.dot(p) * (T(1) - cos(angle)));
     const Eigen::Matrix<T, 3, 1> point_world =
         T_world_imu_prior.rotation.toRotationMatrix().cast<T>() * turned +
-        T_world_imu_prior.translation.cast<T>() + d.template segment<3>(kPosition);
+        T_world_imu_prior.translation.cast<T>() + shift;
     residual[0] = normal.cast<T>().dot(point_world - plane_point.cast<T>()) / T(sigma_m);
     return true;
   }
+};
+
+/// A plane tells nothing but the pose, which leads the error state: the other derivatives are zero.
+class PlaneOfTheState final : public ceres::SizedCostFunction<1, kStateSize> {
+ public:
+  explicit PlaneOfTheState(const PlaneCost& cost) : by_pose_(new PlaneCost(cost)) {}
+  bool Evaluate(double const* const* deltas, double* residual, double** jacobians) const override {
+    if (jacobians == nullptr || jacobians[0] == nullptr) return by_pose_.Evaluate(deltas, residual, nullptr);
+    std::fill_n(jacobians[0], kStateSize, 0.0);
+    return by_pose_.Evaluate(deltas, residual, jacobians);
+  }
+
+ private:
+  ceres::AutoDiffCostFunction<PlaneCost, 1, kPoseSize> by_pose_;
 };
 
 TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
@@ -388,15 +395,13 @@ TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
 
   StateVector delta = StateVector::Zero();
   ceres::Problem problem;
-  const StateMatrix root = Eigen::LLT<StateMatrix>(prior.covariance.inverse()).matrixU();
-  problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<PriorCost, kStateSize, kStateSize>(new PriorCost{root}), nullptr,
-      delta.data());
+  const MatrixXd root = testing::root_information(prior.covariance);
+  problem.AddResidualBlock(new ceres::NormalPrior(root, VectorXd::Zero(kStateSize)), nullptr, delta.data());
   for (std::size_t i = 0; i < planes.normals.size(); ++i) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PlaneCost, 1, kStateSize>(
-                                 new PlaneCost{prior.mean.T_world_imu, planes.points_imu[i],
-                                               planes.plane_points[i], planes.normals[i], planes.sigma_m}),
-                             new ceres::HuberLoss(planes.huber_sigmas), delta.data());
+    const PlaneCost cost{prior.mean.T_world_imu, planes.points_imu[i], planes.plane_points[i],
+                         planes.normals[i], planes.sigma_m};
+    problem.AddResidualBlock(new PlaneOfTheState(cost), new ceres::HuberLoss(planes.huber_sigmas),
+                             delta.data());
   }
   ceres::Solver::Options options;
   options.max_num_iterations = 200;
@@ -411,7 +416,7 @@ TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
   config.converged_rotation_rad = config.converged_translation_m = 1e-12;
   PlaneMeasurement measurement(planes);
   const IekfResult result = iekf_update(prior, measurement, config);
-  EXPECT_LT((minus(result.posterior.mean, prior.mean) - delta).norm(), 1e-7);
+  EXPECT_LT(distance(minus(result.posterior.mean, prior.mean), delta), 1e-7);
   EXPECT_NEAR(result.map_cost_posterior, summary.final_cost, 1e-9 * summary.final_cost);
   EXPECT_LT(result.map_cost_posterior, result.map_cost_prior);
 }

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -9,7 +8,7 @@
 #include "core/smoother/batch_estimate.hpp"
 #include "core/smoother/residuals.hpp"
 #include "tests/support/analytic_motion.hpp"
-#include "tests/support/numeric_jacobian.hpp"
+#include "tests/support/large_matrices.hpp"
 #include "tests/support/swinging_motion.hpp"
 
 namespace fusebench {
@@ -101,8 +100,8 @@ void disturb(BatchInput& input) {
 
 struct CommonError {
   Eigen::Matrix<double, 7, 1> value;
-  Eigen::Matrix<double, 7, 7> covariance;
-  [[nodiscard]] double normalised() const { return value.dot(covariance.inverse() * value); }
+  Eigen::MatrixXd covariance;
+  [[nodiscard]] double normalised() const { return testing::normalised(value, covariance); }
 };
 
 CommonError calibration_error(const BatchEstimate& estimate, const MadeUp& truth) {
@@ -312,8 +311,7 @@ Consistency consistency(int recordings, int frames, const MadeUp& kind) {
     const double t = (frames - 1) / kFrameRateHz;
     const SE3 truth = data.motion.T_world_imu(t);
     const auto normalised = [&](int offset, const Eigen::VectorXd& e) {
-      const Eigen::MatrixXd P = last.covariance.block(offset, offset, e.size(), e.size());
-      return e.dot(P.inverse() * e) / recordings;
+      return testing::normalised(e, last.covariance.block(offset, offset, e.size(), e.size())) / recordings;
     };
     Vector6d bias;
     bias << last.state.gyroscope_bias_radps - data.gyroscope_bias,

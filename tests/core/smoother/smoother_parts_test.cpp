@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <random>
 #include <vector>
 
-#include "core/base/solvers.hpp"
 #include "core/prediction/smoothed_sample.hpp"
 #include "core/smoother/manifolds.hpp"
 #include "core/smoother/relative_motion.hpp"
 #include "core/smoother/selected_inverse.hpp"
+#include "tests/support/large_matrices.hpp"
 #include "tests/support/numeric_jacobian.hpp"
 
 namespace fusebench {
@@ -44,7 +43,9 @@ void expect_manifold(const ceres::Manifold& manifold, const Eigen::VectorXd& x,
   EXPECT_LT(relative_difference(by_delta, numeric_jacobian(plus, tangent)), 1e-8);
   RowMajor by_point(tangent, ambient);
   manifold.MinusJacobian(x.data(), by_point.data());
-  EXPECT_LT((by_point * by_delta - Eigen::MatrixXd::Identity(tangent, tangent)).norm(), 1e-12);
+  EXPECT_LT(
+      testing::distance(testing::product(by_point, by_delta), Eigen::MatrixXd::Identity(tangent, tangent)),
+      1e-12);
 }
 
 TEST(Manifolds, RotationsMoveOnTheRight) {
@@ -75,11 +76,11 @@ TEST(SelectedInverse, AgreesWithTheDenseInverse) {
       jacobian(row, size - 1) = normal(random);
     }
   }
-  const Eigen::MatrixXd dense = jacobian.transpose() * jacobian;
+  const Eigen::MatrixXd dense = testing::product(jacobian.transpose(), jacobian);
   const SparseMatrixd sparse = dense.sparseView();
   const auto inverse = SelectedInverse::of(sparse);
   ASSERT_TRUE(inverse.has_value());
-  const Eigen::MatrixXd expected = dense.inverse();
+  const Eigen::MatrixXd expected = testing::inverse(dense);
   int compared = 0;
   for (int i = 0; i < size; ++i) {
     for (int j = 0; j < size; ++j) {
@@ -136,6 +137,7 @@ Matrix6d some_information() {
   for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = normal(random);
   return 1e4 * (root * root.transpose() + Matrix6d::Identity());
 }
+Matrix6d some_covariance() { return Matrix6d(testing::inverse(some_information())); }
 
 TEST(VisualPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
   const SE3 T_imu_camera{so3_exp({0.1, -0.3, 0.2}), {0.09, -0.02, 0.05}};
@@ -156,8 +158,8 @@ TEST(VisualPose, IsTheOptimumOfTheEvidenceSeenFromTheCamera) {
       },
       6);
   const Eigen::MatrixXd expected =
-      camera_by_imu * evidence.quadratic.information.inverse() * camera_by_imu.transpose();
-  EXPECT_LT((seen.covariance - expected).norm(), 1e-6 * expected.norm());
+      testing::carried(camera_by_imu, testing::inverse(evidence.quadratic.information));
+  EXPECT_LT(testing::relative_distance(seen.covariance, expected), 1e-6);
 }
 
 TEST(VisualPose, StaysWhereNothingIsKnown) {
@@ -170,8 +172,8 @@ TEST(VisualPose, StaysWhereNothingIsKnown) {
 }
 
 TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
-  const VisualPose a{{so3_exp({0.2, 0.1, -0.4}), {0.3, 0.2, 1.0}}, some_information().inverse()};
-  const VisualPose b{{so3_exp({0.5, -0.2, -0.1}), {0.9, -0.2, 1.3}}, 2.0 * some_information().inverse()};
+  const VisualPose a{{so3_exp({0.2, 0.1, -0.4}), {0.3, 0.2, 1.0}}, some_covariance()};
+  const VisualPose b{{so3_exp({0.5, -0.2, -0.1}), {0.9, -0.2, 1.3}}, 2.0 * some_covariance()};
   const RelativeCameraMotion motion = motion_between(a, b);
   const auto by = [&](bool first) {
     return numeric_jacobian(
@@ -183,10 +185,11 @@ TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
         6);
   };
   const Eigen::MatrixXd expected =
-      by(true) * a.covariance * by(true).transpose() + by(false) * b.covariance * by(false).transpose();
-  EXPECT_LT((motion.covariance - expected).norm(), 1e-6 * expected.norm());
-  const Matrix6d root = whitening(motion);
-  EXPECT_LT((root * motion.covariance * root - Matrix6d::Identity()).norm(), 1e-6);
+      testing::carried(by(true), a.covariance) + testing::carried(by(false), b.covariance);
+  EXPECT_LT(testing::relative_distance(motion.covariance, expected), 1e-6);
+  const Eigen::MatrixXd root = whitening(motion);
+  const Eigen::MatrixXd whitened = testing::product(testing::product(root, motion.covariance), root);
+  EXPECT_LT(testing::distance(whitened, Matrix6d::Identity()), 1e-6);
 }
 
 /// A cost of pose and timing together: the best pose for each timing moves as by_timing says, and what is
@@ -194,10 +197,10 @@ TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
 TEST(VisualTiming, IsWhatTheBestPoseLeavesOfTheCost) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
-  Eigen::Matrix<double, 9, 12> root;
+  Eigen::MatrixXd root(9, 12);
   for (double& value : root.reshaped()) value = 100 * normal(random);
-  const Eigen::Matrix<double, 9, 9> information = root * root.transpose();
-  Eigen::Matrix<double, 9, 1> gradient;
+  const Eigen::MatrixXd information = testing::carried(root, Eigen::MatrixXd::Identity(12, 12));
+  Eigen::VectorXd gradient(9);
   for (double& value : gradient) value = normal(random);
   PoseEvidence evidence;
   evidence.T_world_imu = {so3_exp({0.1, -0.2, 0.3}), {1, 2, 3}};
@@ -208,14 +211,15 @@ TEST(VisualTiming, IsWhatTheBestPoseLeavesOfTheCost) {
   evidence.timing.information = information.bottomRightCorner<3, 3>();
   evidence.timing.gradient = gradient.tail<3>();
 
+  const Eigen::MatrixXd covariance_of_pose = testing::inverse(information.topLeftCorner(6, 6));
   const auto best_step = [&](const Vector3d& change_s) -> Vector6d {
-    return -information.topLeftCorner<6, 6>().ldlt().solve(gradient.head<6>() +
-                                                           information.topRightCorner<6, 3>() * change_s);
+    const Eigen::MatrixXd by_timing = testing::product(information.topRightCorner(6, 3), change_s);
+    return Vector6d(testing::product(covariance_of_pose, -(gradient.head(6) + by_timing)));
   };
   const auto cost = [&](const Vector3d& change_s) {
-    Eigen::Matrix<double, 9, 1> x;
+    Eigen::VectorXd x(9);
     x << best_step(change_s), change_s;
-    return gradient.dot(x) + 0.5 * x.dot(information * x);
+    return gradient.dot(x) + 0.5 * x.dot(testing::product(information, x).col(0));
   };
   const VisualTiming timing = visual_timing(evidence);
   EXPECT_EQ(timing.rank, 3);
