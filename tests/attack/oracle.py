@@ -5,7 +5,8 @@ import re
 
 EXIT_CODES = {0, 1, 2, 3, 4}
 # Numbers that are none, as they are written by C++ and Python; words like "info" and names of files are others.
-NOT_FINITE = re.compile(rb"(?<![\w./<\"'-])[-+]?(?:nan|inf|infinity)(?![\w./>\"'-])", re.I)
+# What stands in quotes is a text of the input: an option of a record may be the text "nan".
+NOT_FINITE = re.compile(rb"(?<![\w./<\"'-])(?<!&quot;)[-+]?(?:nan|inf|infinity)(?![\w./>\"'-])", re.I)
 NOT_FINITE_IN_PAGE = re.compile(rb"[>:\[,]\s*[-+]?(?:nan|inf)(?![\w./>\"'-])")  # its scripts may speak of NaN
 NOT_FINITE_IN_JSON = re.compile(rb"[:\[,]\s*[-+]?(?:nan|inf|infinity)\b", re.I)
 CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
