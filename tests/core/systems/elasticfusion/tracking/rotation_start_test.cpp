@@ -39,14 +39,14 @@ TEST(RotationStart, FindsAPureRotation) {
             Quaterniond::Identity().coeffs());
 }
 
-/// A sphere of tiles of random brightness, two pixels wide and high; each pixel is the mean of 16 rays.
+/// A sphere of tiles of random brightness, 2.5 pixels wide and high; each pixel is the mean of 16 rays.
 GreyImage sphere_of_tiles(const PinholeCamera& camera, const Quaterniond& R_world_camera) {
   constexpr int kSide = 400;
   std::mt19937 random(1);
   std::vector<int> brightness(kSide * kSide);
   for (int& value : brightness) value = 40 + static_cast<int>(random() % 180);
   const auto tile = [&](double along, double depth) {
-    return static_cast<int>(std::floor(std::atan2(along, depth) * camera.fx_px / 2)) + kSide / 2;
+    return static_cast<int>(std::floor(std::atan2(along, depth) * camera.fx_px / 2.5)) + kSide / 2;
   };
   GreyImage image(camera.width_px, camera.height_px);
   for (int y = 0; y < image.height; ++y) {
@@ -63,7 +63,7 @@ GreyImage sphere_of_tiles(const PinholeCamera& camera, const Quaterniond& R_worl
   return image;
 }
 
-// With the gradient of one of the images alone it ends 2.7 pixels off.
+// With the gradient of one of the images alone it ends 2.5 pixels off.
 TEST(RotationStart, FindsATurnThatIsLargerThanTheTexture) {
   const PinholeCamera camera = tracking::camera_of_level(small_camera(), 1);
   const double pixel_rad = 1 / camera.fx_px;
