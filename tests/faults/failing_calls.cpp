@@ -1,9 +1,10 @@
 // Loaded into the program by LD_PRELOAD: lets the n-th call that may fail do so (tests/faults).
 //
 // Environment: FAULTS_KIND write, sync, rename, open, create, map, fork, or allocate; FAULTS_AT n, from 1; 0
-// counts only; FAULTS_ERROR an errno; FAULTS_LOG a file, which gets a line "KIND PATH" for each call of the
-// kind and "FAILED KIND PATH" for the one that failed. All calls of a process and its children are counted as
-// one sequence.
+// counts only, calls of all kinds; FAULTS_ERROR an errno; FAULTS_LOG a file, which gets a line "KIND PATH"
+// for each call that is counted only and "FAILED KIND PATH" for the one that failed. All calls of a process
+// and its children are counted as one sequence. It is read when main() begins: in a child of the fork server
+// (tests/attack), what its request says.
 //
 // A call counts if it changes files or takes resources: files that are opened for reading count as `open`,
 // for writing as `create`. What failed once works again the next time, as after a moment of a full disk.
@@ -40,20 +41,8 @@ struct Plan {
 
 Plan plan;
 
-using Main = int (*)(int, char**, char**);
-Main program_main = nullptr;
-
-/// Calls count from here on: what libraries do when they are loaded and unloaded is before and after the
-/// step.
-int counted_main(int argc, char** argv, char** environment) {
-  plan.active = plan.count != nullptr;
-  const int code = program_main(argc, argv, environment);
-  plan.active = false;
-  return code;
-}
-
-/// Before main(), and with system calls, so that nothing here is counted.
-__attribute__((constructor)) void read_plan() {
+/// With system calls, so that nothing here is counted.
+void read_plan() {
   const char* const kind = std::getenv("FAULTS_KIND");
   const char* const at = std::getenv("FAULTS_AT");
   if (kind == nullptr || at == nullptr) return;
@@ -69,6 +58,19 @@ __attribute__((constructor)) void read_plan() {
   unsetenv("LD_PRELOAD");  // programs that this one starts are not its own
 }
 
+using Main = int (*)(int, char**, char**);
+Main program_main = nullptr;
+
+/// Calls count from here on: what libraries do when they are loaded and unloaded is before and after the
+/// step.
+int counted_main(int argc, char** argv, char** environment) {
+  read_plan();
+  plan.active = plan.count != nullptr;
+  const int code = program_main(argc, argv, environment);
+  plan.active = false;
+  return code;
+}
+
 void note(const char* prefix, const char* kind, const char* path) {
   if (plan.log < 0) return;
   char line[700];
@@ -76,7 +78,9 @@ void note(const char* prefix, const char* kind, const char* path) {
   syscall(SYS_write, plan.log, line, static_cast<std::size_t>(size));
 }
 
-bool is_of_plan(const char* kind) { return plan.active && std::strcmp(kind, plan.kind) == 0; }
+bool is_of_plan(const char* kind) {
+  return plan.active && (plan.at == 0 || std::strcmp(kind, plan.kind) == 0);
+}
 
 /// Whether this call is the one that fails; sets errno.
 bool fails(const char* kind, const char* path) {
@@ -254,8 +258,7 @@ int __libc_start_main(Main given, int argc, char** argv, void (*init)(), void (*
 
 }  // extern "C"
 
-// Allocations of C++: what the program itself asks for, not what libraries do in C. The replaced operator
-// must not be counted before the plan is read.
+// Allocations of C++: what the program itself asks for, not what libraries do in C.
 void* operator new(std::size_t size) {
   if (plan.active && fails("allocate", "")) throw std::bad_alloc();
   if (void* const place = std::malloc(size > 0 ? size : 1)) return place;

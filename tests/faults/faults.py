@@ -20,7 +20,6 @@ import sys
 from steps import KEEPS_PARTS, STEPS, StepRunner, content, scratch_folder
 
 import oracle
-import server
 
 KINDS = {"write": errno.ENOSPC, "sync": errno.EIO, "rename": errno.EIO, "create": errno.ENOSPC, "open": errno.EMFILE,
          "map": errno.ENOMEM, "fork": errno.EAGAIN, "allocate": errno.ENOMEM}
@@ -28,16 +27,15 @@ KINDS = {"write": errno.ENOSPC, "sync": errno.EIO, "rename": errno.EIO, "create"
 
 class Faults(StepRunner):
     def __init__(self, binary, scratch):
-        super().__init__(binary, scratch)
-        self.library = server.find_library(self.binary, "libfusebench_failing_calls.so")
+        super().__init__(binary, scratch, ["libfusebench_failing_calls.so"])
         self.failures = []
 
     def command_with_fault(self, step, kind, at):
-        """(exit code, standard error, lines of the log)."""
+        """(exit code, standard error, lines of the log). at: 0 lists the calls of all kinds."""
         log = self.scratch / "log"
         log.unlink(missing_ok=True)
-        settings = {"FAULTS_KIND": kind, "FAULTS_AT": str(at), "FAULTS_ERROR": str(KINDS[kind]), "FAULTS_LOG": str(log)}
-        status, errors, _ = self.command(STEPS[step], self.library, settings)
+        settings = [f"FAULTS_KIND={kind}", f"FAULTS_AT={at}", f"FAULTS_ERROR={KINDS[kind]}", f"FAULTS_LOG={log}"]
+        status, errors, _ = self.command(STEPS[step], settings)
         return status, errors, log.read_text(errors="replace").splitlines() if log.exists() else []
 
     def complain(self, step, kind, at, what, errors):
@@ -92,11 +90,11 @@ class Faults(StepRunner):
 
     def step(self, step, kinds, limit):
         undisturbed = self.undisturbed(step)
+        self.fresh()
+        _, _, log = self.command_with_fault(step, "write", 0)
         rows = []
         for kind in kinds:
-            self.fresh()
-            _, _, log = self.command_with_fault(step, kind, 0)
-            calls = sum(line.startswith(kind) for line in log)
+            calls = sum(line.startswith(kind + " ") for line in log)
             most = min(limit, 200) if kind == "allocate" else limit
             places = range(1, calls + 1) if calls <= most else sorted({1 + (2 * k + 1) * calls // (2 * most) for k in range(most)})
             outcomes = {}
@@ -126,6 +124,7 @@ def main():
         for step in [options.only] if options.only else STEPS:
             rows = faults.step(step, [options.kind] if options.kind else KINDS, 10**9 if options.every else options.sample)
             total += sum(row[3] for row in rows)
+        faults.served.close()
         print(f"faults: {total} faults in {1 if options.only else len(STEPS)} steps, {len(faults.failures)} of them not survived")
         return 1 if faults.failures else 0
 

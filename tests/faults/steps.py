@@ -14,6 +14,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "attack"))
 
 import seeds  # noqa: E402
+import server  # noqa: E402
 
 SUITE = seeds.SUITE.split("[[sweep]]")[0].replace('"no-imu", "dm-no-imu"', '"no-imu"')
 STEPS = {
@@ -64,10 +65,15 @@ def first_frame(run):
 
 
 class StepRunner:
-    """Runs steps in copies of one folder of inputs."""
+    """Runs steps in copies of one folder of inputs, in children of one loaded process: loading alone takes longer than most steps.
+    preload: names of libraries of tests that are loaded before it."""
 
-    def __init__(self, binary, scratch):
+    def __init__(self, binary, scratch, preload=()):
         self.binary = os.path.realpath(binary)
+        for name in [name for name in os.environ if name.startswith(("FAULTS", "RECORD"))]:
+            del os.environ[name]
+        self.served = server.Program(self.binary, server.find_library(self.binary, "libfusebench_fork_server.so"),
+                                     [str(server.find_library(self.binary, name)) for name in preload])
         self.scratch = pathlib.Path(os.path.realpath(scratch))
         self.inputs = self.scratch / "inputs"
         self.work = self.scratch / "work"
@@ -78,9 +84,9 @@ class StepRunner:
         # One run is missing, for `rerun` to make: not the one that "run over a run" replaces.
         shutil.rmtree(next(run for run in sorted((self.inputs / "runs" / "tum" / "no-imu").iterdir()) if first_frame(run) == 0))
 
-    def program(self, *arguments, cwd=None, codes=(0,)):
-        """Its standard output."""
-        done = subprocess.run([self.binary, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False)
+    def program(self, *arguments, cwd=None, codes=(0,), env=None):
+        """Its standard output, in a process of its own."""
+        done = subprocess.run([self.binary, *map(str, arguments)], cwd=cwd, env=env, capture_output=True, text=True, check=False)
         if done.returncode not in codes:
             raise SystemExit(f"faults: {arguments} ends with {done.returncode}: {done.stderr}")
         return done.stdout
@@ -90,17 +96,12 @@ class StepRunner:
         shutil.copytree(self.inputs, self.work)
         return self.work
 
-    def command(self, arguments, preload=None, settings=None):
-        """(exit code or None if it hangs, standard error, output) in the folder of work. preload: a library, with its settings."""
-        environment = {name: value for name, value in os.environ.items() if not name.startswith(("FUSEBENCH", "FAULTS", "RECORD"))}
-        if preload:
-            environment.update(settings, LD_PRELOAD=str(preload))
-        try:
-            done = subprocess.run([self.binary, *arguments], cwd=self.work, env=environment, stdin=subprocess.DEVNULL,
-                                  capture_output=True, timeout=120, check=False)
-        except subprocess.TimeoutExpired:
-            return None, b"", b""
-        return done.returncode, done.stderr, done.stdout
+    def command(self, arguments, settings=()):
+        """(exit code or None if it hangs, standard error, output) in the folder of work. settings: "NAME=VALUE"."""
+        output, errors = self.scratch / "stdout", self.scratch / "stderr"
+        limits = server.Limits(cpu_s=120, wall_ms=120000, memory_mb=0, file_mb=4096)
+        answer = self.served.run(self.work, arguments, output, errors, limits, settings)
+        return None if answer.killed else answer.status, errors.read_bytes(), output.read_bytes()
 
     def undisturbed(self, step):
         """(exit code, content) of a step."""
