@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "datasets/inspection/inspection.hpp"
@@ -44,6 +46,13 @@ inline std::vector<ImuSample> ideal_samples(const SE3& T_imu_camera, double begi
   return samples;
 }
 
+/// Frames that were rendered, for all copies of a recording: an inspection asks for each several times, and
+/// rendering one takes longer than looking at it.
+struct RenderedFrames {
+  std::mutex mutex;
+  std::vector<std::optional<RgbdFrame>> frames;
+};
+
 struct CleanOptions {
   int frames = 90;
   PinholeCamera camera{160, 120, 120.0, 120.0, 79.5, 59.5};
@@ -79,13 +88,21 @@ inline recording::Recording clean_recording(const CleanOptions& options = {}) {
     recording.imu = ideal_samples(recording.rig.T_imu_camera, begin_s - 0.5, end_s + 0.5, 200);
     synthetic_imu::add_imu_noise(recording.imu, sensor, 200, 7);
   }
-  recording.load_frame = [camera = options.camera, factor = options.depth_factor,
-                          frames = recording.frames](std::size_t k) -> Result<RgbdFrame> {
+  const auto rendered = std::make_shared<RenderedFrames>();
+  rendered->frames.resize(recording.frames.size());
+  recording.load_frame = [camera = options.camera, factor = options.depth_factor, frames = recording.frames,
+                          rendered](std::size_t k) -> Result<RgbdFrame> {
+    {
+      const std::scoped_lock lock(rendered->mutex);
+      if (rendered->frames.at(k)) return *rendered->frames[k];
+    }
     const TexturedRoom room;
     RgbdFrame frame =
         room.render(camera, SwayingMotion::T_world_camera(1e-9 * static_cast<double>(frames[k].capture_ns)),
                     frames[k].timestamp_ns);
     for (float& z_m : frame.depth_m.data) z_m = static_cast<float>(z_m * factor);
+    const std::scoped_lock lock(rendered->mutex);
+    rendered->frames[k] = frame;
     return frame;
   };
   return recording;
