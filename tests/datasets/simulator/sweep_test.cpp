@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 
 #include "datasets/simulator/motion/motion.hpp"
 #include "datasets/simulator/render/renderer.hpp"
@@ -27,9 +27,10 @@ constexpr std::int64_t kFrame_ns = 33'333'333;
 constexpr PinholeCamera kCamera = {160, 120, 152, 152, 79.5, 59.5};
 
 const SimulatedScene& storage_room(std::uint64_t seed) {
-  static const std::array<SimulatedScene, 3> rooms = {make_storage_room(1), make_storage_room(2),
-                                                      make_storage_room(3)};
-  return rooms[static_cast<std::size_t>(seed - 1)];
+  static std::map<std::uint64_t, SimulatedScene> rooms;
+  auto found = rooms.find(seed);
+  if (found == rooms.end()) found = rooms.emplace(seed, make_storage_room(seed)).first;
+  return found->second;
 }
 
 MotionSpan span_of(double duration_s) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "datasets/simulator/random/random_numbers.hpp"
@@ -22,8 +23,10 @@ using namespace simulator::sensors;
 namespace {
 
 const SimulatedScene& room_of_seed(std::uint64_t seed) {
-  static const std::array<SimulatedScene, 3> rooms = {make_room(1), make_room(2), make_room(3)};
-  return rooms[static_cast<std::size_t>(seed - 1)];
+  static std::map<std::uint64_t, SimulatedScene> rooms;
+  auto found = rooms.find(seed);
+  if (found == rooms.end()) found = rooms.emplace(seed, make_room(seed)).first;
+  return found->second;
 }
 
 /// A direction, evenly over the sphere.
