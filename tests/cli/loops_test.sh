@@ -31,7 +31,7 @@ run() {
   "$binary" run room --imu auto --set "loops.mode=$mode" --set loops.least_age_s=1 --threads "$threads" --out "runs_${mode}_$threads" "$@" 2>"${mode}_$threads.log"
 }
 
-"$binary" simulate --format tum --preset slow --duration 4 --seed 3 --size 320x240 --out room >/dev/null 2>&1 || exit 1
+"$binary" simulate --format tum --preset slow --duration 3 --seed 3 --size 320x240 --blur-samples 1 --out room >/dev/null 2>&1 || exit 1
 off=$(run off 2)
 detect=$(run detect 2)
 one=$(run final 1)
