@@ -61,32 +61,40 @@ program=$work/usr/bin/fusebench
 "$program" list suites >suites 2>log || failed "the installed program does not find its suites"
 grep -q "^quickstart .*$work/usr/share/fusebench/configs/suites/quickstart.toml" suites || failed "no suite quickstart"
 
+# help_of WORD...: the help text of a verb, asked for once.
+mkdir help
+help_of() {
+  local file="help/${*:-fusebench}"
+  [[ -s $file ]] || "$program" "$@" --help >"$file"
+  cat "$file"
+}
+
 # verbs_of WORD...: every verb below it, by the help texts.
 verbs_of() {
   local verb
   printf '%s\n' "fusebench${*:+ $*}"
   while read -r verb; do
     verbs_of "$@" "$verb"
-  done < <("$program" "$@" --help |
+  done < <(help_of "$@" |
     awk '/^Subcommands:/ { inside = 1; next } inside && /^[^ ]/ { inside = 0 } inside && /^  [a-z]/ { print $1 }')
 }
 verbs_of >verbs
 (($(wc -l <verbs) > 25)) || failed "there are too few verbs"
 # shellcheck source=/dev/null
 source "$work/usr/share/bash-completion/completions/fusebench"
+zsh=$(<"$work/usr/share/zsh/vendor-completions/_fusebench")
 while read -r -a words; do
   page=$work/usr/share/man/man1/$(IFS=-; printf '%s' "${words[*]}").1.gz
   [[ -s $page ]] || failed "there is no manual page of ${words[*]}"
-  gzip -dc "$page" | sed 's/\\-/-/g' >page
+  page=$(gzip -dc "$page" | sed 's/\\-/-/g')
   COMP_WORDS=("${words[@]}" -) COMP_CWORD=${#words[@]}
   _fusebench
   proposed=" ${COMPREPLY[*]} "
   while read -r flag; do
     [[ $proposed == *" $flag "* ]] || failed "bash does not complete $flag of ${words[*]}"
-    grep -qF -- "$flag" page || failed "the manual page of ${words[*]} lacks $flag"
-    grep -qF -- "${flag}[" "$work/usr/share/zsh/vendor-completions/_fusebench" ||
-      grep -qE -- "${flag}[=+]\[" "$work/usr/share/zsh/vendor-completions/_fusebench" || failed "zsh does not know $flag"
-  done < <("$program" "${words[@]:1}" --help | grep -oE '^  -[-a-z0-9_,]+' | tr -d ' ' | tr ',' '\n')
+    [[ $page == *"$flag"* ]] || failed "the manual page of ${words[*]} lacks $flag"
+    [[ $zsh == *"$flag"?([=+])'['* ]] || failed "zsh does not know $flag"
+  done < <(help_of "${words[@]:1}" | sed -nE 's/^  (-[-a-z0-9_,]+).*/\1/p' | tr ',' '\n')
 done <verbs
 if command -v zsh >/dev/null; then
   zsh -n "$work/usr/share/zsh/vendor-completions/_fusebench" 2>log || failed "zsh does not understand its completion"
