@@ -71,12 +71,15 @@ require_machine() {
 # Prints the ids of this cluster's processes: those whose program is named $1 and that have the word $2 on
 # their command line. No pid files: a stale one could name a stranger, and they vanish with a deleted folder.
 find_processes() {
-  local wanted=$1 word=$2 entry program
+  local wanted=$1 word=$2 entry program words
   for entry in /proc/[0-9]*; do
+    # Without a process of our own for each of the machine's.
+    { mapfile -d '' -t words <"$entry/cmdline"; } 2>/dev/null || continue
+    printf -v words '%s\n' "${words[@]}"
+    [[ $'\n'$words == *$'\n'"$word"$'\n'* ]] || continue
     program=$(readlink "$entry/exe" 2>/dev/null) || continue
     program=${program% (deleted)}
-    [[ ${program##*/} == "$wanted" ]] || continue
-    if tr '\0' '\n' 2>/dev/null <"$entry/cmdline" | grep -qxF -e "$word"; then printf '%s\n' "${entry#/proc/}"; fi
+    if [[ ${program##*/} == "$wanted" ]]; then printf '%s\n' "${entry#/proc/}"; fi
   done
 }
 
