@@ -8,14 +8,15 @@
 namespace fusebench {
 inline namespace base {
 
-IntensitySample sample_bilinear(const GreyImage& image, double x, double y) {
+template <class Pixel>
+IntensitySample sample_bilinear(const Image<Pixel>& image, double x, double y) {
   // The cell [x0, x0 + 1) x [y0, y0 + 1); the last row and column belong to the cell before them.
   const int x0 = std::clamp(static_cast<int>(x), 0, image.width - 2);
   const int y0 = std::clamp(static_cast<int>(y), 0, image.height - 2);
   const double ax = x - x0;
   const double ay = y - y0;
-  const std::uint8_t* top = &image.data[image.index(x0, y0)];
-  const std::uint8_t* bottom = top + image.width;
+  const Pixel* top = &image.data[image.index(x0, y0)];
+  const Pixel* bottom = top + image.width;
   const double i00 = top[0];
   const double i10 = top[1];
   const double i01 = bottom[0];
@@ -24,6 +25,9 @@ IntensitySample sample_bilinear(const GreyImage& image, double x, double y) {
   const double lower = i01 + ax * (i11 - i01);
   return {upper + ay * (lower - upper), (1.0 - ay) * (i10 - i00) + ay * (i11 - i01), lower - upper};
 }
+
+template IntensitySample sample_bilinear(const GreyImage& image, double x, double y);
+template IntensitySample sample_bilinear(const Image<float>& image, double x, double y);
 
 void build_pyramid(const GreyImage& image, int levels, std::vector<GreyImage>& pyramid) {
   check(levels >= 1 && !image.empty(), "a pyramid needs an image and at least one level");

@@ -50,7 +50,9 @@ struct IntensitySample {
 
 /// Bilinear interpolation with the exact derivative of the interpolant, so that analytic Jacobians equal
 /// numeric ones. Needs 0 <= x <= width - 1 (same for y); the caller checks.
-[[nodiscard]] IntensitySample sample_bilinear(const GreyImage& image, double x, double y);
+/// Pixels are bytes or floats.
+template <class Pixel>
+[[nodiscard]] IntensitySample sample_bilinear(const Image<Pixel>& image, double x, double y);
 
 /// Grey-level pyramid, level 0 = the image, each level half the size (5x5 binomial filter in integer
 /// arithmetic, hence the same on every machine). Pixel (x, y) of level l lies at (x, y) * 2^l of level 0.

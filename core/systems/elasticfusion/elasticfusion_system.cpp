@@ -53,18 +53,23 @@ Result<health::FrameOutcome> ElasticfusionSystem::process(const RgbdFrame& frame
     return outcome;
   }
   if (auto done = predict(outcome.capture_ns); !done) return tl::unexpected(done.error());
+  tracking::LivePyramid levels;
+  {
+    const health::StageClock clock(outcome.stages, health::Stage::update);
+    levels = tracking::live_pyramid(live, camera_, workers_);
+  }
   Quality quality = Quality::good;
   if (frames_ == 0) {
     outcome.status = health::FrameStatus::initialised;
   } else {
-    quality = follow(live, outcome);
+    quality = follow(live, levels, outcome);
   }
   if (outcome.status != health::FrameStatus::lost)
     poses_.push_back({frame.timestamp_ns, frames_, T_world_camera_});
   if (quality == Quality::good) fuse(live, outcome.stages);
   render(outcome.stages);
   if (quality == Quality::good) close_loops(live, outcome.stages);
-  before_ = std::move(live);
+  before_ = {std::move(live), std::move(levels[kRotationLevel])};
   ++frames_;
   outcome.T_world_camera = T_world_camera_;
   return outcome;
@@ -78,11 +83,12 @@ Result<void> ElasticfusionSystem::predict(std::int64_t capture_ns) {
 
 /// Tracks the frame or, if the camera is lost, looks for its place; whether it can be fused.
 ElasticfusionSystem::Quality ElasticfusionSystem::follow(const surfels::LiveFrame& live,
+                                                         const tracking::LivePyramid& levels,
                                                          health::FrameOutcome& outcome) {
   const bool was_lost = bad_frames_ > kBadFramesUntilLost;
   const SE3 T_world_before = T_world_camera_;
   if (was_lost) find_again(live, outcome.stages);
-  const tracking::TrackedMotion motion = track(live, outcome.stages);
+  const tracking::TrackedMotion motion = track(levels, outcome.stages);
   T_before_camera_ = motion.T_view_camera;
   T_world_camera_ = T_world_camera_ * motion.T_view_camera;
   outcome.status = health::FrameStatus::tracked;
@@ -99,11 +105,10 @@ ElasticfusionSystem::Quality ElasticfusionSystem::follow(const surfels::LiveFram
   return Quality::bad;
 }
 
-tracking::TrackedMotion ElasticfusionSystem::track(const surfels::LiveFrame& live,
+tracking::TrackedMotion ElasticfusionSystem::track(const tracking::LivePyramid& levels,
                                                    health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::update);
-  if (before_ && view_.share() < kDense) fill_in(*before_, view_);
-  const tracking::LivePyramid levels = tracking::live_pyramid(live, camera_, workers_);
+  if (before_ && view_.share() < kDense) fill_in(before_->live, view_);
   const tracking::ViewPyramid model = tracking::view_pyramid(view_, config_.elasticfusion.defects);
   SE3 T_view_start;
   if (inertial_) {
@@ -113,10 +118,8 @@ tracking::TrackedMotion ElasticfusionSystem::track(const surfels::LiveFrame& liv
     inertial_->correct(view_.T_world_camera, motion.T_view_camera, motion.information);
     return motion;
   }
-  if (before_ && config_.elasticfusion.rotation_start) {
-    T_view_start.rotation = tracking::rotation_between(
-        build_pyramid(before_->grey, kRotationLevel + 1).back(), levels[kRotationLevel]);
-  }
+  if (before_ && config_.elasticfusion.rotation_start)
+    T_view_start.rotation = tracking::rotation_between(before_->small, levels[kRotationLevel]);
   return tracker_.track(levels, model, T_view_start);
 }
 

@@ -33,9 +33,15 @@ class ElasticfusionSystem final : public System {
 
  private:
   enum class Quality { good, bad };
+  struct EarlierFrame {
+    surfels::LiveFrame live;
+    tracking::LiveLevel small;  ///< for the rotation where tracking starts
+  };
   [[nodiscard]] Result<void> predict(std::int64_t capture_ns);
-  Quality follow(const surfels::LiveFrame& live, health::FrameOutcome& outcome);
-  [[nodiscard]] tracking::TrackedMotion track(const surfels::LiveFrame& live, health::StageTimes& stages);
+  Quality follow(const surfels::LiveFrame& live, const tracking::LivePyramid& levels,
+                 health::FrameOutcome& outcome);
+  [[nodiscard]] tracking::TrackedMotion track(const tracking::LivePyramid& levels,
+                                              health::StageTimes& stages);
   [[nodiscard]] bool fits(const tracking::TrackedMotion& motion) const;
   void find_again(const surfels::LiveFrame& live, health::StageTimes& stages);
   void fuse(const surfels::LiveFrame& live, health::StageTimes& stages);
@@ -54,7 +60,7 @@ class ElasticfusionSystem final : public System {
   deformation::LoopCloser loops_;
   std::optional<InertialTracking> inertial_;
   std::vector<deformation::TimedPose> poses_;  ///< of the frames that have one
-  std::optional<surfels::LiveFrame> before_;   ///< the frame before; nothing if it was elsewhere
+  std::optional<EarlierFrame> before_;         ///< the frame before; nothing if it was elsewhere
   SE3 T_world_camera_;
   SE3 T_before_camera_;      ///< the last step
   std::int32_t frames_ = 0;  ///< since the first one

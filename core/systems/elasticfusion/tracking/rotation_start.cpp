@@ -1,7 +1,6 @@
 #include "core/systems/elasticfusion/tracking/rotation_start.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,13 +18,7 @@ struct RotationSums {
   double pixels = 0;
 };
 
-/// The frame before: intensities, and their gradient.
-struct Before {
-  GreyImage grey;
-  Gradient gradient;
-};
-
-RotationSums sums_at(const Before& before, const LiveLevel& now, const Quaterniond& R_before_now) {
+RotationSums sums_at(const LiveLevel& before, const LiveLevel& now, const Quaterniond& R_before_now) {
   RotationSums sums;
   const Matrix3d R = R_before_now.toRotationMatrix();
   for (int y = 0; y < now.camera.height_px; ++y) {
@@ -33,14 +26,14 @@ RotationSums sums_at(const Before& before, const LiveLevel& now, const Quaternio
       const Vector3d ray = R * now.camera.back_project(x, y, 1.0);
       if (!(ray.z() > 0)) continue;
       const Vector2d at = now.camera.project(ray);
-      if (!(at.x() >= 0) || !(at.y() >= 0) || !(at.x() <= before.grey.width - 1) ||
-          !(at.y() <= before.grey.height - 1))
+      if (!(at.x() >= 0) || !(at.y() >= 0) || !(at.x() <= before.intensity.width - 1) ||
+          !(at.y() <= before.intensity.height - 1))
         continue;
       const std::size_t pixel = now.intensity.index(x, y);
-      const std::size_t pixel_before =
-          before.grey.index(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())));
-      const double residual =
-          static_cast<double>(now.intensity.data[pixel]) - sample_bilinear(before.grey, at.x(), at.y()).value;
+      const std::size_t pixel_before = before.intensity.index(static_cast<int>(std::lround(at.x())),
+                                                              static_cast<int>(std::lround(at.y())));
+      const double residual = static_cast<double>(now.intensity.data[pixel]) -
+                              sample_bilinear(before.intensity, at.x(), at.y()).value;
       const Eigen::Vector2f mean_gradient =
           0.5F * Eigen::Vector2f(before.gradient.dx.data[pixel_before] + now.gradient.dx.data[pixel],
                                  before.gradient.dy.data[pixel_before] + now.gradient.dy.data[pixel]);
@@ -57,10 +50,7 @@ RotationSums sums_at(const Before& before, const LiveLevel& now, const Quaternio
 
 }  // namespace
 
-Quaterniond rotation_between(const GreyImage& grey_before, const LiveLevel& now) {
-  Image<float> intensity_before(grey_before.width, grey_before.height);
-  std::ranges::copy(grey_before.data, intensity_before.data.begin());
-  const Before before{grey_before, gradient_of(intensity_before)};
+Quaterniond rotation_between(const LiveLevel& before, const LiveLevel& now) {
   Quaterniond rotation = Quaterniond::Identity(), best = rotation;
   double best_mean = std::numeric_limits<double>::infinity();
   const double fewest = kLeastOverlap * static_cast<double>(now.intensity.data.size());

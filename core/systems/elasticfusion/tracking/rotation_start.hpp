@@ -10,6 +10,6 @@ namespace fusebench::systems::elasticfusion::tracking {
 /// as in the program (efficient second-order minimisation, Malis 2004): where the texture is as fine as the
 /// turn, those of one image end in the nearest wrong minimum. No rotation where the images hardly overlap or
 /// have no texture.
-[[nodiscard]] Quaterniond rotation_between(const GreyImage& grey_before, const LiveLevel& now);
+[[nodiscard]] Quaterniond rotation_between(const LiveLevel& before, const LiveLevel& now);
 
 }  // namespace fusebench::systems::elasticfusion::tracking

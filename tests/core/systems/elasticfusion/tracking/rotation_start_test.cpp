@@ -31,12 +31,11 @@ TEST(RotationStart, FindsAPureRotation) {
   const PinholeCamera camera = tracking::camera_of_level(small_camera(), 1);
   const testing::TexturedRoom room;
   const Quaterniond turn = so3_exp({0.012, -0.02, 0.015});
-  const GreyImage before = room.render(camera, SE3{}, 0).grey;
-  const GreyImage now = room.render(camera, {turn, Vector3d::Zero()}, 0).grey;
-  EXPECT_LT(rotation_angle_rad(tracking::rotation_between(before, level_of(now, camera)), turn), 0.002);
-  const GreyImage blank(camera.width_px, camera.height_px, 90);
-  EXPECT_EQ(tracking::rotation_between(blank, level_of(blank, camera)).coeffs(),
-            Quaterniond::Identity().coeffs());
+  const auto before = level_of(room.render(camera, SE3{}, 0).grey, camera);
+  const auto now = level_of(room.render(camera, {turn, Vector3d::Zero()}, 0).grey, camera);
+  EXPECT_LT(rotation_angle_rad(tracking::rotation_between(before, now), turn), 0.002);
+  const auto blank = level_of(GreyImage(camera.width_px, camera.height_px, 90), camera);
+  EXPECT_EQ(tracking::rotation_between(blank, blank).coeffs(), Quaterniond::Identity().coeffs());
 }
 
 /// A sphere of tiles of random brightness, 2.5 pixels wide and high; each pixel is the mean of 16 rays.
@@ -68,7 +67,7 @@ TEST(RotationStart, FindsATurnThatIsLargerThanTheTexture) {
   const PinholeCamera camera = tracking::camera_of_level(small_camera(), 1);
   const double pixel_rad = 1 / camera.fx_px;
   const Quaterniond turn = so3_exp({0.6 * pixel_rad, 3 * pixel_rad, 0});
-  const GreyImage before = sphere_of_tiles(camera, Quaterniond::Identity());
+  const auto before = level_of(sphere_of_tiles(camera, Quaterniond::Identity()), camera);
   const auto now = level_of(sphere_of_tiles(camera, turn), camera);
   EXPECT_LT(rotation_angle_rad(tracking::rotation_between(before, now), turn), 0.1 * pixel_rad);
 }
