@@ -17,7 +17,8 @@ constexpr double kLeastShare = 0.1;  // of the reference that an image can be co
 double landing_sigma_px(const filter::GaussianState& prior, const ReferencePoints& reference,
                         const SensorRig& rig) {
   if (reference.empty()) return 0;
-  const auto by_reference = filter::measured_combinations(prior.mean).topRows<filter::kPoseSize>();
+  const Eigen::Matrix<double, filter::kPoseSize, filter::kStateSize> by_reference =
+      filter::measured_combinations(prior.mean).topRows<filter::kPoseSize>();
   const Matrix6d covariance = by_reference * prior.covariance * by_reference.transpose();
   const patches::PosedCamera camera(rig.camera, prior.mean.T_world_imu, rig.T_imu_camera);
   const SE3 T_world_reference = prior.mean.T_world_imu_reference * rig.T_imu_camera;
