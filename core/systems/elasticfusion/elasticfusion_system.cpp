@@ -115,7 +115,7 @@ tracking::TrackedMotion ElasticfusionSystem::track(const tracking::LivePyramid& 
     const InertialTracking::Term term(*inertial_, view_.T_world_camera);
     T_view_start = view_.T_world_camera.inverse() * inertial_->T_world_camera();
     tracking::TrackedMotion motion = tracker_.track(levels, model, T_view_start, &term);
-    inertial_->correct(view_.T_world_camera, motion.T_view_camera, motion.information);
+    inertial_->correct(view_.T_world_camera, motion.T_view_camera, motion.images);
     return motion;
   }
   if (before_ && config_.elasticfusion.rotation_start)

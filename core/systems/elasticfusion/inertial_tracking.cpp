@@ -12,6 +12,7 @@ namespace {
 
 // Pixels share their errors (blur, calibration, holes of the model): so many count as one measurement.
 constexpr double kPixelsPerMeasurement = 100;
+constexpr double kLeastScatter = 1e-9;    // of images without texture or depth along some motion
 constexpr double kLeastVariance = 1e-12;  // of the predicted pose (rad^2, m^2)
 
 /// How a step of T_view_camera (on the left: rotation, then translation) follows from one of the pose of the
@@ -25,6 +26,13 @@ Matrix6d step_by_pose(const SE3& T_world_view, const SE3& T_view_camera, const S
       hat(T_view_camera.translation) * R_view_imu - R_view_imu * hat(T_imu_camera.translation);
   jacobian.bottomRightCorner<3, 3>() = R_view_world;
   return jacobian;
+}
+
+/// What makes equations of images those of a measurement: information * scatter^-1 * information is the
+/// inverse of the covariance of the motion that they tell (the sandwich of Huber 1967).
+Matrix6d weighting(const tracking::ImageEquations& images) {
+  const Matrix6d scatter = images.scatter + kLeastScatter * Matrix6d::Identity();
+  return scatter.ldlt().solve(images.information).transpose() / kPixelsPerMeasurement;
 }
 
 Matrix6d pose_covariance(const filter::GaussianState& state) {
@@ -53,20 +61,25 @@ InertialTracking::Term::Term(const InertialTracking& inertial, const SE3& T_worl
     : T_world_imu_(inertial.state_.mean.T_world_imu),
       T_world_view_(T_world_view),
       T_imu_camera_(inertial.rig_.T_imu_camera),
-      weight_(kPixelsPerMeasurement * pose_covariance(inertial.state_).inverse()) {}
+      weight_(pose_covariance(inertial.state_).inverse()) {}
 
-void InertialTracking::Term::add(const SE3& T_view_camera, Matrix6d& information, Vector6d& descent) const {
+Vector6d InertialTracking::Term::step(const SE3& T_view_camera,
+                                      const tracking::ImageEquations& images) const {
   const SE3 T_world_imu = T_world_view_ * T_view_camera * T_imu_camera_.inverse();
   const Matrix6d pose_by_step = step_by_pose(T_world_view_, T_view_camera, T_imu_camera_).inverse();
-  information += pose_by_step.transpose() * weight_ * pose_by_step;
-  descent -= pose_by_step.transpose() * weight_ * pose_minus(T_world_imu, T_world_imu_);
+  const Matrix6d weight = weighting(images);
+  const Matrix6d information =
+      weight * images.information + pose_by_step.transpose() * weight_ * pose_by_step;
+  const Vector6d descent =
+      weight * images.descent - pose_by_step.transpose() * weight_ * pose_minus(T_world_imu, T_world_imu_);
+  return information.ldlt().solve(descent);
 }
 
 void InertialTracking::correct(const SE3& T_world_view, const SE3& T_view_camera,
-                               const Matrix6d& image_information) {
+                               const tracking::ImageEquations& images) {
   const SE3 T_world_imu = T_world_view * T_view_camera * rig_.T_imu_camera.inverse();
   const Matrix6d jacobian = step_by_pose(T_world_view, T_view_camera, rig_.T_imu_camera);
-  const Matrix6d information = jacobian.transpose() * image_information * jacobian / kPixelsPerMeasurement;
+  const Matrix6d information = jacobian.transpose() * weighting(images) * images.information * jacobian;
   const Matrix6d covariance = pose_covariance(state_);
   const Eigen::Matrix<double, filter::kStateSize, 6> with_pose = state_.covariance.leftCols<6>();
   const Vector6d error = pose_minus(T_world_imu, state_.mean.T_world_imu);

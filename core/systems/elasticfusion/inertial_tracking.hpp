@@ -31,7 +31,8 @@ class InertialTracking {
   class Term final : public tracking::PoseTerm {
    public:
     Term(const InertialTracking& inertial, const SE3& T_world_view);
-    void add(const SE3& T_view_camera, Matrix6d& information, Vector6d& descent) const override;
+    [[nodiscard]] Vector6d step(const SE3& T_view_camera,
+                                const tracking::ImageEquations& images) const override;
 
    private:
     SE3 T_world_imu_;  ///< predicted
@@ -40,9 +41,8 @@ class InertialTracking {
     Matrix6d weight_;  ///< of errors of the pose
   };
 
-  /// After tracking with the term: the pose that came out, and the information of the images there, as
-  /// CameraTracker has it.
-  void correct(const SE3& T_world_view, const SE3& T_view_camera, const Matrix6d& image_information);
+  /// After tracking with the term: the pose that came out, and what images said there.
+  void correct(const SE3& T_world_view, const SE3& T_view_camera, const tracking::ImageEquations& images);
 
   /// The camera is elsewhere, as a loop says: velocity and gravity turn with it.
   void move_to(const SE3& T_world_camera);

@@ -15,10 +15,12 @@ constexpr std::array<int, kLevels> kSteps = {10, 5, 4};
 constexpr std::array<double, kLevels> kMinGradient = {5, 3, 1};
 constexpr double kLongestStep_m = 0.3;
 
+double mean_square(const PoseSums& sums) { return sums.pixels > 0 ? sums.cost / sums.pixels : 0; }
+
 }  // namespace
 
 double TrackedMotion::variance() const {
-  const Eigen::FullPivLU<Matrix6d> factor(information);
+  const Eigen::FullPivLU<Matrix6d> factor(images.information);
   if (!factor.isInvertible()) return std::numeric_limits<double>::infinity();
   return factor.inverse().diagonal().maxCoeff();
 }
@@ -37,13 +39,16 @@ TrackedMotion CameraTracker::track(const LivePyramid& live, const ViewPyramid& v
       const PoseSums planes = match_planes(live[level], view[level], motion.T_view_camera, workers_);
       const PoseSums intensities =
           match_intensities(pixels, view[level], motion.T_view_camera, config_.defects, workers_);
-      motion.information = intensities.information + weight * weight * planes.information;
+      const Matrix6d plane_information = weight * weight * planes.information;
+      ImageEquations& images = motion.images;
+      images.information = intensities.information + plane_information;
+      images.descent = intensities.descent + pull * planes.descent;
+      images.scatter = mean_square(intensities) * intensities.information +
+                       weight * weight * mean_square(planes) * plane_information;
       motion.matches = planes.pixels;
       motion.error_m = planes.pixels > 0 ? std::sqrt(planes.cost) / planes.pixels : 0;
-      Vector6d descent = intensities.descent + pull * planes.descent;
-      Matrix6d information = motion.information;
-      if (term != nullptr) term->add(motion.T_view_camera, information, descent);
-      const Vector6d change = information.ldlt().solve(descent);
+      const Vector6d change = term != nullptr ? term->step(motion.T_view_camera, images)
+                                              : Vector6d(images.information.ldlt().solve(images.descent));
       if (!change.allFinite()) continue;
       motion.T_view_camera = SE3{so3_exp(change.head<3>()), change.tail<3>()} * motion.T_view_camera;
     }

@@ -89,7 +89,7 @@ class IntensityMatcher {
     const Float8 divisor = sigma + simd::abs(found.residual);
     const Float8 weight = divisor > 0.0F ? 1.0F / (divisor * divisor) : simd::all_lanes(1.0F);
     sums.add({arm.x, arm.y, arm.z, slope.x, slope.y, slope.z}, weight * found.residual, weight,
-             found.residual * found.residual, found.valid);
+             weight * found.residual * found.residual, found.valid);
   }
 
  private:

@@ -134,7 +134,7 @@ TEST_F(Tracking, IsTheSameForAnyNumberOfThreads) {
   const auto a = tracking::CameraTracker(config, one).track(live, view, SE3{});
   const auto b = tracking::CameraTracker(config, three).track(live, view, SE3{});
   EXPECT_EQ(a.T_view_camera.translation, b.T_view_camera.translation);
-  EXPECT_EQ(a.information, b.information);
+  EXPECT_EQ(a.images.information, b.images.information);
 }
 
 }  // namespace
