@@ -30,7 +30,8 @@ while (($# > 0)); do
 done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-./scripts/build.sh "$preset"
+if [[ $preset == tsan ]]; then targets=(core_tests eval_tests); else targets=(); fi
+./scripts/build.sh "$preset" "${targets[@]}"
 selected=()
 if [[ -n $label ]]; then selected+=(-L "^$label\$"); fi
 if [[ $preset == tsan ]]; then selected+=(-R '^(Pipeline|Parallel|LocalEngine|ForkedJob|ManyMotions|Run)'); fi
