@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "tests/support/measured_normal.hpp"
 #include "tests/support/numeric_jacobian.hpp"
@@ -154,7 +155,7 @@ double aligned_shift(const GreyImage& reference, const GreyImage& shifted, Sampl
 
 TEST(ScalarReferences, BicubicSamplesAreDrawnLessTowardsWholePixels) {
   for (const double shift : {0.1, 0.2, 0.3, 0.4}) {
-    const double linear = aligned_shift(wave(0), wave(shift), sample_bilinear);
+    const double linear = aligned_shift(wave(0), wave(shift), sample_bilinear<std::uint8_t>);
     const double cubic = aligned_shift(wave(0), wave(shift), sample_bicubic);
     EXPECT_LT(std::abs(cubic - shift), 0.5 * std::abs(linear - shift)) << linear << ' ' << cubic;
     EXPECT_LT(std::abs(cubic - shift), 0.02) << cubic;
