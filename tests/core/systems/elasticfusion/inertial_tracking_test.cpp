@@ -12,7 +12,7 @@ using namespace systems::elasticfusion;
 
 namespace {
 
-class InertialTerm : public testing::Test {
+class InertialTerm : public ::testing::Test {
  protected:
   InertialTerm() {
     EXPECT_TRUE(inertial_.start(run_.frames[0].capture_ns()).has_value());
