@@ -29,7 +29,7 @@ struct TellingPixels {
 /// if its depth is within 7 cm, is seen from the frame. The model's intensity is interpolated between four
 /// pixels, as the article's continuous image of the model has it; as published it is that of the nearest
 /// pixel. Residuals weigh 1 / (s + |r|), where s is the root of their mean square, or as published of their
-/// number. Steps as of match_planes().
+/// number, in the cost as well. Steps as of match_planes().
 [[nodiscard]] PoseSums match_intensities(const TellingPixels& pixels, const ViewLevel& view,
                                          const SE3& T_view_camera, config::PeerDefects defects,
                                          const Workers& workers);
