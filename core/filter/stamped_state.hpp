@@ -14,10 +14,20 @@ struct StampedState {
   FilterState state;
 };
 
-/// Estimate of a filter at an instant.
+/// Rotation, position, velocity and biases lead the error state.
+inline constexpr int kNavigationSize = kGravity;
+
+/// What a filter estimated at an instant, with the covariance of the navigation state alone: of the whole
+/// state it is ten times as large, and a recording has tens of thousands of them.
 struct StampedEstimate {
   std::int64_t timestamp_ns = 0;
-  GaussianState estimate;
+  FilterState mean;
+  Eigen::Matrix<double, kNavigationSize, kNavigationSize> covariance =
+      Eigen::Matrix<double, kNavigationSize, kNavigationSize>::Zero();
 };
+[[nodiscard]] inline StampedEstimate stamped_estimate(std::int64_t timestamp_ns,
+                                                      const GaussianState& estimate) {
+  return {timestamp_ns, estimate.mean, estimate.covariance.topLeftCorner<kNavigationSize, kNavigationSize>()};
+}
 
 }  // namespace fusebench::filter

@@ -93,7 +93,8 @@ std::optional<filter::FilterState> interpolate_state(std::span<const filter::Sta
 }
 
 std::optional<double> normalised_error_squared(const filter::StateVector& error,
-                                               const filter::StateMatrix& covariance, const StatePart& part) {
+                                               const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                               const StatePart& part) {
   const Eigen::MatrixXd block = covariance.block(part.offset, part.offset, part.dof, part.dof);
   const Eigen::VectorXd sigma = block.diagonal().cwiseSqrt();
   if (!block.allFinite() || !(sigma.minCoeff() > 0)) return std::nullopt;
@@ -136,10 +137,10 @@ Result<ConsistencyResult> consistency(std::span<const filter::StampedState> trut
   for (const filter::StampedEstimate& at : estimates.subspan(1)) {
     const auto true_state = interpolate_state(truth, at.timestamp_ns);
     if (!true_state) continue;
-    const filter::StateVector error = filter::minus(moved(*true_state, T_world_truth), at.estimate.mean);
+    const filter::StateVector error = filter::minus(moved(*true_state, T_world_truth), at.mean);
     for (NeesResult& part : result) {
       ++part.possible;
-      const auto squared = normalised_error_squared(error, at.estimate.covariance, part.part);
+      const auto squared = normalised_error_squared(error, at.covariance, part.part);
       if (!squared) continue;
       part.nees_per_dof.push_back(*squared / part.part.dof);
       part.at_ns.push_back(at.timestamp_ns);

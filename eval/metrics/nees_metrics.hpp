@@ -47,10 +47,10 @@ inline constexpr std::array<StatePart, 6> kStateParts = {
                                                                  const SE3& T_imu_camera);
 
 /// e^T P^-1 e of one part; nothing where its covariance is singular (of what is known by definition, such as
-/// the pose of the first frame) or is not finite.
-[[nodiscard]] std::optional<double> normalised_error_squared(const filter::StateVector& error,
-                                                             const filter::StateMatrix& covariance,
-                                                             const StatePart& part);
+/// the pose of the first frame) or is not finite. covariance: of the whole state, or of where it begins.
+[[nodiscard]] std::optional<double> normalised_error_squared(
+    const filter::StateVector& error, const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+    const StatePart& part);
 
 /// Of one part in one run. All numbers are NEES / dof: 1 is what a consistent filter has on average, more is
 /// overconfident, less underconfident.

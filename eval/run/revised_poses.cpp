@@ -34,7 +34,7 @@ RunOutput final_output(const Trajectory& revised, const RunOutput& online) {
   output.has_filter = false;
   output.trajectory = revised;
   for (const filter::StampedEstimate& state : online.states)
-    output.states.push_back({state.timestamp_ns, filter::GaussianState{}});
+    output.states.push_back({state.timestamp_ns, {}});
   output.mesh = online.mesh;
   return output;
 }

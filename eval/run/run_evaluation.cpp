@@ -208,9 +208,8 @@ record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Rec
 }
 
 std::vector<filter::SensorConstant> estimated_sensors(const RunOutput& output, const SensorTiming& timing) {
-  if (output.states.empty()) return {};
-  std::vector<filter::SensorConstant> constants =
-      filter::sensor_constants(output.states.back().estimate, timing);
+  if (!output.last_state) return {};
+  std::vector<filter::SensorConstant> constants = filter::sensor_constants(*output.last_state, timing);
   std::erase_if(constants, [](const filter::SensorConstant& constant) { return constant.sigma == 0; });
   return constants;
 }

@@ -1,6 +1,7 @@
 // All metrics of one run, from what its frames left behind and what is known of the recording.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -22,6 +23,7 @@ struct RunOutput {
   Trajectory trajectory;   ///< frames that were tracked; a predicted pose is no estimate
   std::vector<filter::StampedEstimate> states;  ///< of the same frames, at their capture instants; without a
   ///< filter the instants alone
+  std::optional<filter::GaussianState> last_state;  ///< of the last one; none without a filter
   metrics::IntensityAccumulator intensity;
   metrics::IntensityReadingsAccumulator intensity_readings;  ///< empty if they are not asked for
   metrics::ResidualAccumulator residuals;

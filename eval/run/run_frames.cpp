@@ -34,6 +34,7 @@ void forget_earlier_start(RunProgress& progress, std::size_t frame, const health
   progress.frames.lost += std::exchange(progress.frames.tracked, 0);
   progress.output.trajectory.clear();
   progress.output.states.clear();
+  progress.output.last_state.reset();
 }
 
 /// What only a filter says of a frame.
@@ -59,8 +60,12 @@ void take_pose(RunProgress& progress, std::size_t frame, const health::FrameOutc
   progress.lost_in_a_row = outcome.reason.empty() ? 0 : progress.lost_in_a_row + 1;
   ++progress.frames.tracked;
   progress.output.trajectory.push_back({outcome.timestamp_ns, outcome.T_world_camera});
-  progress.output.states.push_back(
-      {outcome.capture_ns, filter != nullptr ? filter->estimate : filter::GaussianState{}});
+  if (filter == nullptr) {
+    progress.output.states.push_back({outcome.capture_ns, {}});
+    return;
+  }
+  progress.output.states.push_back(filter::stamped_estimate(outcome.capture_ns, filter->estimate));
+  progress.output.last_state = filter->estimate;
 }
 
 /// Takes one frame into the progress; ends the run when too many frames are lost in a row.

@@ -73,9 +73,9 @@ Scenario scenario(int frames, double reported) {
     seen.velocity_world_mps = T_world_truth.rotation * seen.velocity_world_mps;
     // truth = mean (+) error, so the error drawn is taken off the right of the truth.
     const StateVector error = root * normal_vector(random);
-    s.estimates.push_back({at.timestamp_ns, {plus(seen, -error), reported * covariance}});
+    s.estimates.push_back(stamped_estimate(at.timestamp_ns, {plus(seen, -error), reported * covariance}));
   }
-  s.estimates[0].estimate.covariance.setZero();  // the first frame is known by definition
+  s.estimates[0].covariance.setZero();  // the first frame is known by definition
   return s;
 }
 
@@ -144,11 +144,11 @@ TEST(Consistency, TheCamerasStatesAreThoseOfItsOwnMotion) {
 TEST(Consistency, APartThatIsNotEstimatedHasNoFrames) {
   Scenario s = scenario(20, 1.0);
   for (StampedEstimate& at : s.estimates) {
-    at.estimate.covariance.middleRows<3>(kGyroscopeBias).setZero();
-    at.estimate.covariance.middleCols<3>(kGyroscopeBias).setZero();
+    at.covariance.middleRows<3>(kGyroscopeBias).setZero();
+    at.covariance.middleCols<3>(kGyroscopeBias).setZero();
     // Rank two: one direction of the position is known exactly.
     const Vector3d a(1, 0.5, 0.2), b(0, 1, 1);
-    at.estimate.covariance.block<3, 3>(kPosition, kPosition) = a * a.transpose() + b * b.transpose();
+    at.covariance.block<3, 3>(kPosition, kPosition) = a * a.transpose() + b * b.transpose();
   }
   const auto result = consistency(s.truth, s.estimates, s.T_imu_camera);
   ASSERT_TRUE(result.has_value());
