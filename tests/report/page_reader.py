@@ -43,8 +43,9 @@ class Reader:
                                          element)
 
     def wait(self, condition, *arguments):
-        """Until a script returns what is true; false: it does not."""
-        for _ in range(200):
+        """Until a script returns what is true; false: it does not within a minute, as a busy machine may need."""
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
             if self.driver.execute_script(condition, *arguments):
                 return True
             time.sleep(0.05)
