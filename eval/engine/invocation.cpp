@@ -99,15 +99,23 @@ Result<Invocation> read_invocation(const fs::path& file) {
   }
 }
 
-void copy_invocations(const fs::path& from, const fs::path& into) {
-  std::error_code error;
-  for (fs::directory_iterator entry(invocations_folder(from), error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string ending = entry->path().extension().string();
-    if (ending != ".json" && ending != ".toml") continue;
-    if (const auto text = text_of(entry->path()))
-      static_cast<void>(keep_text(invocations_folder(into) / entry->path().filename(), *text));
+std::size_t copy_invocations(const fs::path& from, const fs::path& into) {
+  const auto files = kept_invocations(from);
+  if (!files) return 0;  // none
+  std::size_t left_out = 0;
+  for (const fs::path& file : *files) {
+    const fs::path suite_file = fs::path(file).replace_extension(".toml");
+    const auto text = text_of(file);
+    const auto suite = text_of(suite_file);
+    if (!text || !suite || !read_invocation(file)) {
+      ++left_out;
+      continue;
+    }
+    const fs::path folder = invocations_folder(into);
+    static_cast<void>(keep_text(folder / suite_file.filename(), *suite));
+    static_cast<void>(keep_text(folder / file.filename(), *text));
   }
+  return left_out;
 }
 
 Result<std::vector<fs::path>> kept_invocations(const fs::path& out) {

@@ -2,6 +2,7 @@
 // can take a share, without anybody repeating the command.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,8 +36,9 @@ struct Invocation {
 /// <out>/.fusebench/invocations/<hash8>.{json,toml}; the same one once. Returns the file. Error io.
 [[nodiscard]] Result<std::filesystem::path> keep(const Invocation& invocation);
 
-/// What was asked for in one folder of runs is kept in another as well, as far as it can be read and written.
-void copy_invocations(const std::filesystem::path& from, const std::filesystem::path& into);
+/// What was asked for in one folder of runs is kept in another as well, as far as it can be written. Returns
+/// how many were left out, since they or their suites cannot be read.
+std::size_t copy_invocations(const std::filesystem::path& from, const std::filesystem::path& into);
 
 /// Errors: data_missing; data_corrupt for what is no invocation.
 [[nodiscard]] Result<Invocation> read_invocation(const std::filesystem::path& file);

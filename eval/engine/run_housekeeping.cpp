@@ -191,7 +191,7 @@ Result<MergeReport> merge_runs(const fs::path& from, const fs::path& into) {
     if (auto copied = copy_run(from / run.folder, free_place); !copied) return tl::unexpected(copied.error());
     ++report.copied;
   }
-  copy_invocations(from, into);
+  report.damaged_invocations = copy_invocations(from, into);
   return report;
 }
 

@@ -46,6 +46,7 @@ struct MergeReport {
   std::size_t there = 0;      ///< finished runs of the same identity were there already
   std::size_t damaged = 0;    ///< not copied; those with links, pipes or devices in place of files as well
   std::size_t differing = 0;  ///< of those, with another status: the same identity must give the same results
+  std::size_t damaged_invocations = 0;  ///< what `rerun` would do again: not copied
 };
 /// Copies runs from one folder to another, each atomically; a failed run gives way to a finished one
 /// of its identity, and never the other way round. Errors: data_missing, io.

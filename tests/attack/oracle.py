@@ -12,6 +12,7 @@ NOT_FINITE_IN_JSON = re.compile(rb"[:\[,]\s*[-+]?(?:nan|inf|infinity)\b", re.I)
 CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
 TEXT = (".json", ".csv", ".tum", ".txt", ".jsonl", ".html", ".tex", ".toml", ".kitti")
 WORST_CPU_MS = 6000
+CPU_MS_OF_A_RUN = 100  # of a recording of a few small frames
 WORST_PEAK_MB = 500
 
 
@@ -95,8 +96,10 @@ def problems(answer, folder, before, output, errors, arguments):
         said.append(f"exit code {answer.status}")
     if answer.left_process:
         said.append("leaves a process")
-    if answer.cpu_ms > WORST_CPU_MS:
-        said.append(f"takes more than {WORST_CPU_MS} ms")
+    # A suite may ask for hundreds of runs; each of those that it says it has done counts.
+    worst_cpu_ms = WORST_CPU_MS + CPU_MS_OF_A_RUN * len(re.findall(rb"^\[\d+/\d+\]", errors, re.M))
+    if answer.cpu_ms > worst_cpu_ms:
+        said.append(f"takes more than {worst_cpu_ms} ms")
     if answer.peak_mb > WORST_PEAK_MB:
         said.append(f"takes more than {WORST_PEAK_MB} MB")
     after = listing(folder)

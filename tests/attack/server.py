@@ -10,8 +10,8 @@ import subprocess
 
 @dataclasses.dataclass
 class Limits:
-    cpu_s: int = 10
-    wall_ms: int = 30000
+    cpu_s: int = 60
+    wall_ms: int = 90000
     memory_mb: int = 2500  # of address space; 0: none, as sanitizers need it
     file_mb: int = 256
 

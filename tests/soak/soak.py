@@ -2,7 +2,7 @@
 """Runs many tiny runs in one engine, or one long recording in one run, and watches memory, descriptors and time.
 
 Usage: tests/soak/soak.py BINARY runs [--count N] [-j N] [--csv FILE]
-       tests/soak/soak.py BINARY recording [--minutes N] [--csv FILE]
+       tests/soak/soak.py BINARY recording [--minutes N] [--size WxH] [--csv FILE]
 
 runs: a sweep of N (default 1000) over a recording of 64x48 pixels and 3 frames, in one `bench`. recording: N (default 5) minutes at
 10 Hz and 160x120 pixels, simulated, in one `run`. FILE (default build/soak/KIND.csv) gets a row a sample: seconds, runs or frames
@@ -154,7 +154,7 @@ def many_runs(options, folder):
 
 def long_recording(options, folder):
     recording = f"{folder}/long"
-    subprocess.run([options.binary, "simulate", "--preset", "slow", "--format", "zr300", "--size", "160x120", "--rate", "10", "--duration",
+    subprocess.run([options.binary, "simulate", "--preset", "slow", "--format", "zr300", "--size", options.size, "--rate", "10", "--duration",
                     str(60 * options.minutes), "--blur-samples", "1", "--in-motion", "--out", recording], check=True)
     frames = 60 * options.minutes * 10
     hidden = pathlib.Path(folder) / "out"
@@ -177,6 +177,7 @@ def main():
     parser.add_argument("kind", choices=["runs", "recording"])
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--minutes", type=int, default=5)
+    parser.add_argument("--size", default="320x240")
     parser.add_argument("-j", "--jobs", type=int, default=1)
     parser.add_argument("--csv")
     options = parser.parse_args()

@@ -59,8 +59,12 @@ Result<int> merge(const MergeOptions& options) {
     if (!report) return tl::unexpected(report.error());
     differing += report->differing;
     console::print_progress(fmt::format(
-        "{}: {} runs copied, {} were there{}", from.string(), report->copied, report->there,
-        report->damaged == 0 ? "" : fmt::format(", {} are damaged and were left out", report->damaged)));
+        "{}: {} runs copied, {} were there{}{}", from.string(), report->copied, report->there,
+        report->damaged == 0 ? "" : fmt::format(", {} are damaged and were left out", report->damaged),
+        report->damaged_invocations == 0
+            ? ""
+            : fmt::format(", {} of the suites that `rerun` runs again are damaged and were left out",
+                          report->damaged_invocations)));
   }
   if (differing == 0) return 0;
   return fail(ErrorCode::data_corrupt,

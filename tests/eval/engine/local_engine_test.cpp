@@ -491,5 +491,21 @@ TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
   EXPECT_EQ(read->repetitions, 3);
 }
 
+TEST_F(LocalEngineTest, DamagedInvocationsAreNotCopied) {
+  const fs::path suite = write("mine.toml", "name = \"m\"\nall = true\nvariants = [\"full\"]\n");
+  Invocation invocation{suite, {}, {}};
+  invocation.options.out = folder_ / "out";
+  const auto file = keep(invocation);
+  ASSERT_TRUE(file.has_value()) << file.error().message;
+  write("out/.fusebench/invocations/0123abcd.json", "{\"threads\": nan}");
+  write("out/.fusebench/invocations/0123abcd.toml", "name = \"m\"\n");
+  EXPECT_EQ(copy_invocations(folder_ / "out", folder_ / "into"), 1U);
+  const auto copied = kept_invocations(folder_ / "into");
+  ASSERT_TRUE(copied.has_value()) << copied.error().message;
+  ASSERT_EQ(copied->size(), 1U);
+  EXPECT_EQ(copied->front().filename(), file->filename());
+  EXPECT_TRUE(fs::exists(read_invocation(copied->front())->suite));
+}
+
 }  // namespace
 }  // namespace fusebench
