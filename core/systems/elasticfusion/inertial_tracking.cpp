@@ -61,7 +61,7 @@ InertialTracking::Term::Term(const InertialTracking& inertial, const SE3& T_worl
     : T_world_imu_(inertial.state_.mean.T_world_imu),
       T_world_view_(T_world_view),
       T_imu_camera_(inertial.rig_.T_imu_camera),
-      weight_(pose_covariance(inertial.state_).inverse()) {}
+      prediction_information_(pose_covariance(inertial.state_).inverse()) {}
 
 Vector6d InertialTracking::Term::step(const SE3& T_view_camera,
                                       const tracking::ImageEquations& images) const {
@@ -69,9 +69,9 @@ Vector6d InertialTracking::Term::step(const SE3& T_view_camera,
   const Matrix6d pose_by_step = step_by_pose(T_world_view_, T_view_camera, T_imu_camera_).inverse();
   const Matrix6d weight = weighting(images);
   const Matrix6d information =
-      weight * images.information + pose_by_step.transpose() * weight_ * pose_by_step;
-  const Vector6d descent =
-      weight * images.descent - pose_by_step.transpose() * weight_ * pose_minus(T_world_imu, T_world_imu_);
+      weight * images.information + pose_by_step.transpose() * prediction_information_ * pose_by_step;
+  const Vector6d descent = weight * images.descent - pose_by_step.transpose() * prediction_information_ *
+                                                         pose_minus(T_world_imu, T_world_imu_);
   return information.ldlt().solve(descent);
 }
 

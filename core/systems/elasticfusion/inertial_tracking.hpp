@@ -38,7 +38,7 @@ class InertialTracking {
     SE3 T_world_imu_;  ///< predicted
     SE3 T_world_view_;
     SE3 T_imu_camera_;
-    Matrix6d weight_;  ///< of errors of the pose
+    Matrix6d prediction_information_;  ///< of errors of the predicted pose
   };
 
   /// After tracking with the term: the pose that came out, and what images said there.
