@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/trajectory/trajectory_rows.hpp"
+
 namespace fusebench::mesh_error {
 
 namespace {
@@ -27,9 +29,10 @@ Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vector3d& v = mesh.vertices[i];
-    if (!v.allFinite()) {
+    if (!(v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= trajectory::kMostPosition)) {
       return fail(ErrorCode::data_corrupt,
-                  fmt::format("{}: vertex {} is not finite ({} {} {})", what, i, v.x(), v.y(), v.z()));
+                  fmt::format("{}: vertex {} is at {:g} {:g} {:g} (allowed: coordinates up to {:g})", what, i,
+                              v.x(), v.y(), v.z(), trajectory::kMostPosition));
     }
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

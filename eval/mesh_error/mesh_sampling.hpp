@@ -24,8 +24,8 @@ struct MeshSampling {
   std::uint64_t seed = 1;      ///< of area
 };
 
-/// Error data_corrupt if the mesh has no triangles, a vertex that is not finite, or a triangle with a vertex
-/// that does not exist. `what` names the mesh.
+/// Error data_corrupt if the mesh has no triangles, a vertex beyond trajectory::kMostPosition, or a triangle
+/// with a vertex that does not exist. `what` names the mesh.
 [[nodiscard]] Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what);
 
 /// Samples of a mesh that check_mesh accepts. Of area: one in each of `count` parts of equal area, by the

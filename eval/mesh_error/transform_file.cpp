@@ -10,6 +10,7 @@
 
 #include "core/io/stamped_rows.hpp"
 #include "core/io/text_table.hpp"
+#include "core/trajectory/trajectory_rows.hpp"
 #include "eval/trajectory_files/nearest_rotation.hpp"
 
 namespace fusebench::mesh_error {
@@ -60,7 +61,12 @@ Result<SE3> read_transform(const std::filesystem::path& file) {
     return refuse(fmt::format("the 3x3 part is no rotation (determinant {:g}, R^T R off identity by {:.2g})",
                               T.leftCols<3>().determinant(), rotation.deviation));
   }
-  return SE3{Quaterniond(rotation.R).normalized(), T.col(3)};
+  const Vector3d translation_m = T.col(3);
+  if (!(translation_m.cwiseAbs().maxCoeff() <= trajectory::kMostPosition))
+    return refuse(fmt::format("translation {:g} {:g} {:g} (allowed: coordinates up to {:g})",
+                              translation_m.x(), translation_m.y(), translation_m.z(),
+                              trajectory::kMostPosition));
+  return SE3{Quaterniond(rotation.R).normalized(), translation_m};
 }
 
 }  // namespace fusebench::mesh_error

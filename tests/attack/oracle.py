@@ -8,6 +8,7 @@ EXIT_CODES = {0, 1, 2, 3, 4}
 # What stands in quotes is a text of the input: an option of a record may be the text "nan".
 NOT_FINITE = re.compile(rb"(?<![\w./<\"'-])(?<!&quot;)[-+]?(?:nan|inf|infinity)(?![\w./>\"'-])", re.I)
 NOT_FINITE_IN_PAGE = re.compile(rb"[>:\[,]\s*[-+]?(?:nan|inf)(?![\w./>\"'-])")  # its scripts may speak of NaN
+OPTION_IN_PAGE = re.compile(rb"<td>\w+\.\w+</td><td>[^<]*</td>")  # a text of the input, as it stands in its record
 NOT_FINITE_IN_JSON = re.compile(rb"[:\[,]\s*[-+]?(?:nan|inf|infinity)\b", re.I)
 CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
 TEXT = (".json", ".csv", ".tum", ".txt", ".jsonl", ".html", ".tex", ".toml", ".kitti")
@@ -64,7 +65,7 @@ def about_numbers(folder, new, output):
         with open(path, "rb") as file:
             content = file.read()
         pattern = NOT_FINITE_IN_JSON if name.endswith(b".json") else NOT_FINITE_IN_PAGE if name.endswith(b".html") else NOT_FINITE
-        found = pattern.search(content)
+        found = pattern.search(OPTION_IN_PAGE.sub(b"", content) if name.endswith(b".html") else content)
         if found and not name.endswith(b"log.txt"):
             said.append(f"not finite in {re.sub(rb'[0-9a-f]{8}', b'HASH', name).decode(errors='replace')}")
     return said

@@ -41,6 +41,7 @@ TEST_F(TransformFile, RefusesWhatIsNotRigid) {
   EXPECT_NE(refusal("1 0 0 0\n0 1 0 0\n").find("8 numbers"), std::string::npos);
   EXPECT_NE(refusal("1 0 0\n").find("transform.txt:1"), std::string::npos);
   EXPECT_NE(refusal("1 0 0 nan\n").find("nan"), std::string::npos);
+  EXPECT_NE(refusal("1 0 0 0\n0 1 0 0\n0 0 1 -1e308\n").find("translation 0 0 -1e+308"), std::string::npos);
   EXPECT_EQ(read_transform(folder_ / "none.txt").error().code, ErrorCode::data_missing);
 }
 
