@@ -30,6 +30,20 @@ Result<void> keep_text(const fs::path& file, const std::string& text) {
   return text::write_text_file(file, text);
 }
 
+/// As the command line takes them.
+constexpr int kMostThreads = 1024;
+constexpr int kMostRepetitions = 1000;
+
+/// The library's own conversion to int wraps.
+Result<int> number_in(const Json& json, const char* key, int least, int most, const fs::path& file) {
+  const Json& value = json.at(key);
+  if (value.is_number_integer() && value.get<double>() >= least && value.get<double>() <= most)
+    return value.get<int>();
+  return fail(ErrorCode::data_corrupt,
+              fmt::format("{}: {} = {} (allowed: an integer, {} .. {})", file.string(), key,
+                          text::json_text(value, -1), least, most));
+}
+
 std::string absolute_text(const fs::path& path) {
   std::error_code ignored;
   return path.empty() ? "" : fs::absolute(path, ignored).lexically_normal().string();
@@ -87,11 +101,15 @@ Result<Invocation> read_invocation(const fs::path& file) {
     // <out>/.fusebench/invocations/<name>.json; the folder may have been moved.
     invocation.options.out = file.parent_path().parent_path().parent_path();
     invocation.options.simulated = json.at("simulated").get<std::string>();
-    invocation.options.threads = json.at("threads");
+    const auto threads = number_in(json, "threads", 1, kMostThreads, file);
+    if (!threads) return tl::unexpected(threads.error());
+    const auto repetitions = number_in(json, "repetitions", 0, kMostRepetitions, file);
+    if (!repetitions) return tl::unexpected(repetitions.error());
+    invocation.options.threads = *threads;
     invocation.options.profile = json.value("profile", false);  // older ones have none
     invocation.options.sets = json.at("sets").get<std::vector<std::string>>();
     invocation.options.only = json.at("only").get<std::vector<std::string>>();
-    invocation.overrides = {json.at("repetitions"), json.at("keep")};
+    invocation.overrides = {*repetitions, json.at("keep")};
     invocation.working_folder = json.at("working_folder").get<std::string>();
     return invocation;
   } catch (const Json::exception& error) {

@@ -491,6 +491,24 @@ TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
   EXPECT_EQ(read->repetitions, 3);
 }
 
+TEST_F(LocalEngineTest, InvocationsHaveNumbersInTheirRange) {
+  const auto message = [&](const std::string& threads, const std::string& repetitions) {
+    const std::string text = R"({"data": "", "simulated": "", "threads": )" + threads +
+                             R"(, "sets": [], "only": [], "repetitions": )" + repetitions +
+                             R"(, "keep": "", "working_folder": ""})";
+    const auto read = read_invocation(write("out/.fusebench/invocations/0123abcd.json", text));
+    return read ? std::string("was not refused") : read.error().message;
+  };
+  EXPECT_EQ(message("1024", "0"), "was not refused");
+  // As an int it would be 0.
+  EXPECT_NE(message("4294967296", "0").find("threads = 4294967296 (allowed: an integer, 1 .. 1024)"),
+            std::string::npos);
+  EXPECT_NE(message("18446744073709551615", "0").find("threads = 18446744073709551615"), std::string::npos);
+  EXPECT_NE(message("0", "0").find("threads = 0"), std::string::npos);
+  EXPECT_NE(message("1.5", "0").find("threads = 1.5"), std::string::npos);
+  EXPECT_NE(message("1", "-1").find("repetitions = -1 (allowed: an integer, 0 .. 1000)"), std::string::npos);
+}
+
 TEST_F(LocalEngineTest, DamagedInvocationsAreNotCopied) {
   const fs::path suite = write("mine.toml", "name = \"m\"\nall = true\nvariants = [\"full\"]\n");
   Invocation invocation{suite, {}, {}};
