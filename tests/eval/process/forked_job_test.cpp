@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/io/staged_folder.hpp"
+#include "tests/datasets/images/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -108,9 +109,7 @@ TEST(ForkedJob, ProgressIsNoHang) {
 }
 
 TEST(ForkedJob, MemoryHasALimit) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer ends a program that is out of memory itself";
-#endif
+  if (!testing::kMemoryIsMeasured) GTEST_SKIP() << "a sanitizer ends a program that is out of memory itself";
   const JobEnd end = end_of(
       [](const JobReporter& reporter) {
         reporter.progress(2, 3);
