@@ -15,49 +15,52 @@
 namespace fusebench {
 inline namespace base {
 
+/// Debian's oneTBB is not built with the thread sanitizer, which does not see that its tasks wait for each
+/// other and takes all of them for races. There, plain threads run the chunks: what these share is the same.
+struct Workers::Arena {
+  explicit Arena(int threads);
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& body);
+
 #if defined(__SANITIZE_THREAD__)
-
-/// Debian's oneTBB is not built with the sanitizer, which does not see that its tasks wait for each other and
-/// takes all of them for races. Plain threads are seen, and what chunks share is the same.
-struct Workers::Arena {
-  explicit Arena(int threads) : thread_count(static_cast<std::size_t>(threads)) {}
-
-  void for_each(std::size_t count, const std::function<void(std::size_t)>& body) const {
-    std::atomic<std::size_t> next = 0;
-    std::vector<std::exception_ptr> thrown(thread_count);
-    const auto take_all = [&](std::size_t thread) {
-      try {
-        for (std::size_t i = next++; i < count; i = next++) body(i);
-      } catch (...) {
-        thrown[thread] = std::current_exception();
-      }
-    };
-    std::vector<std::thread> threads;
-    for (std::size_t thread = 0; thread < thread_count; ++thread) threads.emplace_back(take_all, thread);
-    for (std::thread& thread : threads) thread.join();
-    for (const std::exception_ptr& exception : thrown) {
-      if (exception) std::rethrow_exception(exception);
-    }
-  }
-
   std::size_t thread_count;
-};
-
 #else
-
-struct Workers::Arena {
-  explicit Arena(int threads)
-      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-        arena(threads) {}
-
-  void for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
-  }
-
   /// Without it the library takes no more threads than the machine has, and prints a warning.
   tbb::global_control limit;
   tbb::task_arena arena;
+#endif
 };
+
+#if defined(__SANITIZE_THREAD__)
+
+Workers::Arena::Arena(int threads) : thread_count(static_cast<std::size_t>(threads)) {}
+
+void Workers::Arena::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::exception_ptr> thrown(thread_count);
+  const auto take_all = [&](std::size_t thread) {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) body(i);
+    } catch (...) {
+      thrown[thread] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t thread = 0; thread < thread_count; ++thread) threads.emplace_back(take_all, thread);
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& exception : thrown) {
+    if (exception) std::rethrow_exception(exception);
+  }
+}
+
+#else
+
+Workers::Arena::Arena(int threads)
+    : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
+      arena(threads) {}
+
+void Workers::Arena::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+}
 
 #endif
 
