@@ -80,7 +80,7 @@ status=0
 # A failed or lost run (4) is a row of the table, so the table is still worth reading.
 if ((status == 0 || status == 4)); then
   "$fusebench" table "$out"
-  "$fusebench" report "$out" --out "$out/report.html" --title "FuseBench: $name"
+  "$fusebench" report "$out" --data "$data" --out "$out/report.html" --title "FuseBench: $name"
   printf '\nResults: %s\n' "$(realpath -m -- "$out")"
 fi
 exit "$status"

@@ -17,14 +17,19 @@ namespace fusebench::cli::results {
 
 namespace {
 
+/// In the folder of recordings; else where an engine puts simulated ones beside its runs.
 Result<std::filesystem::path> folder_of(const record::RecordedRecording& recorded,
                                         const std::filesystem::path& data,
                                         const std::filesystem::path& runs) {
+  auto given = suites::find_recording(recorded.name, data);
+  if (given || recorded.data != "simulated") return given;
   std::error_code ignored;
-  const std::filesystem::path simulated =
-      std::filesystem::weakly_canonical(runs, ignored).parent_path() / "simulated" / recorded.name;
-  if (recorded.data == "simulated" && std::filesystem::is_directory(simulated, ignored)) return simulated;
-  return suites::find_recording(recorded.name, data);
+  const std::filesystem::path root = std::filesystem::weakly_canonical(runs, ignored);
+  const std::filesystem::path all_simulated = root.parent_path() / "simulated";
+  const std::filesystem::path simulated = all_simulated / recorded.name;
+  // Runs may lie in a folder of that name themselves.
+  if (all_simulated != root && std::filesystem::is_directory(simulated, ignored)) return simulated;
+  return given;
 }
 
 Result<recording::Recording> open_window(const std::filesystem::path& folder,
