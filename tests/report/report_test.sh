@@ -73,6 +73,11 @@ done
 "$binary" report runs --data . --out with_images.html 2>stderr || failed "no report with images: $(cat stderr)"
 grep -q '<figcaption>largest error of full' with_images.html || failed "the worst frame is not shown"
 (($(grep -c '<figure data-time=' with_images.html) > 10)) || failed "there are no images over time"
+# Runs may lie in a folder that is called as engines call that of simulated recordings.
+mkdir -p simulated/recording
+cp -r runs/recording/no-imu simulated/recording
+"$binary" report simulated --data . --out of_simulated.html 2>stderr || failed "no report of runs in a folder called simulated: $(cat stderr)"
+if grep -q 'no images of the recording' stderr; then failed "runs are taken for recordings: $(cat stderr)"; fi
 (($(stat -c %s with_images.html) < $(stat -c %s report.html) + 400000)) || failed "images take more than 400 kB"
 # A camera that only the command line said is in the record, and the report reads images with it.
 "$binary" simulate --preset fast --in-motion --duration 0.2 --size 160x120 --format tum --out uncalibrated >/dev/null 2>&1 ||
