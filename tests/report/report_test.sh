@@ -78,6 +78,7 @@ mkdir -p simulated/recording
 cp -r runs/recording/no-imu simulated/recording
 "$binary" report simulated --data . --out of_simulated.html 2>stderr || failed "no report of runs in a folder called simulated: $(cat stderr)"
 if grep -q 'no images of the recording' stderr; then failed "runs are taken for recordings: $(cat stderr)"; fi
+rm -r simulated
 (($(stat -c %s with_images.html) < $(stat -c %s report.html) + 400000)) || failed "images take more than 400 kB"
 # A camera that only the command line said is in the record, and the report reads images with it.
 "$binary" simulate --preset fast --in-motion --duration 0.2 --size 160x120 --format tum --out uncalibrated >/dev/null 2>&1 ||
