@@ -8,7 +8,7 @@ EXIT_CODES = {0, 1, 2, 3, 4}
 # What stands in quotes is a text of the input: an option of a record may be the text "nan".
 NOT_FINITE = re.compile(rb"(?<![\w./<\"'-])(?<!&quot;)[-+]?(?:nan|inf|infinity)(?![\w./>\"'-])", re.I)
 NOT_FINITE_IN_PAGE = re.compile(rb"[>:\[,]\s*[-+]?(?:nan|inf)(?![\w./>\"'-])")  # its scripts may speak of NaN
-OPTION_IN_PAGE = re.compile(rb"<td>\w+\.\w+</td><td>[^<]*</td>")  # a text of the input, as it stands in its record
+OPTION_IN_PAGE = re.compile(rb"<tr><td>[a-z_]+\.\w+</td><td>[^<]*</td><td>[a-z][a-z -]*</td></tr>")  # a text of the input
 NOT_FINITE_IN_JSON = re.compile(rb"[:\[,]\s*[-+]?(?:nan|inf|infinity)\b", re.I)
 CONTROL = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]")
 TEXT = (".json", ".csv", ".tum", ".txt", ".jsonl", ".html", ".tex", ".toml", ".kitti")

@@ -5,7 +5,7 @@ Usage: tests/soak/soak.py BINARY runs [--count N] [-j N] [--csv FILE]
        tests/soak/soak.py BINARY recording [--minutes N] [--size WxH] [--csv FILE]
 
 runs: a sweep of N (default 1000) over a recording of 64x48 pixels and 3 frames, in one `bench`. recording: N (default 5) minutes at
-10 Hz, simulated, in one `run`; at 320x240 pixels (default) it is tracked all along, and the model stops growing.
+10 Hz, simulated, in one `run`; at 320x240 pixels (default) it is tracked all along.
 FILE (default build/soak/KIND.csv) gets a row a sample: seconds, runs or frames finished, resident kB, descriptors, children,
 processor seconds. Compares the second eighth with the last one. Exit code: 0 nothing grows, 1 something does, 2 usage.
 """
