@@ -23,11 +23,14 @@ constexpr double kDamping = 1e-9;  // only so that what nothing holds stays
 
 }  // namespace
 
-/// Rows of a linear least-squares problem in the changes of all nodes.
+/// Rows of a linear least-squares problem in the changes of the nodes from the first free one on.
 class DeformationGraph::Equations {
  public:
+  explicit Equations(std::size_t first_free) : first_free_(static_cast<SparseIndex>(first_free)) {}
+
   void add(SparseIndex node, SparseIndex unknown, double value) {
-    entries_.emplace_back(rows_, node * kUnknowns + unknown, value);
+    if (node < first_free_) return;
+    entries_.emplace_back(rows_, (node - first_free_) * kUnknowns + unknown, value);
   }
   void end_row(double residual) {
     residuals_.push_back(residual);
@@ -42,7 +45,7 @@ class DeformationGraph::Equations {
 
   /// The change that makes residuals smallest; nothing if there is none.
   [[nodiscard]] std::optional<Eigen::VectorXd> solve(std::size_t nodes) const {
-    const auto unknowns = static_cast<SparseIndex>(nodes) * kUnknowns;
+    const auto unknowns = (static_cast<SparseIndex>(nodes) - first_free_) * kUnknowns;
     SparseMatrixd jacobian(rows_, unknowns);
     jacobian.setFromTriplets(entries_.begin(), entries_.end());
     const Eigen::Map<const Eigen::VectorXd> residuals(residuals_.data(), rows_);
@@ -56,6 +59,7 @@ class DeformationGraph::Equations {
   }
 
  private:
+  SparseIndex first_free_;
   std::vector<Eigen::Triplet<double, SparseIndex>> entries_;
   std::vector<double> residuals_;
   SparseIndex rows_ = 0;
@@ -193,22 +197,25 @@ void DeformationGraph::add_terms(std::span<const PointConstraint> constraints, E
   }
 }
 
-std::optional<DeformationResult> DeformationGraph::optimise(std::span<const PointConstraint> constraints) {
+std::optional<DeformationResult> DeformationGraph::optimise(std::span<const PointConstraint> constraints,
+                                                            std::int32_t fixed_until) {
   DeformationResult result;
   result.error_before_m = mean_error_m(constraints);
-  for (int step = 0; step < kMostSteps; ++step) {
-    Equations equations;
+  const auto first_free = static_cast<std::size_t>(
+      std::ranges::upper_bound(nodes_, fixed_until, {}, &TimedPoint::time) - nodes_.begin());
+  for (int step = 0; step < kMostSteps && first_free < nodes_.size(); ++step) {
+    Equations equations(first_free);
     add_terms(constraints, equations);
     const auto change = equations.solve(nodes_.size());
     if (!change) return std::nullopt;
-    for (std::size_t n = 0; n < nodes_.size(); ++n) {
-      const auto first = static_cast<Eigen::Index>(n) * kUnknowns;
+    for (std::size_t n = first_free; n < nodes_.size(); ++n) {
+      const auto first = static_cast<Eigen::Index>(n - first_free) * kUnknowns;
       motions_[n].linear += change->segment<9>(first).reshaped(3, 3);
       motions_[n].shift += change->segment<3>(first + 9);
     }
     if (change->norm() < kSmallStep) break;
   }
-  Equations equations;
+  Equations equations(first_free);
   add_terms(constraints, equations);
   result.energy = equations.energy();
   result.error_after_m = mean_error_m(constraints);

@@ -46,9 +46,10 @@ class DeformationGraph {
   [[nodiscard]] Influence influence_of(const TimedPoint& point) const;
 
   /// Finds the motions of least energy: 1 of rotations that are none, 10 of neighbours (by time) that move
-  /// apart, 100 of constraints; at most three steps of Gauss-Newton. Nothing if the equations have no
-  /// solution.
-  [[nodiscard]] std::optional<DeformationResult> optimise(std::span<const PointConstraint> constraints);
+  /// apart, 100 of constraints; at most three steps of Gauss-Newton. Nodes of frames up to `fixed_until` stay
+  /// where they are. Nothing if the equations have no solution.
+  [[nodiscard]] std::optional<DeformationResult> optimise(std::span<const PointConstraint> constraints,
+                                                          std::int32_t fixed_until = -1);
 
   [[nodiscard]] Vector3d moved(const Vector3d& position, const Influence& influence) const;
   /// The blended linear part there.

@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::size_t kLocalSpacing = 5000;  // surfels from node to node
 constexpr std::size_t kGlobalSpacing = 5 * kLocalSpacing;
-constexpr int kColumns = 32, kRows = 24;    // of constraints of a local loop
-constexpr std::int32_t kAgeOfPlaces = 300;  // frames
-constexpr double kFewestMatches = 2400;     // of 80x60
+constexpr int kColumns = 32, kRows = 24;      // of constraints of a local loop
+constexpr std::size_t kHeldOfALocalLoop = 3;  // points that stay together in later global loops
+constexpr std::int32_t kAgeOfPlaces = 300;    // frames
+constexpr double kFewestMatches = 2400;       // of 80x60
 constexpr double kFewestMatchesLost = 1400;
 constexpr std::size_t kGlobalConstraints = 50;
 constexpr double kLeastErrorBefore_m = 0.06;
@@ -23,6 +24,38 @@ constexpr double kMostEnergy = 0.12;
 /// Pixels by those of 640x480: gates are given for that size.
 double size_of(const PinholeCamera& camera) {
   return static_cast<double>(camera.width_px) * static_cast<double>(camera.height_px) / (640.0 * 480.0);
+}
+
+/// Points that a registration brings together: where they are, at `time`, and where they belong on the
+/// inactive model, at its time.
+std::vector<PointConstraint> registered_points(const surfels::SurfelView& view,
+                                               const surfels::SurfelView& inactive, const SE3& T_world_camera,
+                                               std::int32_t time, const surfels::SurfelMap& map) {
+  const int width = view.surfel.width, height = view.surfel.height;
+  std::vector<PointConstraint> together;
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const std::size_t pixel =
+          view.surfel.index((2 * column + 1) * width / (2 * kColumns), (2 * row + 1) * height / (2 * kRows));
+      const std::int32_t old = inactive.surfel.data[pixel];
+      if (view.surfel.data[pixel] == surfels::kNoSurfel || old == surfels::kNoSurfel) continue;
+      const Vector3d point = view.point.at(pixel).cast<double>();
+      together.push_back({{view.T_world_camera * point, time},
+                          {T_world_camera * point, map.created[static_cast<std::size_t>(old)]},
+                          true});
+    }
+  }
+  return together;
+}
+
+/// Adds constraints that take sources to where their targets are now and, if they are pinned, hold the
+/// targets there.
+void add_fixed(const std::vector<PointConstraint>& together, bool pinned,
+               std::vector<PointConstraint>& constraints) {
+  for (const PointConstraint& constraint : together) {
+    constraints.push_back({constraint.source, constraint.target, false});
+    if (pinned) constraints.push_back({constraint.target, constraint.target, false});
+  }
 }
 
 }  // namespace
@@ -71,10 +104,7 @@ bool LoopCloser::close_global(const FernPlace& here, surfels::SurfelMap& map, st
         {{here.view.T_world_camera * point, here.time}, {T_world_camera * point, place.time}, true});
   }
   std::vector<PointConstraint> constraints = held_together_;
-  for (const PointConstraint& constraint : together) {
-    constraints.push_back({constraint.source, constraint.target, false});
-    constraints.push_back({constraint.target, constraint.target, false});  // the place stays
-  }
+  add_fixed(together, true, constraints);  // the place stays
   auto graph = graph_of(map, camera_, kGlobalSpacing);
   if (!graph) return false;
   const auto result = graph->optimise(constraints);
@@ -101,25 +131,18 @@ bool LoopCloser::close_local(const surfels::SurfelView& view, std::int32_t time,
       motion.variance() >= config_.loop_max_variance / size)
     return false;
   const SE3 T_world_camera = view.T_world_camera * motion.T_view_camera;
+  const std::vector<PointConstraint> together = registered_points(view, inactive, T_world_camera, time, map);
+  if (together.empty()) return false;
+  // What earlier local loops have bent stays. Before the first of them nothing does, unless it is pinned.
   std::vector<PointConstraint> constraints;
-  for (int row = 0; row < kRows; ++row) {
-    for (int column = 0; column < kColumns; ++column) {
-      const std::size_t pixel = view.surfel.index((2 * column + 1) * camera_.width_px / (2 * kColumns),
-                                                  (2 * row + 1) * camera_.height_px / (2 * kRows));
-      const std::int32_t active = view.surfel.data[pixel], old = inactive.surfel.data[pixel];
-      if (active == surfels::kNoSurfel || old == surfels::kNoSurfel) continue;
-      const Vector3d point = view.point.at(pixel).cast<double>();
-      const TimedPoint source{view.T_world_camera * point, map.created[static_cast<std::size_t>(active)]};
-      const TimedPoint pin{view.T_world_camera * inactive.point.at(pixel).cast<double>(),
-                           map.created[static_cast<std::size_t>(old)]};
-      constraints.push_back({source, {T_world_camera * point, source.time}, false});
-      constraints.push_back({pin, pin, false});
-    }
-  }
+  add_fixed(together, last_local_loop_ < 0, constraints);
   auto graph = graph_of(map, camera_, kLocalSpacing);
-  if (!graph || constraints.empty() || !graph->optimise(constraints)) return false;
+  if (!graph || !graph->optimise(constraints, last_local_loop_)) return false;
+  const std::size_t step = (together.size() + kHeldOfALocalLoop - 1) / kHeldOfALocalLoop;
+  for (std::size_t i = 0; i < together.size(); i += step) held_together_.push_back(together[i]);
   bend(*graph, T_world_camera, map, poses);
   reactivate(T_world_camera, time, map);
+  last_local_loop_ = time;
   ++local_loops_;
   return true;
 }

@@ -56,7 +56,8 @@ class LoopCloser {
   FernPlaces places_;
   surfels::ViewRenderer renderer_;
   surfels::SurfelView inactive_;
-  std::vector<PointConstraint> held_together_;  ///< by the global loops so far
+  std::vector<PointConstraint> held_together_;  ///< by the loops so far
+  std::int32_t last_local_loop_ = -1;           ///< its frame: what is older is not bent by later ones
   int local_loops_ = 0;
   int global_loops_ = 0;
 };

@@ -97,6 +97,21 @@ TEST(DeformationGraph, BendsTheEndAndLeavesThePinnedBeginning) {
   EXPECT_NEAR(shift_at(2.5, 50), 0.05, 0.03);
 }
 
+TEST(DeformationGraph, NodesOfFixedFramesStay) {
+  auto graph = DeformationGraph::make(corridor());
+  const Vector3d drift(0, 0.1, 0), early(0.3, 0, 0.1), late(4.8, 0, 0.1);
+  const std::vector<PointConstraint> constraints = {held(early, early + drift, 6),
+                                                    held(late, late + drift, 96)};
+  ASSERT_TRUE(graph->optimise(constraints, 50).has_value());
+  EXPECT_NEAR((graph->moved(TimedPoint{early, 6}).position - early).norm(), 0, 1e-12);
+  EXPECT_LT((graph->moved(TimedPoint{late, 96}).position - late - drift).norm(), 0.01);
+
+  auto all_fixed = DeformationGraph::make(corridor());
+  const auto result = all_fixed->optimise(constraints, 98);
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NEAR(result->error_after_m, drift.norm(), 1e-12);
+}
+
 TEST(DeformationGraph, PointsThatBothMoveMeet) {
   auto graph = DeformationGraph::make(corridor());
   const TimedPoint begin{{0.1, 0, 0.1}, 2}, end{{4.8, 0, 0.1}, 96};
