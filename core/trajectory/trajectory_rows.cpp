@@ -98,10 +98,15 @@ io::TimeOrder order_for(Duplicates duplicates) {
   return io::TimeOrder::any;
 }
 
+std::optional<std::string> coordinate_fault(std::string_view name, const Vector3d& position) {
+  if (position.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMostPosition) return std::nullopt;
+  return fmt::format("{} {:g} {:g} {:g} (allowed: coordinates up to {:g})", name, position.x(), position.y(),
+                     position.z(), kMostPosition);
+}
+
 Result<void> check_position(const io::TextTable& table, const Vector3d& position) {
-  if (position.cwiseAbs().maxCoeff() <= kMostPosition) return {};
-  return table.fail_here(fmt::format("position {:g} {:g} {:g} (allowed: coordinates up to {:g})",
-                                     position.x(), position.y(), position.z(), kMostPosition));
+  if (const auto fault = coordinate_fault("position", position)) return table.fail_here(*fault);
+  return {};
 }
 
 Result<void> take_pose(const io::TextTable& table, std::int64_t time_ns, const Vector3d& translation_m,

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -41,6 +43,10 @@ struct TrajectoryRows {
 /// Squares of distances between positions within this, and sums of them, are numbers; in any unit of a
 /// trajectory.
 inline constexpr double kMostPosition = 1e12;
+
+/// What is wrong with it, "translation 1e+13 0 0 (allowed: coordinates up to 1e+12)"; nothing if every
+/// coordinate is within that.
+[[nodiscard]] std::optional<std::string> coordinate_fault(std::string_view name, const Vector3d& position);
 
 /// Error data_corrupt with file:line: a coordinate beyond that.
 [[nodiscard]] Result<void> check_position(const io::TextTable& table, const Vector3d& position);

@@ -9,6 +9,7 @@
 #include "core/io/bounded_text.hpp"
 #include "core/io/fingerprint.hpp"
 #include "eval/engine/run_claim.hpp"
+#include "eval/run/run_counts.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_file.hpp"
 
@@ -29,10 +30,6 @@ Result<void> keep_text(const fs::path& file, const std::string& text) {
   if (there && *there == text) return {};
   return text::write_text_file(file, text);
 }
-
-/// As the command line takes them.
-constexpr int kMostThreads = 1024;
-constexpr int kMostRepetitions = 1000;
 
 /// The library's own conversion to int wraps.
 Result<int> number_in(const Json& json, const char* key, int least, int most, const fs::path& file) {
@@ -101,9 +98,9 @@ Result<Invocation> read_invocation(const fs::path& file) {
     // <out>/.fusebench/invocations/<name>.json; the folder may have been moved.
     invocation.options.out = file.parent_path().parent_path().parent_path();
     invocation.options.simulated = json.at("simulated").get<std::string>();
-    const auto threads = number_in(json, "threads", 1, kMostThreads, file);
+    const auto threads = number_in(json, "threads", 1, run::kMostThreads, file);
     if (!threads) return tl::unexpected(threads.error());
-    const auto repetitions = number_in(json, "repetitions", 0, kMostRepetitions, file);
+    const auto repetitions = number_in(json, "repetitions", 0, run::kMostRepetitions, file);
     if (!repetitions) return tl::unexpected(repetitions.error());
     invocation.options.threads = *threads;
     invocation.options.profile = json.value("profile", false);  // older ones have none

@@ -28,12 +28,8 @@ Result<void> check_mesh(const PreciseMesh& mesh, std::string_view what) {
                 "distances are measured to surfaces, not to points");
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Vector3d& v = mesh.vertices[i];
-    if (!(v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= trajectory::kMostPosition)) {
-      return fail(ErrorCode::data_corrupt,
-                  fmt::format("{}: vertex {} is at {:g} {:g} {:g} (allowed: coordinates up to {:g})", what, i,
-                              v.x(), v.y(), v.z(), trajectory::kMostPosition));
-    }
+    if (const auto fault = trajectory::coordinate_fault("is at", mesh.vertices[i]))
+      return fail(ErrorCode::data_corrupt, fmt::format("{}: vertex {} {}", what, i, *fault));
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::uint32_t largest = *std::ranges::max_element(mesh.triangles[i]);

@@ -62,10 +62,7 @@ Result<SE3> read_transform(const std::filesystem::path& file) {
                               T.leftCols<3>().determinant(), rotation.deviation));
   }
   const Vector3d translation_m = T.col(3);
-  if (!(translation_m.cwiseAbs().maxCoeff() <= trajectory::kMostPosition))
-    return refuse(fmt::format("translation {:g} {:g} {:g} (allowed: coordinates up to {:g})",
-                              translation_m.x(), translation_m.y(), translation_m.z(),
-                              trajectory::kMostPosition));
+  if (const auto fault = trajectory::coordinate_fault("translation", translation_m)) return refuse(*fault);
   return SE3{Quaterniond(rotation.R).normalized(), translation_m};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/nearest_name.hpp"
+#include "eval/run/run_counts.hpp"
 #include "eval/suites/suite_entries.hpp"
 
 namespace fusebench::suites {
@@ -50,10 +51,9 @@ Result<void> read_kept(const config::TomlEntry& entry, Suite& suite) {
 }
 
 Result<void> read_repetitions(const config::TomlEntry& entry, Suite& suite) {
-  constexpr std::int64_t kMost = 1000;
   const auto count = plain_entry<std::int64_t>(entry);
-  if (!count || *count < 1 || *count > kMost)
-    return wrong_entry(entry, fmt::format("an integer, 1 .. {}", kMost));
+  if (!count || *count < 1 || *count > run::kMostRepetitions)
+    return wrong_entry(entry, fmt::format("an integer, 1 .. {}", run::kMostRepetitions));
   suite.repetitions = static_cast<int>(*count);
   return {};
 }

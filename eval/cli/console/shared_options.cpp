@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "eval/run/run_counts.hpp"
+
 namespace fusebench::cli::console {
 
 void add_data_option(CLI::App& verb, std::filesystem::path& data) {
@@ -17,7 +19,7 @@ void add_threads_option(CLI::App& verb, int& threads) {
   // The default is not printed: it differs between machines, and results do not depend on it.
   verb.add_option("--threads", threads,
                   "Threads of a run; default: all of the machine. Results do not depend on it")
-      ->check(CLI::Range(1, 1024))
+      ->check(CLI::Range(1, run::kMostThreads))
       ->type_name("N");
 }
 

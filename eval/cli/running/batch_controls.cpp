@@ -8,6 +8,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/engine/plan_preview.hpp"
+#include "eval/run/run_counts.hpp"
 
 namespace fusebench::cli::running {
 
@@ -19,7 +20,7 @@ void add_batch_controls(CLI::App& verb, engine::BatchOptions& batch, BatchContro
   verb.add_option("-j,--jobs", controls.engine.at_once,
                   "Runs at a time, each in a process of its own; --threads is then by default its share of "
                   "the machine")
-      ->check(CLI::Range(1, 1024))
+      ->check(CLI::Range(1, run::kMostAtOnce))
       ->type_name("N")
       ->capture_default_str();
   verb.add_flag("--dry-run", controls.dry_run,

@@ -6,6 +6,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/cli/running/suite_run.hpp"
+#include "eval/run/run_counts.hpp"
 #include "eval/suites/suite_names.hpp"
 
 namespace fusebench::cli::running {
@@ -57,7 +58,7 @@ void add_suite_options(CLI::App& verb, engine::Invocation& invocation) {
       ->allow_extra_args(false);
   verb.add_option("--repetitions", invocation.overrides.repetitions,
                   "Repeats each run, for samples of its time; default: as the suite says")
-      ->check(CLI::Range(1, 1000))
+      ->check(CLI::Range(1, run::kMostRepetitions))
       ->type_name("N");
   verb.add_option(
           "--keep", invocation.overrides.kept,

@@ -8,6 +8,7 @@
 #include "eval/cli/running/entered_invocation.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/cli/running/suite_run.hpp"
+#include "eval/run/run_counts.hpp"
 
 namespace fusebench::cli::running {
 
@@ -43,7 +44,7 @@ console::Verb add_rerun_verb(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("rerun", "Repeats the failed runs of a folder of runs");
   verb->add_option("RUNS", options->runs, "Folder that `fusebench bench` wrote (its --out)")->required();
   verb->add_option("-j,--jobs", options->bench.controls.engine.at_once, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
+      ->check(CLI::Range(1, run::kMostAtOnce))
       ->type_name("N")
       ->capture_default_str();
   return {verb, [options] {

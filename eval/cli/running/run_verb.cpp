@@ -16,6 +16,7 @@
 #include "eval/external/external_program.hpp"
 #include "eval/external/system_name.hpp"
 #include "eval/run/run.hpp"
+#include "eval/run/run_counts.hpp"
 #include "eval/suites/suite_names.hpp"
 
 namespace fusebench::cli::running {
@@ -188,7 +189,7 @@ console::Verb add_run_verb(CLI::App& app) {
       ->excludes("--variant");
   verb->add_option("--repetition", options->repetition,
                    "Number of the repetition: in the folder's name, and an external program's {seed}")
-      ->check(CLI::Range(1, 1000))
+      ->check(CLI::Range(1, run::kMostRepetitions))
       ->type_name("N")
       ->capture_default_str();
   verb->add_option("--out", options->out, "Results go to DIR/<recording>/<variant>/<hash8>/")

@@ -8,6 +8,7 @@
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/engine/slurm_task.hpp"
+#include "eval/run/run_counts.hpp"
 
 namespace fusebench::cli::running {
 
@@ -25,7 +26,8 @@ console::Verb add_slurm_task_verb(CLI::App& app) {
   verb->add_option("INVOCATION", options->invocation, "Kept by bench")->required();
   verb->add_option("TASKS", options->tasks, "The array's task file")->required();
   verb->add_option("TASK", options->task, "Number of the task")->required();
-  verb->add_option("-j,--jobs", options->engine.at_once, "Runs at a time")->check(CLI::Range(1, 1024));
+  verb->add_option("-j,--jobs", options->engine.at_once, "Runs at a time")
+      ->check(CLI::Range(1, run::kMostAtOnce));
   return {verb, [options]() -> Result<int> {
             const auto invocation = enter_invocation(options->invocation);
             if (!invocation) return tl::unexpected(invocation.error());
