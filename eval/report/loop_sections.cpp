@@ -25,11 +25,18 @@ constexpr std::size_t kMostCharted = 4;  // runs of a recording
 using run_files::CandidateFate;
 using run_files::CandidateRow;
 
+/// An option that is a choice; empty if the record has none of that key.
+std::string choice_of(const record::RunRecord& record, std::string_view key) {
+  const auto option = std::ranges::find(record.config, key, &record::RecordedOption::key);
+  const auto* choice = option == record.config.end() ? nullptr : std::get_if<std::string>(&option->value);
+  return choice == nullptr ? "" : *choice;
+}
+
 std::string mode_of(const record::RunRecord& record) {
-  const auto option = std::ranges::find(record.config, std::string_view("loops.mode"),
-                                        [](const record::RecordedOption& o) { return o.key; });
-  const auto* mode = option == record.config.end() ? nullptr : std::get_if<std::string>(&option->value);
-  return mode == nullptr ? "-" : *mode;
+  const std::string method = choice_of(record, "system.method");
+  if (!method.empty() && method != "filter") return "its own";
+  const std::string mode = choice_of(record, "loops.mode");
+  return mode.empty() ? "-" : mode;
 }
 
 std::string ate_cell(const record::Outcome<trajectory_error::AteResult>& ate) {
@@ -84,7 +91,9 @@ std::string explanation() {
   return fmt::format(
       "Places are frames that are kept to be recognised; a candidate is a pair of places that look "
       "alike, and a loop one that was accepted. Online: each pose as it was known when its frame came; "
-      "final: as all were known at the end. Returns: places that see {:.0f} % or more of what an older "
+      "final: as all were known at the end. Mode \"its own\": the system closes loops by its method, and "
+      "keeps no list of them. Returns: "
+      "places that see {:.0f} % or more of what an older "
       "place saw, by the true poses, and how many of them have a loop; blurred are those with more "
       "than {:.0f} px of motion blur. False: loops that are off by more than {:.0f} cm or {:.0f} "
       "degrees, and by more than {:.0f} sigmas of what they claim. NEES: squared error of loops by "

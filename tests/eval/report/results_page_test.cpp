@@ -337,6 +337,16 @@ TEST_F(LoopsPageTest, ThePageHasTheNumbersOfLoopsAndBothKindsOfPoses) {
       static_cast<std::ptrdiff_t>(result.tables));
 }
 
+TEST_F(LoopsPageTest, OfASystemWithLoopsOfItsOwnTheModeIsNotThatOfTheFilter) {
+  FoundRun run = add_run("elasticfusion", kFrames, SE3{});
+  run.record.config = {{"system.method", std::string("elasticfusion"), "the test"},
+                       {"loops.mode", std::string("off"), "the test"}};
+  run.record.final_metrics = run.record.metrics;
+  write(run.folder.lexically_relative(folder_) / "final.tum", tum_text(circle(kFrames)));
+  const std::string html = to_html(results_page({run}, "t").page);
+  EXPECT_NE(html.find("<td>its own</td>"), std::string::npos);
+}
+
 TEST_F(ResultsPageTest, WithoutLoopsOrOtherSystemsNothingIsSaidOfThem) {
   FoundRun run = add_run("full", kFrames, SE3{});
   run.record.config = {{"system.method", std::string("filter"), "the test"}};
