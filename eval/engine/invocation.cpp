@@ -9,7 +9,7 @@
 #include "core/io/bounded_text.hpp"
 #include "core/io/fingerprint.hpp"
 #include "eval/engine/run_claim.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_file.hpp"
 

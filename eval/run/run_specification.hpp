@@ -48,6 +48,11 @@ enum class KeptFiles {
 };
 [[nodiscard]] std::string_view to_string(KeptFiles kept);  ///< "all", "small"
 
+/// What the command line, suites and kept invocations take.
+inline constexpr int kMostThreads = 1024;  ///< of a run
+inline constexpr int kMostAtOnce = 1024;   ///< runs
+inline constexpr int kMostRepetitions = 1000;
+
 struct RunSpec {
   std::filesystem::path recording;
   datasets::OpenOptions open;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/nearest_name.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 #include "eval/suites/suite_entries.hpp"
 
 namespace fusebench::suites {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 
 namespace fusebench::cli::console {
 

@@ -8,7 +8,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/engine/local_engine.hpp"
 #include "eval/engine/plan_preview.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 
 namespace fusebench::cli::running {
 

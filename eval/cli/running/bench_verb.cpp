@@ -6,7 +6,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/cli/running/suite_run.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 #include "eval/suites/suite_names.hpp"
 
 namespace fusebench::cli::running {

@@ -8,7 +8,7 @@
 #include "eval/cli/running/entered_invocation.hpp"
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/cli/running/suite_run.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 
 namespace fusebench::cli::running {
 

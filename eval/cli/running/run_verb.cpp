@@ -16,7 +16,7 @@
 #include "eval/external/external_program.hpp"
 #include "eval/external/system_name.hpp"
 #include "eval/run/run.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 #include "eval/suites/suite_names.hpp"
 
 namespace fusebench::cli::running {

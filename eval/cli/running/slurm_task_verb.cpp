@@ -8,7 +8,7 @@
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/engine/job_plan.hpp"
 #include "eval/engine/slurm_task.hpp"
-#include "eval/run/run_counts.hpp"
+#include "eval/run/run_specification.hpp"
 
 namespace fusebench::cli::running {
 
