@@ -86,7 +86,9 @@ Result<void> ExportPlace::move_files() const {
     names.push_back(entry->path().filename());
   }
   if (error) return cannot_be_written(out_, error.message());
-  std::ranges::sort(names);
+  // The file that was asked for comes last: where it is, those beside it are as well, with the label of
+  // simulated data among them.
+  std::ranges::sort(names, {}, [&](const fs::path& name) { return std::pair(name == name_, name); });
   for (const fs::path& name : names) {
     const fs::path target = out_.parent_path() / name;
     const bool is_there = fs::exists(fs::symlink_status(target, error));
@@ -97,6 +99,8 @@ Result<void> ExportPlace::move_files() const {
   for (const fs::path& name : names) {
     const fs::path target = out_.parent_path() / name;
     error = sync_file(staged_.path() / name);
+    // So are the names of those before it, on a disk that may lose what was not synced.
+    if (!error && name == name_ && !moved.empty()) error = io::sync_names(out_);
     if (!error) fs::rename(staged_.path() / name, target, error);
     if (error) break;
     moved.push_back(target);
