@@ -38,6 +38,32 @@ bool have_same_bytes(const fs::path& one, const fs::path& other) {
   return first && second && *first == *second;
 }
 
+/// Files that were moved to their places, which are removed again unless all of them were.
+class MovedFiles {
+ public:
+  explicit MovedFiles(std::size_t most) { files_.reserve(most); }
+  MovedFiles(const MovedFiles&) = delete;
+  MovedFiles& operator=(const MovedFiles&) = delete;
+  ~MovedFiles() {
+    std::error_code ignored;
+    for (const fs::path& file : files_) fs::remove(file, ignored);
+  }
+
+  /// Error of the rename.
+  [[nodiscard]] std::error_code move(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    files_.push_back(to);
+    fs::rename(from, to, error);
+    if (error) files_.pop_back();
+    return error;
+  }
+  [[nodiscard]] bool empty() const { return files_.empty(); }
+  void keep() { files_.clear(); }
+
+ private:
+  std::vector<fs::path> files_;
+};
+
 }  // namespace
 
 tl::unexpected<Error> cannot_be_written(const fs::path& file, std::string_view reason) {
@@ -95,22 +121,19 @@ Result<void> ExportPlace::move_files() const {
     // What an export that ended between two of its files has left is no obstacle.
     if (is_there && !have_same_bytes(staged_.path() / name, target)) return exists_already(target);
   }
-  std::vector<fs::path> moved;
+  MovedFiles moved(names.size());
   for (const fs::path& name : names) {
-    const fs::path target = out_.parent_path() / name;
     error = sync_file(staged_.path() / name);
     // So are the names of those before it, on a disk that may lose what was not synced.
     if (!error && name == name_ && !moved.empty()) error = io::sync_names(out_);
-    if (!error) fs::rename(staged_.path() / name, target, error);
-    if (error) break;
-    moved.push_back(target);
+    if (!error) error = moved.move(staged_.path() / name, out_.parent_path() / name);
+    if (error) return cannot_be_written(out_, error.message());
   }
   // The names, which are the folder's.
-  if (!error) error = io::sync_names(out_);
-  if (!error) return {};
-  std::error_code ignored;
-  for (const fs::path& file : moved) fs::remove(file, ignored);
-  return cannot_be_written(out_, error.message());
+  error = io::sync_names(out_);
+  if (error) return cannot_be_written(out_, error.message());
+  moved.keep();
+  return {};
 }
 
 }  // namespace fusebench::exports

@@ -3,7 +3,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "datasets/images/image_library.hpp"
 
@@ -59,15 +61,23 @@ LibraryResult<OpenedImage> open_bytes(const std::string& name, std::span<const s
 LibraryResult<std::vector<std::uint8_t>> encode_jpeg(const PixelView& image, int quality) {
   std::vector<std::uint8_t> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
+  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("jpeg");
   if (!output) return tl::unexpected(OIIO::geterror());
   OIIO::ImageSpec spec(image.width_px, image.height_px, image.channels, OIIO::TypeDesc::UINT8);
   spec.attribute("CompressionQuality", quality);
-  if (!output->set_ioproxy(&memory) || !output->open("memory.jpg", spec) ||
-      !output->write_image(spec.format, image.pixels.data()) || !output->close()) {
-    return tl::unexpected(output->geterror());
+  // A writer that memory ran out for is not destroyed: its destructor writes the lines that are missing, and
+  // does not end where the library has not begun to compress.
+  try {
+    if (output->set_ioproxy(&memory) && output->open("memory.jpg", spec) &&
+        output->write_image(spec.format, image.pixels.data()) && output->close())
+      return bytes;
+  } catch (...) {
+    static_cast<void>(output.release());
+    throw;
   }
-  return bytes;
+  std::string reason = output->geterror();
+  static_cast<void>(output.release());
+  return tl::unexpected(std::move(reason));
 }
 
 constexpr ImageLibrary kLibrary{open_image, open_bytes, encode_jpeg};
