@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <vector>
 
 #include "core/systems/elasticfusion/surfels/surfel_fusion.hpp"
 #include "tests/core/systems/elasticfusion/room_views.hpp"
@@ -85,7 +85,6 @@ TEST_F(LoopCloser, TheActiveModelComesToTheInactiveOne) {
 TEST_F(LoopCloser, WhatWasThereWhenAnEarlierLoopClosedStays) {
   visit(SE3{}, 50);
   const std::size_t count = map_.size();
-  first_seen_ = map_;
   visit({Quaterniond::Identity(), {0.006, -0.004, 0.008}}, 300);
   ASSERT_TRUE(close(300));
   const surfels::SurfelMap bent = map_;
