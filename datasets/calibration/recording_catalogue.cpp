@@ -151,7 +151,7 @@ Catalogue read_catalogue() {
   Catalogue catalogue;
   for (const CatalogueFile& file : catalogue_files()) {
     const auto document = config::parse_toml(file.text, std::string(file.name));
-    check(document.has_value(), "a file of configs/recordings is no TOML");
+    check(document.has_value(), document ? "" : document.error().message.c_str());
     if (text_of(*document, "kind") == kCalibration) {
       catalogue.calibrations.emplace(text_of(*document, "name"), file);
       continue;
