@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -73,31 +74,47 @@ struct RayCaster::State {
   }
 };
 
+namespace {
+
+/// Embree returns nothing where it fails, and keeps why; of no device (nullptr) for the thread. Too little
+/// memory is no bug.
+void check_embree(RTCDevice device, bool worked, const char* claim) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  check(worked && error == RTC_ERROR_NONE, claim);
+}
+
+}  // namespace
+
 RayCaster::RayCaster(const Mesh& mesh) : state_(std::make_unique<State>()) {
   state_->triangles = triangles_of(mesh);
   state_->device = rtcNewDevice(kDeviceConfiguration);
-  check(state_->device != nullptr, "Embree needs a CPU with AVX2, as this program does");
+  check_embree(state_->device, state_->device != nullptr,
+               "Embree needs a CPU with AVX2, as this program does");
   state_->scene = rtcNewScene(state_->device);
+  check_embree(state_->device, state_->scene != nullptr, "Embree made a scene");
   rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);  // no light leaks between neighbouring triangles
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_MEDIUM);
   const RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  check_embree(state_->device, geometry != nullptr, "Embree made a geometry");
   const auto fill = [&](RTCBufferType type, RTCFormat format, const auto& items) {
     constexpr std::size_t size = sizeof(items[0]);
     void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, size, items.size());
-    if (!items.empty()) std::memcpy(buffer, items.data(), size * items.size());
+    if (buffer != nullptr && !items.empty()) std::memcpy(buffer, items.data(), size * items.size());
   };
   fill(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
   fill(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(state_->scene, geometry, 0);
   rtcReleaseGeometry(geometry);
+  check_embree(state_->device, true, "Embree took the geometry");
   {
     // The order of the triangles within a leaf, and with it which of two that share an edge is hit, must not
     // depend on the number of threads.
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     rtcCommitScene(state_->scene);
   }
-  check(rtcGetDeviceError(state_->device) == RTC_ERROR_NONE, "Embree took the triangles");
+  check_embree(state_->device, true, "Embree took the triangles");
 }
 
 RayCaster::~RayCaster() = default;
