@@ -14,6 +14,7 @@
 #include "eval/loop_error/loop_error.hpp"
 #include "eval/run_charts/chart_parts.hpp"
 #include "eval/run_charts/loop_charts.hpp"
+#include "eval/tables/systems_table.hpp"
 #include "eval/text/plain_table.hpp"
 
 namespace fusebench::report {
@@ -25,18 +26,12 @@ constexpr std::size_t kMostCharted = 4;  // runs of a recording
 using run_files::CandidateFate;
 using run_files::CandidateRow;
 
-/// An option that is a choice; empty if the record has none of that key.
-std::string choice_of(const record::RunRecord& record, std::string_view key) {
-  const auto option = std::ranges::find(record.config, key, &record::RecordedOption::key);
-  const auto* choice = option == record.config.end() ? nullptr : std::get_if<std::string>(&option->value);
-  return choice == nullptr ? "" : *choice;
-}
-
 std::string mode_of(const record::RunRecord& record) {
-  const std::string method = choice_of(record, "system.method");
-  if (!method.empty() && method != "filter") return "its own";
-  const std::string mode = choice_of(record, "loops.mode");
-  return mode.empty() ? "-" : mode;
+  const auto option =
+      std::ranges::find(record.config, std::string_view("loops.mode"), &record::RecordedOption::key);
+  const auto* mode = option == record.config.end() ? nullptr : std::get_if<std::string>(&option->value);
+  if (mode == nullptr) return "-";
+  return tables::is_of_another_system(record) ? "its own" : *mode;
 }
 
 std::string ate_cell(const record::Outcome<trajectory_error::AteResult>& ate) {
@@ -92,8 +87,7 @@ std::string explanation() {
       "Places are frames that are kept to be recognised; a candidate is a pair of places that look "
       "alike, and a loop one that was accepted. Online: each pose as it was known when its frame came; "
       "final: as all were known at the end. Mode \"its own\": the system closes loops by its method, and "
-      "keeps no list of them. Returns: "
-      "places that see {:.0f} % or more of what an older "
+      "keeps no list of them. Returns: places that see {:.0f} % or more of what an older "
       "place saw, by the true poses, and how many of them have a loop; blurred are those with more "
       "than {:.0f} px of motion blur. False: loops that are off by more than {:.0f} cm or {:.0f} "
       "degrees, and by more than {:.0f} sigmas of what they claim. NEES: squared error of loops by "

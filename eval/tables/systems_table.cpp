@@ -272,15 +272,14 @@ std::string markdown(const SystemsTable& table, std::size_t width) {
   return text;
 }
 
-/// Whether a run is not of this program's filter.
+}  // namespace
+
 bool is_of_another_system(const record::RunRecord& record) {
   const auto method =
       std::ranges::find(record.config, std::string_view("system.method"), &record::RecordedOption::key);
   if (record.program || record.config.empty()) return true;  // imported runs have no configuration
   return method != record.config.end() && method->value != config::OptionValue(std::string("filter"));
 }
-
-}  // namespace
 
 bool compares_systems(const std::vector<run_files::FoundRun>& runs) {
   std::set<std::string_view> systems;

@@ -43,6 +43,9 @@ struct SystemsTable {
   std::vector<std::string> footer;
 };
 
+/// Whether a run is not of this program's filter.
+[[nodiscard]] bool is_of_another_system(const record::RunRecord& record);
+
 /// Whether such a table says more than one of the filter's variants: there are runs of several systems, or
 /// poses that were revised at the end.
 [[nodiscard]] bool compares_systems(const std::vector<run_files::FoundRun>& runs);
