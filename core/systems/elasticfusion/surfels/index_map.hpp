@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "core/base/parallel.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_map.hpp"
@@ -43,16 +45,29 @@ class IndexMap {
   template <class Look>
   void around(int column, int row, const Look& look) const {
     const int left = std::max(0, column - kScale), right = std::min(cells_.width, column + kScale);
+    if (left >= right) return;
     for (int y = std::max(0, row - kScale); y < std::min(cells_.height, row + kScale); ++y) {
-      for (int x = left; x < right; ++x) {
-        if (const std::int32_t number = cells_(x, y); number != kEmpty)
-          look(static_cast<std::size_t>(number));
-      }
+      for (unsigned taken = taken_cells(left, right, y); taken != 0; taken &= taken - 1)
+        look(static_cast<std::size_t>(cells_(left + std::countr_zero(taken), y)));
     }
+  }
+
+  /// Bit i is set where cell left + i is not empty. A look around goes by these bits, since a branch on each
+  /// cell cannot be predicted and cost a quarter of the whole fusion.
+  [[nodiscard]] unsigned taken_cells(int left, int right, int row) const {
+    const std::size_t first = taken_byte(left, row);
+    const unsigned bytes = taken_[first] | static_cast<unsigned>(taken_[first + 1]) << 8U;
+    return bytes >> static_cast<unsigned>(left % 8) & ((1U << static_cast<unsigned>(right - left)) - 1U);
+  }
+
+  [[nodiscard]] std::size_t taken_byte(int column, int row) const {
+    return static_cast<std::size_t>(row) * bytes_of_row_ + static_cast<std::size_t>(column / 8);
   }
 
   VisibleSurfels visible_;
   Image<std::int32_t> cells_;
+  std::size_t bytes_of_row_ = 0;
+  std::vector<std::uint8_t> taken_;  ///< a bit for each cell; a row begins at a byte, and a byte ends it all
 };
 
 }  // namespace fusebench::systems::elasticfusion::surfels

@@ -125,8 +125,10 @@ bool SurfelFusion::is_a_copy(std::size_t number, const SurfelMap& map) const {
   index_.around_place(camera_.project(surfel.position.cast<double>()), [&](std::size_t other) {
     const CameraSurfel& known = surfels[other];
     const Eigen::Vector3f apart = known.position - surfel.position;
-    if (apart.z() > 0 && apart.z() < kCopyDepth_m && apart.head<2>().norm() < kCopyReach * surfel.radius_m &&
-        map.created[known.index] < map.created[surfel.index] &&
+    const bool is_close =
+        (apart.z() > 0) & (apart.z() < kCopyDepth_m) &
+        (apart.head<2>().norm() < kCopyReach * surfel.radius_m);  // one branch for the three
+    if (is_close && map.created[known.index] < map.created[surfel.index] &&
         map.confidence[known.index] > stable_confidence_)
       ++originals;
   });
