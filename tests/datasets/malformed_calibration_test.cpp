@@ -68,7 +68,7 @@ TEST_F(MalformedCalibration, BrokenLinesAreNamed) {
       {"608.5", "0", 5, "color.fx_px must be a number from"},
       {"608.5", "1e308", 5, "color.fx_px must be a number from"},
       {"608.5", "1e-320", 5, ""},
-      {"608.5", "1e999", 5, "not valid TOML"},
+      {"608.5", "1e999", 5, "not representable in 64 bits"},
       {"608.5", "99999999999999999999", 5, "not valid TOML"},
       {"608.5", std::string(400, '9'), 5, "not valid TOML"},
       {"608.5", "608,5", 5, "not valid TOML"},
