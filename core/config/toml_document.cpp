@@ -9,8 +9,8 @@
 #include <optional>
 #include <tuple>
 
-// The library as it is built by Debian reads numbers through a stream, which takes memory that has run out for a
-// number that is none. Compiled here, from_chars reads them.
+// The library as it is built by Debian reads numbers through a stream, which takes memory that has run out
+// for a number that is none. Compiled here, from_chars reads them.
 #define TOML_HEADER_ONLY 1
 #define TOML_FLOAT_CHARCONV 1
 #include <toml++/toml.h>
