@@ -79,7 +79,9 @@ namespace {
 /// Embree returns nothing where it fails, and keeps why; of no device (nullptr) for the thread. Too little
 /// memory is no bug.
 void check_embree(RTCDevice device, bool worked, const char* claim) {
-  const RTCError error = rtcGetDeviceError(device);
+  RTCError error = rtcGetDeviceError(device);
+  // To ask takes memory: where there is none, the answer is "unknown", and the next one tells why.
+  if (error == RTC_ERROR_UNKNOWN) error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   check(worked && error == RTC_ERROR_NONE, claim);
 }
