@@ -16,8 +16,6 @@ void IndexMap::build(const SurfelMap& map, const PinholeCamera& camera, const SE
   workers.for_chunks(visible_.bands(), 1, [&](std::size_t band, std::size_t /*end*/) {
     const int first = kScale * VisibleSurfels::kBandRows * static_cast<int>(band);
     const int last = std::min(cells_.height, first + kScale * VisibleSurfels::kBandRows);
-    std::fill(cells_.data.begin() + static_cast<std::ptrdiff_t>(cells_.index(0, first)),
-              cells_.data.begin() + static_cast<std::ptrdiff_t>(cells_.index(0, last)), kEmpty);
     std::fill(taken_.begin() + static_cast<std::ptrdiff_t>(taken_byte(0, first)),
               taken_.begin() + static_cast<std::ptrdiff_t>(taken_byte(0, last)), std::uint8_t{0});
     visible_.for_band(band, [&](std::size_t i) {
@@ -27,10 +25,12 @@ void IndexMap::build(const SurfelMap& map, const PinholeCamera& camera, const SE
       if (!(u >= 0) || !(u < static_cast<float>(cells_.width))) return;
       if (!(v >= static_cast<float>(first)) || !(v < static_cast<float>(last))) return;
       const int column = static_cast<int>(u), row = static_cast<int>(v);
+      std::uint8_t& taken = taken_[taken_byte(column, row)];
+      const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(column % 8));
       std::int32_t& cell = cells_(column, row);
-      if (cell == kEmpty || p.z() < surfels[static_cast<std::size_t>(cell)].position.z())
+      if ((taken & bit) == 0 || p.z() < surfels[static_cast<std::size_t>(cell)].position.z())
         cell = static_cast<std::int32_t>(i);
-      taken_[taken_byte(column, row)] |= static_cast<std::uint8_t>(1U << static_cast<unsigned>(column % 8));
+      taken |= bit;
     });
   });
 }

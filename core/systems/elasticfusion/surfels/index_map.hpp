@@ -37,8 +37,6 @@ class IndexMap {
   }
 
  private:
-  static constexpr std::int32_t kEmpty = -1;
-
   [[nodiscard]] static int cell_of(double at_px) { return static_cast<int>((at_px + 0.5) * kScale); }
 
   /// The eight cells either way of a corner of cells.
@@ -52,8 +50,8 @@ class IndexMap {
     }
   }
 
-  /// Bit i is set where cell left + i is not empty. A look around goes by these bits, since a branch on each
-  /// cell cannot be predicted and cost a fifth of the time of fusion.
+  /// Bit i is set where cell left + i holds a surfel. A look around goes by these bits, since a branch on
+  /// each cell cannot be predicted and cost a fifth of the time of fusion.
   [[nodiscard]] unsigned taken_cells(int left, int right, int row) const {
     const std::size_t first = taken_byte(left, row);
     const unsigned bytes = taken_[first] | static_cast<unsigned>(taken_[first + 1]) << 8U;
@@ -65,7 +63,7 @@ class IndexMap {
   }
 
   VisibleSurfels visible_;
-  Image<std::int32_t> cells_;
+  Image<std::int32_t> cells_;  ///< what is in a cell that is not taken is of an earlier map
   std::size_t bytes_of_row_ = 0;
   std::vector<std::uint8_t> taken_;  ///< a bit for each cell; a row begins at a byte, and a byte ends it all
 };
