@@ -175,7 +175,9 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
   const bool after_gap = tracking->lost_frames > 0 || tracking->frames == 1;
   if (track(predicted, after_gap, false, report)) return health::FrameStatus::tracked;
   if (novelty.color && track_again(predicted, after_gap, true, report)) return health::FrameStatus::tracked;
-  return relocalise(predicted, report) ? health::FrameStatus::relocalised : health::FrameStatus::lost;
+  if (!relocalise(predicted, report)) return health::FrameStatus::lost;
+  tracking->loops.add_relocalisation(predicted, *tracking->estimate, tracking->reference.timestamp_ns);
+  return health::FrameStatus::relocalised;
 }
 
 /// Secs. 2.1 and 2.2.2: the patches are deformed into the frame (Eqs. 1-2, shrink and extend effects) by each
@@ -260,6 +262,8 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
   if (!config.terms.relocalisation || !novelty.color) return false;
   Tracking& now = *tracking;
   const bool dark = report.health == health::FrameHealth::dark;
+  if (const auto motion = now.relocalisation.motion_by_places(report.timestamp_ns, prediction.mean))
+    preparation.prepare_again(*motion, velocity_tolerance_to_update(config.compensation), report.stages);
   std::optional<relocalisation::RelocalisedReference> found;
   {
     const health::StageClock clock(report.stages, health::Stage::update);

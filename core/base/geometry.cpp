@@ -61,6 +61,12 @@ Vector6d pose_minus(const SE3& to, const SE3& from) {
   return tangent;
 }
 
+Matrix6d with_position_in(const Quaterniond& R_b_a, const Matrix6d& covariance) {
+  Matrix6d turn = Matrix6d::Identity();
+  turn.bottomRightCorner<3, 3>() = R_b_a.toRotationMatrix();
+  return turn * covariance * turn.transpose();
+}
+
 SE3 interpolate(const SE3& a, const SE3& b, double fraction) {
   return {(a.rotation * so3_exp(fraction * so3_log(a.rotation.conjugate() * b.rotation))).normalized(),
           a.translation + fraction * (b.translation - a.translation)};

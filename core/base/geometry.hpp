@@ -64,6 +64,9 @@ struct SE3 {
 /// Inverse of pose_plus: the tangent that moves `from` to `to`.
 [[nodiscard]] Vector6d pose_minus(const SE3& to, const SE3& from);
 
+/// A covariance in that tangent, whose position is in frame a, with the position in frame b.
+[[nodiscard]] Matrix6d with_position_in(const Quaterniond& R_b_a, const Matrix6d& covariance);
+
 /// Geodesic interpolation: a at fraction 0, b at fraction 1 (rotation and translation apart).
 [[nodiscard]] SE3 interpolate(const SE3& a, const SE3& b, double fraction);
 

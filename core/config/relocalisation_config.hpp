@@ -27,6 +27,9 @@ struct RelocalisationConfig {
   double keyframe_rotation_sigma_rad = 0.005;
   double keyframe_position_sigma_m = 0.005;
   double max_innovation = 225.0;
+  double max_supported_innovation = 2250.0;
+  int agreeing_frames = 5;
+  double agreeing_within_s = 0.5;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("keyframe_distance_m", self.keyframe_distance_m, 0.001, 100.0,
@@ -99,6 +102,16 @@ struct RelocalisationConfig {
         "a found pose is refused if its squared distance from the prediction, in variances and per degree "
         "of freedom, is larger (repeating texture gives false poses); 225 are five standard deviations, each "
         "three times what the filter claims, as of drift (loops.drift_factor)");
+    v.number("max_supported_innovation", self.max_supported_innovation, 0.1, 1e12,
+             "up to so much, where its position alone is within relocalisation.max_innovation, it is "
+             "believed all the same if "
+             "several frames in a row agree on it, the last verified by depth as loops are: a filter that "
+             "was wrong before it was lost claims too little of its error in rotation; ten "
+             "times as much, as of loops (loops.max_supported_chi2)");
+    v.number("agreeing_frames", self.agreeing_frames, 2, 1000,
+             "so many frames have to agree, each with the one before within loops.agreeing_chi2");
+    v.number("agreeing_within_s", self.agreeing_within_s, 0.01, 10.0,
+             "which is no longer ago than this (seconds)");
   }
 };
 

@@ -17,13 +17,6 @@ double seconds_apart(const Place& earlier, const Place& later) {
   return seconds_between(earlier.timestamp_ns, later.timestamp_ns);
 }
 
-/// Position errors of the tangent of pose_minus(), from the world to frame a.
-Matrix6d position_in(const Matrix6d& covariance, const SE3& T_world_a) {
-  Matrix6d turn = Matrix6d::Identity();
-  turn.bottomRightCorner<3, 3>() = T_world_a.rotation_matrix().transpose();
-  return turn * covariance * turn.transpose();
-}
-
 /// The covariance without what is negative in it.
 Matrix6d not_negative(const Matrix6d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Matrix6d(0.5 * (covariance + covariance.transpose())));
@@ -69,7 +62,7 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   fused_.push_back({frame.timestamp_ns, in_odometry.mean});
   const SE3 T_world_camera = in_odometry.mean.T_world_imu * rig_.T_imu_camera;
   ++fused_since_place_;
-  if (!places_.empty()) {
+  if (!places_.empty() && !relocalisation_) {
     const SE3 moved = places_.back().T_world_camera.inverse() * T_world_camera;
     const bool near =
         moved.translation.norm() < config.place_distance_m &&
@@ -82,17 +75,71 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   place.appearance = places::appearance_of(frame, rig_.camera, config_);
   place.view_depth_m = median_depth_m(place.appearance.small.depth_m);
   place.T_world_camera = T_world_camera;
-  const Matrix6d to_camera = filter::pose_transport(T_world_camera, in_odometry.mean.T_world_imu);
-  const filter::GaussianState in_first = filter::in_first_camera_world(in_odometry);
-  place.covariance = to_camera * in_first.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() *
-                     to_camera.transpose();
+  place.relocalisations = T_relocalised_odometry_.size() - 1;
+  place.covariance = camera_covariance(in_odometry);
+  place.lost_covariance = lost_covariance_at(T_world_camera);
   if (config_.terms.prior == config::Prior::imu)
     place.gravity_camera = T_world_camera.rotation.conjugate() * in_odometry.mean.gravity_direction_world;
   place.blur_px = blur_px;
   place.angular_speed_radps = estimate.mean.angular_velocity_imu_radps.norm();
   place.speed_mps = estimate.mean.velocity_world_mps.norm();
   places_.push_back(std::move(place));
+  add_relocalisation_edge(places_.size() - 1);
   look_for_loops(places_.size() - 1);
+}
+
+/// Of the camera's pose, in its tangent, in the world of the first camera.
+Matrix6d LoopClosure::camera_covariance(const filter::GaussianState& in_odometry) const {
+  const SE3 T_world_camera = in_odometry.mean.T_world_imu * rig_.T_imu_camera;
+  const Matrix6d to_camera = filter::pose_transport(T_world_camera, in_odometry.mean.T_world_imu);
+  const filter::GaussianState in_first = filter::in_first_camera_world(in_odometry);
+  return to_camera * in_first.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() *
+         to_camera.transpose();
+}
+
+/// What was added at the last relocalisation, carried to a later pose.
+Matrix6d LoopClosure::lost_covariance_at(const SE3& T_odometry_camera) const {
+  const Matrix6d carried = filter::pose_transport(T_odometry_camera, T_odometry_found_);
+  return carried * lost_covariance_ * carried.transpose();
+}
+
+void LoopClosure::add_relocalisation(const filter::GaussianState& predicted,
+                                     const filter::GaussianState& found, std::int64_t found_by_ns) {
+  if (!enabled() || places_.empty()) return;
+  const std::size_t known = place_near(found_by_ns);
+  const SE3 T_current_camera_found = found.mean.T_world_imu * rig_.T_imu_camera;
+  const SE3 T_known_camera = T_current_camera(known).inverse() * T_current_camera_found;
+  const filter::GaussianState predicted_in_odometry = filter::moved(predicted, T_current_odometry_.inverse());
+  const SE3 T_odometry_camera = predicted_in_odometry.mean.T_world_imu * rig_.T_imu_camera;
+  // The current world moves under the odometry, which goes on as predicted.
+  const SE3 T_corrected_relocalised = T_current_odometry_ * T_relocalised_odometry_.back().inverse();
+  T_current_odometry_ = T_current_camera_found * T_odometry_camera.inverse();
+  T_relocalised_odometry_.push_back(T_corrected_relocalised.inverse() * T_current_odometry_);
+  const Matrix6d carried = filter::pose_transport(T_odometry_camera, places_.back().T_world_camera);
+  lost_covariance_ = lost_covariance_at(T_odometry_camera) +
+                     not_negative(camera_covariance(predicted_in_odometry) -
+                                  carried * places_.back().covariance * carried.transpose());
+  T_odometry_found_ = T_odometry_camera;
+  relocalisation_ = Relocalisation{known, T_known_camera, T_odometry_camera};
+}
+
+/// The motion from the frame that found itself to the place is the odometry's.
+void LoopClosure::add_relocalisation_edge(std::size_t query) {
+  if (!relocalisation_) return;
+  LoopCandidate candidate;
+  candidate.known = relocalisation_->known;
+  candidate.query = query;
+  candidate.dissimilarity = dissimilarity(candidate.known, query);
+  candidate.pair.same = true;
+  candidate.pair.T_known_query =
+      relocalisation_->T_known_camera *
+      (relocalisation_->T_odometry_camera.inverse() * places_[query].T_world_camera);
+  candidate.pair.covariance = covariance_by_axis(config_.relocalisation.keyframe_rotation_sigma_rad,
+                                                 config_.relocalisation.keyframe_position_sigma_m);
+  candidate.relocalised = candidate.accepted = true;
+  candidate.verdict = "the lost tracker found itself by it";
+  candidates_.push_back(std::move(candidate));
+  relocalisation_.reset();
 }
 
 /// Up to this one (not included) places were left long ago.
@@ -154,16 +201,21 @@ double LoopClosure::dissimilarity(std::size_t known, std::size_t query) const {
   return ferns::dissimilarity(places_[known].appearance.code, places_[query].appearance.code);
 }
 
-/// What the filter says of the motion from a to b, with the drift that came on in between.
+/// What the filter says of the motion from a to b, with the drift that came on in between. It claims too
+/// little of the drift of tracking, and not of dead reckoning.
 GraphEdge LoopClosure::path_edge(std::size_t a, std::size_t b) const {
   const Place& from = places_[a];
   const Place& to = places_[b];
   const Matrix6d carried = filter::pose_transport(to.T_world_camera, from.T_world_camera);
-  const Matrix6d drift = not_negative(to.covariance - carried * from.covariance * carried.transpose());
+  const auto added = [&](const Matrix6d Place::*covariance) {
+    return not_negative(to.*covariance - carried * (from.*covariance) * carried.transpose());
+  };
   const double factor = config_.loops.drift_factor * config_.loops.drift_factor;
   GraphEdge edge{a, b, from.T_world_camera.inverse() * to.T_world_camera, Matrix6d::Zero(), false};
+  const Quaterniond R_from_world = from.T_world_camera.rotation.conjugate();
   edge.covariance =
-      factor * position_in(drift, from.T_world_camera) +
+      factor * with_position_in(R_from_world, added(&Place::covariance)) +
+      with_position_in(R_from_world, added(&Place::lost_covariance)) +
       covariance_by_axis(config_.loops.path_rotation_sigma_rad, config_.loops.path_position_sigma_m);
   return edge;
 }
@@ -172,7 +224,7 @@ GraphEdge LoopClosure::path_edge(std::size_t a, std::size_t b) const {
 GraphEdge LoopClosure::loop_edge(const LoopCandidate& candidate) const {
   const config::LoopsConfig& loops = config_.loops;
   GraphEdge edge{candidate.known, candidate.query, candidate.pair.T_known_query, candidate.pair.covariance,
-                 true};
+                 !candidate.relocalised};
   edge.covariance += covariance_by_axis(loops.loop_rotation_sigma_rad, loops.loop_position_sigma_m);
   for (const std::size_t place : {candidate.known, candidate.query})
     edge.covariance += covariance_by_axis(loops.timing_sigma_s * places_[place].angular_speed_radps,
@@ -210,6 +262,7 @@ void LoopClosure::decide() {
   for (LoopCandidate& candidate : candidates_) {
     if (!candidate.pair.same) continue;
     candidate.chi2 = chi2_of(candidate);
+    if (candidate.relocalised) continue;
     candidate.accepted = candidate.chi2 <= config_.loops.max_chi2;
     if (candidate.accepted) {
       candidate.verdict = "agrees with the poses within their drift";
@@ -256,7 +309,9 @@ Result<void> LoopClosure::optimise() {
     if (!poses) return tl::unexpected(poses.error());
     fit = true;
     for (LoopCandidate& candidate : candidates_) {
-      if (!candidate.accepted || squared_residual(loop_edge(candidate), *poses) <= worst_allowed) continue;
+      if (!candidate.accepted || candidate.relocalised ||
+          squared_residual(loop_edge(candidate), *poses) <= worst_allowed)
+        continue;
       candidate.accepted = fit = false;
       candidate.verdict = "does not fit the other edges after the optimisation";
     }
@@ -268,7 +323,12 @@ Result<void> LoopClosure::optimise() {
 /// In the world of the estimate.
 SE3 LoopClosure::T_current_camera(std::size_t place) const {
   if (place < optimised_.size()) return optimised_[place];
-  return T_current_odometry_ * places_[place].T_world_camera;
+  const SE3& T_odometry_camera = places_[place].T_world_camera;
+  const SE3& T_relocalised_odometry = T_relocalised_odometry_[places_[place].relocalisations];
+  if (&T_relocalised_odometry == &T_relocalised_odometry_.back())
+    return T_current_odometry_ * T_odometry_camera;
+  const SE3 T_corrected_relocalised = T_current_odometry_ * T_relocalised_odometry_.back().inverse();
+  return T_corrected_relocalised * T_relocalised_odometry * T_odometry_camera;
 }
 
 /// By more than it may be off itself.
@@ -319,8 +379,27 @@ Result<bool> LoopClosure::close() {
   return !optimised_.empty() || corrections_ > 0;
 }
 
-/// Moved with the places before and after it.
+/// The last one that is not later, or the first one.
+std::size_t LoopClosure::place_before(std::int64_t timestamp_ns) const {
+  const auto after = std::ranges::upper_bound(places_, timestamp_ns, {}, &Place::timestamp_ns);
+  return after == places_.begin() ? 0 : static_cast<std::size_t>(after - places_.begin()) - 1;
+}
+
+std::size_t LoopClosure::place_near(std::int64_t timestamp_ns) const {
+  const std::size_t before = place_before(timestamp_ns);
+  const auto apart_ns = [&](std::size_t place) {
+    return std::abs(places_[place].timestamp_ns - timestamp_ns);
+  };
+  return before + 1 < places_.size() && apart_ns(before + 1) < apart_ns(before) ? before + 1 : before;
+}
+
+/// Moved with the places before and after it; where nothing was optimised, as the tracker found itself.
 SE3 LoopClosure::corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const {
+  if (optimised_.empty()) {
+    const std::size_t relocalisations = places_[place_before(timestamp_ns)].relocalisations;
+    if (relocalisations == 0) return T_odometry_camera;
+    return T_relocalised_odometry_[relocalisations] * T_odometry_camera;
+  }
   const auto moved_with = [&](std::size_t place) {
     return optimised_[place] * (places_[place].T_world_camera.inverse() * T_odometry_camera);
   };
@@ -335,7 +414,7 @@ SE3 LoopClosure::corrected(std::int64_t timestamp_ns, const SE3& T_odometry_came
 
 Trajectory LoopClosure::corrected_trajectory() const {
   Trajectory corrected_poses = poses_;
-  if (optimised_.empty()) return corrected_poses;
+  if (places_.empty()) return corrected_poses;
   for (StampedPose& pose : corrected_poses)
     pose.T_world_camera = corrected(pose.timestamp_ns, pose.T_world_camera);
   return corrected_poses;
@@ -344,7 +423,6 @@ Trajectory LoopClosure::corrected_trajectory() const {
 std::optional<filter::FilterState> LoopClosure::corrected_state(std::int64_t timestamp_ns) const {
   const auto found = std::ranges::lower_bound(fused_, timestamp_ns, {}, &FusedFrame::timestamp_ns);
   if (found == fused_.end() || found->timestamp_ns != timestamp_ns) return std::nullopt;
-  if (optimised_.empty()) return found->state;
   const SE3 T_odometry_camera = found->state.T_world_imu * rig_.T_imu_camera;
   return filter::moved(found->state,
                        corrected(timestamp_ns, T_odometry_camera) * T_odometry_camera.inverse());
@@ -361,8 +439,9 @@ SE3 LoopClosure::corrected_pose_near(std::int64_t timestamp_ns) const {
 
 Result<Trajectory> LoopClosure::poses_with(std::vector<LoopCandidate> loops) const {
   LoopClosure other = *this;
+  for (LoopCandidate& loop : loops) loop.accepted = true;
+  std::ranges::copy_if(candidates_, std::back_inserter(loops), &LoopCandidate::relocalised);
   other.candidates_ = std::move(loops);
-  for (LoopCandidate& candidate : other.candidates_) candidate.accepted = true;
   if (auto done = other.optimise(); !done) return tl::unexpected(done.error());
   return other.corrected_trajectory();
 }

@@ -11,6 +11,10 @@
 // Two worlds: that of the odometry is as if nothing was ever corrected, and is what all of this works in; the
 // estimate is in the current one, which is the same until a correction.
 //
+// A lost tracker that finds itself by a place has closed a loop: what the prediction was off by came on along
+// the whole path since then, and not where the tracker was lost. So the odometry goes on as predicted, and
+// the place becomes an edge.
+//
 // The same frames give the same bytes, whatever the number of threads.
 #pragma once
 
@@ -35,11 +39,14 @@ struct Place {
   SE3 T_world_camera;             ///< when it was fused, in the world of the odometry
   /// Of that pose in the world of the first camera, in its tangent (rotation on the right, world position).
   Matrix6d covariance = Matrix6d::Zero();
+  /// What dead reckoning added to it in the times that the tracker was lost before.
+  Matrix6d lost_covariance = Matrix6d::Zero();
   std::optional<Vector3d> gravity_camera;  ///< unit; with an IMU
   double view_depth_m = 0;                 ///< median of its depth
   double blur_px = 0;
   double angular_speed_radps = 0;
   double speed_mps = 0;
+  std::size_t relocalisations = 0;  ///< before it
   places::Appearance appearance;
 };
 
@@ -51,7 +58,8 @@ struct LoopCandidate {
   places::VerifiedPair pair;
   double chi2 = 0;  ///< squared distance to the poses so far, by drift and the edge's own error
   bool accepted = false;
-  std::string verdict;  ///< why it was taken or refused
+  std::string verdict;       ///< why it was taken or refused
+  bool relocalised = false;  ///< the lost tracker found itself by it, so that it is accepted in any case
 };
 
 /// What is needed to fuse a frame again; in the world of the odometry.
@@ -69,6 +77,10 @@ class LoopClosure {
 
   /// A frame that was fused (compensated, gated, with colour), with the estimate that it was fused at.
   void add_fused(const RgbdFrame& frame, const filter::GaussianState& estimate, double blur_px);
+  /// A lost tracker was predicted to be there, and has found itself by the fused frame of that stamp; before
+  /// the calls for that frame.
+  void add_relocalisation(const filter::GaussianState& predicted, const filter::GaussianState& found,
+                          std::int64_t found_by_ns);
   /// The pose of a frame that has one, fused or not.
   void add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera);
 
@@ -106,6 +118,16 @@ class LoopClosure {
   }
 
  private:
+  /// A tracker that found itself by a place: as an edge, once the frame is a place.
+  struct Relocalisation {
+    std::size_t known = 0;
+    SE3 T_known_camera;
+    SE3 T_odometry_camera;
+  };
+  [[nodiscard]] Matrix6d camera_covariance(const filter::GaussianState& in_odometry) const;
+  [[nodiscard]] Matrix6d lost_covariance_at(const SE3& T_odometry_camera) const;
+  void add_relocalisation_edge(std::size_t query);
+  [[nodiscard]] std::size_t place_near(std::int64_t timestamp_ns) const;
   void look_for_loops(std::size_t query);
   [[nodiscard]] std::size_t first_recent(std::size_t query) const;
   [[nodiscard]] std::vector<std::size_t> candidates_by_appearance(std::size_t query) const;
@@ -118,6 +140,7 @@ class LoopClosure {
   void decide();
   [[nodiscard]] Result<void> optimise();
   [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const;
+  [[nodiscard]] std::size_t place_before(std::int64_t timestamp_ns) const;
   [[nodiscard]] SE3 T_current_camera(std::size_t place) const;
   [[nodiscard]] bool contradicts_current_poses(const LoopCandidate& candidate) const;
   [[nodiscard]] bool is_large(const SE3& motion) const;
@@ -131,7 +154,13 @@ class LoopClosure {
   Trajectory poses_;
   int fused_since_place_ = 0;
   SE3 T_current_odometry_;
-  bool poses_are_wrong_ = false;  ///< a loop of the last place says so
+  /// By the number of relocalisations before: of that world, what is no correction.
+  std::vector<SE3> T_relocalised_odometry_{SE3{}};
+  /// Of places from now on, at the pose where the tracker found itself the last time.
+  Matrix6d lost_covariance_ = Matrix6d::Zero();
+  SE3 T_odometry_found_;
+  std::optional<Relocalisation> relocalisation_;  ///< of the next place
+  bool poses_are_wrong_ = false;                  ///< a loop of the last place says so
   std::size_t fused_at_attempt_ = 0;
   int corrections_ = 0;
 };

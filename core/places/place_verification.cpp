@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "core/places/dense_alignment.hpp"
 #include "core/places/depth_agreement.hpp"
 #include "core/places/place_certainty.hpp"
 #include "core/places/pose_from_points.hpp"
@@ -115,25 +115,32 @@ VerifiedPair verify_by_depth(const SmallImages& known, const SmallImages& query,
   return pair;
 }
 
+VerifiedPair verify_from_features(const SmallImages& known, const SmallImages& query,
+                                  const RelativePose& pose, const PinholeCamera& camera,
+                                  const config::Config& config) {
+  VerifiedPair pair;
+  const auto refined = aligned_by_depth(known, query, {pose, true, 0}, camera, config);
+  conclude(refined ? *refined : pose, known, query, camera, config, pair);
+  return pair;
+}
+
 VerifiedPair verify_pair(const Appearance& known, const Appearance& query, const SE3& T_known_query_by_path,
                          const PinholeCamera& camera, const config::Config& config) {
-  VerifiedPair pair;
-  std::optional<RelativePose> pose = pose_by_features(known, query, camera, config, pair);
-  if (pose) {
-    if (const auto refined = aligned_by_depth(known.small, query.small, {*pose, true, 0}, camera, config))
-      pose = refined;
-    conclude(*pose, known.small, query.small, camera, config, pair);
+  VerifiedPair by_features;
+  const std::optional<RelativePose> pose = pose_by_features(known, query, camera, config, by_features);
+  const auto with_counts = [&](VerifiedPair pair) {
+    pair.matches = by_features.matches;
+    pair.inliers = by_features.inliers;
     return pair;
-  }
+  };
+  if (pose) return with_counts(verify_from_features(known.small, query.small, *pose, camera, config));
   if (depth_agreement(query.small, known.small, T_known_query_by_path, camera, config).overlap <
       config.loops.min_consistent_share)
-    return pair;
+    return by_features;
   VerifiedPair by_depth = verify_by_depth(known.small, query.small, T_known_query_by_path, 0, camera, config);
-  by_depth.matches = pair.matches;
-  by_depth.inliers = pair.inliers;
   // Where depth was aligned, what it contradicts is the reason, and before, what features lacked as well.
-  if (!by_depth.by_depth_alone) by_depth.reason = pair.reason + "; " + by_depth.reason;
-  return by_depth;
+  if (!by_depth.by_depth_alone) by_depth.reason = by_features.reason + "; " + by_depth.reason;
+  return with_counts(std::move(by_depth));
 }
 
 }  // namespace fusebench::places

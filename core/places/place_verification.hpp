@@ -7,6 +7,7 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/places/appearance.hpp"
+#include "core/places/dense_alignment.hpp"
 
 namespace fusebench::places {
 
@@ -30,6 +31,11 @@ struct VerifiedPair {
 [[nodiscard]] VerifiedPair verify_pair(const Appearance& known, const Appearance& query,
                                        const SE3& T_known_query_by_path, const PinholeCamera& camera,
                                        const config::Config& config);
+
+/// A pose that features found, with its covariance, refined and judged by depth in both directions.
+[[nodiscard]] VerifiedPair verify_from_features(const SmallImages& known, const SmallImages& query,
+                                                const RelativePose& pose, const PinholeCamera& camera,
+                                                const config::Config& config);
 
 /// Depth alone, aligned from that pose, which may be off by about reach_m (AlignmentStart). It has to tell
 /// the pose along every axis, intensities have to fit where both images have contrast, and the depth of

@@ -48,9 +48,7 @@ std::vector<places::SeenPoint> seen_points(std::span<const places::PlaceFeature>
 FoundPlace found_from(const Keyframe& keyframe, const SE3& T_keyframe_camera, const Matrix6d& covariance) {
   FoundPlace found;
   found.T_world_camera = keyframe.T_world_camera * T_keyframe_camera;
-  Matrix6d to_world = Matrix6d::Identity();
-  to_world.bottomRightCorner<3, 3>() = keyframe.T_world_camera.rotation_matrix();
-  found.covariance = to_world * covariance * to_world.transpose();
+  found.covariance = with_position_in(keyframe.T_world_camera.rotation, covariance);
   return found;
 }
 
@@ -181,6 +179,23 @@ void Keyframes::complete(Keyframe& keyframe) const {
   if (keyframe.small) return;
   keyframe.small = places::small_images_of(keyframe.grey, keyframe.depth.unpacked_m());
   keyframe.depth_code = ferns::depth_fern_code(keyframe.small->depth_m);
+}
+
+std::optional<FoundPlace> Keyframes::verified_by_depth(const FoundPlace& found,
+                                                       const places::SmallImages& query) {
+  Keyframe& keyframe = kept_[found.keyframe];
+  complete(keyframe);
+  const SE3 T_keyframe_world = keyframe.T_world_camera.inverse();
+  const places::RelativePose pose{T_keyframe_world * found.T_world_camera,
+                                  with_position_in(T_keyframe_world.rotation, found.covariance)};
+  const places::VerifiedPair pair =
+      places::verify_from_features(*keyframe.small, query, pose, camera_, config_);
+  if (!pair.same) return std::nullopt;
+  FoundPlace refined = found;
+  const FoundPlace by_depth = found_from(keyframe, pair.T_known_query, pair.covariance);
+  refined.T_world_camera = by_depth.T_world_camera;
+  refined.covariance = by_depth.covariance;
+  return refined;
 }
 
 std::vector<Keyframes::AlignmentCandidate> Keyframes::seen_by_prediction(const places::SmallImages& query,

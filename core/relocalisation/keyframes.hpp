@@ -75,6 +75,11 @@ class Keyframes {
   [[nodiscard]] std::optional<FoundPlace> find_by_depth(const places::SmallImages& query,
                                                         const SE3& T_world_camera_predicted, double reach_m);
 
+  /// A pose that find() has found of that image, refined by depth; nothing if the depth of either frame
+  /// contradicts that of the other.
+  [[nodiscard]] std::optional<FoundPlace> verified_by_depth(const FoundPlace& found,
+                                                            const places::SmallImages& query);
+
   /// The pose of each kept frame becomes that of the function, by its stamp.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at);
 

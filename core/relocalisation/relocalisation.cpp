@@ -52,17 +52,39 @@ void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_cam
   keyframes_.offer(frame.grey, frame.depth_m, T_world_camera, timestamp_ns, blur_px);
 }
 
+RelocalisedPose Relocalisation::pose_of(const FoundPlace& found) const {
+  return relocalised_pose(found, keyframes_[found.keyframe], rig_.T_imu_camera, config_.relocalisation);
+}
+
 /// The pose of the IMU there, if the prediction does not rule it out.
 std::optional<RelocalisedPose> Relocalisation::likely_pose(const std::optional<FoundPlace>& found,
                                                            const filter::GaussianState& prediction) const {
   if (!found) return std::nullopt;
-  const RelocalisedPose pose =
-      relocalised_pose(*found, keyframes_[found->keyframe], rig_.T_imu_camera, config_.relocalisation);
+  const RelocalisedPose pose = pose_of(*found);
   // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
   // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
   if (!(normalised_innovation(prediction, pose) <= config_.relocalisation.max_innovation))
     return std::nullopt;
   return pose;
+}
+
+/// The pose that features found and the prediction rules out, if the frames before found the same and depth
+/// verifies it.
+std::optional<RelocalisedPose> Relocalisation::supported_pose(const FoundPlace& found, const RgbdFrame& frame,
+                                                              const filter::GaussianState& prediction) {
+  const RelocalisedPose pose = pose_of(found);
+  // What repeats, as the doors of a corridor, is found with all certainty in frame after frame: nothing in
+  // the images tells it, and only where the camera can be does.
+  const config::RelocalisationConfig& config = config_.relocalisation;
+  if (!(normalised_position_innovation(prediction, pose) <= config.max_innovation) ||
+      !(normalised_innovation(prediction, pose) <= config.max_supported_innovation))
+    return std::nullopt;
+  refused_.add({frame.timestamp_ns, pose, prediction.mean.T_world_imu});
+  if (!refused_.are_enough()) return std::nullopt;
+  const auto verified =
+      keyframes_.verified_by_depth(found, places::small_images_of(frame.grey, frame.depth_m));
+  if (!verified) return std::nullopt;
+  return pose_of(*verified);
 }
 
 std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame, const UsableImages& usable,
@@ -74,6 +96,7 @@ std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame,
   std::optional<FoundPlace> found;
   if (usable.grey) found = keyframes_.find(frame.grey);
   std::optional<RelocalisedPose> pose = likely_pose(found, prediction);
+  if (!pose && found && usable.depth) pose = supported_pose(*found, frame, prediction);
   if (!pose && usable.depth) {
     found = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m),
                                      prediction.mean.T_world_imu * rig_.T_imu_camera, reach_m(prediction));
@@ -81,6 +104,7 @@ std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame,
     result.by_depth = true;
   }
   if (!pose) return std::nullopt;
+  refused_.clear();
   const Keyframe& keyframe = keyframes_[found->keyframe];
   result.prior = relocalisation_update(prediction, *pose, unknown_motion(config_));
   if (!filter::is_valid(result.prior)) return std::nullopt;

@@ -14,6 +14,7 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
+#include "core/relocalisation/agreeing_places.hpp"
 #include "core/relocalisation/keyframes.hpp"
 #include "core/relocalisation/relocalisation_update.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
@@ -37,7 +38,7 @@ class Relocalisation {
  public:
   /// The references must outlive it.
   Relocalisation(const config::Config& config, const SensorRig& rig)
-      : config_(config), rig_(rig), keyframes_(rig.camera, config) {}
+      : config_(config), rig_(rig), keyframes_(rig.camera, config), refused_(config) {}
 
   /// Offers a fused frame (motion compensated, depth gated) as one to be found again by.
   void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,
@@ -46,22 +47,34 @@ class Relocalisation {
   /// All poses were corrected: those of the keyframes become these, by their stamps.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
     keyframes_.move(T_world_camera_at);
+    refused_.clear();
+  }
+
+  /// The motion of the camera by the places of the frames before, where these contradict the prediction: what
+  /// dead reckoning says of the velocity would then spoil the images that are compensated for it.
+  [[nodiscard]] std::optional<filter::FilterState> motion_by_places(
+      std::int64_t timestamp_ns, const filter::FilterState& predicted) const {
+    return refused_.motion(timestamp_ns, predicted);
   }
 
   /// Looks for the frame among the keyframes; nothing if none shows its place for certain, or if the
-  /// prediction rules the place out.
+  /// prediction rules the place out and the frames before do not support it (agreeing_places.hpp).
   [[nodiscard]] std::optional<RelocalisedReference> find(const RgbdFrame& frame, const UsableImages& usable,
                                                          const filter::GaussianState& prediction,
                                                          const tsdf::TsdfVolume& model,
                                                          const Workers& workers);
 
  private:
+  [[nodiscard]] RelocalisedPose pose_of(const FoundPlace& found) const;
   [[nodiscard]] std::optional<RelocalisedPose> likely_pose(const std::optional<FoundPlace>& found,
                                                            const filter::GaussianState& prediction) const;
+  [[nodiscard]] std::optional<RelocalisedPose> supported_pose(const FoundPlace& found, const RgbdFrame& frame,
+                                                              const filter::GaussianState& prediction);
 
   const config::Config& config_;
   const SensorRig& rig_;
   Keyframes keyframes_;
+  AgreeingPlaces refused_;
 };
 
 }  // namespace fusebench::relocalisation

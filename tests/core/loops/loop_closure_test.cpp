@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -118,6 +119,44 @@ TEST_F(Loops, ComeTogetherWhereTheCameraComesBack) {
     };
     const SE3 T_true = room(candidate.known).inverse() * room(candidate.query);
     EXPECT_LT((candidate.pair.T_known_query.translation - T_true.translation).norm(), 0.03);
+  }
+}
+
+/// A tracker that is lost for a while finds itself by the first frame, which is right: it is not the time
+/// that it was lost in which it drifted, but the path before.
+TEST_F(Loops, ALostTrackerThatFindsItselfClosesOne) {
+  config::Config config = configuration(config::LoopMode::final);
+  config.loops.max_dissimilarity = 0.05;  // nothing else closes one
+  config.loops.max_path_candidates = 0;
+  constexpr int kLost = 45, kFound = 50, kEnd = 56;
+  for (const config::LoopMode mode : {config::LoopMode::detect, config::LoopMode::final}) {
+    config.loops.mode = mode;
+    LoopClosure loops(config, rig_);
+    Trajectory online;
+    for (int k = 0; k < kEnd; ++k) {
+      if (k >= kLost && k < kFound) continue;
+      const filter::GaussianState estimate = estimate_of(k, k < kLost);
+      if (k == kFound) loops.add_relocalisation(estimate_of(k, true), estimate, stamp_ns(0));
+      loops.add_fused(frames()[static_cast<std::size_t>(k)], estimate, 0);
+      loops.add_pose(stamp_ns(k), estimate.mean.T_world_imu);
+      online.push_back({stamp_ns(k), estimate.mean.T_world_imu});
+    }
+    const auto changed = loops.close();
+    ASSERT_TRUE(changed) << changed.error().message;
+    EXPECT_EQ(*changed, mode == config::LoopMode::final);
+    const Trajectory final = loops.corrected_trajectory();
+    ASSERT_EQ(final.size(), online.size());
+    if (!*changed) {  // as the tracker found itself
+      for (std::size_t k = 0; k < final.size(); ++k)
+        EXPECT_LT(pose_minus(final[k].T_world_camera, online[k].T_world_camera).norm(), 1e-9) << k;
+      continue;
+    }
+    const auto error_m = [](const StampedPose& pose, int frame) {
+      return (pose.T_world_camera.translation - T_room_camera(frame).translation).norm();
+    };
+    EXPECT_LT(error_m(final.back(), kEnd - 1), 0.01);
+    EXPECT_LT(error_m(final[kLost - 1], kLost - 1), 0.4 * error_m(online[kLost - 1], kLost - 1));
+    EXPECT_EQ(std::ranges::count_if(loops.candidates(), &LoopCandidate::accepted), 1);
   }
 }
 
