@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "core/base/solvers.hpp"
@@ -12,6 +13,9 @@
 namespace fusebench::loops {
 
 namespace {
+
+constexpr std::string_view kFoundItself = "the lost tracker found itself by it";
+constexpr std::string_view kContradicts = "contradicts the poses, whatever supports it";
 
 double seconds_apart(const Place& earlier, const Place& later) {
   return seconds_between(earlier.timestamp_ns, later.timestamp_ns);
@@ -137,7 +141,7 @@ void LoopClosure::add_relocalisation_edge(std::size_t query) {
   candidate.pair.covariance = covariance_by_axis(config_.relocalisation.keyframe_rotation_sigma_rad,
                                                  config_.relocalisation.keyframe_position_sigma_m);
   candidate.relocalised = candidate.accepted = true;
-  candidate.verdict = "the lost tracker found itself by it";
+  candidate.verdict = kFoundItself;
   candidates_.push_back(std::move(candidate));
   relocalisation_.reset();
 }
@@ -262,14 +266,18 @@ void LoopClosure::decide() {
   for (LoopCandidate& candidate : candidates_) {
     if (!candidate.pair.same) continue;
     candidate.chi2 = chi2_of(candidate);
-    if (candidate.relocalised) continue;
+    if (candidate.relocalised) {
+      candidate.accepted = candidate.chi2 <= config_.loops.max_supported_chi2;
+      candidate.verdict = candidate.accepted ? kFoundItself : kContradicts;
+      continue;
+    }
     candidate.accepted = candidate.chi2 <= config_.loops.max_chi2;
     if (candidate.accepted) {
       candidate.verdict = "agrees with the poses within their drift";
     } else if (candidate.chi2 <= config_.loops.max_supported_chi2) {
       pending.push_back(&candidate);
     } else {
-      candidate.verdict = "contradicts the poses, whatever supports it";
+      candidate.verdict = kContradicts;
     }
   }
   for (LoopCandidate* const candidate : pending) {
@@ -440,7 +448,9 @@ SE3 LoopClosure::corrected_pose_near(std::int64_t timestamp_ns) const {
 Result<Trajectory> LoopClosure::poses_with(std::vector<LoopCandidate> loops) const {
   LoopClosure other = *this;
   for (LoopCandidate& loop : loops) loop.accepted = true;
-  std::ranges::copy_if(candidates_, std::back_inserter(loops), &LoopCandidate::relocalised);
+  std::ranges::copy_if(candidates_, std::back_inserter(loops), [](const LoopCandidate& candidate) {
+    return candidate.relocalised && candidate.accepted;
+  });
   other.candidates_ = std::move(loops);
   if (auto done = other.optimise(); !done) return tl::unexpected(done.error());
   return other.corrected_trajectory();

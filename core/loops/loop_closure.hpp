@@ -59,7 +59,7 @@ struct LoopCandidate {
   double chi2 = 0;  ///< squared distance to the poses so far, by drift and the edge's own error
   bool accepted = false;
   std::string verdict;       ///< why it was taken or refused
-  bool relocalised = false;  ///< the lost tracker found itself by it, so that it is accepted in any case
+  bool relocalised = false;  ///< the lost tracker found itself by it, which is support enough
 };
 
 /// What is needed to fuse a frame again; in the world of the odometry.
