@@ -42,10 +42,8 @@ bool AgreeingPlaces::is_recent(std::int64_t timestamp_ns) const {
 }
 
 void AgreeingPlaces::add(const RefusedPlace& place) {
-  const bool agrees =
-      agreeing_ > 0 &&
-      seconds_between(last_.timestamp_ns, place.timestamp_ns) <= config_.relocalisation.agreeing_within_s &&
-      squared_disagreement(last_, place, config_) <= config_.loops.agreeing_chi2;
+  const bool agrees = is_recent(place.timestamp_ns) &&
+                      squared_disagreement(last_, place, config_) <= config_.loops.agreeing_chi2;
   if (!agrees) {
     first_ = place;
     agreeing_ = 0;

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "core/base/geometry.hpp"
 #include "core/relocalisation/relocalisation.hpp"
 #include "tests/support/textured_room.hpp"
@@ -82,7 +80,7 @@ TEST(AgreeingPlaces, OfLongAgoDoNotCount) {
 }
 
 TEST(AgreeingPlaces, TheGyroscopeTellsHowFarTheyAreTurned) {
-  // By a filter without an IMU nothing is known of the turn, so that half a degree a frame is possible.
+  // By a filter without an IMU nothing is known of the turn, so that two degrees a frame are possible.
   const RefusedPlace a = right_place(0);
   RefusedPlace b = right_place(1);
   b.pose.T_world_imu.rotation = b.pose.T_world_imu.rotation * so3_exp({0, 0.04, 0});
