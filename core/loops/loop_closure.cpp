@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string_view>
 #include <utility>
 
-#include "core/base/solvers.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 
@@ -14,24 +12,8 @@ namespace fusebench::loops {
 
 namespace {
 
-constexpr std::string_view kFoundItself = "the lost tracker found itself by it";
-constexpr std::string_view kContradicts = "contradicts the poses, whatever supports it";
-
 double seconds_apart(const Place& earlier, const Place& later) {
   return seconds_between(earlier.timestamp_ns, later.timestamp_ns);
-}
-
-/// The covariance without what is negative in it.
-Matrix6d not_negative(const Matrix6d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Matrix6d(0.5 * (covariance + covariance.transpose())));
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         eigen.eigenvectors().transpose();
-}
-
-Matrix6d covariance_by_axis(double rotation_sigma_rad, double position_sigma_m) {
-  Vector6d sigmas;
-  sigmas << Vector3d::Constant(rotation_sigma_rad), Vector3d::Constant(position_sigma_m);
-  return sigmas.cwiseAbs2().asDiagonal();
 }
 
 /// Those with the smallest numbers.
@@ -85,8 +67,11 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   if (config_.terms.prior == config::Prior::imu)
     place.gravity_camera = T_world_camera.rotation.conjugate() * in_odometry.mean.gravity_direction_world;
   place.blur_px = blur_px;
-  place.angular_speed_radps = estimate.mean.angular_velocity_imu_radps.norm();
-  place.speed_mps = estimate.mean.velocity_world_mps.norm();
+  const Vector3d& rate_imu_radps = in_odometry.mean.angular_velocity_imu_radps;
+  place.angular_velocity_camera_radps = rig_.T_imu_camera.rotation.conjugate() * rate_imu_radps;
+  place.velocity_camera_mps =
+      T_world_camera.rotation.conjugate() * in_odometry.mean.velocity_world_mps +
+      rig_.T_imu_camera.rotation.conjugate() * rate_imu_radps.cross(rig_.T_imu_camera.translation);
   places_.push_back(std::move(place));
   add_relocalisation_edge(places_.size() - 1);
   look_for_loops(places_.size() - 1);
@@ -205,92 +190,6 @@ double LoopClosure::dissimilarity(std::size_t known, std::size_t query) const {
   return ferns::dissimilarity(places_[known].appearance.code, places_[query].appearance.code);
 }
 
-/// What the filter says of the motion from a to b, with the drift that came on in between. It claims too
-/// little of the drift of tracking, and not of dead reckoning.
-GraphEdge LoopClosure::path_edge(std::size_t a, std::size_t b) const {
-  const Place& from = places_[a];
-  const Place& to = places_[b];
-  const Matrix6d carried = filter::pose_transport(to.T_world_camera, from.T_world_camera);
-  const auto added = [&](const Matrix6d Place::*covariance) {
-    return not_negative(to.*covariance - carried * (from.*covariance) * carried.transpose());
-  };
-  const double factor = config_.loops.drift_factor * config_.loops.drift_factor;
-  GraphEdge edge{a, b, from.T_world_camera.inverse() * to.T_world_camera, Matrix6d::Zero(), false};
-  const Quaterniond R_from_world = from.T_world_camera.rotation.conjugate();
-  edge.covariance =
-      factor * with_position_in(R_from_world, added(&Place::covariance)) +
-      with_position_in(R_from_world, added(&Place::lost_covariance)) +
-      covariance_by_axis(config_.loops.path_rotation_sigma_rad, config_.loops.path_position_sigma_m);
-  return edge;
-}
-
-/// The images of a place are of instants that are known only so well.
-GraphEdge LoopClosure::loop_edge(const LoopCandidate& candidate) const {
-  const config::LoopsConfig& loops = config_.loops;
-  GraphEdge edge{candidate.known, candidate.query, candidate.pair.T_known_query, candidate.pair.covariance,
-                 !candidate.relocalised};
-  edge.covariance += covariance_by_axis(loops.loop_rotation_sigma_rad, loops.loop_position_sigma_m);
-  for (const std::size_t place : {candidate.known, candidate.query})
-    edge.covariance += covariance_by_axis(loops.timing_sigma_s * places_[place].angular_speed_radps,
-                                          loops.timing_sigma_s * places_[place].speed_mps);
-  return edge;
-}
-
-double LoopClosure::chi2_of(const LoopCandidate& candidate) const {
-  const GraphEdge path = path_edge(candidate.known, candidate.query);
-  GraphEdge both = loop_edge(candidate);
-  both.covariance += path.covariance;
-  const Vector6d error = pose_minus(path.T_a_b, both.T_a_b);
-  return error.dot(both.covariance.ldlt().solve(error));
-}
-
-/// By way of the motion between their places, which are near in time.
-bool LoopClosure::agree(const LoopCandidate& a, const LoopCandidate& b) const {
-  const auto apart_s = [&](std::size_t i, std::size_t j) {
-    return std::abs(seconds_apart(places_[i], places_[j]));
-  };
-  if (apart_s(a.query, b.query) > config_.loops.agreeing_within_s || a.query == b.query) return false;
-  const SE3 T_known = places_[a.known].T_world_camera.inverse() * places_[b.known].T_world_camera;
-  const SE3 T_query = places_[a.query].T_world_camera.inverse() * places_[b.query].T_world_camera;
-  GraphEdge both = loop_edge(a);
-  both.covariance += loop_edge(b).covariance;
-  const auto path = [&](std::size_t i, std::size_t j) { return path_edge(std::min(i, j), std::max(i, j)); };
-  if (a.known != b.known) both.covariance += path(a.known, b.known).covariance;
-  both.covariance += path(a.query, b.query).covariance;
-  const Vector6d error = pose_minus(T_known * b.pair.T_known_query * T_query.inverse(), both.T_a_b);
-  return error.dot(both.covariance.ldlt().solve(error)) <= config_.loops.agreeing_chi2;
-}
-
-void LoopClosure::decide() {
-  std::vector<LoopCandidate*> pending;
-  for (LoopCandidate& candidate : candidates_) {
-    if (!candidate.pair.same) continue;
-    candidate.chi2 = chi2_of(candidate);
-    if (candidate.relocalised) {
-      candidate.accepted = candidate.chi2 <= config_.loops.max_supported_chi2;
-      candidate.verdict = candidate.accepted ? kFoundItself : kContradicts;
-      continue;
-    }
-    candidate.accepted = candidate.chi2 <= config_.loops.max_chi2;
-    if (candidate.accepted) {
-      candidate.verdict = "agrees with the poses within their drift";
-    } else if (candidate.chi2 <= config_.loops.max_supported_chi2) {
-      pending.push_back(&candidate);
-    } else {
-      candidate.verdict = kContradicts;
-    }
-  }
-  for (LoopCandidate* const candidate : pending) {
-    const bool supported = std::ranges::any_of(candidates_, [&](const LoopCandidate& other) {
-      return &other != candidate && other.pair.same && other.chi2 <= config_.loops.max_supported_chi2 &&
-             agree(*candidate, other);
-    });
-    candidate->accepted = supported;
-    candidate->verdict = supported ? "agrees with another loop near to it"
-                                   : "neither agrees with the poses nor with another loop";
-  }
-}
-
 /// Edges that do not fit the others go.
 Result<void> LoopClosure::optimise() {
   optimised_.clear();
@@ -302,7 +201,7 @@ Result<void> LoopClosure::optimise() {
   for (std::size_t i = 0; i < places_.size(); ++i) {
     graph.T_world_camera.push_back(places_[i].T_world_camera);
     graph.gravity_camera.push_back(places_[i].gravity_camera);
-    if (i > 0) graph.edges.push_back(path_edge(i - 1, i));
+    if (i > 0) graph.edges.push_back(path_edge(places_, i - 1, i, config_.loops));
   }
   const std::vector<GraphEdge> path = graph.edges;
   const double worst_allowed =
@@ -310,7 +209,7 @@ Result<void> LoopClosure::optimise() {
   for (bool fit = false; !fit;) {
     graph.edges = path;
     for (const LoopCandidate& candidate : candidates_) {
-      if (candidate.accepted) graph.edges.push_back(loop_edge(candidate));
+      if (candidate.accepted) graph.edges.push_back(loop_edge(places_, candidate, config_.loops));
     }
     if (graph.edges.size() == path.size()) return {};
     auto poses = optimised_poses(graph);
@@ -318,7 +217,7 @@ Result<void> LoopClosure::optimise() {
     fit = true;
     for (LoopCandidate& candidate : candidates_) {
       if (!candidate.accepted || candidate.relocalised ||
-          squared_residual(loop_edge(candidate), *poses) <= worst_allowed)
+          squared_residual(loop_edge(places_, candidate, config_.loops), *poses) <= worst_allowed)
         continue;
       candidate.accepted = fit = false;
       candidate.verdict = "does not fit the other edges after the optimisation";
@@ -341,7 +240,7 @@ SE3 LoopClosure::T_current_camera(std::size_t place) const {
 
 /// By more than it may be off itself.
 bool LoopClosure::contradicts_current_poses(const LoopCandidate& candidate) const {
-  const GraphEdge edge = loop_edge(candidate);
+  const GraphEdge edge = loop_edge(places_, candidate, config_.loops);
   const SE3 T_known_query = T_current_camera(candidate.known).inverse() * T_current_camera(candidate.query);
   const Vector6d error = pose_minus(T_known_query, edge.T_a_b);
   return is_large(edge.T_a_b.inverse() * T_known_query) &&
@@ -361,7 +260,7 @@ Result<std::optional<SE3>> LoopClosure::correct_online() {
     return std::nullopt;
   poses_are_wrong_ = false;
   fused_at_attempt_ = fused_.size();
-  decide();
+  decide(places_, config_.loops, candidates_);
   std::vector<SE3> before = optimised_;
   if (auto done = optimise(); !done) return tl::unexpected(done.error());
   const SE3& T_odometry_last = places_.back().T_world_camera;
@@ -381,7 +280,7 @@ Result<std::optional<SE3>> LoopClosure::correct_online() {
 
 Result<bool> LoopClosure::close() {
   if (!enabled()) return false;
-  decide();
+  decide(places_, config_.loops, candidates_);
   if (config_.loops.mode == config::LoopMode::detect) return false;
   if (auto done = optimise(); !done) return tl::unexpected(done.error());
   return !optimised_.empty() || corrections_ > 0;

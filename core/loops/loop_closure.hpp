@@ -3,8 +3,7 @@
 //
 // Fused frames become places every few frames. Each is compared with the older ones by what it looks like
 // (color_fern_code.hpp), and by where the path leads; the most similar and the nearest are verified by
-// features and by depth in both directions (core/places). An edge is accepted if it agrees with the poses so
-// far within their drift, or with another edge near to it in time: appearance alone never moves anything. The
+// features and by depth in both directions (core/places). Which edges are accepted is in loop_edges.hpp. The
 // graph of places is optimised at the end, or online as well when a loop shows that the poses are wrong
 // (pose_graph.hpp); between places, poses move with their neighbours.
 //
@@ -28,39 +27,10 @@
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
-#include "core/loops/pose_graph.hpp"
-#include "core/places/place_verification.hpp"
+#include "core/loops/loop_edges.hpp"
+#include "core/loops/place.hpp"
 
 namespace fusebench::loops {
-
-/// A fused frame that can be recognised when the camera comes back to it.
-struct Place {
-  std::int64_t timestamp_ns = 0;  ///< of the frame
-  SE3 T_world_camera;             ///< when it was fused, in the world of the odometry
-  /// Of that pose in the world of the first camera, in its tangent (rotation on the right, world position).
-  Matrix6d covariance = Matrix6d::Zero();
-  /// What dead reckoning added to it in the times that the tracker was lost before.
-  Matrix6d lost_covariance = Matrix6d::Zero();
-  std::optional<Vector3d> gravity_camera;  ///< unit; with an IMU
-  double view_depth_m = 0;                 ///< median of its depth
-  double blur_px = 0;
-  double angular_speed_radps = 0;
-  double speed_mps = 0;
-  std::size_t relocalisations = 0;  ///< before it
-  places::Appearance appearance;
-};
-
-/// A pair of places that was looked at.
-struct LoopCandidate {
-  std::size_t known = 0;  ///< places, by index
-  std::size_t query = 0;
-  double dissimilarity = 0;
-  places::VerifiedPair pair;
-  double chi2 = 0;  ///< squared distance to the poses so far, by drift and the edge's own error
-  bool accepted = false;
-  std::string verdict;       ///< why it was taken or refused
-  bool relocalised = false;  ///< the lost tracker found itself by it, which is support enough
-};
 
 /// What is needed to fuse a frame again; in the world of the odometry.
 struct FusedFrame {
@@ -114,7 +84,7 @@ class LoopClosure {
   [[nodiscard]] std::span<const LoopCandidate> candidates() const { return candidates_; }
   /// Of a verified pair's pose: rotation on the right (rad), position in the frame of the known place (m).
   [[nodiscard]] Matrix6d covariance_of(const LoopCandidate& candidate) const {
-    return loop_edge(candidate).covariance;
+    return loop_edge(places_, candidate, config_.loops).covariance;
   }
 
  private:
@@ -133,11 +103,6 @@ class LoopClosure {
   [[nodiscard]] std::vector<std::size_t> candidates_by_appearance(std::size_t query) const;
   [[nodiscard]] std::vector<std::size_t> candidates_by_path(std::size_t query) const;
   [[nodiscard]] double dissimilarity(std::size_t known, std::size_t query) const;
-  [[nodiscard]] GraphEdge path_edge(std::size_t a, std::size_t b) const;
-  [[nodiscard]] GraphEdge loop_edge(const LoopCandidate& candidate) const;
-  [[nodiscard]] double chi2_of(const LoopCandidate& candidate) const;
-  [[nodiscard]] bool agree(const LoopCandidate& a, const LoopCandidate& b) const;
-  void decide();
   [[nodiscard]] Result<void> optimise();
   [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const;
   [[nodiscard]] std::size_t place_before(std::int64_t timestamp_ns) const;

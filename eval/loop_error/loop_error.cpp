@@ -67,9 +67,14 @@ std::optional<LoopCandidate> true_loop(std::span<const Place> places, const True
   return best;
 }
 
+/// Normalised estimation error squared, by degree of freedom: 1 where the covariance is consistent.
+double nees(const Vector3d& error, const Matrix3d& covariance) {
+  return error.dot(covariance.ldlt().solve(error)) / 3;
+}
+
 void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopError& result) {
   std::vector<double> translations_m, rotations_rad;
-  Vector3d rotation_nees = Vector3d::Zero(), position_nees = Vector3d::Zero();
+  double rotation_nees = 0, position_nees = 0;
   for (const LoopCandidate& candidate : closure.candidates()) {
     if (!candidate.pair.same || !truth[candidate.known] || !truth[candidate.query]) continue;
     const SE3 T_true = truth[candidate.known]->inverse() * *truth[candidate.query];
@@ -89,16 +94,15 @@ void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopEr
     result.false_accepted += is_false ? 1U : 0U;
     translations_m.push_back(translation_m);
     rotations_rad.push_back(rotation_rad);
-    const Vector6d variances = covariance.diagonal();
-    rotation_nees += error.head<3>().cwiseAbs2().cwiseQuotient(variances.head<3>());
-    position_nees += error.tail<3>().cwiseAbs2().cwiseQuotient(variances.tail<3>());
+    rotation_nees += nees(error.head<3>(), covariance.topLeftCorner<3, 3>());
+    position_nees += nees(error.tail<3>(), covariance.bottomRightCorner<3, 3>());
   }
   if (result.accepted == 0) return;
   result.median_translation_m = metrics::statistics(translations_m).median;
   result.median_rotation_rad = metrics::statistics(rotations_rad).median;
   const auto accepted = static_cast<double>(result.accepted);
-  result.nees_rotation = rotation_nees.mean() / accepted;
-  result.nees_position = position_nees.mean() / accepted;
+  result.nees_rotation = rotation_nees / accepted;
+  result.nees_position = position_nees / accepted;
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ struct LoopError {
   std::size_t false_accepted = 0;
   double median_translation_m = 0;  ///< errors of accepted loops
   double median_rotation_rad = 0;
-  double nees_rotation = 0;  ///< mean over accepted loops, by axis: 1 is consistent
+  double nees_rotation = 0;  ///< mean over accepted loops, by degree of freedom: 1 is consistent
   double nees_position = 0;
   /// ATE of the final poses with a true loop at every revisit in place of those that were found; nothing if
   /// there is no revisit.

@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "datasets/simulator/random/random_numbers.hpp"
+#include "datasets/simulator/random/smooth_noise.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -16,8 +18,8 @@ namespace {
 using Surface = render::Renderer::Surface;
 
 constexpr double kBaseline_m = 0.075;  // a Kinect's
-constexpr int kSmoothSpacing_px = 80;
-constexpr int kPatchSpacing_px = 14;  // holes are patches rather than single pixels
+constexpr int kSmoothSpacing_px = 80;  // of the sensor, as the next
+constexpr int kPatchSpacing_px = 14;   // holes are patches rather than single pixels
 constexpr std::size_t kRowsPerChunk = 16;
 
 // Of the width and the height: the margins without depth in freiburg1, 10, 44, 37 and 3 of 640 x 480 px,
@@ -34,24 +36,6 @@ constexpr float kInfrared = 0.011F;      // reflectance of what is black to the 
 constexpr float kSignalSoft = 0.25F;     // relative
 constexpr float kGlossLost = 0.5F;       // of the light that a fully glossy surface sends elsewhere
 constexpr float kMirrorCosine = 0.992F;  // a glossy surface blinds the sensor where it mirrors the projector
-
-/// Smooth numbers of zero mean and about unit deviation: bilinear between independent values, scaled by the
-/// root of the sum of the squared weights.
-float smooth_noise(std::uint64_t key, int spacing_px, int u, int v) {
-  const int column = u / spacing_px;
-  const int row = v / spacing_px;
-  const auto spacing = static_cast<float>(spacing_px);
-  const float fx = static_cast<float>(u % spacing_px) / spacing;
-  const float fy = static_cast<float>(v % spacing_px) / spacing;
-  const auto knot = [&](int x, int y) {
-    const auto counter = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
-    return random::NormalTable::instance()(random::mix_key(key, counter));
-  };
-  const float top = (1 - fx) * knot(column, row) + fx * knot(column + 1, row);
-  const float bottom = (1 - fx) * knot(column, row + 1) + fx * knot(column + 1, row + 1);
-  const float squares = ((1 - fx) * (1 - fx) + fx * fx) * ((1 - fy) * (1 - fy) + fy * fy);
-  return ((1 - fy) * top + fy * bottom) / std::sqrt(squares);
-}
 
 bool is_in_border(const Image<Surface>& surfaces, int u, int v) {
   const int width = surfaces.width;
@@ -74,8 +58,9 @@ bool is_lost(const Surface& surface, float noise) {
 
 void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, std::uint64_t sensor_key,
                         std::uint64_t frame_key, const Workers& workers, Image<Surface>& surfaces) {
-  const auto focal_baseline = static_cast<float>(camera.fx_px * kBaseline_m);
-  const std::uint64_t smooth_key = random::mix_key(sensor_key, 1);
+  const float focal_baseline = focal_baseline_px_m(camera, kBaseline_m);
+  const random::SmoothNoise smooth(random::mix_key(sensor_key, 1), image_px(kSmoothSpacing_px, camera));
+  const random::SmoothNoise patches(frame_key, image_px(kPatchSpacing_px, camera));
   const std::uint64_t pattern_key = random::mix_key(sensor_key, 2);
   const random::NormalTable& normal = random::NormalTable::instance();
   const auto rows = static_cast<std::size_t>(surfaces.height);
@@ -84,16 +69,13 @@ void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, 
       for (int u = 0; u < surfaces.width; ++u) {
         Surface& surface = surfaces(u, v);
         if (surface.depth_m <= 0) continue;
-        const bool lost =
-            errors.lost_light && is_lost(surface, smooth_noise(frame_key, kPatchSpacing_px, u, v));
+        const bool lost = errors.lost_light && is_lost(surface, patches.at(u, v));
         if (lost || (errors.border && is_in_border(surfaces, u, v))) {
           surface.depth_m = 0;
           continue;
         }
         float disparity_px = focal_baseline / surface.depth_m;
-        if (errors.smooth_px > 0)
-          disparity_px +=
-              static_cast<float>(errors.smooth_px) * smooth_noise(smooth_key, kSmoothSpacing_px, u, v);
+        if (errors.smooth_px > 0) disparity_px += static_cast<float>(errors.smooth_px) * smooth.at(u, v);
         if (errors.pattern_px > 0)
           disparity_px += static_cast<float>(errors.pattern_px) *
                           normal(random::mix_key(pattern_key, surfaces.index(u, v)));

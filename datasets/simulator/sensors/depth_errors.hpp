@@ -11,7 +11,7 @@
 
 namespace fusebench::simulator::sensors {
 
-/// All off by default.
+/// All off by default. Disparity in pixels of the sensor (native_pixels.hpp).
 struct DepthErrors {
   double scale = 0;         ///< measured depth over true depth, minus 1
   double smooth_px = 0;     ///< standard deviation of an error of disparity that varies over the image
@@ -27,7 +27,7 @@ struct DepthErrors {
 
 /// What the sensor sees instead of the surfaces: depth with the fixed errors, 0 where light is lost.
 /// sensor_key: of the device, the same for all of its images; frame_key: of the image. The disparity is that
-/// of a baseline of 0.075 m. Surfaces need their material where lost_light is on.
+/// of a baseline of 0.075 m, in pixels of the sensor (native_pixels.hpp). Surfaces need their material where lost_light is on.
 void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, std::uint64_t sensor_key,
                         std::uint64_t frame_key, const Workers& workers,
                         Image<render::Renderer::Surface>& surfaces);

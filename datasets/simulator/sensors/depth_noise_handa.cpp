@@ -11,15 +11,16 @@
 //      are the Kinect's focal length, baseline and 1/8 px in centimetres. (The published code rounds
 //      after it has added 0.5, which would move every depth towards the camera by half a step; that is
 //      left out.)
-// Assumptions of ours: the dots (one a 3 x 3 cell, at a place from a hash; the published pattern is an
-// image), and that nothing is measured on surfaces seen at more than 80 degrees, where a dot is stretched
-// beyond recognition.
+// Pixels are the sensor's (native_pixels.hpp). Assumptions of ours: the dots (one a 3 x 3 cell, at a place
+// from a hash; the published pattern is an image), and that nothing is measured on surfaces seen at more than
+// 80 degrees, where a dot is stretched beyond recognition.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/depth_noise.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -28,12 +29,10 @@ namespace {
 constexpr double kBaseline_m = 0.075;
 constexpr float kStepsPerPixel = 8;
 constexpr float kShift_px = 0.5F;
-constexpr int kHalfWindow = 4;
+constexpr float kFillRadius_px = 3;
 constexpr float kWindowTolerance_px = 0.1F;
 constexpr float kTolerancePerRadius2 = 1.44F;
 constexpr float kAgreement = 1.0F / 1.2F;
-constexpr int kCell = 3;  // one dot each; the fill radius of 3 px reaches into the neighbouring cells only
-constexpr float kFillRadius2 = 9;
 constexpr double kKinectSteps_cm = 35130;
 constexpr double kStepNoise = 1.0 / 6.0;
 constexpr float kMinCosine = 0.1736F;  // 80 degrees
@@ -42,6 +41,20 @@ constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kShiftNoise = 1;
 constexpr std::uint64_t kStepNoiseKey = 2;
 constexpr std::uint64_t kDots = 0xD075;  // the pattern is the same in all images
+
+/// Lengths of step 3 in pixels of the image, for a camera of any size.
+struct Lengths {
+  explicit Lengths(const PinholeCamera& camera)
+      : native_px(static_cast<float>(native_per_image_px(camera))),
+        half_window(image_px(4, camera)),
+        cell(image_px(3, camera)),
+        cells_around(half_window / cell + 1) {}
+
+  float native_px;  ///< of the sensor, for one of the image
+  int half_window;
+  int cell;          ///< one dot each; the fill radius reaches into the neighbouring cells only
+  int cells_around;  ///< that a window can reach
+};
 
 template <class Fill>
 void for_rows(const Workers& workers, int rows, const Fill& fill) {
@@ -52,15 +65,15 @@ void for_rows(const Workers& workers, int rows, const Fill& fill) {
 
 /// Steps 1 and 2. A pixel that looks past an open edge or at too oblique a surface has disparity 0.
 DepthImage quantised_disparity(const Image<render::Renderer::Surface>& surfaces, float focal_baseline,
-                               std::uint64_t key, const Workers& workers) {
+                               float shift_px, std::uint64_t key, const Workers& workers) {
   DepthImage disparity_px(surfaces.width, surfaces.height);
   const random::NormalTable& normal = random::NormalTable::instance();
   for_rows(workers, surfaces.height, [&](int v) {
     for (int u = 0; u < surfaces.width; ++u) {
       const std::array<float, 3> shift = normal.triple(random::mix_key(key, surfaces.index(u, v)));
-      const float x = std::clamp(static_cast<float>(u) + kShift_px * shift[0], 0.0F,
+      const float x = std::clamp(static_cast<float>(u) + shift_px * shift[0], 0.0F,
                                  static_cast<float>(surfaces.width - 1));
-      const float y = std::clamp(static_cast<float>(v) + kShift_px * shift[1], 0.0F,
+      const float y = std::clamp(static_cast<float>(v) + shift_px * shift[1], 0.0F,
                                  static_cast<float>(surfaces.height - 1));
       const int x0 = std::min(static_cast<int>(x), std::max(0, surfaces.width - 2));
       const int y0 = std::min(static_cast<int>(y), std::max(0, surfaces.height - 2));
@@ -87,32 +100,33 @@ struct Dot {
 };
 
 /// The projector's pattern: by cell, a dot within it.
-Image<Dot> dot_pattern(int columns, int rows) {
-  Image<Dot> dots(columns, rows);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
+Image<Dot> dot_pattern(int width, int height, int cell) {
+  Image<Dot> dots(width / cell, height / cell);
+  const auto size = static_cast<std::uint64_t>(cell);
+  for (int row = 0; row < dots.height; ++row) {
+    for (int column = 0; column < dots.width; ++column) {
       const std::uint64_t bits = random::mix_key(kDots, dots.index(column, row));
-      dots(column, row) = {kCell * column + static_cast<int>(bits % kCell),
-                           kCell * row + static_cast<int>((bits >> 32) % kCell)};
+      dots(column, row) = {cell * column + static_cast<int>(bits % size),
+                           cell * row + static_cast<int>((bits >> 32) % size)};
     }
   }
   return dots;
 }
 
-constexpr int kCellsAround = kHalfWindow / kCell + 1;  // that a window can reach
-
 /// Step 3 at one dot: its disparity, or 0 where the window does not agree.
-float measured_at(const DepthImage& disparity_px, const Image<Dot>& dots, const Dot& dot) {
-  if (!disparity_px.contains(dot.u - kHalfWindow, dot.v - kHalfWindow) ||
-      !disparity_px.contains(dot.u + kHalfWindow, dot.v + kHalfWindow)) {
+float measured_at(const DepthImage& disparity_px, const Lengths& lengths, const Image<Dot>& dots,
+                  const Dot& dot) {
+  const int half = lengths.half_window;
+  if (!disparity_px.contains(dot.u - half, dot.v - half) ||
+      !disparity_px.contains(dot.u + half, dot.v + half)) {
     return 0;
   }
   const float centre = disparity_px(dot.u, dot.v);
   if (centre <= 0) return 0;
   float sum = 0;
   int valid = 0;
-  for (int v = dot.v - kHalfWindow; v <= dot.v + kHalfWindow; ++v) {
-    for (int u = dot.u - kHalfWindow; u <= dot.u + kHalfWindow; ++u) {
+  for (int v = dot.v - half; v <= dot.v + half; ++v) {
+    for (int u = dot.u - half; u <= dot.u + half; ++u) {
       const float d = disparity_px(u, v);
       sum += d;
       if (d > 0) ++valid;
@@ -121,16 +135,18 @@ float measured_at(const DepthImage& disparity_px, const Image<Dot>& dots, const 
   const float mean = sum / static_cast<float>(valid);
   int seen = 0;
   int agreeing = 0;
-  for (int row = dot.v / kCell - kCellsAround; row <= dot.v / kCell + kCellsAround; ++row) {
-    for (int column = dot.u / kCell - kCellsAround; column <= dot.u / kCell + kCellsAround; ++column) {
+  for (int row = dot.v / lengths.cell - lengths.cells_around;
+       row <= dot.v / lengths.cell + lengths.cells_around; ++row) {
+    for (int column = dot.u / lengths.cell - lengths.cells_around;
+         column <= dot.u / lengths.cell + lengths.cells_around; ++column) {
       if (!dots.contains(column, row)) continue;
       const Dot other = dots(column, row);
       const int du = other.u - dot.u;
       const int dv = other.v - dot.v;
-      if (std::abs(du) > kHalfWindow || std::abs(dv) > kHalfWindow) continue;
+      if (std::abs(du) > half || std::abs(dv) > half) continue;
       ++seen;
       const float d = disparity_px(other.u, other.v);
-      const float radius2 = static_cast<float>(du * du + dv * dv);
+      const float radius2 = static_cast<float>(du * du + dv * dv) * lengths.native_px * lengths.native_px;
       const float tolerance = kWindowTolerance_px * (radius2 > 0 ? kTolerancePerRadius2 * radius2 : 1.0F);
       if (d > 0 && std::abs(d - mean) < tolerance) ++agreeing;
     }
@@ -139,11 +155,12 @@ float measured_at(const DepthImage& disparity_px, const Image<Dot>& dots, const 
 }
 
 /// Disparity of the nearest dot that was measured, 0 if there is none within reach.
-float filled_at(const DepthImage& dots_px, const Image<Dot>& dots, int u, int v) {
-  float nearest2 = kFillRadius2;
+float filled_at(const DepthImage& dots_px, const Lengths& lengths, const Image<Dot>& dots, int u, int v) {
+  const float fill_radius_px = kFillRadius_px / lengths.native_px;
+  float nearest2 = fill_radius_px * fill_radius_px;
   float found = 0;
-  for (int row = v / kCell - 1; row <= v / kCell + 1; ++row) {
-    for (int column = u / kCell - 1; column <= u / kCell + 1; ++column) {
+  for (int row = v / lengths.cell - 1; row <= v / lengths.cell + 1; ++row) {
+    for (int column = u / lengths.cell - 1; column <= u / lengths.cell + 1; ++column) {
       if (!dots_px.contains(column, row) || dots_px(column, row) <= 0) continue;
       const Dot& dot = dots(column, row);
       const auto distance2 = static_cast<float>((dot.u - u) * (dot.u - u) + (dot.v - v) * (dot.v - v));
@@ -166,14 +183,15 @@ float kinect_depth_m(float depth_m, float noise) {
 
 DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfaces,
                                   const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
-  const auto focal_baseline = static_cast<float>(camera.fx_px * kBaseline_m);
-  const DepthImage disparity_px =
-      quantised_disparity(surfaces, focal_baseline, random::mix_key(key, kShiftNoise), workers);
-  const Image<Dot> dots = dot_pattern(surfaces.width / kCell, surfaces.height / kCell);
+  const float focal_baseline = focal_baseline_px_m(camera, kBaseline_m);
+  const Lengths lengths(camera);
+  const DepthImage disparity_px = quantised_disparity(surfaces, focal_baseline, kShift_px / lengths.native_px,
+                                                      random::mix_key(key, kShiftNoise), workers);
+  const Image<Dot> dots = dot_pattern(surfaces.width, surfaces.height, lengths.cell);
   DepthImage dots_px(dots.width, dots.height);
   for_rows(workers, dots_px.height, [&](int row) {
     for (int column = 0; column < dots_px.width; ++column) {
-      dots_px(column, row) = measured_at(disparity_px, dots, dots(column, row));
+      dots_px(column, row) = measured_at(disparity_px, lengths, dots, dots(column, row));
     }
   });
   const random::NormalTable& normal = random::NormalTable::instance();
@@ -181,7 +199,7 @@ DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfac
   DepthImage depth_m(surfaces.width, surfaces.height);
   for_rows(workers, depth_m.height, [&](int v) {
     for (int u = 0; u < depth_m.width; ++u) {
-      const float disparity = filled_at(dots_px, dots, u, v);
+      const float disparity = filled_at(dots_px, lengths, dots, u, v);
       if (disparity <= 0) continue;
       depth_m(u, v) =
           kinect_depth_m(focal_baseline / disparity, normal(random::mix_key(step_key, depth_m.index(u, v))));

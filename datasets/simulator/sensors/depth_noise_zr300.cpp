@@ -7,18 +7,20 @@
 // Depth Cameras", CVPR workshops 2017); raw depth in units of 1 mm (the format, so
 // DepthSensor::units_per_metre).
 //
-// Assumptions of ours: a standard deviation of 0.09 px for the disparity, shared by neighbours over about
-// half the matching window (the field is interpolated from one value each 4 px); disparities in steps of 1/32
-// px; beyond 4 m, where the dots fade, noise grows and measurements fail more and more until nothing is left
-// at 6 m; windows that see a jump of disparity of more than 1.5 px give nothing on the far side of it, and
-// those on surfaces at more than 80 degrees give nothing.
+// Pixels are the sensor's (native_pixels.hpp). Assumptions of ours: a standard deviation of 0.09 px for the
+// disparity, shared by neighbours over about half the matching window (the field is interpolated from one
+// value each 4 px); disparities in steps of 1/32 px; beyond 4 m, where the dots fade, noise grows and
+// measurements fail more and more until nothing is left at 6 m; windows that see a jump of disparity of more
+// than 1.5 px give nothing on the far side of it, and those on surfaces at more than 80 degrees give nothing.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "datasets/simulator/random/random_numbers.hpp"
+#include "datasets/simulator/random/smooth_noise.hpp"
 #include "datasets/simulator/sensors/depth_noise.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -47,38 +49,13 @@ constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kFieldKey = 3;
 constexpr std::uint64_t kFadeKey = 4;
 
-/// Standard normal everywhere, and smooth over a few pixels: bilinear between independent values, scaled by
-/// the root of the sum of the squared weights.
-class SmoothNoise {
- public:
-  explicit SmoothNoise(std::uint64_t key) : key_(key) {}
-
-  [[nodiscard]] float at(int u, int v) const {
-    const int column = u / kNoiseSpacing_px;
-    const int row = v / kNoiseSpacing_px;
-    const float fx = static_cast<float>(u % kNoiseSpacing_px) / kNoiseSpacing_px;
-    const float fy = static_cast<float>(v % kNoiseSpacing_px) / kNoiseSpacing_px;
-    const float top = (1 - fx) * knot(column, row) + fx * knot(column + 1, row);
-    const float bottom = (1 - fx) * knot(column, row + 1) + fx * knot(column + 1, row + 1);
-    const float squares = ((1 - fx) * (1 - fx) + fx * fx) * ((1 - fy) * (1 - fy) + fy * fy);
-    return ((1 - fy) * top + fy * bottom) / std::sqrt(squares);
-  }
-
- private:
-  [[nodiscard]] float knot(int column, int row) const {
-    const auto counter = (static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint64_t>(column);
-    return random::NormalTable::instance()(random::mix_key(key_, counter));
-  }
-  std::uint64_t key_;
-};
-
 /// Occlusion in the right image: true where a nearer surface hides the point of a pixel of the left image
-/// row, or the point is outside the right image.
-std::vector<bool> occluded_in_right(const DepthImage& disparity_px, int row) {
+/// row, or the point is outside the right image. native_px: of the sensor, for one of the image.
+std::vector<bool> occluded_in_right(const DepthImage& disparity_px, float native_px, int row) {
   const auto width = static_cast<std::size_t>(disparity_px.width);
   std::vector<float> nearest(width, 0.0F);  // by column of the right image
   const auto partner = [&](int u) {
-    return static_cast<int>(std::lround(static_cast<float>(u) - disparity_px(u, row)));
+    return static_cast<int>(std::lround(static_cast<float>(u) - disparity_px(u, row) / native_px));
   };
   for (int u = 0; u < disparity_px.width; ++u) {
     const int right = partner(u);
@@ -96,11 +73,11 @@ std::vector<bool> occluded_in_right(const DepthImage& disparity_px, int row) {
 }
 
 /// Whether the window around a pixel straddles a jump and the pixel lies on the far side.
-bool behind_jump(const DepthImage& disparity_px, int u, int v) {
+bool behind_jump(const DepthImage& disparity_px, int half_window, int u, int v) {
   float least = disparity_px(u, v);
   float most = least;
-  for (int y = std::max(0, v - kHalfWindow); y <= std::min(disparity_px.height - 1, v + kHalfWindow); ++y) {
-    for (int x = std::max(0, u - kHalfWindow); x <= std::min(disparity_px.width - 1, u + kHalfWindow); ++x) {
+  for (int y = std::max(0, v - half_window); y <= std::min(disparity_px.height - 1, v + half_window); ++y) {
+    for (int x = std::max(0, u - half_window); x <= std::min(disparity_px.width - 1, u + half_window); ++x) {
       least = std::min(least, disparity_px(x, y));
       most = std::max(most, disparity_px(x, y));
     }
@@ -115,23 +92,25 @@ float faded(const StereoSensor& sensor, float depth_m) {
 
 DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer::Surface>& surfaces,
                         const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
-  const auto focal_baseline = static_cast<float>(camera.fx_px * sensor.baseline_m);
+  const float focal_baseline = focal_baseline_px_m(camera, sensor.baseline_m);
+  const auto native_px = static_cast<float>(native_per_image_px(camera));
+  const int half_window = image_px(kHalfWindow, camera);
   DepthImage disparity_px(surfaces.width, surfaces.height);
   std::ranges::transform(surfaces.data, disparity_px.data.begin(),
                          [&](const render::Renderer::Surface& surface) {
                            return surface.depth_m > 0 ? focal_baseline / surface.depth_m : 0.0F;
                          });
-  const SmoothNoise noise(random::mix_key(key, kFieldKey));
+  const random::SmoothNoise noise(random::mix_key(key, kFieldKey), image_px(kNoiseSpacing_px, camera));
   const std::uint64_t fade_key = random::mix_key(key, kFadeKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
   workers.for_chunks(
       static_cast<std::size_t>(surfaces.height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
         for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-          const std::vector<bool> occluded = occluded_in_right(disparity_px, v);
+          const std::vector<bool> occluded = occluded_in_right(disparity_px, native_px, v);
           for (int u = 0; u < surfaces.width; ++u) {
             const render::Renderer::Surface& surface = surfaces(u, v);
             if (surface.depth_m <= 0 || occluded[static_cast<std::size_t>(u)] ||
-                surface.cos_incidence < kMinCosine || behind_jump(disparity_px, u, v)) {
+                surface.cos_incidence < kMinCosine || behind_jump(disparity_px, half_window, u, v)) {
               continue;
             }
             const float fade = faded(sensor, surface.depth_m);

@@ -161,6 +161,59 @@ TEST_F(Loops, ALostTrackerThatFindsItselfClosesOne) {
 }
 
 /// Where nothing looks alike, as in the dark, the poses so far say what to compare with.
+/// Where the camera of an estimate is a moment later.
+SE3 T_world_camera_after(const filter::GaussianState& estimate, const SensorRig& rig, double dt_s) {
+  const filter::FilterState& s = estimate.mean;
+  const SE3 T_world_imu{s.T_world_imu.rotation * so3_exp(dt_s * s.angular_velocity_imu_radps),
+                        s.T_world_imu.translation + dt_s * s.velocity_world_mps};
+  return T_world_imu * rig.T_imu_camera;
+}
+
+TEST_F(Loops, AnErrorOfTheInstantIsAlongTheMotion) {
+  SensorRig rig = rig_;
+  rig.T_imu_camera = {so3_exp({0.3, -0.2, 0.5}), {0.1, -0.05, 0.2}};
+  const auto estimate_at = [&](int frame) {
+    filter::GaussianState estimate = estimate_of(frame, true);
+    estimate.mean.T_world_imu = estimate.mean.T_world_imu * rig.T_imu_camera.inverse();
+    estimate.mean.velocity_world_mps = Vector3d(0.4, -0.3, 0.01 * frame);
+    estimate.mean.angular_velocity_imu_radps = Vector3d(0.2, 3 - 0.02 * frame, -0.5);
+    return estimate;
+  };
+  config::Config config = configuration(config::LoopMode::detect);
+  config::Config without = config;
+  config.loops.timing_sigma_s = 0.004;
+  without.loops.timing_sigma_s = 0;
+  LoopClosure loops(config, rig);
+  LoopClosure exact(without, rig);
+  for (int k = 0; k < kFrames; ++k) {
+    loops.add_fused(frames()[static_cast<std::size_t>(k)], estimate_at(k), 0);
+    exact.add_fused(frames()[static_cast<std::size_t>(k)], estimate_at(k), 0);
+  }
+  const auto found = std::ranges::find_if(loops.candidates(), [](const auto& c) { return c.pair.same; });
+  ASSERT_NE(found, loops.candidates().end());
+  const auto estimate_of_place = [&](std::size_t place) {
+    return estimate_at(static_cast<int>(
+        std::lround((1e-9 * static_cast<double>(loops.places()[place].timestamp_ns) - 100) / kPeriod_s)));
+  };
+  constexpr double kStep_s = 1e-4;
+  const filter::GaussianState known = estimate_of_place(found->known);
+  const filter::GaussianState query = estimate_of_place(found->query);
+  const auto moved = [&](double known_s, double query_s) {
+    const SE3 from_known =
+        T_world_camera_after(known, rig, known_s).inverse() * T_world_camera_after(known, rig, 0);
+    const SE3 to_query =
+        T_world_camera_after(query, rig, 0).inverse() * T_world_camera_after(query, rig, query_s);
+    return Vector6d(pose_minus(from_known * found->pair.T_known_query * to_query, found->pair.T_known_query) /
+                    kStep_s);
+  };
+  const Vector6d by_known = moved(kStep_s, 0);
+  const Vector6d by_query = moved(0, kStep_s);
+  const Matrix6d expected =
+      0.004 * 0.004 * (by_known * by_known.transpose() + by_query * by_query.transpose());
+  const Matrix6d added = loops.covariance_of(*found) - exact.covariance_of(*found);
+  EXPECT_LT((added - expected).norm(), 2e-3 * expected.norm()) << added << "\n\n" << expected;
+}
+
 TEST_F(Loops, ThePathLeadsToPlacesThatAppearanceDoesNotFind) {
   config::Config config = configuration(config::LoopMode::final);
   config.loops.max_dissimilarity = 0.05;

@@ -19,9 +19,13 @@ using testing::kHalfSecond_ns;
 using testing::plane_at;
 using testing::straight_motion;
 
-DepthSensor sensor_with(DepthNoise noise) {
+// The size in which a sensor measures, and half of it.
+constexpr PinholeCamera kNative{640, 480, 480.0, 480.0, 319.5, 239.5};
+constexpr PinholeCamera kHalved{320, 240, 240.0, 240.0, 159.5, 119.5};
+
+DepthSensor sensor_with(DepthNoise noise, const PinholeCamera& camera = kHalved) {
   DepthSensor sensor;
-  sensor.camera = {320, 240, 480.0, 480.0, 159.5, 119.5};
+  sensor.camera = camera;
   sensor.units_per_metre = 5000;
   sensor.noise = noise;
   return sensor;
@@ -42,7 +46,7 @@ struct DepthError {
 DepthError error_against(const Image<std::uint16_t>& raw, double units_per_metre, double depth_m) {
   double sum = 0, squares = 0, count = 0, all = 0;
   for (int v = 20; v < raw.height - 20; ++v) {
-    for (int u = 80; u < raw.width - 20; ++u) {
+    for (int u = raw.width / 4; u < raw.width - 20; ++u) {
       ++all;
       if (raw(u, v) == 0) continue;
       const double error = raw(u, v) / units_per_metre - depth_m;
@@ -106,6 +110,19 @@ TEST(DepthSensor, ActiveStereoHasTheStatedDisparityNoise) {
   EXPECT_LT(std::abs(error.mean_m), 0.1 * error.deviation_m);
 }
 
+TEST(DepthSensor, ASmallerImageIsAsExactInMetres) {
+  for (const DepthNoise noise : {DepthNoise::handa, DepthNoise::kinect, DepthNoise::zr300}) {
+    const auto error = [&](const PinholeCamera& camera) {
+      return error_against(sense(plane_at(2.5F, 0), sensor_with(noise, camera)), 5000, 2.5);
+    };
+    const DepthError native = error(kNative);
+    const DepthError halved = error(kHalved);
+    EXPECT_NEAR(halved.deviation_m, native.deviation_m, 0.1 * native.deviation_m);
+    EXPECT_NEAR(halved.mean_m, native.mean_m, 0.2 * native.deviation_m);
+    EXPECT_NEAR(halved.share_measured, native.share_measured, 0.01);
+  }
+}
+
 TEST(DepthSensor, StructuredLightIsUnbiasedAndQuantised) {
   // Depth steps of the Kinect at 2 m: 100 z^2 / 35130 = 11 mm.
   double mean = 0;
@@ -121,7 +138,7 @@ TEST(DepthSensor, StructuredLightIsUnbiasedAndQuantised) {
   }
 }
 
-/// A board at 1 m in front of a wall at 2 m, left edge at column 159.5.
+/// A board at 1 m in front of a wall at 2 m, left edge at column 319.5 of the native image.
 SimulatedScene board_before_wall() {
   SimulatedScene scene = plane_at(2, 0);
   add_rectangle(scene, {0, -0.15F, 1}, {0.25F, 0, 0}, {0, 0.3F, 0}, 0);
@@ -130,17 +147,17 @@ SimulatedScene board_before_wall() {
 
 TEST(DepthSensor, HolesAreAtDepthEdges) {
   for (const DepthNoise noise : {DepthNoise::handa, DepthNoise::zr300}) {
-    const auto raw = sense(board_before_wall(), sensor_with(noise));
+    const auto raw = sense(board_before_wall(), sensor_with(noise, kNative));
     const auto holes = [&](int first, int last) {
       int count = 0;
-      for (int v = 90; v < 150; ++v) {
+      for (int v = 210; v < 270; ++v) {
         for (int u = first; u < last; ++u) count += raw(u, v) == 0 ? 1 : 0;
       }
       return static_cast<double>(count) / (60 * (last - first));
     };
-    EXPECT_LT(holes(90, 130), 0.03);   // on the wall
-    EXPECT_LT(holes(190, 240), 0.03);  // on the board
-    EXPECT_GT(holes(155, 165) + holes(276, 284), 0.05);
+    EXPECT_LT(holes(250, 290), 0.03);  // on the wall
+    EXPECT_LT(holes(350, 400), 0.03);  // on the board
+    EXPECT_GT(holes(315, 325) + holes(436, 444), 0.05);
   }
 }
 
@@ -148,13 +165,13 @@ TEST(DepthSensor, ActiveStereoDoesNotSeeWhatTheRightCameraDoesNot) {
   // The board shifts by 480 * 0.07 / 1 = 33.6 px in the right image, the wall by 16.8: of the wall left of
   // the board, the difference is hidden; so is the left band of the wall that lies outside of the right
   // image.
-  const auto raw = sense(board_before_wall(), sensor_with(DepthNoise::zr300));
-  for (int v = 90; v < 150; ++v) {
-    for (int u = 145; u < 158; ++u) ASSERT_EQ(raw(u, v), 0) << u;
-    ASSERT_GT(raw(138, v), 0);
-    ASSERT_GT(raw(290, v), 0);  // no shadow to the right
+  const auto raw = sense(board_before_wall(), sensor_with(DepthNoise::zr300, kNative));
+  for (int v = 210; v < 270; ++v) {
+    for (int u = 305; u < 318; ++u) ASSERT_EQ(raw(u, v), 0) << u;
+    ASSERT_GT(raw(298, v), 0);
+    ASSERT_GT(raw(450, v), 0);  // no shadow to the right
   }
-  for (int v = 0; v < 240; ++v) {
+  for (int v = 0; v < 480; ++v) {
     for (int u = 0; u < 16; ++u) ASSERT_EQ(raw(u, v), 0);
   }
   EXPECT_GT(raw(19, 20), 0);
@@ -177,8 +194,8 @@ TEST(DepthSensor, NothingIsMeasuredAtGrazingAngles) {
   add_rectangle(floor, {-20, 0.05F, 0.1F}, {40, 0, 0}, {0, 0, 60}, 0);
   for (const DepthNoise noise : {DepthNoise::handa, DepthNoise::zr300}) {
     const auto raw = sense(floor, sensor_with(noise));
-    // At row v the angle between ray and floor is atan((v - 119.5) / 480): 10 degrees at row 204.
-    for (int u = 0; u < raw.width; ++u) ASSERT_EQ(raw(u, 180), 0);
+    // At row v the angle between ray and floor is atan((v - 119.5) / 240): 10 degrees at row 162.
+    for (int u = 0; u < raw.width; ++u) ASSERT_EQ(raw(u, 150), 0);
   }
 }
 

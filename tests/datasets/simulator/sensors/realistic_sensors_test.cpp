@@ -160,6 +160,9 @@ TEST(ColorProcessing, TheSameBytesForAnyThreadsAndOthersForOtherKeys) {
   EXPECT_NE(one, processed_color(light, noisy_mosaic(), 2, 8, Workers(1)).data);
 }
 
+// Of kinect_like(), in pixels of the sensor's 640 columns.
+constexpr double kFocalBaseline_px_m = 520 * 0.075;
+
 DepthSensor kinect_like() {
   DepthSensor sensor;
   sensor.camera = {320, 240, 260.0, 260.0, 159.5, 119.5};
@@ -189,7 +192,7 @@ TEST(DepthErrors, ScaleIsAsStatedAndThePatternBelongsToTheDevice) {
   EXPECT_NE(first.data, seen(testing::plane_at(2, 128), sensor, 2, 0).data);
   double squares = 0;
   for (const std::uint16_t raw : first.data) {
-    const double error_px = 260 * 0.075 / (raw / 5000.0) - 260 * 0.075 / 2;
+    const double error_px = kFocalBaseline_px_m / (raw / 5000.0) - kFocalBaseline_px_m / 2;
     squares += error_px * error_px / static_cast<double>(first.data.size());
   }
   EXPECT_NEAR(std::sqrt(squares), std::hypot(0.2, 0.05), 0.08);  // a dozen smooth cells only
@@ -238,7 +241,7 @@ TEST(Kinect, NoiseOfDisparityIsThatOfRealPlanes) {
     for (int v = 20; v < 220; ++v) {
       for (int u = 60; u < 300; ++u) {
         if (depth(u, v) == 0) continue;
-        const double error_px = 260 * 0.075 / (depth(u, v) / 5000.0) - 260 * 0.075 / depth_m;
+        const double error_px = kFocalBaseline_px_m / (depth(u, v) / 5000.0) - kFocalBaseline_px_m / depth_m;
         squares += error_px * error_px;
         ++count;
       }
