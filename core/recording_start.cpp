@@ -41,12 +41,17 @@ Result<health::FrameReport> RecordingStart::process(const RgbdFrame& frame, Rest
     so_far.add(report->stages);
     report->stages = so_far;
     if (report->status == health::FrameStatus::initialised)
-      report->reason = "started again: no frame could be tracked from the first start";
+      report->reason = "started again: hardly a frame could be tracked from the first start";
     return report;
   }
-  confirmed_ = report->status != health::FrameStatus::lost;
-  if (confirmed_ && first_frame_) report = process_again(*first_frame_, frame, report->stages, estimator);
+  if (report->status != health::FrameStatus::lost && first_frame_) {
+    report = process_again(*first_frame_, frame, report->stages, estimator);
+    if (!report) return report;
+    if (report->status == health::FrameStatus::lost) ++lost_frames_;
+  }
   first_frame_.reset();
+  if (report->status != health::FrameStatus::lost)
+    confirmed_ = ++tracked_frames_ >= config_.false_start_frames;
   return report;
 }
 
@@ -57,7 +62,7 @@ Result<health::FrameReport> RecordingStart::process_first(const RgbdFrame& frame
       report->health != health::FrameHealth::good)
     wait(*report, estimator);
   first_frame_ = frame;
-  lost_frames_ = 0;
+  lost_frames_ = tracked_frames_ = 0;
   return report;
 }
 

@@ -1,8 +1,9 @@
 // Where and how a recording starts. Not in the paper.
 //
 // The first frames may be of no use: an automatic exposure begins in the dark. Frames that nothing could be
-// tracked from are lost, until there is one that can be the first. If then nothing is tracked from it either
-// (it was only dim), the estimator starts again at a later frame.
+// tracked from are lost, until there is one that can be the first. If then hardly a frame is tracked from it
+// either (it was only dim, or showed little more than a plain wall), the estimator starts again at a later
+// frame: a model of a few frames is no loss, and one that the camera does not see again would keep it lost.
 //
 // A recording that starts in motion starts with an unknown velocity. The first two frames tell it,
 // so they are processed again with it: the first one is then compensated properly, and the second one
@@ -52,8 +53,9 @@ class RecordingStart {
 
   const config::InitialisationConfig& config_;
   std::optional<RgbdFrame> first_frame_;  ///< until the second one was processed
-  bool confirmed_ = false;                ///< a frame was tracked after the first one
+  bool confirmed_ = false;                ///< enough frames were tracked after the first one
   int lost_frames_ = 0;                   ///< since the first one
+  int tracked_frames_ = 0;                ///< the same
 };
 
 }  // namespace fusebench::core

@@ -81,9 +81,9 @@ struct InitialisationConfig {
         "stamps; an offset of tenths of a second is for `fusebench calibrate` to find and for "
         "calibration.toml to say");
     v.number("false_start_frames", self.false_start_frames, 1, 1000,
-             "if no frame was tracked yet, a lost frame of sound images starts the run again after so many "
-             "lost ones in all, since the first frame was of no use; a few, so that relocalisation has its "
-             "chances");
+             "while fewer frames than this were tracked, a lost frame of sound images starts the run again "
+             "after so many lost ones in all, since the first frame was of no use; a few, so that "
+             "relocalisation has its chances");
   }
 };
 

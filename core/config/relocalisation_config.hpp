@@ -104,10 +104,9 @@ struct RelocalisationConfig {
         "three times what the filter claims, as of drift (loops.drift_factor)");
     v.number("max_supported_innovation", self.max_supported_innovation, 0.1, 1e12,
              "up to so much, where its position alone is within relocalisation.max_innovation, it is "
-             "believed all the same if "
-             "several frames in a row agree on it, the last verified by depth as loops are: a filter that "
-             "was wrong before it was lost claims too little of its error in rotation; ten "
-             "times as much, as of loops (loops.max_supported_chi2)");
+             "believed all the same if several frames in a row agree on it, the last verified by depth as "
+             "loops are: a filter that was wrong before it was lost claims too little of its error in "
+             "rotation; ten times as much, as of loops (loops.max_supported_chi2)");
     v.number("agreeing_frames", self.agreeing_frames, 2, 1000,
              "so many frames have to agree, each with the one before within loops.agreeing_chi2");
     v.number("agreeing_within_s", self.agreeing_within_s, 0.01, 10.0,
@@ -212,10 +211,10 @@ struct LoopsConfig {
   double depth_sigmas = 3.0;
   double dense_gate_m = 0.12;
   double dense_min_share = 0.1;
-  double dense_measurements = 100.0;
+  double dense_measurements = 400.0;
   double min_grey_correlation = 0.6;
-  double max_rotation_sigma_deg = 0.5;
-  double max_position_sigma_m = 0.02;
+  double max_rotation_sigma_deg = 0.25;
+  double max_position_sigma_m = 0.01;
   double drift_factor = 3.0;
   double path_rotation_sigma_rad = 0.003;
   double path_position_sigma_m = 0.004;

@@ -37,11 +37,13 @@ class ScriptedEstimator final : public RestartableEstimator {
   void restart(const std::optional<FilterState>& motion) override {
     calls.push_back(motion ? "restart at " + std::to_string(std::lround(motion->velocity_world_mps.x()))
                            : "restart");
+    tracks = tracks && tracks_after_restart;
     state_.reset();
   }
 
   std::vector<std::string> calls;
   bool tracks = true;  ///< frames after the first one
+  bool tracks_after_restart = true;
 
  private:
   std::optional<GaussianState> state_;
@@ -119,17 +121,40 @@ TEST(RecordingStart, HowManyLostFramesMakeAFalseStartIsAnOption) {
   }
 }
 
-TEST(RecordingStart, KeepsTheFirstFrameWhileNothingCanBeSeenAndOnceAFrameWasTracked) {
+TEST(RecordingStart, KeepsTheFirstFrameWhileNothingCanBeSeenAndOnceFramesWereTracked) {
   ScriptedEstimator estimator;
   RecordingStart start(kDefaults);
   ASSERT_TRUE(start.process(frame_at(1), estimator));
   for (std::int64_t t = 2; t < 20; ++t)
     EXPECT_EQ(start.process(frame_at(t, true), estimator)->status, FrameStatus::lost) << t;
-  EXPECT_EQ(start.process(frame_at(20), estimator)->status, FrameStatus::tracked);
+  for (std::int64_t t = 20; t < 25; ++t)
+    EXPECT_EQ(start.process(frame_at(t), estimator)->status, FrameStatus::tracked) << t;
   estimator.tracks = false;
-  for (std::int64_t t = 21; t < 40; ++t)
+  for (std::int64_t t = 25; t < 40; ++t)
     EXPECT_EQ(start.process(frame_at(t), estimator)->status, FrameStatus::lost) << t;
   EXPECT_EQ(std::ranges::count(estimator.calls, "restart"), 0);
+}
+
+TEST(RecordingStart, StartsAgainWhereHardlyAFrameIsTrackedFromTheFirstOne) {
+  ScriptedEstimator estimator;
+  RecordingStart start(kDefaults);
+  for (std::int64_t t = 1; t <= 5; ++t) ASSERT_TRUE(start.process(frame_at(t), estimator));
+  estimator.tracks = false;
+  for (std::int64_t t = 6; t < 10; ++t)
+    EXPECT_EQ(start.process(frame_at(t), estimator)->status, FrameStatus::lost) << t;
+  EXPECT_EQ(start.process(frame_at(10), estimator)->status, FrameStatus::initialised);
+}
+
+/// With the velocity of the second frame, the second frame is lost: the first time it was tracked by chance.
+TEST(RecordingStart, AStartThatIsLostWhenItIsProcessedAgainIsNone) {
+  ScriptedEstimator estimator;
+  RecordingStart start(kDefaults);
+  ASSERT_TRUE(start.process(frame_at(1), estimator));
+  estimator.tracks_after_restart = false;
+  EXPECT_EQ(start.process(frame_at(2), estimator)->status, FrameStatus::lost);
+  for (std::int64_t t = 3; t < 6; ++t)
+    EXPECT_EQ(start.process(frame_at(t), estimator)->status, FrameStatus::lost) << t;
+  EXPECT_EQ(start.process(frame_at(6), estimator)->status, FrameStatus::initialised);
 }
 
 }  // namespace
