@@ -108,12 +108,13 @@ TEST(ProgramRun, GivesCodeOutputAndCost) {
 }
 
 TEST(ProgramRun, KillsWhatHangsWithAllThatItStarted) {
-  const auto end = process::run_program({"sh", "-c", "sleep 1000 & echo $!; sleep 1000"}, "/tmp", {0.3, 0},
+  const auto end = process::run_program({"sh", "-c", "sleep 1000 & echo $!; sleep 1000"}, "/tmp", {1.5, 0},
                                         [] { return true; });
   ASSERT_TRUE(end.has_value());
   EXPECT_FALSE(end->succeeded);
-  EXPECT_EQ(end->how, "killed after 0.3 s, its limit");
+  EXPECT_EQ(end->how, "killed after 1.5 s, its limit");
   const std::string child = end->output.substr(0, end->output.find('\n'));
+  ASSERT_FALSE(child.empty()) << "the shell had no time to start";
   // Gone, or a zombie that its new parent has not waited for yet.
   std::ifstream status("/proc/" + child + "/stat");
   std::string number, name, state = "gone";
