@@ -28,6 +28,7 @@ struct RelocalisationConfig {
   double keyframe_position_sigma_m = 0.005;
   double max_innovation = 225.0;
   double max_supported_innovation = 2250.0;
+  double max_supported_rotation_deg = 30.0;
   int agreeing_frames = 5;
   double agreeing_within_s = 0.5;
 
@@ -107,6 +108,10 @@ struct RelocalisationConfig {
              "believed all the same if several frames in a row agree on it, the last verified by depth as "
              "loops are: a filter that was wrong before it was lost claims too little of its error in "
              "rotation; ten times as much, as of loops (loops.max_supported_chi2)");
+    v.number("max_supported_rotation_deg", self.max_supported_rotation_deg, 0.1, 180.0,
+             "but not beyond such a rotation: paths drift by up to 5 % of what the camera turns, which is 18 "
+             "degrees in a lap of a room. After many seconds of dead reckoning the position rules nothing "
+             "out, and the pictures and doors of a corridor repeat");
     v.number("agreeing_frames", self.agreeing_frames, 2, 1000,
              "so many frames have to agree, each with the one before within loops.agreeing_chi2");
     v.number("agreeing_within_s", self.agreeing_within_s, 0.01, 10.0,

@@ -76,7 +76,10 @@ std::optional<RelocalisedPose> Relocalisation::supported_pose(const FoundPlace& 
   // What repeats, as the doors of a corridor, is found with all certainty in frame after frame: nothing in
   // the images tells it, and only where the camera can be does.
   const config::RelocalisationConfig& config = config_.relocalisation;
-  if (!(normalised_position_innovation(prediction, pose) <= config.max_innovation) ||
+  const double turned_rad =
+      rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation);
+  if (!(turned_rad <= radians(config.max_supported_rotation_deg)) ||
+      !(normalised_position_innovation(prediction, pose) <= config.max_innovation) ||
       !(normalised_innovation(prediction, pose) <= config.max_supported_innovation))
     return std::nullopt;
   refused_.add({frame.timestamp_ns, pose, prediction.mean.T_world_imu});

@@ -126,10 +126,12 @@ class ContradictedFilter : public ::testing::Test {
     prediction.mean.T_world_imu = predicted_at(k, turned_rad, Vector3d::Zero());
     prediction.mean.T_world_imu.translation += moved_m;
     prediction.covariance = 1e-6 * filter::StateMatrix::Identity();
+    prediction.covariance.diagonal().segment<3>(filter::kRotation).setConstant(rotation_variance_rad2_);
     prediction.covariance.diagonal().segment<3>(filter::kPosition).setConstant(1e-4);
     return relocalisation_.find(frame, {}, prediction, model_, Workers(1));
   }
 
+  double rotation_variance_rad2_ = 1e-6;
   TexturedRoom room_;
   SensorRig rig_{small_camera(), {}, {}, {}};
   tsdf::TsdfVolume model_{kDefaultConfig.tsdf};
@@ -149,6 +151,13 @@ TEST_F(ContradictedFilter, BelievesSeveralFramesThatFindTheSamePlace) {
 
 TEST_F(ContradictedFilter, IsNotOverruledBeyondAnyDrift) {
   for (int k = 0; k < 10; ++k) EXPECT_FALSE(find(k, {0, 1.6, 0})) << k;
+}
+
+TEST_F(ContradictedFilter, IsNotOverruledByARotationThatIsNoDrift) {
+  rotation_variance_rad2_ = 0.001;  // the innovation alone would let it pass
+  for (int k = 0; k < 10; ++k) EXPECT_FALSE(find(k, {0, 0.7, 0})) << k;
+  for (int k = 10; k < 14; ++k) EXPECT_FALSE(find(k, {0, 0.5, 0})) << k;
+  EXPECT_TRUE(find(14, {0, 0.5, 0}));
 }
 
 TEST_F(ContradictedFilter, IsNotOverruledWhereDepthContradictsThePlace) {
