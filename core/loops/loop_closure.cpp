@@ -12,6 +12,10 @@ namespace fusebench::loops {
 
 namespace {
 
+// Of a tracker that was lost for 44 s the first pose was off by 19 mrad and 8 cm (simulated corridor).
+constexpr double kFoundRotationSigma_rad = 0.02;
+constexpr double kFoundPositionSigma_m = 0.03;
+
 double seconds_apart(const Place& earlier, const Place& later) {
   return seconds_between(earlier.timestamp_ns, later.timestamp_ns);
 }
@@ -112,19 +116,24 @@ void LoopClosure::add_relocalisation(const filter::GaussianState& predicted,
   relocalisation_ = Relocalisation{known, T_known_camera, T_odometry_camera};
 }
 
-/// The motion from the frame that found itself to the place is the odometry's.
+/// As exact as the pair of places is verified. Where it is not, as the tracker says, whose first pose after a
+/// loss starts from a motion that is not known.
 void LoopClosure::add_relocalisation_edge(std::size_t query) {
   if (!relocalisation_) return;
   LoopCandidate candidate;
   candidate.known = relocalisation_->known;
   candidate.query = query;
   candidate.dissimilarity = dissimilarity(candidate.known, query);
-  candidate.pair.same = true;
-  candidate.pair.T_known_query =
-      relocalisation_->T_known_camera *
-      (relocalisation_->T_odometry_camera.inverse() * places_[query].T_world_camera);
-  candidate.pair.covariance = covariance_by_axis(config_.relocalisation.keyframe_rotation_sigma_rad,
-                                                 config_.relocalisation.keyframe_position_sigma_m);
+  const SE3 T_known_query = relocalisation_->T_known_camera *
+                            (relocalisation_->T_odometry_camera.inverse() * places_[query].T_world_camera);
+  candidate.pair = places::verify_pair(places_[candidate.known].appearance, places_[query].appearance,
+                                       T_known_query, rig_.camera, config_);
+  if (!candidate.pair.same) {
+    candidate.pair.same = true;
+    candidate.pair.reason.clear();
+    candidate.pair.T_known_query = T_known_query;
+    candidate.pair.covariance = covariance_by_axis(kFoundRotationSigma_rad, kFoundPositionSigma_m);
+  }
   candidate.relocalised = candidate.accepted = true;
   candidate.verdict = kFoundItself;
   candidates_.push_back(std::move(candidate));
