@@ -8,17 +8,19 @@
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
 #include "datasets/simulator/realism.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 #include "datasets/simulator/simulation.hpp"
 
 namespace fusebench::simulator {
 
 namespace {
 
-/// To be raised when the same options produce other bytes. 2: errors of disparity are in pixels of the
-/// sensor; at 640 columns these are the image's, and recordings keep their bytes and their identity.
+/// To be raised when the same options produce other bytes. 2: errors of disparity of a Kinect are in pixels
+/// of its 640 columns; where these are the image's, recordings keep their bytes and their identity.
 int simulator_version(const SimulationOptions& options) {
   const PinholeCamera& depth = options.rig.depth ? options.rig.depth->pinhole : options.rig.color.pinhole;
-  return depth.width_px == 640 ? 1 : 2;
+  const bool kinect = options.depth_noise != sensors::DepthNoise::zr300;
+  return kinect && depth.width_px != sensors::kKinectColumns ? 2 : 1;
 }
 
 std::string_view name_of(sensors::DepthNoise noise) {

@@ -9,7 +9,6 @@
 
 #include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/random/smooth_noise.hpp"
-#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -56,11 +55,11 @@ bool is_lost(const Surface& surface, float noise) {
 
 }  // namespace
 
-void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, std::uint64_t sensor_key,
+void apply_depth_errors(const DepthErrors& errors, const NativePixels& native, std::uint64_t sensor_key,
                         std::uint64_t frame_key, const Workers& workers, Image<Surface>& surfaces) {
-  const float focal_baseline = focal_baseline_px_m(camera, kBaseline_m);
-  const random::SmoothNoise smooth(random::mix_key(sensor_key, 1), image_px(kSmoothSpacing_px, camera));
-  const random::SmoothNoise patches(frame_key, image_px(kPatchSpacing_px, camera));
+  const float focal_baseline = native.focal_baseline_px_m(kBaseline_m);
+  const random::SmoothNoise smooth(random::mix_key(sensor_key, 1), native.in_image(kSmoothSpacing_px));
+  const random::SmoothNoise patches(frame_key, native.in_image(kPatchSpacing_px));
   const std::uint64_t pattern_key = random::mix_key(sensor_key, 2);
   const random::NormalTable& normal = random::NormalTable::instance();
   const auto rows = static_cast<std::size_t>(surfaces.height);

@@ -8,6 +8,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "datasets/simulator/render/renderer.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -27,8 +28,9 @@ struct DepthErrors {
 
 /// What the sensor sees instead of the surfaces: depth with the fixed errors, 0 where light is lost.
 /// sensor_key: of the device, the same for all of its images; frame_key: of the image. The disparity is that
-/// of a baseline of 0.075 m, in pixels of the sensor (native_pixels.hpp). Surfaces need their material where lost_light is on.
-void apply_depth_errors(const DepthErrors& errors, const PinholeCamera& camera, std::uint64_t sensor_key,
+/// of a baseline of 0.075 m, in pixels of the sensor (native_pixels.hpp). Surfaces need their material where
+/// lost_light is on.
+void apply_depth_errors(const DepthErrors& errors, const NativePixels& native, std::uint64_t sensor_key,
                         std::uint64_t frame_key, const Workers& workers,
                         Image<render::Renderer::Surface>& surfaces);
 

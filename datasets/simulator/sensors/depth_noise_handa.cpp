@@ -44,10 +44,10 @@ constexpr std::uint64_t kDots = 0xD075;  // the pattern is the same in all image
 
 /// Lengths of step 3 in pixels of the image, for a camera of any size.
 struct Lengths {
-  explicit Lengths(const PinholeCamera& camera)
-      : native_px(static_cast<float>(native_per_image_px(camera))),
-        half_window(image_px(4, camera)),
-        cell(image_px(3, camera)),
+  explicit Lengths(const NativePixels& native)
+      : native_px(static_cast<float>(native.per_image_px())),
+        half_window(native.in_image(4)),
+        cell(native.in_image(3)),
         cells_around(half_window / cell + 1) {}
 
   float native_px;  ///< of the sensor, for one of the image
@@ -183,8 +183,9 @@ float kinect_depth_m(float depth_m, float noise) {
 
 DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfaces,
                                   const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
-  const float focal_baseline = focal_baseline_px_m(camera, kBaseline_m);
-  const Lengths lengths(camera);
+  const NativePixels native(camera, kKinectColumns);
+  const float focal_baseline = native.focal_baseline_px_m(kBaseline_m);
+  const Lengths lengths(native);
   const DepthImage disparity_px = quantised_disparity(surfaces, focal_baseline, kShift_px / lengths.native_px,
                                                       random::mix_key(key, kShiftNoise), workers);
   const Image<Dot> dots = dot_pattern(surfaces.width, surfaces.height, lengths.cell);

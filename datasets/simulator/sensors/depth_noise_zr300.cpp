@@ -91,16 +91,16 @@ float faded(const StereoSensor& sensor, float depth_m) {
 }
 
 DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer::Surface>& surfaces,
-                        const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
-  const float focal_baseline = focal_baseline_px_m(camera, sensor.baseline_m);
-  const auto native_px = static_cast<float>(native_per_image_px(camera));
-  const int half_window = image_px(kHalfWindow, camera);
+                        const NativePixels& native, std::uint64_t key, const Workers& workers) {
+  const float focal_baseline = native.focal_baseline_px_m(sensor.baseline_m);
+  const auto native_px = static_cast<float>(native.per_image_px());
+  const int half_window = native.in_image(kHalfWindow);
   DepthImage disparity_px(surfaces.width, surfaces.height);
   std::ranges::transform(surfaces.data, disparity_px.data.begin(),
                          [&](const render::Renderer::Surface& surface) {
                            return surface.depth_m > 0 ? focal_baseline / surface.depth_m : 0.0F;
                          });
-  const random::SmoothNoise noise(random::mix_key(key, kFieldKey), image_px(kNoiseSpacing_px, camera));
+  const random::SmoothNoise noise(random::mix_key(key, kFieldKey), native.in_image(kNoiseSpacing_px));
   const std::uint64_t fade_key = random::mix_key(key, kFadeKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
   workers.for_chunks(
@@ -131,12 +131,12 @@ DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer
 
 DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
                                std::uint64_t key, const Workers& workers) {
-  return stereo_depth(kZr300, surfaces, camera, key, workers);
+  return stereo_depth(kZr300, surfaces, NativePixels(camera, camera.width_px), key, workers);
 }
 
 DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
                         std::uint64_t key, const Workers& workers) {
-  return stereo_depth(kKinect, surfaces, camera, key, workers);
+  return stereo_depth(kKinect, surfaces, NativePixels(camera, kKinectColumns), key, workers);
 }
 
 }  // namespace fusebench::simulator::sensors

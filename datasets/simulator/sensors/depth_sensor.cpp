@@ -76,7 +76,9 @@ Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSe
     put_before(seen_by(before->surface, sensor, capture_ns, before->T_object_camera, workers), surfaces);
   if (sensor.errors.any()) {
     const std::uint64_t key = random::mix_key(seed, kDepthErrors);
-    apply_depth_errors(sensor.errors, sensor.camera, key, random::mix_key(key, frame + 1), workers, surfaces);
+    const bool kinect = sensor.noise != DepthNoise::zr300;
+    const NativePixels native(sensor.camera, kinect ? kKinectColumns : sensor.camera.width_px);
+    apply_depth_errors(sensor.errors, native, key, random::mix_key(key, frame + 1), workers, surfaces);
   }
   const DepthImage depth_m =
       measured_depth(surfaces, sensor, random::mix_key(random::mix_key(seed, kDepthNoise), frame), workers);

@@ -1,5 +1,7 @@
-// Depth sensors match patterns of light in images of 640 columns, whatever the size of the depth image that
-// they deliver. What their models say in pixels (errors of disparity, windows) is in these.
+// The pixels in which a depth sensor matches patterns of light: what its model says in pixels (errors of
+// disparity, windows) is in these. A Kinect matches in 640 columns and leaves out pixels for a smaller image;
+// an R200 or ZR300 matches in the size that it delivers, which is why it measures nearer in a smaller image
+// (librealsense v1.12.1, doc/camera_specs.md).
 #pragma once
 
 #include <algorithm>
@@ -9,19 +11,28 @@
 
 namespace fusebench::simulator::sensors {
 
-/// Columns of the sensor for one of the image: 1 at 640 columns, 2 at 320.
-[[nodiscard]] inline double native_per_image_px(const PinholeCamera& camera) {
-  return 640.0 / camera.width_px;
-}
+inline constexpr int kKinectColumns = 640;
 
-/// A length of the sensor's pixels in those of the image, at least 1.
-[[nodiscard]] inline int image_px(int native_px, const PinholeCamera& camera) {
-  return std::max(1, static_cast<int>(std::lround(native_px / native_per_image_px(camera))));
-}
+class NativePixels {
+ public:
+  /// columns: of the sensor, over the width of the image.
+  NativePixels(const PinholeCamera& camera, int columns)
+      : fx_px_(camera.fx_px), per_image_px_(static_cast<double>(columns) / camera.width_px) {}
 
-/// Disparity times depth, in pixels of the sensor times metres.
-[[nodiscard]] inline float focal_baseline_px_m(const PinholeCamera& camera, double baseline_m) {
-  return static_cast<float>(camera.fx_px * native_per_image_px(camera) * baseline_m);
-}
+  /// Columns of the sensor for one of the image.
+  [[nodiscard]] double per_image_px() const { return per_image_px_; }
+  /// A length of the sensor's pixels in those of the image, at least 1.
+  [[nodiscard]] int in_image(int native_px) const {
+    return std::max(1, static_cast<int>(std::lround(native_px / per_image_px_)));
+  }
+  /// Disparity times depth, in pixels of the sensor times metres.
+  [[nodiscard]] float focal_baseline_px_m(double baseline_m) const {
+    return static_cast<float>(fx_px_ * per_image_px_ * baseline_m);
+  }
+
+ private:
+  double fx_px_;
+  double per_image_px_;
+};
 
 }  // namespace fusebench::simulator::sensors

@@ -19,16 +19,23 @@ using testing::kHalfSecond_ns;
 using testing::plane_at;
 using testing::straight_motion;
 
-// The size in which a sensor measures, and half of it.
+// The size in which a Kinect measures, and half of it.
 constexpr PinholeCamera kNative{640, 480, 480.0, 480.0, 319.5, 239.5};
 constexpr PinholeCamera kHalved{320, 240, 240.0, 240.0, 159.5, 119.5};
 
-DepthSensor sensor_with(DepthNoise noise, const PinholeCamera& camera = kHalved) {
+// A part of the native image with its focal length: a ZR300 measures in the size of its image.
+constexpr PinholeCamera kMiddle{320, 240, 480.0, 480.0, 159.5, 119.5};
+
+DepthSensor sensor_with(DepthNoise noise, const PinholeCamera& camera) {
   DepthSensor sensor;
   sensor.camera = camera;
   sensor.units_per_metre = 5000;
   sensor.noise = noise;
   return sensor;
+}
+
+DepthSensor sensor_with(DepthNoise noise) {
+  return sensor_with(noise, noise == DepthNoise::zr300 ? kMiddle : kHalved);
 }
 
 Image<std::uint16_t> sense(const SimulatedScene& scene, const DepthSensor& sensor, std::uint64_t seed = 1,
@@ -110,8 +117,8 @@ TEST(DepthSensor, ActiveStereoHasTheStatedDisparityNoise) {
   EXPECT_LT(std::abs(error.mean_m), 0.1 * error.deviation_m);
 }
 
-TEST(DepthSensor, ASmallerImageIsAsExactInMetres) {
-  for (const DepthNoise noise : {DepthNoise::handa, DepthNoise::kinect, DepthNoise::zr300}) {
+TEST(DepthSensor, ASmallerImageOfAKinectIsAsExactInMetres) {
+  for (const DepthNoise noise : {DepthNoise::handa, DepthNoise::kinect}) {
     const auto error = [&](const PinholeCamera& camera) {
       return error_against(sense(plane_at(2.5F, 0), sensor_with(noise, camera)), 5000, 2.5);
     };
@@ -121,6 +128,14 @@ TEST(DepthSensor, ASmallerImageIsAsExactInMetres) {
     EXPECT_NEAR(halved.mean_m, native.mean_m, 0.2 * native.deviation_m);
     EXPECT_NEAR(halved.share_measured, native.share_measured, 0.01);
   }
+}
+
+TEST(DepthSensor, ASmallerImageOfAZr300IsTwiceAsCoarse) {
+  const auto deviation_m = [&](const PinholeCamera& camera) {
+    return error_against(sense(plane_at(2.5F, 0), sensor_with(DepthNoise::zr300, camera)), 5000, 2.5)
+        .deviation_m;
+  };
+  EXPECT_NEAR(deviation_m(kHalved), 2 * deviation_m(kNative), 0.1 * deviation_m(kHalved));
 }
 
 TEST(DepthSensor, StructuredLightIsUnbiasedAndQuantised) {
@@ -194,8 +209,9 @@ TEST(DepthSensor, NothingIsMeasuredAtGrazingAngles) {
   add_rectangle(floor, {-20, 0.05F, 0.1F}, {40, 0, 0}, {0, 0, 60}, 0);
   for (const DepthNoise noise : {DepthNoise::handa, DepthNoise::zr300}) {
     const auto raw = sense(floor, sensor_with(noise));
-    // At row v the angle between ray and floor is atan((v - 119.5) / 240): 10 degrees at row 162.
-    for (int u = 0; u < raw.width; ++u) ASSERT_EQ(raw(u, 150), 0);
+    // At row v the angle between ray and floor is atan((v - cy) / f): at most 7.2 degrees here.
+    const int row = noise == DepthNoise::zr300 ? 180 : 150;
+    for (int u = 0; u < raw.width; ++u) ASSERT_EQ(raw(u, row), 0);
   }
 }
 
