@@ -183,6 +183,7 @@ void LoopClosure::look_for_loops(std::size_t query) {
     if (std::ranges::find(known_places, known) == known_places.end()) known_places.push_back(known);
   }
   for (const std::size_t known : known_places) {
+    if (is_candidate(known, query)) continue;
     LoopCandidate candidate{known, query, dissimilarity(known, query), {}, 0, false, {}};
     candidate.pair = places::verify_pair(places_[known].appearance, places_[query].appearance,
                                          T_current_camera(known).inverse() * T_current_camera(query),
@@ -193,6 +194,13 @@ void LoopClosure::look_for_loops(std::size_t query) {
     candidates_.push_back(std::move(candidate));
     if (same) break;
   }
+}
+
+/// The lost tracker found itself by the same place.
+bool LoopClosure::is_candidate(std::size_t known, std::size_t query) const {
+  return std::ranges::any_of(candidates_, [&](const LoopCandidate& candidate) {
+    return candidate.known == known && candidate.query == query;
+  });
 }
 
 double LoopClosure::dissimilarity(std::size_t known, std::size_t query) const {

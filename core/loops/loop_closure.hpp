@@ -102,6 +102,7 @@ class LoopClosure {
   [[nodiscard]] std::size_t first_recent(std::size_t query) const;
   [[nodiscard]] std::vector<std::size_t> candidates_by_appearance(std::size_t query) const;
   [[nodiscard]] std::vector<std::size_t> candidates_by_path(std::size_t query) const;
+  [[nodiscard]] bool is_candidate(std::size_t known, std::size_t query) const;
   [[nodiscard]] double dissimilarity(std::size_t known, std::size_t query) const;
   [[nodiscard]] Result<void> optimise();
   [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const;

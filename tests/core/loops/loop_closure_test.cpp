@@ -160,7 +160,6 @@ TEST_F(Loops, ALostTrackerThatFindsItselfClosesOne) {
   }
 }
 
-/// Where nothing looks alike, as in the dark, the poses so far say what to compare with.
 /// Where the camera of an estimate is a moment later.
 SE3 T_world_camera_after(const filter::GaussianState& estimate, const SensorRig& rig, double dt_s) {
   const filter::FilterState& s = estimate.mean;
@@ -214,6 +213,7 @@ TEST_F(Loops, AnErrorOfTheInstantIsAlongTheMotion) {
   EXPECT_LT((added - expected).norm(), 2e-3 * expected.norm()) << added << "\n\n" << expected;
 }
 
+/// Where nothing looks alike, as in the dark, the poses so far say what to compare with.
 TEST_F(Loops, ThePathLeadsToPlacesThatAppearanceDoesNotFind) {
   config::Config config = configuration(config::LoopMode::final);
   config.loops.max_dissimilarity = 0.05;
