@@ -196,7 +196,7 @@ void LoopClosure::look_for_loops(std::size_t query) {
   }
 }
 
-/// The lost tracker found itself by the same place.
+/// Whether the pair was looked at already: a lost tracker that found itself by that place.
 bool LoopClosure::is_candidate(std::size_t known, std::size_t query) const {
   return std::ranges::any_of(candidates_, [&](const LoopCandidate& candidate) {
     return candidate.known == known && candidate.query == query;

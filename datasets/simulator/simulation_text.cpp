@@ -8,7 +8,6 @@
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
 #include "datasets/simulator/realism.hpp"
-#include "datasets/simulator/sensors/native_pixels.hpp"
 #include "datasets/simulator/simulation.hpp"
 
 namespace fusebench::simulator {
@@ -19,8 +18,7 @@ namespace {
 /// of its 640 columns; where these are the image's, recordings keep their bytes and their identity.
 int simulator_version(const SimulationOptions& options) {
   const PinholeCamera& depth = options.rig.depth ? options.rig.depth->pinhole : options.rig.color.pinhole;
-  const bool kinect = options.depth_noise != sensors::DepthNoise::zr300;
-  return kinect && depth.width_px != sensors::kKinectColumns ? 2 : 1;
+  return sensors::native_pixels(options.depth_noise, depth).per_image_px() == 1 ? 1 : 2;
 }
 
 std::string_view name_of(sensors::DepthNoise noise) {

@@ -8,22 +8,24 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "datasets/simulator/render/renderer.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
-/// Structured light, after Handa et al. (ICRA 2014) and Barron & Malik (CVPR 2013); see noise_handa.cpp.
+/// Structured light, after Handa et al. (ICRA 2014) and Barron & Malik (CVPR 2013); see
+/// depth_noise_handa.cpp.
 [[nodiscard]] DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfaces,
-                                                const PinholeCamera& camera, std::uint64_t key,
+                                                const NativePixels& native, std::uint64_t key,
                                                 const Workers& workers);
 
-/// Active stereo as in the R200 and ZR300; see noise_zr300.cpp.
+/// Active stereo as in the R200 and ZR300; see depth_noise_zr300.cpp.
 [[nodiscard]] DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces,
-                                             const PinholeCamera& camera, std::uint64_t key,
+                                             const NativePixels& native, std::uint64_t key,
                                              const Workers& workers);
 
 /// A Kinect as it is rather than as in ICL-NUIM's noisy sequences, whose steps of a centimetre are too coarse
-/// near by; see noise_zr300.cpp, which has the same model.
+/// near by; see depth_noise_zr300.cpp, which has the same model.
 [[nodiscard]] DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces,
-                                      const PinholeCamera& camera, std::uint64_t key, const Workers& workers);
+                                      const NativePixels& native, std::uint64_t key, const Workers& workers);
 
 }  // namespace fusebench::simulator::sensors

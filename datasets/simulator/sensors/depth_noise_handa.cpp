@@ -20,7 +20,6 @@
 
 #include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/sensors/depth_noise.hpp"
-#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -182,8 +181,7 @@ float kinect_depth_m(float depth_m, float noise) {
 }  // namespace
 
 DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfaces,
-                                  const PinholeCamera& camera, std::uint64_t key, const Workers& workers) {
-  const NativePixels native(camera, kKinectColumns);
+                                  const NativePixels& native, std::uint64_t key, const Workers& workers) {
   const float focal_baseline = native.focal_baseline_px_m(kBaseline_m);
   const Lengths lengths(native);
   const DepthImage disparity_px = quantised_disparity(surfaces, focal_baseline, kShift_px / lengths.native_px,

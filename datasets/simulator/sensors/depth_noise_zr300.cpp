@@ -20,7 +20,6 @@
 #include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/random/smooth_noise.hpp"
 #include "datasets/simulator/sensors/depth_noise.hpp"
-#include "datasets/simulator/sensors/native_pixels.hpp"
 
 namespace fusebench::simulator::sensors {
 
@@ -129,14 +128,14 @@ DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer
 
 }  // namespace
 
-DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
+DepthImage active_stereo_depth(const Image<render::Renderer::Surface>& surfaces, const NativePixels& native,
                                std::uint64_t key, const Workers& workers) {
-  return stereo_depth(kZr300, surfaces, NativePixels(camera, camera.width_px), key, workers);
+  return stereo_depth(kZr300, surfaces, native, key, workers);
 }
 
-DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces, const PinholeCamera& camera,
+DepthImage kinect_depth(const Image<render::Renderer::Surface>& surfaces, const NativePixels& native,
                         std::uint64_t key, const Workers& workers) {
-  return stereo_depth(kKinect, surfaces, NativePixels(camera, kKinectColumns), key, workers);
+  return stereo_depth(kKinect, surfaces, native, key, workers);
 }
 
 }  // namespace fusebench::simulator::sensors

@@ -15,6 +15,8 @@ namespace {
 constexpr std::uint64_t kDepthNoise = 0xD0;
 constexpr std::uint64_t kDepthErrors = 0xD1;
 
+constexpr int kKinectColumns = 640;
+
 std::uint16_t raw_value(float depth_m, double units_per_metre) {
   const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
   return units > 0 && units <= std::numeric_limits<std::uint16_t>::max() ? static_cast<std::uint16_t>(units)
@@ -23,13 +25,14 @@ std::uint16_t raw_value(float depth_m, double units_per_metre) {
 
 DepthImage measured_depth(const Image<render::Renderer::Surface>& surfaces, const DepthSensor& sensor,
                           std::uint64_t key, const Workers& workers) {
+  const NativePixels native = native_pixels(sensor.noise, sensor.camera);
   switch (sensor.noise) {
     case DepthNoise::handa:
-      return structured_light_depth(surfaces, sensor.camera, key, workers);
+      return structured_light_depth(surfaces, native, key, workers);
     case DepthNoise::zr300:
-      return active_stereo_depth(surfaces, sensor.camera, key, workers);
+      return active_stereo_depth(surfaces, native, key, workers);
     case DepthNoise::kinect:
-      return kinect_depth(surfaces, sensor.camera, key, workers);
+      return kinect_depth(surfaces, native, key, workers);
     case DepthNoise::none:
       break;
   }
@@ -65,6 +68,10 @@ void put_before(const Image<render::Renderer::Surface>& nearer, Image<render::Re
 
 }  // namespace
 
+NativePixels native_pixels(DepthNoise noise, const PinholeCamera& camera) {
+  return {camera, noise == DepthNoise::zr300 ? camera.width_px : kKinectColumns};
+}
+
 Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSensor& sensor,
                                  const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
                                  std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
@@ -76,9 +83,8 @@ Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSe
     put_before(seen_by(before->surface, sensor, capture_ns, before->T_object_camera, workers), surfaces);
   if (sensor.errors.any()) {
     const std::uint64_t key = random::mix_key(seed, kDepthErrors);
-    const bool kinect = sensor.noise != DepthNoise::zr300;
-    const NativePixels native(sensor.camera, kinect ? kKinectColumns : sensor.camera.width_px);
-    apply_depth_errors(sensor.errors, native, key, random::mix_key(key, frame + 1), workers, surfaces);
+    apply_depth_errors(sensor.errors, native_pixels(sensor.noise, sensor.camera), key,
+                       random::mix_key(key, frame + 1), workers, surfaces);
   }
   const DepthImage depth_m =
       measured_depth(surfaces, sensor, random::mix_key(random::mix_key(seed, kDepthNoise), frame), workers);

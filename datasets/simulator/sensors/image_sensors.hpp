@@ -11,6 +11,7 @@
 #include "datasets/simulator/render/renderer.hpp"
 #include "datasets/simulator/sensors/color_processing.hpp"
 #include "datasets/simulator/sensors/depth_errors.hpp"
+#include "datasets/simulator/sensors/native_pixels.hpp"
 #include "datasets/synthetic_imu/pose_spline.hpp"
 
 namespace fusebench::simulator::sensors {
@@ -47,6 +48,10 @@ enum class DepthNoise {
   zr300,   ///< active stereo of the ZR300; see depth_noise_zr300.cpp
   kinect,  ///< a Kinect as in TUM freiburg1; also there
 };
+
+/// What the sensor of that noise matches in, for an image of that camera: 640 columns of a Kinect (and where
+/// there is no noise), the image's own of a ZR300.
+[[nodiscard]] NativePixels native_pixels(DepthNoise noise, const PinholeCamera& camera);
 
 /// A depth camera. Row r is taken at capture + (r / (height - 1) - 1/2) * readout_s.
 struct DepthSensor {

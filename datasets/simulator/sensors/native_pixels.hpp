@@ -11,8 +11,6 @@
 
 namespace fusebench::simulator::sensors {
 
-inline constexpr int kKinectColumns = 640;
-
 class NativePixels {
  public:
   /// columns: of the sensor, over the width of the image.
