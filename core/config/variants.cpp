@@ -46,6 +46,7 @@ constexpr std::array kVariants = {
         "iekf.prior_in_every_iteration=false iekf.scatter_prior_freedom=1e9 iekf.scale_share=0 "
         "color_drift.factor=0 "
         "photometric.pixels_per_measurement=1 geometric.pixels_per_measurement=1 "
+        "geometric.common_error_share=0 "
         "photometric.huber_sigmas=1e6 geometric.huber_sigmas=1e6 photometric.gain_sigma=0 "
         "photometric.offset_sigma_grey=0 initialisation.imu_time_offset_sigma_s=0 "
         "self_calibration.imu_rotation_sigma_rad=0 self_calibration.gyroscope_scale_sigma=0 "

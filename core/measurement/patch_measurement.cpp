@@ -73,7 +73,7 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
     }
   });
   photometric_variance_ = measured_variance(&PatchState::photometric);
-  geometric_variance_ = measured_variance(&PatchState::geometric);
+  geometric_variance_ = measured_variance(&PatchState::geometric) + common_depth_variance();
   filter::MeasurementQuadratic sum;
   sum.undone = frame_->motion.undone;
   const patches::PosedCamera camera(rig_.camera, poses.T_world_imu_by_reference, rig_.T_imu_camera);
@@ -109,6 +109,15 @@ double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*ki
   clusters.reserve(states_.size());
   for (const PatchState& state : states_) clusters.push_back(state.*kind);
   return variance_factor(patch_scatter(clusters), config_.iekf.scatter_prior_freedom);
+}
+
+double PatchMeasurement::common_depth_variance() const {
+  int residuals = 0;
+  for (std::size_t p = 0; p < states_.size(); ++p) {
+    if (states_[p].counts) residuals += outcomes_[p].geometric_residuals;
+  }
+  const double measurements = static_cast<double>(residuals) * geometric_weighting().share;
+  return common_error_factor(measurements, config_.geometric.common_error_share);
 }
 
 /// Levels are independent of each other and have about the same number of pixels.

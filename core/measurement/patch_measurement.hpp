@@ -58,7 +58,8 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   [[nodiscard]] std::span<const PatchOutcome> outcomes() const { return outcomes_; }
   /// False where the frame repeats an earlier colour image.
   [[nodiscard]] bool color_is_new() const { return frame_ && frame_->color_is_new; }
-  /// Ratios of the measured to the nominal variance of the residuals there (patch_scatter.hpp).
+  /// Ratios of the variance of what residuals of a kind say of the pose to the nominal one there
+  /// (patch_scatter.hpp).
   [[nodiscard]] double photometric_variance() const { return photometric_variance_; }
   [[nodiscard]] double geometric_variance() const { return geometric_variance_; }
   /// The level-0 pixels of tracked patches there, by patch.
@@ -99,6 +100,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   [[nodiscard]] Weighting photometric_weighting() const;
   [[nodiscard]] Weighting geometric_weighting() const;
   [[nodiscard]] double measured_variance(filter::PoseQuadratic PatchState::*kind) const;
+  [[nodiscard]] double common_depth_variance() const;
   [[nodiscard]] double patch_cost(std::size_t patch, const PosedLevels& posed) const;
   [[nodiscard]] double photometric_cost(std::size_t patch, const PosedLevels& posed) const;
   [[nodiscard]] double geometric_cost(std::size_t patch, const PosedLevels& posed) const;

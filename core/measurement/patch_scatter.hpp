@@ -4,7 +4,8 @@
 // information of all pixels as if they were independent is too optimistic, by a factor that differs between
 // sensors, scenes and speeds. Patches err nearly independently of each other, so the scatter of their
 // gradients around the common optimum shows the true variance (the cluster-robust, or sandwich, estimate of
-// Liang & Zeger 1986, reduced to one number).
+// Liang & Zeger 1986, reduced to one number). What all patches have in common does not show in it, and is
+// told by the configuration.
 #pragma once
 
 #include <span>
@@ -28,5 +29,12 @@ inline constexpr double kMinVarianceFactor = 1e-3;
 
 /// The mean of a prior factor of 1, which weighs `prior_freedom`, and the measured one.
 [[nodiscard]] double variance_factor(const Scatter& scatter, double prior_freedom);
+
+/// What an error that all measurements of a frame have in common, of `share` standard deviations of the noise
+/// of one, adds to the variance factor of the estimate from all of them: the variance of the mean of n such
+/// measurements is (1 + n share^2) / n.
+[[nodiscard]] constexpr double common_error_factor(double measurements, double share) {
+  return measurements * share * share;
+}
 
 }  // namespace fusebench::measurement

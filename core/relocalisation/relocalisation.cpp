@@ -63,7 +63,9 @@ std::optional<RelocalisedPose> Relocalisation::likely_pose(const std::optional<F
   const RelocalisedPose pose = pose_of(*found);
   // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
   // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
-  if (!(normalised_innovation(prediction, pose) <= config_.relocalisation.max_innovation))
+  const config::RelocalisationConfig& config = config_.relocalisation;
+  if (!(normalised_position_innovation(prediction, pose) <= config.max_position_innovation) ||
+      !(normalised_innovation(prediction, pose) <= config.max_innovation))
     return std::nullopt;
   return pose;
 }
@@ -79,7 +81,7 @@ std::optional<RelocalisedPose> Relocalisation::supported_pose(const FoundPlace& 
   const double turned_rad =
       rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation);
   if (!(turned_rad <= radians(config.max_supported_rotation_deg)) ||
-      !(normalised_position_innovation(prediction, pose) <= config.max_innovation) ||
+      !(normalised_position_innovation(prediction, pose) <= config.max_position_innovation) ||
       !(normalised_innovation(prediction, pose) <= config.max_supported_innovation))
     return std::nullopt;
   refused_.add({frame.timestamp_ns, pose, prediction.mean.T_world_imu});

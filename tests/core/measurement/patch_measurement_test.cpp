@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -148,6 +149,41 @@ TEST(PatchMeasurement, WholeSquaresHoldThePixelsOfAIEAndTheOthers) {
   std::size_t seen = 0;
   for (const PatchOutcome& outcome : measurement.outcomes()) seen += outcome.tracked ? 1U : 0U;
   EXPECT_EQ(tracked.squares.size(), 100 * seen) << "no patch is at the border";
+}
+
+struct Measured {
+  MeasurementQuadratic sum;
+  double depth_measurements = 0;
+  double depth_variance = 1;
+};
+
+Measured measured_near(Scene& scene, std::span<const Patch> patches, double common_error_share) {
+  scene.config.geometric.common_error_share = common_error_share;
+  PatchMeasurement measurement(scene.config, scene.rig, scene.workers);
+  measurement.observe(scene.near.observed(), patches, {});
+  Measured result;
+  result.sum = measurement.linearise({}, measurement.stages() - 1, true);
+  for (const PatchOutcome& outcome : measurement.outcomes()) {
+    if (outcome.accepted)
+      result.depth_measurements +=
+          outcome.geometric_residuals / scene.config.geometric.pixels_per_measurement;
+  }
+  result.depth_variance = measurement.geometric_variance();
+  return result;
+}
+
+TEST(PatchMeasurement, TheDepthOfAFrameCountsForALimitedNumberOfMeasurements) {
+  // However many patches agree, a fixed error of the depth sensor is in all of them.
+  Scene scene;
+  const auto patches = scene.cut(60, Deformation::pixelwise);
+  const Measured free = measured_near(scene, patches, 0);
+  const Measured limited = measured_near(scene, patches, 2);
+  ASSERT_GT(free.depth_measurements, 5.0);
+  EXPECT_NEAR(limited.depth_variance, free.depth_variance + 4.0 * free.depth_measurements,
+              1e-5 * limited.depth_variance);
+  EXPECT_TRUE((limited.sum.by_model.information * limited.depth_variance)
+                  .isApprox(free.sum.by_model.information * free.depth_variance, 1e-9));
+  expect_same(free.sum.by_reference, limited.sum.by_reference);
 }
 
 TEST(PatchMeasurement, WithoutAFrameThereIsNothingToMeasureBy) {

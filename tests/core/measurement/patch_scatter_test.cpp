@@ -95,5 +95,24 @@ TEST(PatchScatter, FewPatchesKeepTheClaim) {
   EXPECT_NEAR(variance_factor({.factor = 3.0, .freedom = 10.0}, 10.0), 2.0, 1e-12);
 }
 
+TEST(PatchScatter, WhatMeasurementsHaveInCommonDoesNotAverageOut) {
+  // Means of n measurements with an error in common, against what one measurement's noise and n claim.
+  constexpr double kShare = 0.3;
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (const int n : {1, 10, 100}) {
+    double squares = 0;
+    constexpr int kTrials = 4000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const double common = kShare * normal(random);
+      double sum = 0;
+      for (int i = 0; i < n; ++i) sum += common + normal(random);
+      squares += (sum / n) * (sum / n);
+    }
+    const double claimed = 1.0 / n;
+    EXPECT_NEAR(squares / kTrials / claimed / (1.0 + common_error_factor(n, kShare)), 1.0, 0.08) << n;
+  }
+}
+
 }  // namespace
 }  // namespace fusebench
