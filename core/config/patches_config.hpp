@@ -132,7 +132,8 @@ struct GeometricConfig {
     v.number("common_error_share", self.common_error_share, 0.0, 10.0,
              "of the depth noise (standard deviations), what all measurements of a frame have in common: a "
              "fixed error of the depth sensor over its image, which the scatter between patches does not "
-             "show; the depth of one frame counts as at most 1 / share^2 measurements, 0: no limit");
+             "show; with an IMU the depth of one frame counts as at most 1 / share^2 measurements, 0: no "
+             "limit");
     v.number("model_noise_m", self.model_noise_m, 0.0, 1.0,
              "noise of the model's surface, added to the depth's");
     v.number("max_distance_m", self.max_distance_m, 0.001, 2.0,

@@ -112,6 +112,8 @@ double PatchMeasurement::measured_variance(filter::PoseQuadratic PatchState::*ki
 }
 
 double PatchMeasurement::common_depth_variance() const {
+  // Without an IMU nothing else tells a turn where colour has little to say.
+  if (config_.terms.prior != config::Prior::imu) return 0;
   int residuals = 0;
   for (std::size_t p = 0; p < states_.size(); ++p) {
     if (states_[p].counts) residuals += outcomes_[p].geometric_residuals;

@@ -184,6 +184,9 @@ TEST(PatchMeasurement, TheDepthOfAFrameCountsForALimitedNumberOfMeasurements) {
   EXPECT_TRUE((limited.sum.by_model.information * limited.depth_variance)
                   .isApprox(free.sum.by_model.information * free.depth_variance, 1e-9));
   expect_same(free.sum.by_reference, limited.sum.by_reference);
+  // Without an IMU nothing else tells how far the camera has turned.
+  scene.config.terms.prior = Prior::constant_velocity;
+  EXPECT_EQ(measured_near(scene, patches, 2).depth_variance, free.depth_variance);
 }
 
 TEST(PatchMeasurement, WithoutAFrameThereIsNothingToMeasureBy) {
