@@ -27,7 +27,7 @@ struct RelocalisationConfig {
   double keyframe_rotation_sigma_rad = 0.005;
   double keyframe_position_sigma_m = 0.005;
   double max_innovation = 225.0;
-  double max_position_innovation = 64.0;
+  double max_position_innovation = 25.0;
   double max_supported_innovation = 2250.0;
   double max_supported_rotation_deg = 30.0;
   int agreeing_frames = 5;
@@ -107,8 +107,8 @@ struct RelocalisationConfig {
     v.number(
         "max_position_innovation", self.max_position_innovation, 0.1, 1e12,
         "and the same of its position alone, of which a lost tracker claims its error better than of its "
-        "rotation: in simulated recordings right places had up to 16, after 0.6 to 50 s, and a picture "
-        "3 m aside that repeats 128 and more");
+        "rotation: in simulated recordings right places had up to 16, after 0.6 to 50 s, and doors and "
+        "pictures 3 to 6 m aside that repeat 30 and more; 25 are five standard deviations");
     v.number("max_supported_innovation", self.max_supported_innovation, 0.1, 1e12,
              "up to so much, where its position alone is within max_position_innovation, it is "
              "believed all the same if several frames in a row agree on it, the last verified by depth as "
