@@ -182,7 +182,7 @@ void expect_bridged(const RunResult& results, FrameHealth health) {
   EXPECT_GT(std::sqrt(sigma_m * sigma_m - before.sigma_m * before.sigma_m), 0.01);
   const RunResult after = after_fault(results);
   expect_tracked(after);
-  EXPECT_LT(after.front().sigma_m - before.sigma_m, 0.25 * (sigma_m - before.sigma_m));
+  EXPECT_LT(after.front().sigma_m - before.sigma_m, 0.15 * (sigma_m - before.sigma_m));
   EXPECT_GT(after.front().report.model_blocks, before.report.model_blocks);
 }
 
