@@ -17,7 +17,7 @@ struct RelocalisationConfig {
   int min_landmarks = 60;
   int plenty_of_corners = 120;
   double landmark_edge_jump = 0.05;
-  int max_candidates = 8;
+  int max_candidates = 16;
   int min_inliers = 25;
   double min_inlier_share = 0.3;
   int spread_cells_per_side = 4;
@@ -27,11 +27,15 @@ struct RelocalisationConfig {
   double keyframe_rotation_sigma_rad = 0.005;
   double keyframe_position_sigma_m = 0.005;
   double max_innovation = 225.0;
-  double max_position_innovation = 25.0;
+  double max_position_innovation = 16.0;
   double max_supported_innovation = 2250.0;
   double max_supported_rotation_deg = 30.0;
+  double max_unsupported_position_sigma_m = 1.0;
   int agreeing_frames = 5;
   double agreeing_within_s = 0.5;
+  double rival_support = 0.5;
+  double rival_separation = 2.0;
+  double rivals_within_s = 10.0;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("keyframe_distance_m", self.keyframe_distance_m, 0.001, 100.0,
@@ -72,7 +76,8 @@ struct RelocalisationConfig {
         "landmark: it may lie on either surface; wider than depth.edge_jump, which gated the depth before");
     v.number("max_candidates", self.max_candidates, 1, 10000,
              "a pose is computed for so many keyframes, those with the most matches; the right one is not "
-             "behind as many wrong ones");
+             "behind as many wrong ones, and of two places that look alike some keyframe of either is among "
+             "them");
     v.number(
         "min_inliers", self.min_inliers, 6, 100000,
         "a pose with fewer inliers is not certain; 1.5 times what keyframes of another room gave at most "
@@ -118,10 +123,24 @@ struct RelocalisationConfig {
              "but not beyond such a rotation: paths drift by up to 5 % of what the camera turns, which is 18 "
              "degrees in a lap of a room. After many seconds of dead reckoning the position rules nothing "
              "out, and the pictures and doors of a corridor repeat");
+    v.number("max_unsupported_position_sigma_m", self.max_unsupported_position_sigma_m, 0.0, 1e6,
+             "such support is needed by every place where dead reckoning knows the position no better than "
+             "this (metres, one standard deviation): pictures and doors repeat every few metres");
     v.number("agreeing_frames", self.agreeing_frames, 2, 1000,
              "so many frames have to agree, each with the one before within loops.agreeing_chi2");
     v.number("agreeing_within_s", self.agreeing_within_s, 0.01, 10.0,
              "which is no longer ago than this (seconds)");
+    v.number("rival_support", self.rival_support, 0.0, 1.0,
+             "another place is a rival of the best if it has this share of its inliers (of the depth that "
+             "agrees, where there are no features): of two that the prediction allows none is believed. In "
+             "simulated corridors wrong doors had 0.6 to 1.1 times the inliers of each other");
+    v.number("rival_separation", self.rival_separation, 0.1, 1000.0,
+             "and is so far away, in units of the keyframes' spacing: less is drift between two visits of "
+             "one place");
+    v.number("rivals_within_s", self.rivals_within_s, 0.0, 1e6,
+             "after two rivals, for this long (seconds), a place near them is believed only within half "
+             "their distance of the prediction, and if three standard deviations of that are less as well: "
+             "the camera may stand before a third, which it never saw");
   }
 };
 
@@ -214,7 +233,7 @@ struct LoopsConfig {
   int query_every = 10;
   double least_age_s = 10.0;
   int max_features = 400;
-  int max_candidates = 8;
+  int max_candidates = 16;
   double max_dissimilarity = 0.7;
   int max_path_candidates = 3;
   double min_consistent_share = 0.25;

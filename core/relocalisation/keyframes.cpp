@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -62,8 +63,18 @@ std::optional<FoundPlace> place_by(std::span<const places::PlaceFeature> query, 
   FoundPlace found =
       found_from(keyframe, pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance);
   found.inliers = static_cast<int>(pose->inliers.size());
+  found.support = static_cast<double>(found.inliers);
   found.matches = static_cast<int>(seen.size());
   found.rms_px = pose->rms_px;
+  return found;
+}
+
+/// Without those that fit much worse than the best. Of equal ones those that were found first stay first.
+std::vector<FoundPlace> comparable_best_first(std::vector<FoundPlace> found,
+                                              const config::RelocalisationConfig& config) {
+  std::ranges::stable_sort(found, std::ranges::greater{}, &FoundPlace::support);
+  std::erase_if(found, [best = found.empty() ? 0.0 : found.front().support, &config](
+                           const FoundPlace& place) { return place.support < config.rival_support * best; });
   return found;
 }
 
@@ -139,13 +150,13 @@ void Keyframes::drop_most_crowded() {
   kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(crowded));
 }
 
-std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
+std::vector<FoundPlace> Keyframes::find(const GreyImage& grey) {
   check(grey.width == camera_.width_px && grey.height == camera_.height_px,
         "the image has the size of the camera's");
-  if (kept_.empty()) return std::nullopt;
+  if (kept_.empty()) return {};
   const std::vector<places::PlaceFeature> query = places::find_place_features(grey, config_.place_features);
   const auto min_inliers = static_cast<std::size_t>(config_.relocalisation.min_inliers);
-  if (query.size() < min_inliers) return std::nullopt;
+  if (query.size() < min_inliers) return {};
 
   std::vector<std::vector<places::FeatureMatch>> matches;
   matches.reserve(kept_.size());
@@ -160,18 +171,19 @@ std::optional<FoundPlace> Keyframes::find(const GreyImage& grey) {
                    [&](std::size_t a, std::size_t b) { return matches[a].size() > matches[b].size(); });
   order.resize(std::min(order.size(), static_cast<std::size_t>(config_.relocalisation.max_candidates)));
 
-  std::optional<FoundPlace> best;
+  std::vector<FoundPlace> found;
+  double best_support = 0;
   for (const std::size_t k : order) {
-    // Fewer matches than the best has inliers cannot win.
-    if (matches[k].size() < min_inliers ||
-        (best && matches[k].size() <= static_cast<std::size_t>(best->inliers)))
-      break;
-    std::optional<FoundPlace> found = place_by(query, kept_[k], matches[k], camera_, config_);
-    if (!found || (best && found->inliers <= best->inliers)) continue;
-    found->keyframe = k;
-    best = found;
+    // So few matches cannot fit nearly as well as the best.
+    const auto count = static_cast<double>(matches[k].size());
+    if (matches[k].size() < min_inliers || count < config_.relocalisation.rival_support * best_support) break;
+    std::optional<FoundPlace> place = place_by(query, kept_[k], matches[k], camera_, config_);
+    if (!place) continue;
+    place->keyframe = k;
+    best_support = std::max(best_support, place->support);
+    found.push_back(*place);
   }
-  return best;
+  return comparable_best_first(std::move(found), config_.relocalisation);
 }
 
 /// With what depth is looked for by.
@@ -220,30 +232,29 @@ std::vector<Keyframes::AlignmentCandidate> Keyframes::most_similar(const places:
   return first_of(std::move(similar));
 }
 
-/// The one that most of the depth agrees with.
-std::optional<FoundPlace> Keyframes::best_aligned(const places::SmallImages& query,
-                                                  const std::vector<AlignmentCandidate>& candidates,
-                                                  double reach_m) const {
-  std::optional<FoundPlace> best;
-  double best_share = 0;
+std::vector<FoundPlace> Keyframes::aligned(const places::SmallImages& query,
+                                           const std::vector<AlignmentCandidate>& candidates,
+                                           double reach_m) const {
+  std::vector<FoundPlace> found;
   for (const AlignmentCandidate& candidate : candidates) {
     const Keyframe& keyframe = kept_[candidate.keyframe];
     const places::VerifiedPair pair = places::verify_by_depth(
         *keyframe.small, query, candidate.T_keyframe_camera, reach_m, camera_, config_);
-    if (!pair.same || pair.consistent_share <= best_share) continue;
-    best_share = pair.consistent_share;
-    best = found_from(keyframe, pair.T_known_query, pair.covariance);
-    best->keyframe = candidate.keyframe;
+    if (!pair.same) continue;
+    found.push_back(found_from(keyframe, pair.T_known_query, pair.covariance));
+    found.back().keyframe = candidate.keyframe;
+    found.back().support = pair.consistent_share;
   }
-  return best;
+  return comparable_best_first(std::move(found), config_.relocalisation);
 }
 
-std::optional<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& query,
-                                                   const SE3& T_world_camera_predicted, double reach_m) {
+std::vector<FoundPlace> Keyframes::find_by_depth(const places::SmallImages& query,
+                                                 const SE3& T_world_camera_predicted, double reach_m) {
   for (Keyframe& keyframe : kept_) complete(keyframe);
-  if (auto found = best_aligned(query, seen_by_prediction(query, T_world_camera_predicted), reach_m))
-    return found;
-  return best_aligned(query, most_similar(query), config_.relocalisation.keyframe_distance_m);
+  std::vector<FoundPlace> found =
+      aligned(query, seen_by_prediction(query, T_world_camera_predicted), reach_m);
+  if (!found.empty()) return found;
+  return aligned(query, most_similar(query), config_.relocalisation.keyframe_distance_m);
 }
 
 }  // namespace fusebench::relocalisation

@@ -41,6 +41,7 @@ struct Keyframe {
 struct FoundPlace {
   SE3 T_world_camera;
   std::size_t keyframe = 0;  ///< index of the one that it was found by; valid until the next offer
+  double support = 0;        ///< inliers, or the share of depth that agrees: comparable within one search
   int inliers = 0;           ///< matches that agree with the pose
   int matches = 0;           ///< all matches with that keyframe
   double rms_px = 0;         ///< of the inliers, at the scale of each
@@ -63,17 +64,19 @@ class Keyframes {
   bool offer(const GreyImage& grey, const DepthImage& depth_m, const SE3& T_world_camera,
              std::int64_t timestamp_ns, double blur_px = 0);
 
-  /// The pose of an image by the kept frame with which most of it agrees; nothing if it is not certain. The
+  /// The pose of an image by the kept frame with which most of it agrees, and by those others with which
+  /// nearly as much does (relocalisation.rival_support): best first, each certain; none if nothing is. The
   /// first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long as
   /// offering them would have taken, but all in one frame.
-  [[nodiscard]] std::optional<FoundPlace> find(const GreyImage& grey);
+  [[nodiscard]] std::vector<FoundPlace> find(const GreyImage& grey);
 
   /// The pose of an image by its depth alone, where blur, darkness or a bare wall leave no features, verified
-  /// as loops are (core/places/place_verification.hpp); nothing if it is not certain. First by the kept
-  /// frames that see the most of it by the prediction, aligned from there (off by about reach_m); then by
-  /// those whose depth looks most like it, aligned as if the camera were where they were taken from.
-  [[nodiscard]] std::optional<FoundPlace> find_by_depth(const places::SmallImages& query,
-                                                        const SE3& T_world_camera_predicted, double reach_m);
+  /// as loops are (core/places/place_verification.hpp): best first, each certain. First by the kept frames
+  /// that see the most of it by the prediction, aligned from there (off by about reach_m); if none is the
+  /// place, by those whose depth looks most like it, aligned as if the camera were where they were taken
+  /// from.
+  [[nodiscard]] std::vector<FoundPlace> find_by_depth(const places::SmallImages& query,
+                                                      const SE3& T_world_camera_predicted, double reach_m);
 
   /// A pose that find() has found of that image, refined by depth; nothing if the depth of either frame
   /// contradicts that of the other.
@@ -98,9 +101,9 @@ class Keyframes {
   [[nodiscard]] std::vector<AlignmentCandidate> seen_by_prediction(const places::SmallImages& query,
                                                                    const SE3& T_world_camera) const;
   [[nodiscard]] std::vector<AlignmentCandidate> most_similar(const places::SmallImages& query) const;
-  [[nodiscard]] std::optional<FoundPlace> best_aligned(const places::SmallImages& query,
-                                                       const std::vector<AlignmentCandidate>& candidates,
-                                                       double reach_m) const;
+  [[nodiscard]] std::vector<FoundPlace> aligned(const places::SmallImages& query,
+                                                const std::vector<AlignmentCandidate>& candidates,
+                                                double reach_m) const;
 
   PinholeCamera camera_;
   const config::Config& config_;

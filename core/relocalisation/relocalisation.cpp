@@ -1,6 +1,7 @@
 #include "core/relocalisation/relocalisation.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include "core/filter/pose_clones.hpp"
@@ -25,16 +26,18 @@ RelocalisedPose relocalised_pose(const FoundPlace& found, const Keyframe& keyfra
   return pose;
 }
 
+double position_sigma_m(const filter::GaussianState& prediction) {
+  return largest_sigma(prediction.covariance.block<3, 3>(filter::kPosition, filter::kPosition));
+}
+
 /// How far off a predicted camera sees a surface at some distance.
 double reach_m(const filter::GaussianState& prediction) {
   constexpr double kSigmas = 2;
   constexpr double kDistance_m = 2;
   constexpr double kLargest_m = 0.5;  // beyond, surfaces are taken for one another
-  const auto largest_sigma_of = [&](int offset) {
-    return largest_sigma(prediction.covariance.block<3, 3>(offset, offset));
-  };
-  const double reach_m =
-      kSigmas * (largest_sigma_of(filter::kPosition) + kDistance_m * largest_sigma_of(filter::kRotation));
+  const double rotation_sigma_rad =
+      largest_sigma(prediction.covariance.block<3, 3>(filter::kRotation, filter::kRotation));
+  const double reach_m = kSigmas * (position_sigma_m(prediction) + kDistance_m * rotation_sigma_rad);
   return std::min(reach_m, kLargest_m);
 }
 
@@ -49,6 +52,7 @@ UnknownMotion unknown_motion(const config::Config& config) {
 void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera,
                                   std::int64_t timestamp_ns, double blur_px) {
   if (!config_.terms.relocalisation) return;
+  rivals_.clear();
   keyframes_.offer(frame.grey, frame.depth_m, T_world_camera, timestamp_ns, blur_px);
 }
 
@@ -56,40 +60,77 @@ RelocalisedPose Relocalisation::pose_of(const FoundPlace& found) const {
   return relocalised_pose(found, keyframes_[found.keyframe], rig_.T_imu_camera, config_.relocalisation);
 }
 
-/// The pose of the IMU there, if the prediction does not rule it out.
-std::optional<RelocalisedPose> Relocalisation::likely_pose(const std::optional<FoundPlace>& found,
-                                                           const filter::GaussianState& prediction) const {
-  if (!found) return std::nullopt;
-  const RelocalisedPose pose = pose_of(*found);
+/// Those that the prediction does not rule out.
+std::vector<FoundPlace> Relocalisation::likely(const std::vector<FoundPlace>& places,
+                                               const filter::GaussianState& prediction) const {
   // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
   // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
   const config::RelocalisationConfig& config = config_.relocalisation;
-  if (!(normalised_position_innovation(prediction, pose) <= config.max_position_innovation) ||
-      !(normalised_innovation(prediction, pose) <= config.max_innovation))
-    return std::nullopt;
-  return pose;
+  std::vector<FoundPlace> allowed;
+  std::ranges::copy_if(places, std::back_inserter(allowed), [&](const FoundPlace& place) {
+    const RelocalisedPose pose = pose_of(place);
+    return normalised_position_innovation(prediction, pose) <= config.max_position_innovation &&
+           normalised_innovation(prediction, pose) <= config.max_innovation;
+  });
+  return allowed;
 }
 
-/// The pose that features found and the prediction rules out, if the frames before found the same and depth
-/// verifies it.
-std::optional<RelocalisedPose> Relocalisation::supported_pose(const FoundPlace& found, const RgbdFrame& frame,
-                                                              const filter::GaussianState& prediction) {
-  const RelocalisedPose pose = pose_of(found);
+/// Those that a filter may rule out that was wrong before it was lost.
+std::vector<FoundPlace> Relocalisation::conceivable(const std::vector<FoundPlace>& places,
+                                                    const filter::GaussianState& prediction) const {
   // What repeats, as the doors of a corridor, is found with all certainty in frame after frame: nothing in
   // the images tells it, and only where the camera can be does.
   const config::RelocalisationConfig& config = config_.relocalisation;
-  const double turned_rad =
-      rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation);
-  if (!(turned_rad <= radians(config.max_supported_rotation_deg)) ||
-      !(normalised_position_innovation(prediction, pose) <= config.max_position_innovation) ||
-      !(normalised_innovation(prediction, pose) <= config.max_supported_innovation))
-    return std::nullopt;
-  refused_.add({frame.timestamp_ns, pose, prediction.mean.T_world_imu});
+  std::vector<FoundPlace> allowed;
+  std::ranges::copy_if(places, std::back_inserter(allowed), [&](const FoundPlace& place) {
+    const RelocalisedPose pose = pose_of(place);
+    const double turned_rad =
+        rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation);
+    return turned_rad <= radians(config.max_supported_rotation_deg) &&
+           normalised_position_innovation(prediction, pose) <= config.max_position_innovation &&
+           normalised_innovation(prediction, pose) <= config.max_supported_innovation;
+  });
+  return allowed;
+}
+
+/// The place if the frames before found the same: where the prediction rules it out, or does not tell places
+/// apart. What features found is verified by depth.
+std::optional<FoundPlace> Relocalisation::supported(const FoundPlace& found, const RgbdFrame& frame,
+                                                    const filter::GaussianState& prediction) {
+  refused_.add({frame.timestamp_ns, pose_of(found), prediction.mean.T_world_imu});
   if (!refused_.are_enough()) return std::nullopt;
-  const auto verified =
-      keyframes_.verified_by_depth(found, places::small_images_of(frame.grey, frame.depth_m));
-  if (!verified) return std::nullopt;
-  return pose_of(*verified);
+  if (found.inliers == 0) return found;
+  return keyframes_.verified_by_depth(found, places::small_images_of(frame.grey, frame.depth_m));
+}
+
+std::optional<FoundPlace> Relocalisation::place_of(const RgbdFrame& frame, const UsableImages& usable,
+                                                   const filter::GaussianState& prediction) {
+  const SE3 T_world_camera = prediction.mean.T_world_imu * rig_.T_imu_camera;
+  const PredictedPosition predicted{T_world_camera.translation, position_sigma_m(prediction)};
+  const bool places_are_told_apart =
+      predicted.sigma_m <= config_.relocalisation.max_unsupported_position_sigma_m;
+  std::vector<FoundPlace> places;
+  if (usable.grey) places = keyframes_.find(frame.grey);
+  rivals_.observe(frame.timestamp_ns, places);
+  std::vector<FoundPlace> allowed = likely(places, prediction);
+  const bool is_likely = !allowed.empty();
+  if (!is_likely && usable.depth) allowed = conceivable(places, prediction);
+  if (!allowed.empty()) {
+    if (!rivals_.is_only_one(frame.timestamp_ns, allowed, predicted)) return std::nullopt;
+    if (is_likely && places_are_told_apart) return allowed.front();
+    if (usable.depth) {
+      if (const auto found = supported(allowed.front(), frame, prediction)) return found;
+    }
+    if (!places_are_told_apart) return std::nullopt;
+  }
+  if (!usable.depth) return std::nullopt;
+  places = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m), T_world_camera,
+                                    reach_m(prediction));
+  rivals_.observe(frame.timestamp_ns, places);
+  allowed = likely(places, prediction);
+  if (allowed.empty() || !rivals_.is_only_one(frame.timestamp_ns, allowed, predicted)) return std::nullopt;
+  if (places_are_told_apart) return allowed.front();
+  return supported(allowed.front(), frame, prediction);
 }
 
 std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame, const UsableImages& usable,
@@ -97,21 +138,13 @@ std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame,
                                                          const tsdf::TsdfVolume& model,
                                                          const Workers& workers) {
   if (!config_.terms.relocalisation) return std::nullopt;
-  RelocalisedReference result;
-  std::optional<FoundPlace> found;
-  if (usable.grey) found = keyframes_.find(frame.grey);
-  std::optional<RelocalisedPose> pose = likely_pose(found, prediction);
-  if (!pose && found && usable.depth) pose = supported_pose(*found, frame, prediction);
-  if (!pose && usable.depth) {
-    found = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m),
-                                     prediction.mean.T_world_imu * rig_.T_imu_camera, reach_m(prediction));
-    pose = likely_pose(found, prediction);
-    result.by_depth = true;
-  }
-  if (!pose) return std::nullopt;
+  const std::optional<FoundPlace> found = place_of(frame, usable, prediction);
+  if (!found) return std::nullopt;
   refused_.clear();
   const Keyframe& keyframe = keyframes_[found->keyframe];
-  result.prior = relocalisation_update(prediction, *pose, unknown_motion(config_));
+  RelocalisedReference result;
+  result.by_depth = found->inliers == 0;
+  result.prior = relocalisation_update(prediction, pose_of(*found), unknown_motion(config_));
   if (!filter::is_valid(result.prior)) return std::nullopt;
   const int patch_levels = config_.patches.levels;
   const std::vector<GreyImage> pyramid =

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "core/alignment/tracking_reference.hpp"
 #include "core/base/parallel.hpp"
@@ -17,6 +18,7 @@
 #include "core/relocalisation/agreeing_places.hpp"
 #include "core/relocalisation/keyframes.hpp"
 #include "core/relocalisation/relocalisation_update.hpp"
+#include "core/relocalisation/rival_places.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::relocalisation {
@@ -38,9 +40,9 @@ class Relocalisation {
  public:
   /// The references must outlive it.
   Relocalisation(const config::Config& config, const SensorRig& rig)
-      : config_(config), rig_(rig), keyframes_(rig.camera, config), refused_(config) {}
+      : config_(config), rig_(rig), keyframes_(rig.camera, config), refused_(config), rivals_(config) {}
 
-  /// Offers a fused frame (motion compensated, depth gated) as one to be found again by.
+  /// Offers a tracked and fused frame (motion compensated, depth gated) as one to be found again by.
   void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,
                     double blur_px);
 
@@ -48,6 +50,7 @@ class Relocalisation {
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
     keyframes_.move(T_world_camera_at);
     refused_.clear();
+    rivals_.clear();
   }
 
   /// The motion of the camera by the places of the frames before, where these contradict the prediction: what
@@ -57,8 +60,9 @@ class Relocalisation {
     return refused_.motion(timestamp_ns, predicted);
   }
 
-  /// Looks for the frame among the keyframes; nothing if none shows its place for certain, or if the
-  /// prediction rules the place out and the frames before do not support it (agreeing_places.hpp).
+  /// Looks for the frame among the keyframes; nothing if none shows its place for certain, if the prediction
+  /// rules the place out and the frames before do not support it (agreeing_places.hpp), or if it allows
+  /// several that look alike (rival_places.hpp).
   [[nodiscard]] std::optional<RelocalisedReference> find(const RgbdFrame& frame, const UsableImages& usable,
                                                          const filter::GaussianState& prediction,
                                                          const tsdf::TsdfVolume& model,
@@ -66,15 +70,20 @@ class Relocalisation {
 
  private:
   [[nodiscard]] RelocalisedPose pose_of(const FoundPlace& found) const;
-  [[nodiscard]] std::optional<RelocalisedPose> likely_pose(const std::optional<FoundPlace>& found,
-                                                           const filter::GaussianState& prediction) const;
-  [[nodiscard]] std::optional<RelocalisedPose> supported_pose(const FoundPlace& found, const RgbdFrame& frame,
-                                                              const filter::GaussianState& prediction);
+  [[nodiscard]] std::vector<FoundPlace> likely(const std::vector<FoundPlace>& places,
+                                               const filter::GaussianState& prediction) const;
+  [[nodiscard]] std::vector<FoundPlace> conceivable(const std::vector<FoundPlace>& places,
+                                                    const filter::GaussianState& prediction) const;
+  [[nodiscard]] std::optional<FoundPlace> supported(const FoundPlace& found, const RgbdFrame& frame,
+                                                    const filter::GaussianState& prediction);
+  [[nodiscard]] std::optional<FoundPlace> place_of(const RgbdFrame& frame, const UsableImages& usable,
+                                                   const filter::GaussianState& prediction);
 
   const config::Config& config_;
   const SensorRig& rig_;
   Keyframes keyframes_;
   AgreeingPlaces refused_;
+  RivalPlaces rivals_;
 };
 
 }  // namespace fusebench::relocalisation

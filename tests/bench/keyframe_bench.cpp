@@ -80,10 +80,11 @@ void keyframe_find(benchmark::State& state) {
     if (!keyframes.offer(view.grey, view.depth_m, view.T_world_camera, static_cast<std::int64_t>(i)))
       return state.SkipWithError("a view is not kept");
   }
-  const auto found = keyframes.find(scene.frame.grey);
+  const std::vector<FoundPlace> found = keyframes.find(scene.frame.grey);
   // The ground truth of a recording is good to a centimetre or two.
-  if (!found || (found->T_world_camera.translation - scene.T_world_camera.translation).norm() > 0.05 ||
-      rotation_angle_rad(found->T_world_camera.rotation, scene.T_world_camera.rotation) > radians(2)) {
+  if (found.empty() ||
+      (found.front().T_world_camera.translation - scene.T_world_camera.translation).norm() > 0.05 ||
+      rotation_angle_rad(found.front().T_world_camera.rotation, scene.T_world_camera.rotation) > radians(2)) {
     return state.SkipWithError("the place is not found");
   }
   std::size_t features = 0;

@@ -127,11 +127,12 @@ class ContradictedFilter : public ::testing::Test {
     prediction.mean.T_world_imu.translation += moved_m;
     prediction.covariance = 1e-6 * filter::StateMatrix::Identity();
     prediction.covariance.diagonal().segment<3>(filter::kRotation).setConstant(rotation_variance_rad2_);
-    prediction.covariance.diagonal().segment<3>(filter::kPosition).setConstant(1e-4);
+    prediction.covariance.diagonal().segment<3>(filter::kPosition).setConstant(position_variance_m2_);
     return relocalisation_.find(frame, {}, prediction, model_, Workers(1));
   }
 
   double rotation_variance_rad2_ = 1e-6;
+  double position_variance_m2_ = 1e-4;
   TexturedRoom room_;
   SensorRig rig_{small_camera(), {}, {}, {}};
   tsdf::TsdfVolume model_{kDefaultConfig.tsdf};
@@ -173,6 +174,27 @@ TEST_F(ContradictedFilter, APlaceAsideIsRefusedWhateverItsRotationSays) {
   // Six degrees of freedom share an innovation that the position has alone: a picture that repeats on a wall.
   for (int k = 0; k < 10; ++k) EXPECT_FALSE(find(k, {0, 0.002, 0}, 0, {0.2, 0, 0})) << k;
   EXPECT_TRUE(find(10, {0, 0.002, 0}, 0, {0.08, 0, 0}));
+}
+
+TEST_F(ContradictedFilter, BelievesNoneOfTwoPlacesThatLookAlike) {
+  // Two metres aside hangs the same picture: a filter that claims a centimetre knows which it sees, one that
+  // claims two metres does not.
+  const RgbdFrame same = room_.render(rig_.camera, {}, -kPeriod_ns);
+  relocalisation_.add_keyframe(same, {Quaterniond::Identity(), {2, 0, 0}}, 0, 0);
+  EXPECT_TRUE(find(0, {0, 0.002, 0}));
+  position_variance_m2_ = 4;
+  for (int k = 1; k < 10; ++k) EXPECT_FALSE(find(k, {0, 0.002, 0})) << k;
+}
+
+TEST_F(ContradictedFilter, ThatDoesNotKnowWhereItIsBelievesSeveralFrames) {
+  position_variance_m2_ = 4;
+  for (int k = 0; k < 4; ++k) EXPECT_FALSE(find(k, {0, 0.002, 0})) << k;
+  EXPECT_TRUE(find(4, {0, 0.002, 0}));
+}
+
+TEST_F(ContradictedFilter, ThatDoesNotKnowWhereItIsBelievesNoDepthThatContradictsThePlace) {
+  position_variance_m2_ = 4;
+  for (int k = 0; k < 10; ++k) EXPECT_FALSE(find(k, {0, 0.002, 0}, 0.2F)) << k;
 }
 
 TEST_F(ContradictedFilter, IsBelievedWhereItIsRight) { EXPECT_TRUE(find(0, {0, 0.002, 0})); }

@@ -41,6 +41,12 @@ Keyframes one_keyframe(const SE3& T_world_camera = {}) {
   return keyframes;
 }
 
+/// Of what a search found.
+std::optional<FoundPlace> first_of(const std::vector<FoundPlace>& best_first) {
+  if (best_first.empty()) return std::nullopt;
+  return best_first.front();
+}
+
 GreyImage noise_image() {
   std::mt19937 random(3);
   GreyImage grey(320, 240);
@@ -65,7 +71,7 @@ TEST(Keyframes, FindThePoseOfAFrameThatIsAside) {
       {so3_exp({0, 0, radians(100)}), {0.02, 0, 0}},  // upright or on its side
   };
   for (const SE3& T_key_query : asides) {
-    const auto found = keyframes.find(seen_from(T_room_key * T_key_query).grey);
+    const auto found = first_of(keyframes.find(seen_from(T_room_key * T_key_query).grey));
     ASSERT_TRUE(found) << so3_log(T_key_query.rotation).transpose();
     const SE3 T_world_query = T_world_room * T_room_key * T_key_query;
     EXPECT_LT((found->T_world_camera.translation - T_world_query.translation).norm(), 0.02);
@@ -84,8 +90,8 @@ TEST(Keyframes, TheCovarianceTurnsWithTheWorld) {
   plain.offer(key.grey, key.depth_m, SE3{}, 0);
   turned.offer(key.grey, key.depth_m, T_world_room, 0);
   const GreyImage query = seen_from({so3_exp({0, 0.1, 0}), {-0.1, 0, 0}}).grey;
-  const auto a = plain.find(query);
-  const auto b = turned.find(query);
+  const auto a = first_of(plain.find(query));
+  const auto b = first_of(turned.find(query));
   ASSERT_TRUE(a && b);
   const Matrix3d R = T_world_room.rotation_matrix();
   const Matrix6d& cov_a = a->covariance;
@@ -109,9 +115,9 @@ TEST(Keyframes, DepthFindsThePoseInTheDark) {
   const SE3 predicted = pose_plus(truth, (Vector6d() << 0.03, -0.03, 0.02, 0.04, 0.02, -0.03).finished());
   RgbdFrame query = seen_from(T_world_room.inverse() * truth);
   std::fill(query.grey.data.begin(), query.grey.data.end(), std::uint8_t{2});
-  ASSERT_FALSE(keyframes.find(query.grey)) << "features alone would do: the test is empty";
+  ASSERT_TRUE(keyframes.find(query.grey).empty()) << "features alone would do: the test is empty";
   const auto found =
-      keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), predicted, 0);
+      first_of(keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), predicted, 0));
   ASSERT_TRUE(found);
   EXPECT_LT((found->T_world_camera.translation - truth.translation).norm(), 0.006);
   EXPECT_LT(rotation_angle_rad(found->T_world_camera.rotation, truth.rotation), radians(0.3));
@@ -126,7 +132,8 @@ TEST(Keyframes, DepthFindsAPlaceThatNothingPredicted) {
   RgbdFrame query = seen_from(truth);
   std::fill(query.grey.data.begin(), query.grey.data.end(), std::uint8_t{2});
   const SE3 lost{so3_exp({0, radians(170), 0}), {2, 0, 1}};
-  const auto found = keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), lost, 0.5);
+  const auto found =
+      first_of(keyframes.find_by_depth(places::small_images_of(query.grey, query.depth_m), lost, 0.5));
   ASSERT_TRUE(found);
   EXPECT_LT((found->T_world_camera.translation - truth.translation).norm(), 0.006);
   EXPECT_LT(rotation_angle_rad(found->T_world_camera.rotation, truth.rotation), radians(0.3));
@@ -138,9 +145,9 @@ TEST(Keyframes, DepthOfAnotherPlaceFindsNothing) {
   ASSERT_TRUE(keyframes.offer(key.grey, key.depth_m, kCorner, 0));
   const auto of = [](const RgbdFrame& frame) { return places::small_images_of(frame.grey, frame.depth_m); };
   const SE3 turned = kCorner * SE3{so3_exp({0, radians(150), 0}), Vector3d::Zero()};
-  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), turned, 0.5))
+  EXPECT_TRUE(keyframes.find_by_depth(of(seen_from(turned)), turned, 0.5).empty())
       << "it shares nothing with the keyframe";
-  EXPECT_FALSE(keyframes.find_by_depth(of(seen_from(turned)), kCorner, 0.5))
+  EXPECT_TRUE(keyframes.find_by_depth(of(seen_from(turned)), kCorner, 0.5).empty())
       << "neither the prediction nor what it looks like is of this place";
 }
 
@@ -156,24 +163,44 @@ TEST(Keyframes, NameTheOneThatAPlaceWasFoundBy) {
   const SE3 aside{so3_exp({0.03, 0.05, 0}), {0.05, 0, 0}};
   std::size_t expected = 0;
   for (const SE3& base : {front, left, right}) {
-    const auto found = keyframes.find(seen_from(base * aside).grey);
+    const auto found = first_of(keyframes.find(seen_from(base * aside).grey));
     ASSERT_TRUE(found) << expected;
     EXPECT_EQ(found->keyframe, expected++);
   }
   EXPECT_EQ(keyframes[1].timestamp_ns, 20);
 }
 
+TEST(Keyframes, TellAllPlacesThatLookAlike) {
+  // Two doors of a corridor: the same picture, three metres apart.
+  const RgbdFrame door = seen_from({});
+  const SE3 next_door{Quaterniond::Identity(), {3, 0, 0}};
+  Keyframes keyframes(small_camera(), kDefaults);
+  ASSERT_TRUE(keyframes.offer(door.grey, door.depth_m, {}, 1));
+  ASSERT_TRUE(keyframes.offer(door.grey, door.depth_m, next_door, 2));
+  const SE3 back{so3_exp({0, radians(180), 0}), Vector3d::Zero()};
+  offer(keyframes, back, 3);
+  const SE3 aside{so3_exp({0, 0.1, 0}), {-0.1, 0, 0}};
+  const std::vector<FoundPlace> found = keyframes.find(seen_from(aside).grey);
+  ASSERT_EQ(found.size(), 2U);
+  for (const FoundPlace& place : found) {
+    const SE3 expected = keyframes[place.keyframe].T_world_camera * aside;
+    EXPECT_LT((place.T_world_camera.translation - expected.translation).norm(), 0.02);
+    EXPECT_EQ(place.support, place.inliers);
+  }
+  EXPECT_NE(found[0].keyframe, found[1].keyframe);
+}
+
 TEST(Keyframes, FindNothingWhereNoneHasBeen) {
   Keyframes keyframes = one_keyframe();
   ASSERT_EQ(keyframes.size(), 1U);
-  EXPECT_TRUE(keyframes.find(seen_from({}).grey)) << "else the rest says nothing";
+  EXPECT_FALSE(keyframes.find(seen_from({}).grey).empty()) << "else the rest says nothing";
   const SE3 back{so3_exp({0, radians(180), 0}), Vector3d::Zero()};
-  EXPECT_FALSE(keyframes.find(seen_from(back).grey));
+  EXPECT_TRUE(keyframes.find(seen_from(back).grey).empty());
   const SE3 side{so3_exp({0, radians(100), 0}), Vector3d::Zero()};
-  EXPECT_FALSE(keyframes.find(seen_from(side).grey));
-  EXPECT_FALSE(keyframes.find(GreyImage(320, 240, 0)));
-  EXPECT_FALSE(keyframes.find(GreyImage(320, 240, 140)));
-  EXPECT_FALSE(keyframes.find(noise_image()));
+  EXPECT_TRUE(keyframes.find(seen_from(side).grey).empty());
+  EXPECT_TRUE(keyframes.find(GreyImage(320, 240, 0)).empty());
+  EXPECT_TRUE(keyframes.find(GreyImage(320, 240, 140)).empty());
+  EXPECT_TRUE(keyframes.find(noise_image()).empty());
 }
 
 TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
@@ -186,13 +213,13 @@ TEST(Keyframes, ASmallPartOfAnImageIsNotAPlace) {
   }
   const std::size_t seen = find_place_features(corner, kDefaults.place_features).size();
   ASSERT_GE(seen, 100U) << "it must not be for want of features";
-  EXPECT_FALSE(keyframes.find(corner));
+  EXPECT_TRUE(keyframes.find(corner).empty());
 }
 
 TEST(Keyframes, AnEmptyStoreFindsNothing) {
   Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_EQ(keyframes.size(), 0U);
-  EXPECT_FALSE(keyframes.find(seen_from({}).grey));
+  EXPECT_TRUE(keyframes.find(seen_from({}).grey).empty());
 }
 
 TEST(Keyframes, AStillCameraAddsOneAndAMovingOneMore) {
@@ -250,7 +277,7 @@ TEST(Keyframes, NothingIsFoundByFewerInliersThanAreAskedFor) {
     config.relocalisation.min_inliers = min_inliers;
     Keyframes keyframes(small_camera(), config);
     EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
-    return keyframes.find(seen_from({so3_exp({0, 0.1, 0}), {-0.1, 0, 0}}).grey);
+    return first_of(keyframes.find(seen_from({so3_exp({0, 0.1, 0}), {-0.1, 0, 0}}).grey));
   };
   const auto found = found_with(Config{}.relocalisation.min_inliers);
   ASSERT_TRUE(found);
@@ -319,7 +346,7 @@ TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
   Keyframes keyframes(small_camera(), kDefaults);
   ASSERT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 0));
   EXPECT_FALSE(keyframes[0].landmarks);
-  ASSERT_TRUE(keyframes.find(frame.grey));
+  ASSERT_FALSE(keyframes.find(frame.grey).empty());
   ASSERT_TRUE(keyframes[0].landmarks);
   const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera(), kDefaults);
   const Landmarks& later = *keyframes[0].landmarks;
@@ -350,7 +377,7 @@ TEST(Keyframes, TheNumberOfThreadsDoesNotShow) {
     cv::setNumThreads(threads);
     cv::theRNG().state = static_cast<std::uint64_t>(threads);  // nor what others drew
     Keyframes keyframes = one_keyframe();
-    const auto found = keyframes.find(query);
+    const auto found = first_of(keyframes.find(query));
     EXPECT_TRUE(found);
     std::vector<double> numbers;
     for (const PlaceFeature& f : keyframes[0].landmarks->features) {
