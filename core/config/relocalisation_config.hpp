@@ -112,8 +112,9 @@ struct RelocalisationConfig {
     v.number(
         "max_position_innovation", self.max_position_innovation, 0.1, 1e12,
         "and the same of its position alone, of which a lost tracker claims its error better than of its "
-        "rotation: in simulated recordings right places had up to 16, after 0.6 to 50 s, and doors and "
-        "pictures 3 to 6 m aside that repeat 30 and more; 25 are five standard deviations");
+        "rotation: in simulated recordings right places had up to 4, after 0.6 to 50 s, and up to 16 with "
+        "geometric.common_error_share=0; doors and pictures 3 to 6 m aside that repeat had 25 and more; 16 "
+        "are four standard deviations");
     v.number("max_supported_innovation", self.max_supported_innovation, 0.1, 1e12,
              "up to so much, where its position alone is within max_position_innovation, it is "
              "believed all the same if several frames in a row agree on it, the last verified by depth as "
@@ -233,7 +234,7 @@ struct LoopsConfig {
   int query_every = 10;
   double least_age_s = 10.0;
   int max_features = 400;
-  int max_candidates = 16;
+  int max_candidates = 8;
   double max_dissimilarity = 0.7;
   int max_path_candidates = 3;
   double min_consistent_share = 0.25;
