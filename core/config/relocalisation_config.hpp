@@ -27,10 +27,10 @@ struct RelocalisationConfig {
   double keyframe_rotation_sigma_rad = 0.005;
   double keyframe_position_sigma_m = 0.005;
   double max_innovation = 225.0;
-  double max_position_innovation = 16.0;
+  double max_position_innovation = 9.0;
   double max_supported_innovation = 2250.0;
   double max_supported_rotation_deg = 30.0;
-  double max_unsupported_position_sigma_m = 1.0;
+  double max_unsupported_position_sigma_m = 0.5;
   int agreeing_frames = 5;
   double agreeing_within_s = 0.5;
   double rival_support = 0.5;
@@ -112,9 +112,8 @@ struct RelocalisationConfig {
     v.number(
         "max_position_innovation", self.max_position_innovation, 0.1, 1e12,
         "and the same of its position alone, of which a lost tracker claims its error better than of its "
-        "rotation: in simulated recordings right places had up to 4, after 0.6 to 50 s, and up to 16 with "
-        "geometric.common_error_share=0; doors and pictures 3 to 6 m aside that repeat had 25 and more; 16 "
-        "are four standard deviations");
+        "rotation: in simulated recordings right places had up to 4, after 0.6 to 50 s, and doors and "
+        "pictures 3 to 6 m aside that repeat 14 and more; 9 are three standard deviations along each axis");
     v.number("max_supported_innovation", self.max_supported_innovation, 0.1, 1e12,
              "up to so much, where its position alone is within max_position_innovation, it is "
              "believed all the same if several frames in a row agree on it, the last verified by depth as "

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/base/types.hpp"
 #include "core/config/config.hpp"
@@ -28,28 +29,28 @@ class RivalPlaces {
   /// The configuration must outlive it.
   explicit RivalPlaces(const config::Config& config) : config_(config.relocalisation) {}
 
-  /// The places that an image fits (best first): of two that are elsewhere the distance is remembered for
+  /// The places that an image fits (best first): if some of them are elsewhere, all are remembered for
   /// relocalisation.rivals_within_s. Stamps ascend.
   void observe(std::int64_t timestamp_ns, std::span<const FoundPlace> best_first);
 
   /// True if, of the places that the prediction allows (best first, at least one), the first is the only one,
   /// and dead reckoning tells it from its neighbours. If there were rivals lately, and it is not further from
-  /// both of them than they were from each other, it has to be nearer to the prediction than half that
-  /// distance, and so do three of the prediction's standard deviations.
+  /// all of them than the two were from each other that were furthest apart, it has to be nearer to the
+  /// prediction than half the distance of the nearest two, and so do three of its standard deviations.
   [[nodiscard]] bool is_only_one(std::int64_t timestamp_ns, std::span<const FoundPlace> allowed,
                                  const PredictedPosition& predicted) const;
 
   /// The camera is tracked, or poses have moved.
-  void clear() { apart_m_ = 0; }
+  void clear() { rivals_world_m_.clear(); }
 
  private:
   [[nodiscard]] bool repeats_near(std::int64_t timestamp_ns, const Vector3d& position_m) const;
 
   const config::RelocalisationConfig& config_;
   std::int64_t timestamp_ns_ = 0;
-  Vector3d a_world_m_ = Vector3d::Zero();  ///< the last two that were rivals
-  Vector3d b_world_m_ = Vector3d::Zero();
-  double apart_m_ = 0;  ///< 0: there were none
+  std::vector<Vector3d> rivals_world_m_;  ///< the last ones; empty: there were none
+  double nearest_m_ = 0;                  ///< distances between two of them
+  double furthest_m_ = 0;
 };
 
 }  // namespace fusebench::relocalisation

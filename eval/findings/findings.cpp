@@ -94,6 +94,14 @@ std::string moment(std::filesystem::file_time_type time) {
   return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(seconds.count())));
 }
 
+/// Beyond, the error of the rest is no longer that of the recording.
+constexpr double kTellingLostShare = 0.05;
+
+double lost_share(const tables::TableRow& row) {
+  if (row.total == 0) return 0;
+  return 1 - static_cast<double>(row.tracked) / static_cast<double>(row.total);
+}
+
 /// Without repetitions, in their order.
 void add_once(std::vector<std::string>& list, const std::string& text) {
   if (!text.empty() && std::ranges::find(list, text) == list.end()) list.push_back(text);
@@ -125,13 +133,17 @@ std::vector<std::string> sentences_of(const Ranking& ranking) {
 std::vector<std::string> failures_of(const tables::ResultTable& table) {
   std::vector<std::string> bad;
   std::vector<std::string> silent;
+  std::vector<std::string> lost;
   for (const tables::TableRow& row : table.rows) {
     if (row.status != record::RunStatus::ok) {
       bad.push_back(fmt::format("{} on {} ({}: {})", row.label, row.recording, record::to_string(row.status),
                                 row.reason));
-    } else if (row.silent.value_or(0) > 0) {
-      silent.push_back(fmt::format("{} on {} ({})", row.label, row.recording, counted(*row.silent, "frame")));
+      continue;
     }
+    if (row.silent.value_or(0) > 0)
+      silent.push_back(fmt::format("{} on {} ({})", row.label, row.recording, counted(*row.silent, "frame")));
+    if (const double share = lost_share(row); share >= kTellingLostShare)
+      lost.push_back(fmt::format("{} on {} ({:.0f} %)", row.label, row.recording, 100 * share));
   }
   std::vector<std::string> sentences;
   if (bad.empty()) {
@@ -145,6 +157,10 @@ std::vector<std::string> failures_of(const tables::ResultTable& table) {
   if (!silent.empty()) {
     sentences.push_back(fmt::format("Poses that were claimed and are wrong, in {} that ended well: {}.",
                                     counted(silent.size(), "run"), list_of(silent, "; ")));
+  }
+  if (!lost.empty()) {
+    sentences.push_back(
+        fmt::format("Frames without a pose, of which an ATE says nothing: {}.", list_of(lost, "; ")));
   }
   return sentences;
 }

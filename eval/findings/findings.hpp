@@ -13,7 +13,8 @@ namespace fusebench::findings {
 /// recordings; then which poses come with an IMU made from the truth. Nothing of runs without numbers.
 [[nodiscard]] std::vector<std::string> sentences_of(const Ranking& ranking);
 
-/// What was lost, failed or is silently wrong, and where. A sentence that nothing did if nothing did.
+/// What was lost, in whole or in part, failed or is silently wrong, and where. A sentence that nothing did if
+/// nothing did.
 [[nodiscard]] std::vector<std::string> failures_of(const tables::ResultTable& table);
 
 /// Versions, machines, threads, and when the records were written (UTC, by their files).

@@ -39,10 +39,7 @@ TEST(RivalPlaces, AnotherElsewhereThatFitsAsWellIsARival) {
   EXPECT_FALSE(is_only_one({at(0, 80), at(0, 70, std::numbers::pi)})) << "a room with two equal sides";
 }
 
-TEST(RivalPlaces, DriftOrAMuchWorseFitIsNone) {
-  EXPECT_TRUE(is_only_one({at(0, 80), at(0.4, 78, 0.2)}));
-  EXPECT_TRUE(is_only_one({at(0, 80), at(3, 30)}));
-}
+TEST(RivalPlaces, DriftIsNone) { EXPECT_TRUE(is_only_one({at(0, 80), at(0.4, 78, 0.2)})); }
 
 /// After rivals three metres apart: of a place alone, some seconds later.
 bool is_believed(double x_m, double after_s, const PredictedPosition& predicted) {
@@ -55,6 +52,18 @@ TEST(RivalPlaces, WherePlacesRepeatDeadReckoningHasToTellThemApart) {
   EXPECT_TRUE(is_believed(3, 1, {{4, 0, 0}, 0.4}));
   EXPECT_FALSE(is_believed(3, 1, {{4.6, 0, 0}, 0.4})) << "the next one at six metres is nearer";
   EXPECT_FALSE(is_believed(3, 1, {{3, 0, 0}, 0.6})) << "three standard deviations reach between two of them";
+}
+
+TEST(RivalPlaces, TheNearestNeighboursDecideAndTheFurthestSayWhereItRepeats) {
+  RivalPlaces rivals(kPlainConfig);
+  rivals.observe(0, std::vector{at(9, 80), at(0, 75), at(2, 70)});
+  const auto is_believed = [&](double x_m, const PredictedPosition& predicted) {
+    return rivals.is_only_one(1, std::vector{at(x_m, 90)}, predicted);
+  };
+  EXPECT_FALSE(is_believed(14, {{17, 0, 0}, 0.3})) << "they repeat every two metres, over nine";
+  EXPECT_FALSE(is_believed(14, {{14, 0, 0}, 0.4}));
+  EXPECT_TRUE(is_believed(14, {{14.8, 0, 0}, 0.3}));
+  EXPECT_TRUE(is_believed(18.5, {{14, 0, 0}, 2}));
 }
 
 TEST(RivalPlaces, AThirdNearThemIsNotBelievedForAWhile) {

@@ -95,6 +95,18 @@ TEST_F(FindingsTest, ADifferenceIsJudgedByItsIntervalOverRecordings) {
   testing::expect_contains(sentences_of(rankings()[0]).front(), "the interval holds 1, so it may be noise");
 }
 
+TEST_F(FindingsTest, RunsThatEndedWellSayHowMuchTheyLost) {
+  add_run("a", "full", 0.01);
+  add_run("a", "dm", 0.02);
+  runs_[0].record.frames = {100, 96, 4};
+  EXPECT_EQ(failures_of(tables::table_of(runs_)).size(), 1U) << "little";
+  runs_[1].record.frames = {100, 42, 58};
+  const auto failures = failures_of(tables::table_of(runs_));
+  ASSERT_EQ(failures.size(), 2U);
+  EXPECT_EQ(failures[0], "All 2 runs ended well.");
+  EXPECT_EQ(failures[1], "Frames without a pose, of which an ATE says nothing: dm on a (58 %).");
+}
+
 TEST_F(FindingsTest, WhoLostARecordingIsComparedWhereBothHaveNumbers) {
   add_run("a", "full", 0.01);
   add_run("b", "full", 0.04);
