@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <span>
 
 #include "core/filter/pose_clones.hpp"
@@ -60,35 +61,22 @@ RelocalisedPose Relocalisation::pose_of(const FoundPlace& found) const {
   return relocalised_pose(found, keyframes_[found.keyframe], rig_.T_imu_camera, config_.relocalisation);
 }
 
-/// Those that the prediction does not rule out.
-std::vector<FoundPlace> Relocalisation::likely(const std::vector<FoundPlace>& places,
-                                               const filter::GaussianState& prediction) const {
+/// Those within these limits of the prediction.
+std::vector<FoundPlace> Relocalisation::allowed_places(const std::vector<FoundPlace>& places,
+                                                       const filter::GaussianState& prediction,
+                                                       const Limits& limits) const {
   // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
-  // gate widens with the covariance while the tracker is lost. Written so that NaN is refused as well.
-  const config::RelocalisationConfig& config = config_.relocalisation;
+  // gates widen with the covariance while the tracker is lost. What repeats, as the doors of a corridor, is
+  // found with all certainty in frame after frame, so that where the camera can be always decides. Written so
+  // that NaN is refused as well.
   std::vector<FoundPlace> allowed;
   std::ranges::copy_if(places, std::back_inserter(allowed), [&](const FoundPlace& place) {
     const RelocalisedPose pose = pose_of(place);
-    return normalised_position_innovation(prediction, pose) <= config.max_position_innovation &&
-           normalised_innovation(prediction, pose) <= config.max_innovation;
-  });
-  return allowed;
-}
-
-/// Those that a filter may rule out that was wrong before it was lost.
-std::vector<FoundPlace> Relocalisation::conceivable(const std::vector<FoundPlace>& places,
-                                                    const filter::GaussianState& prediction) const {
-  // What repeats, as the doors of a corridor, is found with all certainty in frame after frame: nothing in
-  // the images tells it, and only where the camera can be does.
-  const config::RelocalisationConfig& config = config_.relocalisation;
-  std::vector<FoundPlace> allowed;
-  std::ranges::copy_if(places, std::back_inserter(allowed), [&](const FoundPlace& place) {
-    const RelocalisedPose pose = pose_of(place);
-    const double turned_rad =
-        rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation);
-    return turned_rad <= radians(config.max_supported_rotation_deg) &&
-           normalised_position_innovation(prediction, pose) <= config.max_position_innovation &&
-           normalised_innovation(prediction, pose) <= config.max_supported_innovation;
+    return rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation) <=
+               limits.rotation_rad &&
+           normalised_position_innovation(prediction, pose) <=
+               config_.relocalisation.max_position_innovation &&
+           normalised_innovation(prediction, pose) <= limits.innovation;
   });
   return allowed;
 }
@@ -107,14 +95,17 @@ std::optional<FoundPlace> Relocalisation::place_of(const RgbdFrame& frame, const
                                                    const filter::GaussianState& prediction) {
   const SE3 T_world_camera = prediction.mean.T_world_imu * rig_.T_imu_camera;
   const PredictedPosition predicted{T_world_camera.translation, position_sigma_m(prediction)};
-  const bool places_are_told_apart =
-      predicted.sigma_m <= config_.relocalisation.max_unsupported_position_sigma_m;
+  const config::RelocalisationConfig& config = config_.relocalisation;
+  const bool places_are_told_apart = predicted.sigma_m <= config.max_unsupported_position_sigma_m;
+  const Limits likely{config.max_innovation, std::numeric_limits<double>::infinity()};
+  // A filter may rule a place out because it was wrong before it was lost.
+  const Limits conceivable{config.max_supported_innovation, radians(config.max_supported_rotation_deg)};
   std::vector<FoundPlace> places;
   if (usable.grey) places = keyframes_.find(frame.grey);
   rivals_.observe(frame.timestamp_ns, places);
-  std::vector<FoundPlace> allowed = likely(places, prediction);
+  std::vector<FoundPlace> allowed = allowed_places(places, prediction, likely);
   const bool is_likely = !allowed.empty();
-  if (!is_likely && usable.depth) allowed = conceivable(places, prediction);
+  if (!is_likely && usable.depth) allowed = allowed_places(places, prediction, conceivable);
   if (!allowed.empty()) {
     if (!rivals_.is_only_one(frame.timestamp_ns, allowed, predicted)) return std::nullopt;
     if (is_likely && places_are_told_apart) return allowed.front();
@@ -127,7 +118,7 @@ std::optional<FoundPlace> Relocalisation::place_of(const RgbdFrame& frame, const
   places = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m), T_world_camera,
                                     reach_m(prediction));
   rivals_.observe(frame.timestamp_ns, places);
-  allowed = likely(places, prediction);
+  allowed = allowed_places(places, prediction, likely);
   if (allowed.empty() || !rivals_.is_only_one(frame.timestamp_ns, allowed, predicted)) return std::nullopt;
   if (places_are_told_apart) return allowed.front();
   return supported(allowed.front(), frame, prediction);

@@ -69,11 +69,15 @@ class Relocalisation {
                                                          const Workers& workers);
 
  private:
+  /// How far a place may be from the prediction.
+  struct Limits {
+    double innovation;  ///< squared, in variances, per degree of freedom
+    double rotation_rad;
+  };
   [[nodiscard]] RelocalisedPose pose_of(const FoundPlace& found) const;
-  [[nodiscard]] std::vector<FoundPlace> likely(const std::vector<FoundPlace>& places,
-                                               const filter::GaussianState& prediction) const;
-  [[nodiscard]] std::vector<FoundPlace> conceivable(const std::vector<FoundPlace>& places,
-                                                    const filter::GaussianState& prediction) const;
+  [[nodiscard]] std::vector<FoundPlace> allowed_places(const std::vector<FoundPlace>& places,
+                                                       const filter::GaussianState& prediction,
+                                                       const Limits& limits) const;
   [[nodiscard]] std::optional<FoundPlace> supported(const FoundPlace& found, const RgbdFrame& frame,
                                                     const filter::GaussianState& prediction);
   [[nodiscard]] std::optional<FoundPlace> place_of(const RgbdFrame& frame, const UsableImages& usable,
