@@ -6,15 +6,15 @@
 
 #include "core/config/evaluation_config.hpp"
 #include "core/config/filter_config.hpp"
+#include "core/config/frame_config.hpp"
 #include "core/config/health_config.hpp"
+#include "core/config/loops_config.hpp"
 #include "core/config/options.hpp"
 #include "core/config/patches_config.hpp"
 #include "core/config/prediction_config.hpp"
-#include "core/config/preprocessing_config.hpp"
 #include "core/config/relocalisation_config.hpp"
 #include "core/config/systems_config.hpp"
 #include "core/config/terms_config.hpp"
-#include "core/config/tsdf_config.hpp"
 
 namespace fusebench::config {
 

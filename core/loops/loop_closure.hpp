@@ -7,12 +7,8 @@
 // graph of places is optimised at the end, or online as well when a loop shows that the poses are wrong
 // (pose_graph.hpp); between places, poses move with their neighbours.
 //
-// Two worlds: that of the odometry is as if nothing was ever corrected, and is what all of this works in; the
-// estimate is in the current one, which is the same until a correction.
-//
-// A lost tracker that finds itself by a place has closed a loop: what the prediction was off by came on along
-// the whole path since then, and not where the tracker was lost. So the odometry goes on as predicted, and
-// the place becomes an edge.
+// All of this works in the world of the odometry (odometry_world.hpp). A lost tracker that finds itself by a
+// place has closed a loop: the place becomes an edge.
 //
 // The same frames give the same bytes, whatever the number of threads.
 #pragma once
@@ -28,6 +24,7 @@
 #include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/loops/loop_edges.hpp"
+#include "core/loops/odometry_world.hpp"
 #include "core/loops/place.hpp"
 
 namespace fusebench::loops {
@@ -80,6 +77,7 @@ class LoopClosure {
   /// true ones it tells how much is left to be found. Errors: those of optimised_poses().
   [[nodiscard]] Result<Trajectory> poses_with(std::vector<LoopCandidate> loops) const;
 
+  [[nodiscard]] int online_corrections() const { return corrections_; }
   [[nodiscard]] std::span<const Place> places() const { return places_; }
   [[nodiscard]] std::span<const LoopCandidate> candidates() const { return candidates_; }
   /// Of a verified pair's pose: rotation on the right (rad), position in the frame of the known place (m).
@@ -88,14 +86,16 @@ class LoopClosure {
   }
 
  private:
-  /// A tracker that found itself by a place: as an edge, once the frame is a place.
-  struct Relocalisation {
-    std::size_t known = 0;
-    SE3 T_known_camera;
+  /// A frame that has a pose.
+  struct PosedFrame {
+    std::int64_t timestamp_ns = 0;
     SE3 T_odometry_camera;
+    std::size_t relocalisations = 0;  ///< before it, its own included
   };
+  [[nodiscard]] bool was_found_since_last_place() const {
+    return !places_.empty() && places_.back().relocalisations < odometry_.relocalisations();
+  }
   [[nodiscard]] Matrix6d camera_covariance(const filter::GaussianState& in_odometry) const;
-  [[nodiscard]] Matrix6d lost_covariance_at(const SE3& T_odometry_camera) const;
   void add_relocalisation_edge(std::size_t query);
   [[nodiscard]] std::size_t place_near(std::int64_t timestamp_ns) const;
   void look_for_loops(std::size_t query);
@@ -105,7 +105,7 @@ class LoopClosure {
   [[nodiscard]] bool is_candidate(std::size_t known, std::size_t query) const;
   [[nodiscard]] double dissimilarity(std::size_t known, std::size_t query) const;
   [[nodiscard]] Result<void> optimise();
-  [[nodiscard]] SE3 corrected(std::int64_t timestamp_ns, const SE3& T_odometry_camera) const;
+  [[nodiscard]] SE3 corrected(const PosedFrame& frame) const;
   [[nodiscard]] std::size_t place_before(std::int64_t timestamp_ns) const;
   [[nodiscard]] SE3 T_current_camera(std::size_t place) const;
   [[nodiscard]] bool contradicts_current_poses(const LoopCandidate& candidate) const;
@@ -117,16 +117,10 @@ class LoopClosure {
   std::vector<SE3> optimised_;  ///< poses of places; empty until close() changes something
   std::vector<LoopCandidate> candidates_;
   std::vector<FusedFrame> fused_;
-  Trajectory poses_;
+  std::vector<PosedFrame> poses_;
+  OdometryWorld odometry_;
   int fused_since_place_ = 0;
-  SE3 T_current_odometry_;
-  /// By the number of relocalisations before: of that world, what is no correction.
-  std::vector<SE3> T_relocalised_odometry_{SE3{}};
-  /// Of places from now on, at the pose where the tracker found itself the last time.
-  Matrix6d lost_covariance_ = Matrix6d::Zero();
-  SE3 T_odometry_found_;
-  std::optional<Relocalisation> relocalisation_;  ///< of the next place
-  bool poses_are_wrong_ = false;                  ///< a loop of the last place says so
+  bool poses_are_wrong_ = false;  ///< a loop of the last place says so
   std::size_t fused_at_attempt_ = 0;
   int corrections_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 namespace fusebench::loops {
 
@@ -17,8 +18,10 @@ constexpr std::string_view kPlaceHeader = "timestamp_s,blur_px,candidates,accept
 
 double seconds_of(const Place& place) { return 1e-9 * static_cast<double>(place.timestamp_ns); }
 
-std::string_view verified_by(const places::VerifiedPair& pair) {
+std::string_view verified_by(const LoopCandidate& candidate) {
+  const places::VerifiedPair& pair = candidate.pair;
   if (!pair.same) return "nothing";
+  if (candidate.evidence == LoopEvidence::tracker) return "tracker";
   return pair.by_depth_alone ? "depth" : "features";
 }
 
@@ -35,7 +38,7 @@ std::string candidate_row(const LoopClosure& closure, const LoopCandidate& candi
   row += fmt::format("{:.3g},{:.3g},{:.3f},{},{},{:.3f},{:.3f},{:.4g},{},{},\"{}\"\n",
                      std::sqrt(variances.head<3>().mean()), std::sqrt(variances.tail<3>().mean()),
                      candidate.dissimilarity, pair.matches, pair.inliers, pair.consistent_share,
-                     pair.violating_share, candidate.chi2, verified_by(pair),
+                     pair.violating_share, candidate.chi2, verified_by(candidate),
                      candidate.accepted ? "accepted" : "refused", candidate.verdict);
   return row;
 }
@@ -51,16 +54,19 @@ std::string candidate_table(const LoopClosure& closure) {
 
 std::string place_table(const LoopClosure& closure) {
   if (closure.places().empty()) return {};
+  struct Counts {
+    int candidates = 0, accepted = 0;
+  };
+  std::vector<Counts> counts(closure.places().size());
+  for (const LoopCandidate& candidate : closure.candidates()) {
+    ++counts[candidate.query].candidates;
+    counts[candidate.query].accepted += candidate.accepted ? 1 : 0;
+  }
   std::string text(kPlaceHeader);
-  for (std::size_t place = 0; place < closure.places().size(); ++place) {
-    std::size_t candidates = 0, accepted = 0;
-    for (const LoopCandidate& candidate : closure.candidates()) {
-      if (candidate.query != place) continue;
-      ++candidates;
-      accepted += candidate.accepted ? 1U : 0U;
-    }
-    text += fmt::format("{:.6f},{:.3f},{},{}\n", seconds_of(closure.places()[place]),
-                        closure.places()[place].blur_px, candidates, accepted);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const Place& place = closure.places()[i];
+    text += fmt::format("{:.6f},{:.3f},{},{}\n", seconds_of(place), place.blur_px, counts[i].candidates,
+                        counts[i].accepted);
   }
   return text;
 }

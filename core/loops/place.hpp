@@ -28,6 +28,13 @@ struct Place {
   places::Appearance appearance;
 };
 
+/// What a pair is believed by.
+enum class LoopEvidence {
+  pair,              ///< its images and depth
+  pair_and_tracker,  ///< and a lost tracker found itself by it, which is support enough
+  tracker,           ///< that alone: the pair itself could not be verified
+};
+
 /// A pair of places that was looked at.
 struct LoopCandidate {
   std::size_t known = 0;  ///< places, by index
@@ -36,8 +43,10 @@ struct LoopCandidate {
   places::VerifiedPair pair;
   double chi2 = 0;  ///< squared distance to the poses so far, by drift and the edge's own error
   bool accepted = false;
-  std::string verdict;       ///< why it was taken or refused
-  bool relocalised = false;  ///< the lost tracker found itself by it, which is support enough
+  std::string verdict;  ///< why it was taken or refused
+  LoopEvidence evidence = LoopEvidence::pair;
+
+  [[nodiscard]] bool was_lost() const { return evidence != LoopEvidence::pair; }
 };
 
 }  // namespace fusebench::loops

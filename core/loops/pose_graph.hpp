@@ -20,7 +20,7 @@ struct GraphEdge {
   std::size_t b = 0;
   SE3 T_a_b;
   Matrix6d covariance = Matrix6d::Identity();
-  bool robust = false;  ///< of a loop
+  bool robust = false;  ///< of a loop, which may be false
 };
 
 struct PoseGraph {

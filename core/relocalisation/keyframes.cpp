@@ -97,6 +97,12 @@ double Keyframes::separation(const SE3& a, const SE3& b) const {
                   angle_between_axes_rad(a, b) / radians(config_.relocalisation.keyframe_angle_deg));
 }
 
+/// So much that it is worth the change.
+bool Keyframes::is_sharper(double blur_px, double blur_before_px) const {
+  const config::RelocalisationConfig& config = config_.relocalisation;
+  return blur_before_px > config.blurred_px && blur_px < config.sharper_factor * blur_before_px;
+}
+
 bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE3& T_world_camera,
                       std::int64_t timestamp_ns, double blur_px) {
   check(grey.width == camera_.width_px && grey.height == camera_.height_px && depth_m.width == grey.width &&
@@ -108,18 +114,18 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
       std::min_element(kept_.begin(), kept_.end(),
                        [&](const Keyframe& a, const Keyframe& b) { return distance(a) < distance(b); });
   const bool near = nearest != kept_.end() && distance(*nearest) < 1;
-  const bool replaces_nearest = near && distance(*nearest) < config.replacement_reach &&
-                                nearest->blur_px > config.blurred_px &&
-                                blur_px < config.sharper_factor * nearest->blur_px;
+  const bool replaces_nearest =
+      near && distance(*nearest) < config.replacement_reach && is_sharper(blur_px, nearest->blur_px);
   if (near && !replaces_nearest) return false;
-  if (T_world_featureless_ && separation(*T_world_featureless_, T_world_camera) < config.featureless_reach)
+  if (featureless_ && separation(featureless_->T_world_camera, T_world_camera) < config.featureless_reach &&
+      !is_sharper(blur_px, featureless_->blur_px))
     return false;
 
   std::optional<places::Landmarks> landmarks;
   if (!has_plenty_of_corners(grey, depth_m, config_)) {
     landmarks = places::landmarks_of(grey, depth_m, camera_, config_);
     if (landmarks->features.size() < static_cast<std::size_t>(config.min_landmarks)) {
-      T_world_featureless_ = T_world_camera;
+      featureless_ = FeaturelessFrame{T_world_camera, blur_px};
       return false;
     }
   }
@@ -132,7 +138,7 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
 
 void Keyframes::move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
   for (Keyframe& keyframe : kept_) keyframe.T_world_camera = T_world_camera_at(keyframe.timestamp_ns);
-  T_world_featureless_.reset();  // at worst the same bare wall is looked at once more
+  featureless_.reset();  // at worst the same bare wall is looked at once more
 }
 
 void Keyframes::drop_most_crowded() {

@@ -95,7 +95,13 @@ class Keyframes {
     std::size_t keyframe = 0;
     SE3 T_keyframe_camera;
   };
+  /// With too few features to be kept.
+  struct FeaturelessFrame {
+    SE3 T_world_camera;
+    double blur_px = 0;
+  };
   [[nodiscard]] double separation(const SE3& a, const SE3& b) const;
+  [[nodiscard]] bool is_sharper(double blur_px, double blur_before_px) const;
   void drop_most_crowded();
   void complete(Keyframe& keyframe) const;
   [[nodiscard]] std::vector<AlignmentCandidate> seen_by_prediction(const places::SmallImages& query,
@@ -107,8 +113,8 @@ class Keyframes {
 
   PinholeCamera camera_;
   const config::Config& config_;
-  std::vector<Keyframe> kept_;              ///< in the order of their offers
-  std::optional<SE3> T_world_featureless_;  ///< where the last frame with too few features was
+  std::vector<Keyframe> kept_;                   ///< in the order of their offers
+  std::optional<FeaturelessFrame> featureless_;  ///< the last one
 };
 
 }  // namespace fusebench::relocalisation

@@ -87,8 +87,9 @@ void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopEr
          rotation_rad > kFalseSigmas * largest_sigma(covariance.topLeftCorner<3, 3>())) ||
         (translation_m > kFalseTranslation_m &&
          translation_m > kFalseSigmas * largest_sigma(covariance.bottomRightCorner<3, 3>()));
-    ++result.verified;
-    result.false_verified += is_false ? 1U : 0U;
+    const bool verified = candidate.evidence != loops::LoopEvidence::tracker;
+    result.verified += verified ? 1U : 0U;
+    result.false_verified += verified && is_false ? 1U : 0U;
     if (!candidate.accepted) continue;
     ++result.accepted;
     result.false_accepted += is_false ? 1U : 0U;

@@ -35,9 +35,10 @@ struct LoopError {
   std::size_t accepted = 0;
   std::size_t false_verified = 0;
   std::size_t false_accepted = 0;
-  double median_translation_m = 0;  ///< errors of accepted loops
+  // Of accepted loops; 0 without one, where records have null.
+  double median_translation_m = 0;
   double median_rotation_rad = 0;
-  double nees_rotation = 0;  ///< mean over accepted loops, by degree of freedom: 1 is consistent
+  double nees_rotation = 0;  ///< mean by degree of freedom: 1 is consistent
   double nees_position = 0;
   /// ATE of the final poses with a true loop at every revisit in place of those that were found; nothing if
   /// there is no revisit.

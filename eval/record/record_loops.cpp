@@ -17,6 +17,7 @@ loop_error::Revisits revisits_of(const Json& json) { return {json.at("count"), j
 Json json_of_loops(const Outcome<loop_error::LoopError>& loops) {
   if (!loops.value) return {{"error", nullptr}, {"reason", loops.reason}};
   const loop_error::LoopError& error = *loops.value;
+  const auto of_accepted = [&](double value) { return error.accepted > 0 ? Json(value) : Json(nullptr); };
   const Json protocol = {{"revisit_overlap", loop_error::kRevisitOverlap},
                          {"blurred_px", loop_error::kBlurred_px},
                          {"false_translation_m", loop_error::kFalseTranslation_m},
@@ -30,10 +31,10 @@ Json json_of_loops(const Outcome<loop_error::LoopError>& loops) {
             {"accepted", error.accepted},
             {"false_verified", error.false_verified},
             {"false_accepted", error.false_accepted},
-            {"median_translation_m", error.median_translation_m},
-            {"median_rotation_rad", error.median_rotation_rad},
-            {"nees_rotation", error.nees_rotation},
-            {"nees_position", error.nees_position},
+            {"median_translation_m", of_accepted(error.median_translation_m)},
+            {"median_rotation_rad", of_accepted(error.median_rotation_rad)},
+            {"nees_rotation", of_accepted(error.nees_rotation)},
+            {"nees_position", of_accepted(error.nees_position)},
             {"oracle_ate_m", error.oracle_ate_m ? Json(*error.oracle_ate_m) : Json(nullptr)}}},
           {"reason", nullptr}};
 }
@@ -49,10 +50,12 @@ Outcome<loop_error::LoopError> loops_of(const Json& json) {
   error.accepted = values.at("accepted");
   error.false_verified = values.at("false_verified");
   error.false_accepted = values.at("false_accepted");
-  error.median_translation_m = values.at("median_translation_m");
-  error.median_rotation_rad = values.at("median_rotation_rad");
-  error.nees_rotation = values.at("nees_rotation");
-  error.nees_position = values.at("nees_position");
+  if (error.accepted > 0) {
+    error.median_translation_m = values.at("median_translation_m");
+    error.median_rotation_rad = values.at("median_rotation_rad");
+    error.nees_rotation = values.at("nees_rotation");
+    error.nees_position = values.at("nees_position");
+  }
   if (const Json& ate = values.at("oracle_ate_m"); !ate.is_null()) error.oracle_ate_m = ate;
   return {error, {}};
 }

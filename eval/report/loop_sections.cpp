@@ -47,10 +47,13 @@ std::string found_cell(const loop_error::Revisits& revisits) {
 std::vector<std::string> error_cells(const record::RunRecord& record) {
   if (!record.loops || !record.loops->value) return {"-", "-", "-", "-", "-"};
   const loop_error::LoopError& error = *record.loops->value;
-  return {found_cell(error.sharp), found_cell(error.blurred), fmt::format("{}", error.false_accepted),
-          fmt::format("{:.2f} cm, {:.2f} deg", run_charts::kCentimetres * error.median_translation_m,
-                      degrees(error.median_rotation_rad)),
-          fmt::format("{:.2f}, {:.2f}", error.nees_position, error.nees_rotation)};
+  std::vector<std::string> cells = {found_cell(error.sharp), found_cell(error.blurred),
+                                    fmt::format("{}", error.false_accepted), "-", "-"};
+  if (error.accepted == 0) return cells;
+  cells[3] = fmt::format("{:.2f} cm, {:.2f} deg", run_charts::kCentimetres * error.median_translation_m,
+                         degrees(error.median_rotation_rad));
+  cells[4] = fmt::format("{:.2f}, {:.2f}", error.nees_position, error.nees_rotation);
+  return cells;
 }
 
 page::PageTable::Row row_of(const run_charts::RunSeries& run) {
@@ -65,8 +68,9 @@ page::PageTable::Row row_of(const run_charts::RunSeries& run) {
   } else {
     row.cells.push_back(fmt::format("{}", run.places.size()));
     row.cells.push_back(fmt::format("{}", run.candidates.size()));
-    row.cells.push_back(fmt::format("{}, {}", count(CandidateFate::accepted_by_features),
-                                    count(CandidateFate::accepted_by_depth)));
+    row.cells.push_back(fmt::format("{}, {}, {}", count(CandidateFate::accepted_by_features),
+                                    count(CandidateFate::accepted_by_depth),
+                                    count(CandidateFate::accepted_by_tracker)));
     row.cells.push_back(fmt::format("{}, {}, {}", count(CandidateFate::no_pose),
                                     count(CandidateFate::depth_differs), count(CandidateFate::poses_differ)));
   }
@@ -85,7 +89,7 @@ page::PageTable::Row row_of(const run_charts::RunSeries& run) {
 std::string explanation() {
   return fmt::format(
       "Places are frames that are kept to be recognised; a candidate is a pair of places that look "
-      "alike, and a loop one that was accepted. Online: each pose as it was known when its frame came; "
+      "alike or see the same by the poses so far, and a loop one that was accepted. Online: each pose as it was known when its frame came; "
       "final: as all were known at the end. Mode \"its own\": the system closes loops by its method, and "
       "keeps no list of them. Returns: places that see {:.0f} % or more of what an older "
       "place saw, by the true poses, and how many of them have a loop; blurred are those with more "
@@ -104,7 +108,7 @@ page::PageSection table_section(std::span<const run_charts::RunSeries* const> ru
                   "loops.mode",
                   "places",
                   "candidates",
-                  "loops: by features, by depth alone",
+                  "loops: by features, by depth alone, by the tracker",
                   "refused: no certain pose, depth does not fit, contradicts the poses",
                   "returns found, sharp",
                   "returns found, blurred",

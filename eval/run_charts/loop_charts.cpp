@@ -25,11 +25,13 @@ struct FateSeries {
   const char* label;
   std::size_t colour;
 };
-constexpr std::array kFates = {FateSeries{CandidateFate::no_pose, "refused: no certain pose", 7},
-                               FateSeries{CandidateFate::depth_differs, "refused: depth does not fit", 4},
-                               FateSeries{CandidateFate::poses_differ, "refused: contradicts the poses", 1},
-                               FateSeries{CandidateFate::accepted_by_depth, "accepted by depth alone", 0},
-                               FateSeries{CandidateFate::accepted_by_features, "accepted by features", 2}};
+constexpr std::array kFates = {
+    FateSeries{CandidateFate::no_pose, "refused: no certain pose", 7},
+    FateSeries{CandidateFate::depth_differs, "refused: depth does not fit", 4},
+    FateSeries{CandidateFate::poses_differ, "refused: contradicts the poses", 1},
+    FateSeries{CandidateFate::accepted_by_tracker, "accepted: found by the tracker", 5},
+    FateSeries{CandidateFate::accepted_by_depth, "accepted by depth alone", 0},
+    FateSeries{CandidateFate::accepted_by_features, "accepted by features", 2}};
 
 /// What is drawn of many: every so many of them, which the label says.
 std::size_t step_for(std::size_t count, std::size_t most) {
@@ -115,7 +117,7 @@ page::Chart candidate_chart(const RunSeries& run, std::size_t buckets) {
   page::Chart chart = chart_of(
       fmt::format("Candidates for loops: {}", run.label), "time at which a place is looked at [s]",
       "time of the older place [s]",
-      "A dot a pair of places that look alike. Dots along a diagonal: the camera follows its earlier path.");
+      "A dot a pair of places that look alike, or see the same by the poses so far. Dots along a diagonal: the camera follows its earlier path.");
   for (const FateSeries& fate : kFates) {
     std::vector<Vector2d> points;
     for (const CandidateRow& candidate : run.candidates) {

@@ -12,6 +12,12 @@ namespace fusebench::run_files {
 
 namespace {
 
+/// What a pair can be verified by, and what it is then, if it is accepted.
+constexpr std::array<std::pair<std::string_view, CandidateFate>, 3> kVerified = {
+    {{"features", CandidateFate::accepted_by_features},
+     {"depth", CandidateFate::accepted_by_depth},
+     {"tracker", CandidateFate::accepted_by_tracker}}};
+
 Result<double> needed_number(const NamedRow& cells, std::string_view name) {
   const auto number = cells.number(name);
   if (!number) return tl::unexpected(number.error());
@@ -37,10 +43,8 @@ Result<CandidateFate> fate_of(const NamedRow& cells) {
   const bool accepted = *decision == "accepted";
   if (!accepted && *decision != "refused")
     return fail(ErrorCode::data_corrupt, fmt::format("decision '{}' (accepted, refused)", *decision));
-  if (*verified_by == "features" || *verified_by == "depth") {
-    if (!accepted) return CandidateFate::poses_differ;
-    return *verified_by == "features" ? CandidateFate::accepted_by_features
-                                      : CandidateFate::accepted_by_depth;
+  for (const auto& [word, fate] : kVerified) {
+    if (*verified_by == word) return accepted ? fate : CandidateFate::poses_differ;
   }
   if (*verified_by != "nothing" || accepted)
     return fail(ErrorCode::data_corrupt, fmt::format("{}, verified by '{}'", *decision, *verified_by));

@@ -12,10 +12,11 @@ namespace fusebench::run_files {
 /// What became of a pair of places that was looked at.
 enum class CandidateFate {
   accepted_by_features,
-  accepted_by_depth,  ///< by depth alone
-  no_pose,            ///< neither features nor depth tell for certain how the two stand to each other
-  depth_differs,      ///< there is a pose, by which the two do not see the same
-  poses_differ,       ///< the two see the same, but that contradicts the path or the other loops
+  accepted_by_depth,    ///< by depth alone
+  accepted_by_tracker,  ///< a lost tracker found itself there; images and depth of the pair do not verify it
+  no_pose,              ///< neither features nor depth tell for certain how the two stand to each other
+  depth_differs,        ///< there is a pose, by which the two do not see the same
+  poses_differ,         ///< the two see the same, but that contradicts the path or the other loops
 };
 
 /// A candidate, as far as reports need it.
@@ -25,7 +26,8 @@ struct CandidateRow {
   CandidateFate fate = CandidateFate::no_pose;
 
   [[nodiscard]] bool is_accepted() const {
-    return fate == CandidateFate::accepted_by_features || fate == CandidateFate::accepted_by_depth;
+    return fate == CandidateFate::accepted_by_features || fate == CandidateFate::accepted_by_depth ||
+           fate == CandidateFate::accepted_by_tracker;
   }
 };
 

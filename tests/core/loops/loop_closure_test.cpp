@@ -10,6 +10,7 @@
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/loops/loop_tables.hpp"
+#include "tests/support/expect_text.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -158,6 +159,82 @@ TEST_F(Loops, ALostTrackerThatFindsItselfClosesOne) {
     EXPECT_LT(error_m(final[kLost - 1], kLost - 1), 0.4 * error_m(online[kLost - 1], kLost - 1));
     EXPECT_EQ(std::ranges::count_if(loops.candidates(), &LoopCandidate::accepted), 1);
   }
+}
+
+/// In the dark a lost tracker is placed by depth, and its frames are not fused: their poses are those of the
+/// places, and not of dead reckoning, whatever the rest of the path is corrected by.
+TEST_F(Loops, FramesThatWereFoundAndNotFusedStayWhereTheyWereFound) {
+  constexpr int kLost = 45, kFound = 50, kEnd = 56;
+  const SE3 T_astray{so3_exp({0, 0.1, 0}), {0.5, 0, 0}};
+  for (const config::LoopMode mode : {config::LoopMode::detect, config::LoopMode::final}) {
+    const config::Config config = configuration(mode);
+    LoopClosure loops(config, rig_);
+    for (int k = 0; k < kLost; ++k) {
+      loops.add_fused(frames()[static_cast<std::size_t>(k)], estimate_of(k, false), 0);
+      loops.add_pose(stamp_ns(k), estimate_of(k, false).mean.T_world_imu);
+    }
+    for (int k = kFound; k < kEnd; ++k) {
+      const filter::GaussianState found = estimate_of(k, false);
+      filter::GaussianState predicted = found;
+      predicted.mean.T_world_imu = T_astray * predicted.mean.T_world_imu;
+      loops.add_relocalisation(predicted, found, stamp_ns(0));
+      loops.add_pose(stamp_ns(k), found.mean.T_world_imu);
+    }
+    std::vector<LoopCandidate> loop(1);
+    loop.front().query = loops.places().size() - 1;
+    loop.front().pair.same = true;
+    loop.front().pair.T_known_query =
+        loops.places().front().T_world_camera.inverse() * loops.places().back().T_world_camera;
+    loop.front().pair.covariance = covariance_by_axis(0.001, 0.001);
+    const Result<Trajectory> final =
+        mode == config::LoopMode::final ? loops.poses_with(loop) : loops.corrected_trajectory();
+    ASSERT_TRUE(final) << final.error().message;
+    for (std::size_t k = kLost; k < final->size(); ++k) {
+      const int frame = kFound + static_cast<int>(k) - kLost;
+      EXPECT_LT(pose_minus((*final)[k].T_world_camera, T_room_camera(frame)).norm(), 1e-6) << frame;
+    }
+  }
+}
+
+/// Where images and depth do not show that the two frames are of one place, the tracker's word is one that
+/// other loops may overrule.
+TEST_F(Loops, WhatOnlyTheTrackerSaysIsToldApart) {
+  const config::Config config = configuration(config::LoopMode::detect);
+  LoopClosure loops(config, rig_);
+  loops.add_fused(frames().front(), estimate_of(0, false), 0);
+  const filter::GaussianState found = estimate_of(30, false);  // looks the other way
+  loops.add_relocalisation(found, found, stamp_ns(0));
+  loops.add_fused(frames()[30], found, 0);
+  ASSERT_EQ(loops.candidates().size(), 1U);
+  const LoopCandidate& candidate = loops.candidates().front();
+  EXPECT_EQ(candidate.evidence, LoopEvidence::tracker);
+  EXPECT_TRUE(loop_edge(loops.places(), candidate, config.loops).robust);
+  testing::expect_contains(candidate_table(loops), ",tracker,accepted,");
+}
+
+TEST_F(Loops, AFalseOneIsDroppedWhereOthersSaySo) {
+  const config::Config config = configuration(config::LoopMode::final);
+  LoopClosure loops(config, rig_);
+  run(loops, false, frames());
+  const auto edge = [&](std::size_t known, std::size_t query, const SE3& T_true_false) {
+    LoopCandidate candidate;
+    candidate.known = known;
+    candidate.query = query;
+    candidate.pair.same = true;
+    candidate.pair.T_known_query =
+        loops.places()[known].T_world_camera.inverse() * loops.places()[query].T_world_camera * T_true_false;
+    candidate.pair.covariance = covariance_by_axis(0.001, 0.001);
+    return candidate;
+  };
+  const std::size_t last = loops.places().size() - 1;
+  const std::vector<LoopCandidate> right = {edge(0, last, {}), edge(1, last, {}), edge(0, last - 1, {})};
+  std::vector<LoopCandidate> with_false = right;
+  with_false.push_back(edge(1, last - 1, {Quaterniond::Identity(), {0.3, 0, 0}}));
+  const auto expected = loops.poses_with(right);
+  const auto poses = loops.poses_with(with_false);
+  ASSERT_TRUE(expected && poses);
+  for (std::size_t k = 0; k < poses->size(); ++k)
+    EXPECT_EQ((*poses)[k].T_world_camera.translation, (*expected)[k].T_world_camera.translation) << k;
 }
 
 /// Where the camera of an estimate is a moment later.

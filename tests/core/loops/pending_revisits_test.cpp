@@ -62,7 +62,7 @@ TEST(PendingRevisits, FusesNothingOverAnOldSurfaceThatDoesNotFit) {
     RevisitedWall wall(testing::small_camera().width_px);
     const auto rest_m = wall.to_fuse(wall.at(20, wall_m));
     ASSERT_TRUE(rest_m) << wall_m;
-    // Beside the old surface's own edge, nothing is left.
+    // The old surface's own edge is all that is left.
     EXPECT_LT(measured(*rest_m, 0, wall.camera.width_px), wall.camera.width_px * wall.camera.height_px / 4);
   }
 }

@@ -312,14 +312,34 @@ TEST(Keyframes, ASharpFrameTakesThePlaceOfABlurredOne) {
   EXPECT_EQ(keyframes[0].timestamp_ns, 3);
 }
 
+TEST(Keyframes, MoveWithTheCorrectedPath) {
+  Keyframes keyframes(small_camera(), kDefaults);
+  offer(keyframes, {}, 7);
+  const SE3 T_corrected{so3_exp({0, 0.5, 0}), {1, 2, 3}};
+  keyframes.move([&](std::int64_t timestamp_ns) { return timestamp_ns == 7 ? T_corrected : SE3{}; });
+  const SE3 T_key_query{so3_exp({0, 0.1, 0}), {0.1, 0, 0}};
+  const auto found = first_of(keyframes.find(seen_from(T_key_query).grey));
+  ASSERT_TRUE(found);
+  EXPECT_LT(pose_minus(found->T_world_camera, T_corrected * T_key_query).norm(), 0.02);
+}
+
 TEST(Keyframes, WithoutFeaturesOrDepthAFrameIsNotKept) {
   const RgbdFrame frame = seen_from({});
   Keyframes keyframes(small_camera(), kDefaults);
   EXPECT_FALSE(keyframes.offer(GreyImage(320, 240, 90), frame.depth_m, {}, 0));
+  EXPECT_FALSE(keyframes.offer(frame.grey, frame.depth_m, {}, 0)) << "nothing else is tried there";
   const SE3 aside{Quaterniond::Identity(), {1, 0, 0}};
   EXPECT_FALSE(keyframes.offer(frame.grey, DepthImage(320, 240), aside, 1));
   EXPECT_EQ(keyframes.size(), 0U);
-  EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 2)) << "barren frames do not bar others";
+  EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 2)) << "the last barren frame was elsewhere";
+}
+
+TEST(Keyframes, ABlurredFrameWithoutFeaturesDoesNotBarASharpOne) {
+  const RgbdFrame frame = seen_from({});
+  Keyframes keyframes(small_camera(), kDefaults);
+  EXPECT_FALSE(keyframes.offer(GreyImage(320, 240, 90), frame.depth_m, {}, 0, 12.0));
+  EXPECT_FALSE(keyframes.offer(frame.grey, frame.depth_m, {}, 1, 8.0)) << "not much sharper";
+  EXPECT_TRUE(keyframes.offer(frame.grey, frame.depth_m, {}, 2, 1.0));
 }
 
 TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {

@@ -105,6 +105,7 @@ TEST_F(LoopErrors, PlacesInGapsOfTheTruthAreLeftOut) {
   ASSERT_TRUE(error) << error.error().message;
   EXPECT_EQ(error->places, 2U);
   EXPECT_EQ(error->verified, 0U);
+  EXPECT_EQ(error->accepted, 0U);
 }
 
 }  // namespace

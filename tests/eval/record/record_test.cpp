@@ -242,6 +242,18 @@ TEST(Record, NumbersThatDoNotExistAreNull) {
   EXPECT_EQ(text.find(": nan"), std::string::npos);
 }
 
+TEST(Record, WithoutLoopsTheirErrorsAreNull) {
+  RunRecord record = sample_record();
+  record.loops->value = loop_error::LoopError{};
+  const std::string text = to_json(record);
+  for (const char* const key :
+       {"median_translation_m", "median_rotation_rad", "nees_rotation", "nees_position"})
+    EXPECT_TRUE(json::parse(text).at("loops").at("error").at(key).is_null()) << key;
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(to_json(*back), text);
+}
+
 TEST(Record, StartsAsAFailure) {
   const json record = json::parse(to_json(RunRecord{}));
   EXPECT_EQ(record.at("status"), "failed");

@@ -28,20 +28,22 @@ TEST_F(LoopTable, TellsWhyACandidateWasRefused) {
   const auto file =
       write("loops.csv", kHeader + line(kPose, "features,accepted,\"agrees with the poses\"") +
                              line(kPose, "depth,accepted,\"agrees\"") +
+                             line(kPose, "tracker,accepted,\"the lost tracker found itself by it\"") +
                              line(kNoPose, "nothing,refused,\"12 matches of features (at least 20)\"") +
                              line(kPose, "nothing,refused,\"9 % of the depth fits (at least 25 %)\"") +
                              line(kPose, "features,refused,\"contradicts the poses, whatever supports it\""));
   const auto rows = read_candidate_table(file);
   ASSERT_TRUE(rows.has_value()) << rows.error().message;
-  ASSERT_EQ(rows->size(), 5U);
+  ASSERT_EQ(rows->size(), 6U);
   EXPECT_EQ((*rows)[0].query_ns, 12'500'000'000);
   EXPECT_EQ((*rows)[0].place_ns, 1'250'000'000);
-  const std::vector<CandidateFate> fates = {CandidateFate::accepted_by_features,
-                                            CandidateFate::accepted_by_depth, CandidateFate::no_pose,
-                                            CandidateFate::depth_differs, CandidateFate::poses_differ};
+  const std::vector<CandidateFate> fates = {
+      CandidateFate::accepted_by_features, CandidateFate::accepted_by_depth,
+      CandidateFate::accepted_by_tracker,  CandidateFate::no_pose,
+      CandidateFate::depth_differs,        CandidateFate::poses_differ};
   for (std::size_t i = 0; i < fates.size(); ++i) {
     EXPECT_EQ((*rows)[i].fate, fates[i]) << i;
-    EXPECT_EQ((*rows)[i].is_accepted(), i < 2) << i;
+    EXPECT_EQ((*rows)[i].is_accepted(), i < 3) << i;
   }
 }
 

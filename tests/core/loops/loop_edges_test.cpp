@@ -1,0 +1,89 @@
+#include "core/loops/loop_edges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/base/geometry.hpp"
+
+namespace fusebench {
+
+using namespace loops;
+
+namespace {
+
+constexpr std::size_t kPathPlaces = 40;
+
+/// Along x, 0.1 m and 0.5 s apart; the filter claims a centimetre more at each.
+std::vector<Place> places_along_x() {
+  std::vector<Place> places(kPathPlaces);
+  for (std::size_t i = 0; i < kPathPlaces; ++i) {
+    const auto steps = static_cast<double>(i);
+    places[i].timestamp_ns = std::llround(1e9 * 0.5 * steps);
+    places[i].T_world_camera.translation = {0.1 * steps, 0, 0};
+    places[i].covariance = covariance_by_axis(0.001, 0.01) * steps;
+  }
+  return places;
+}
+
+/// The path is off by that much between the two.
+LoopCandidate verified(const std::vector<Place>& places, std::size_t known, std::size_t query,
+                       const Vector3d& path_is_off_m) {
+  LoopCandidate candidate;
+  candidate.known = known;
+  candidate.query = query;
+  candidate.pair.same = true;
+  candidate.pair.T_known_query = places[known].T_world_camera.inverse() * places[query].T_world_camera;
+  candidate.pair.T_known_query.translation += path_is_off_m;
+  candidate.pair.covariance = covariance_by_axis(0.001, 0.002);
+  return candidate;
+}
+
+std::vector<bool> accepted(const std::vector<Place>& places, std::vector<LoopCandidate> candidates) {
+  decide(places, config::LoopsConfig{}, candidates);
+  std::vector<bool> are;
+  for (const LoopCandidate& candidate : candidates) are.push_back(candidate.accepted);
+  return are;
+}
+
+using Accepted = std::vector<bool>;
+
+/// The path claims 0.06 m from the first place to the last one, and three times as much is allowed for.
+TEST(LoopEdges, AreAcceptedWithinDriftAloneAndBeyondItWithSupport) {
+  const std::vector<Place> places = places_along_x();
+  const auto edge = [&](std::size_t known, std::size_t query, double off_m) {
+    return verified(places, known, query, {0, off_m, 0});
+  };
+  EXPECT_EQ(accepted(places, {edge(0, 36, 0.5)}), (Accepted{true})) << "2.7 sigmas";
+  EXPECT_EQ(accepted(places, {edge(0, 36, 1.5)}), (Accepted{false})) << "8 sigmas";
+  EXPECT_EQ(accepted(places, {edge(0, 36, 1.5), edge(1, 38, 1.5)}), (Accepted{true, true}));
+  EXPECT_EQ(accepted(places, {edge(0, 36, 1.5), edge(1, 38, -1.5)}), (Accepted{false, false}))
+      << "they do not agree";
+  EXPECT_EQ(accepted(places, {edge(0, 30, 1.4), edge(1, 38, 1.4)}), (Accepted{false, false})) << "4 s apart";
+  EXPECT_EQ(accepted(places, {edge(0, 36, 1.5), edge(1, 36, 1.5)}), (Accepted{false, false}))
+      << "one image is no second witness";
+  EXPECT_EQ(accepted(places, {edge(0, 36, 6), edge(1, 38, 6)}), (Accepted{false, false}))
+      << "32 sigmas: nothing supports that";
+}
+
+TEST(LoopEdges, ATrackerThatFoundItselfIsSupportEnough) {
+  const std::vector<Place> places = places_along_x();
+  for (const LoopEvidence evidence : {LoopEvidence::pair_and_tracker, LoopEvidence::tracker}) {
+    LoopCandidate near = verified(places, 0, 36, {0, 1.5, 0});
+    LoopCandidate far = verified(places, 0, 36, {0, 6, 0});
+    near.evidence = far.evidence = evidence;
+    EXPECT_EQ(accepted(places, {near, far}), (Accepted{true, false}));
+    EXPECT_EQ(loop_edge(places, near, {}).robust, evidence == LoopEvidence::tracker);
+  }
+}
+
+TEST(LoopEdges, WhatIsNotVerifiedIsNotAccepted) {
+  const std::vector<Place> places = places_along_x();
+  LoopCandidate candidate = verified(places, 0, 36, Vector3d::Zero());
+  candidate.pair.same = false;
+  EXPECT_EQ(accepted(places, {candidate}), (Accepted{false}));
+}
+
+}  // namespace
+}  // namespace fusebench

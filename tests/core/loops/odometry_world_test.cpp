@@ -1,0 +1,57 @@
+#include "core/loops/odometry_world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/geometry.hpp"
+#include "core/loops/loop_edges.hpp"
+
+namespace fusebench {
+
+using namespace loops;
+
+namespace {
+
+const SE3 kOdometry{so3_exp({0.1, 0.2, -0.3}), {1, 2, 3}};
+const SE3 kFoundAt{so3_exp({-0.2, 0.1, 0.4}), {1.3, 1.8, 2.5}};
+const SE3 kCorrection{so3_exp({0, 0.3, 0}), {0, 0.2, 0}};
+
+Relocalisation found_again(const SE3& T_odometry_camera, double predicted_m, double found_m) {
+  Relocalisation found;
+  found.T_odometry_camera = T_odometry_camera;
+  found.predicted_covariance = covariance_by_axis(0.01, predicted_m);
+  found.found_covariance = covariance_by_axis(0.01, found_m);
+  return found;
+}
+
+double apart(const SE3& a, const SE3& b) { return pose_minus(a, b).norm(); }
+
+TEST(OdometryWorld, GoesOnAsPredictedWhileTheCurrentOneMoves) {
+  OdometryWorld world;
+  EXPECT_LT(apart(world.T_current_camera(kOdometry, 0), kOdometry), 1e-12);
+  world.relocalise(found_again(kOdometry, 0.1, 0.01), kFoundAt, {kOdometry, covariance_by_axis(0.01, 0.01)});
+  EXPECT_LT(apart(world.T_current_camera(kOdometry, 1), kFoundAt), 1e-12);
+  EXPECT_LT(apart(world.T_current_camera(kOdometry, 0), kOdometry), 1e-12) << "poses before stay";
+  world.correct(kCorrection * world.T_current_odometry());
+  EXPECT_LT(apart(world.T_current_camera(kOdometry, 1), kCorrection * kFoundAt), 1e-12);
+  EXPECT_LT(apart(world.T_current_camera(kOdometry, 0), kCorrection * kOdometry), 1e-12);
+  EXPECT_LT(apart(world.T_relocalised_camera(kOdometry, 1), kFoundAt), 1e-12) << "a correction is none";
+}
+
+TEST(OdometryWorld, CountsWhatDeadReckoningAddedOnce) {
+  OdometryWorld world;
+  EXPECT_EQ(world.lost_covariance_at(kOdometry).norm(), 0);
+  const OdometryPose last{kOdometry, covariance_by_axis(0.01, 0.02)};
+  world.relocalise(found_again(kOdometry, 0.1, 0.05), kFoundAt, last);
+  const Matrix6d lost = world.lost_covariance_at(kOdometry);
+  EXPECT_LT((lost - covariance_by_axis(0, std::sqrt(0.1 * 0.1 - 0.02 * 0.02))).norm(), 1e-9);
+  // Found again in the next frame, which dead reckoning added nothing to.
+  const Relocalisation& before = world.relocalisation(1);
+  world.relocalise(found_again(kOdometry, 0.05, 0.05), kFoundAt,
+                   {before.T_odometry_camera, before.found_covariance});
+  EXPECT_LT((world.lost_covariance_at(kOdometry) - lost).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace fusebench
