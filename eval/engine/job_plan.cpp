@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -265,6 +266,13 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
       return tl::unexpected(added.error());
     multiply(common, jobs, plan);
   }
+  std::set<std::string> unused;
+  for (const BatchJob& job : plan.jobs) {
+    if (job.spec.program) continue;
+    if (const auto sentence = run::options_without_effect(job.spec.config))
+      unused.insert(fmt::format("variant '{}': {}", job.variant, *sentence));
+  }
+  plan.warnings.insert(plan.warnings.end(), unused.begin(), unused.end());
   for (const suites::Exclusion& exclusion : suite.exclusions) {
     if (!met.contains(&exclusion) && options.only.empty())
       plan.warnings.push_back(

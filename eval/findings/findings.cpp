@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "eval/metrics/statistics.hpp"
 #include "eval/record/record.hpp"
 
 namespace fusebench::findings {
@@ -78,6 +79,9 @@ std::string best_sentence(const Ranking& ranking) {
   }
   const RankedConfiguration& second = ranking.configurations[1];
   if (second.value && second.to_best) {
+    if (*second.value == *best.value)
+      return fmt::format("{} and {} have the same {} on {}: {}.", best.label, second.label, name, where,
+                         number);
     return fmt::format("{} has the smallest {} on {}: {}. Next is {} with {}, {:.2f} times as much{}",
                        best.label, name, where, number, second.label, shown(ranking.column, *second.value),
                        second.to_best->ratio, evidence_of(ranking, *second.to_best));
@@ -128,6 +132,35 @@ std::vector<std::string> sentences_of(const Ranking& ranking) {
         list_of(helped, ", "), helped.size() == 1 ? "it looks" : "they look"));
   }
   return sentences;
+}
+
+std::optional<std::string> final_poses_of(std::span<const run_files::FoundRun> runs) {
+  std::vector<double> online_m, final_m;
+  for (const run_files::FoundRun& run : runs) {
+    if (run.state != run_files::RunState::whole || !run.record.final_metrics) continue;
+    const auto& online = run.record.metrics.ate.value;
+    const auto& final = run.record.final_metrics->ate.value;
+    if (!online || !final) continue;
+    online_m.push_back(online->stats.rmse);
+    final_m.push_back(final->stats.rmse);
+  }
+  if (final_m.empty()) return std::nullopt;
+  if (final_m.size() == 1)
+    return fmt::format(
+        "With loops closed, the poses at the end have an ATE of {:.2f} cm, where those as each frame came "
+        "have "
+        "{:.2f} cm.",
+        100 * final_m.front(), 100 * online_m.front());
+  std::size_t smaller = 0;
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < final_m.size(); ++i) {
+    smaller += final_m[i] < online_m[i] ? 1U : 0U;
+    ratios.push_back(final_m[i] / online_m[i]);
+  }
+  return fmt::format(
+      "With loops closed, the poses at the end have a smaller ATE than those as each frame came in {} of {} "
+      "runs; the median is {:.2f} times as much.",
+      smaller, final_m.size(), metrics::statistics(ratios).median);
 }
 
 std::vector<std::string> failures_of(const tables::ResultTable& table) {

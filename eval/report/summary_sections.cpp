@@ -47,6 +47,7 @@ page::PageSection findings_section(const std::vector<run_files::FoundRun>& runs,
     for (std::string& sentence : findings::sentences_of(ranking))
       paragraphs.lines.push_back(std::move(sentence));
   }
+  if (auto sentence = findings::final_poses_of(runs)) paragraphs.lines.push_back(std::move(*sentence));
   for (std::string& sentence : findings::failures_of(table)) paragraphs.lines.push_back(std::move(sentence));
   paragraphs.lines.push_back(findings::origin_of(runs));
   return {"What was found", "", std::move(paragraphs)};

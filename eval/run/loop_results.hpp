@@ -14,6 +14,7 @@ namespace fusebench::run {
 struct LoopResults {
   std::string candidates;                                       ///< loops.csv
   std::string places;                                           ///< places.csv
+  std::string log;                                              ///< a line: how many there were
   std::optional<record::Outcome<loop_error::LoopError>> error;  ///< where there is truth
 };
 

@@ -136,6 +136,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
     if (auto written = run_files::write_patch_table(folder->path(), progress->fastest.frames()); !written)
       return tl::unexpected(written.error());
   }
+  progress->log += loops.log;
   log_silent_failures(record, *progress);
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <string>
@@ -15,6 +17,14 @@
 namespace fusebench::run {
 
 namespace {
+
+/// Whether a group of options belongs to a system, by its name; see system.method.
+bool has_effect(std::string_view group, std::string_view system) {
+  constexpr std::array<std::string_view, 5> kOfAll = {"system", "depth", "tsdf", "health", "evaluation"};
+  if (std::ranges::find(kOfAll, group) != kOfAll.end() || group == system) return true;
+  return system == "filter" && std::ranges::none_of(config::option_choices(config::SystemMethod{}),
+                                                    [&](const auto& other) { return other.first == group; });
+}
 
 /// An option that somebody edited so that the configuration needs an IMU; nothing if the variant does.
 std::optional<std::string> edit_that_needs_imu(const config::EffectiveConfig& config) {
@@ -69,6 +79,20 @@ Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
 }
 
 }  // namespace
+
+std::optional<std::string> options_without_effect(const config::EffectiveConfig& config) {
+  std::string_view system;
+  for (const auto& [name, method] : config::option_choices(config::SystemMethod{})) {
+    if (method == config.values.system.method) system = name;
+  }
+  std::string keys;
+  for (const auto& [key, origin] : config.origins) {
+    if (!run_files::is_edit(origin) || has_effect(key.substr(0, key.find('.')), system)) continue;
+    keys += (keys.empty() ? "" : ", ") + key;
+  }
+  if (keys.empty()) return std::nullopt;
+  return fmt::format("without effect: {} (system.method = \"{}\" has no such options)", keys, system);
+}
 
 bool wants_imu(const RunSpec& spec) {
   return spec.program ? spec.program->imu != "none" : config::needs_imu(spec.config.values);

@@ -72,6 +72,10 @@ struct RunSpec {
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);
 
+/// A sentence on edited options that the configuration's system does not have, as loops.mode of one that is
+/// not the filter; nothing if all are its own.
+[[nodiscard]] std::optional<std::string> options_without_effect(const config::EffectiveConfig& config);
+
 /// An opened recording as a run of that specification sees it: cut to the window, with its IMU. Errors: those
 /// of select_frames and add_synthetic_imu; usage if the variant needs an IMU and there is none.
 [[nodiscard]] Result<recording::Recording> view_for_run(recording::Recording whole, const RunSpec& spec);

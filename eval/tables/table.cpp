@@ -169,7 +169,8 @@ std::vector<std::string> footer_of(const ResultTable& table) {
     footer.push_back(
         "silent: frames with a pose whose motion over the second before is off by more than 5 cm or 3 "
         "degrees "
-        "(evaluation.silent_*), which the method does not report.");
+        "(evaluation.silent_*), which the method does not report; a jump, as where a lost tracker finds "
+        "itself, counts for that second.");
   }
   if (!table.means.empty()) {
     footer.push_back(

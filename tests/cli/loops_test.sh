@@ -47,6 +47,10 @@ fi
 
 check 'off writes no loops' test ! -e "$off/loops.csv"
 check 'off has no final poses' test ! -e "$off/final.tum"
+check 'the log counts loops' grep -qE '^loops: [0-9]+ places, [0-9]+ candidates, [1-9][0-9]* accepted' "$detect/log.txt"
+"$binary" run room --variant opencv-rgbd --set loops.mode=online --out runs_opencv >/dev/null 2>opencv.log
+check 'a system without loops.mode says so' grep -qE 'warning: without effect: loops.mode .*opencv_odometry' opencv.log
+check 'and nothing is said where it has an effect' sh -c '! grep -q "without effect" final_1.log'
 check 'detect changes no pose' cmp "$off/trajectory.tum" "$detect/trajectory.tum"
 check 'detect changes no model' cmp "$off/mesh.ply" "$detect/mesh.ply"
 check 'detect has no final poses' test ! -e "$detect/final.tum"

@@ -144,6 +144,8 @@ Result<int> run(const RunOptions& options) {
   const auto prepared = prepare(options);
   if (!prepared) return tl::unexpected(prepared.error());
   console::print_warnings(prepared->recording.warnings);
+  if (const auto unused = run::options_without_effect(prepared->spec.config))
+    console::print_progress("warning: " + *unused);
 
   io::remove_abandoned(prepared->folder.parent_path());  // what an earlier one that was killed left
   const std::string title = fmt::format("{} {}", prepared->recording.name, prepared->spec.variant);

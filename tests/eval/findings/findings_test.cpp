@@ -57,6 +57,30 @@ TEST_F(FindingsTest, OneRecordingIsNoEvidence) {
   EXPECT_FALSE(found[0].configurations[1].to_best->interval.has_value());
 }
 
+TEST_F(FindingsTest, EqualOnesAreNotRanked) {
+  add_run("a", "full", 0.01);
+  add_run("a", "dm", 0.01);
+  EXPECT_EQ(sentences_of(rankings().at(0)).front(),
+            "full and dm have the same ATE on one recorded recording: 1.00 cm.");
+}
+
+TEST_F(FindingsTest, PosesAtTheEndAreHeldAgainstThoseOnTheWay) {
+  add_run("a", "full", 0.02);
+  EXPECT_FALSE(final_poses_of(runs_));
+  const auto close_loops = [&](double ate_m) {
+    RunRecord& record = runs_.back().record;
+    record.final_metrics = record.metrics;
+    record.final_metrics->ate.value->stats = metrics::statistics(std::vector<double>{ate_m});
+  };
+  close_loops(0.012);
+  testing::expect_contains(final_poses_of(runs_).value(),
+                           "an ATE of 1.20 cm, where those as each frame came "
+                           "have 2.00 cm");
+  add_run("b", "full", 0.02);
+  close_loops(0.024);
+  testing::expect_contains(final_poses_of(runs_).value(), "in 1 of 2 runs; the median is 0.90 times");
+}
+
 TEST_F(FindingsTest, ARunWithADamagedRecordFailedAmongThoseOfItsRecording) {
   add_run("a", "full", 0.01);
   add_run("a", "dm", 0.02);
