@@ -7,6 +7,7 @@
 
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
+#include "core/loops/place_search.hpp"
 
 namespace fusebench::loops {
 
@@ -16,19 +17,6 @@ namespace {
 // simulated, where its pair of places could not be verified.
 constexpr double kFoundRotationSigma_rad = 0.02;
 constexpr double kFoundPositionSigma_m = 0.03;
-
-double seconds_apart(const Place& earlier, const Place& later) {
-  return seconds_between(earlier.timestamp_ns, later.timestamp_ns);
-}
-
-/// Those with the smallest numbers.
-std::vector<std::size_t> first_of(std::vector<std::pair<double, std::size_t>> ranked, int count) {
-  std::ranges::sort(ranked);
-  ranked.resize(std::min(ranked.size(), static_cast<std::size_t>(count)));
-  std::vector<std::size_t> first;
-  for (const auto& [number, index] : ranked) first.push_back(index);
-  return first;
-}
 
 double median_depth_m(const DepthImage& depth_m) {
   std::vector<float> measured;
@@ -122,12 +110,12 @@ void LoopClosure::add_relocalisation_edge(std::size_t query) {
   LoopCandidate candidate;
   candidate.known = found.known;
   candidate.query = query;
-  candidate.dissimilarity = dissimilarity(candidate.known, query);
+  candidate.dissimilarity = dissimilarity(places_[candidate.known], places_[query]);
   const SE3 T_known_query =
       found.T_known_camera * (found.T_odometry_camera.inverse() * places_[query].T_world_camera);
   candidate.pair = places::verify_pair(places_[candidate.known].appearance, places_[query].appearance,
                                        T_known_query, rig_.camera, config_);
-  candidate.evidence = candidate.pair.same ? LoopEvidence::pair_and_tracker : LoopEvidence::tracker;
+  candidate.evidence = candidate.pair.same ? LoopEvidence::pair_and_tracker : LoopEvidence::tracker_alone;
   if (!candidate.pair.same) {
     candidate.pair.same = true;
     candidate.pair.reason.clear();
@@ -139,49 +127,11 @@ void LoopClosure::add_relocalisation_edge(std::size_t query) {
   candidates_.push_back(std::move(candidate));
 }
 
-/// Up to this one (not included) places were seen long ago.
-std::size_t LoopClosure::first_recent(std::size_t query) const {
-  const auto is_old = [&](const Place& place) {
-    return seconds_apart(place, places_[query]) >= config_.loops.least_age_s;
-  };
-  return static_cast<std::size_t>(std::ranges::partition_point(places_, is_old) - places_.begin());
-}
-
-/// The most similar places first.
-std::vector<std::size_t> LoopClosure::candidates_by_appearance(std::size_t query) const {
-  std::vector<std::pair<double, std::size_t>> similar;
-  const std::size_t end = first_recent(query);
-  for (std::size_t known = 0; known < end; ++known) {
-    const double different = dissimilarity(known, query);
-    if (different <= config_.loops.max_dissimilarity) similar.emplace_back(different, known);
-  }
-  return first_of(similar, config_.loops.max_candidates);
-}
-
-/// Places whose view is that of the query, by the poses so far: where it is dark, blurred or bare, nothing
-/// else tells them. The nearest first.
-std::vector<std::size_t> LoopClosure::candidates_by_path(std::size_t query) const {
-  constexpr double kMostTurned_rad = radians(60);
-  constexpr double kViewShare = 0.5;  // of the distance to what is seen: half of it is then seen by both
-  const auto middle_of_view = [&](std::size_t place) {
-    return T_current_camera(place) * Vector3d(0, 0, places_[place].view_depth_m);
-  };
-  std::vector<std::pair<double, std::size_t>> near;
-  const std::size_t end = first_recent(query);
-  for (std::size_t known = 0; known < end; ++known) {
-    const double apart_m = (middle_of_view(known) - middle_of_view(query)).norm();
-    const double turned_rad =
-        rotation_angle_rad(T_current_camera(known).rotation, T_current_camera(query).rotation);
-    if (apart_m <= kViewShare * places_[query].view_depth_m && turned_rad <= kMostTurned_rad)
-      near.emplace_back(apart_m, known);
-  }
-  return first_of(near, config_.loops.max_path_candidates);
-}
-
-/// Among the candidates, until one is verified.
+/// The last place among the candidates, until one is verified.
 void LoopClosure::look_for_loops(std::size_t query) {
-  std::vector<std::size_t> known_places = candidates_by_appearance(query);
-  for (const std::size_t known : candidates_by_path(query)) {
+  const auto T_world_camera = [&](std::size_t place) { return T_current_camera(place); };
+  std::vector<std::size_t> known_places = similar_places(places_, config_.loops);
+  for (const std::size_t known : places_in_view(places_, T_world_camera, config_.loops)) {
     if (std::ranges::find(known_places, known) == known_places.end()) known_places.push_back(known);
   }
   for (const std::size_t known : known_places) {
@@ -189,7 +139,7 @@ void LoopClosure::look_for_loops(std::size_t query) {
     LoopCandidate candidate;
     candidate.known = known;
     candidate.query = query;
-    candidate.dissimilarity = dissimilarity(known, query);
+    candidate.dissimilarity = dissimilarity(places_[known], places_[query]);
     candidate.pair = places::verify_pair(places_[known].appearance, places_[query].appearance,
                                          T_current_camera(known).inverse() * T_current_camera(query),
                                          rig_.camera, config_);
@@ -209,10 +159,6 @@ bool LoopClosure::is_candidate(std::size_t known, std::size_t query) const {
     if (candidate->known == known) return true;
   }
   return false;
-}
-
-double LoopClosure::dissimilarity(std::size_t known, std::size_t query) const {
-  return ferns::dissimilarity(places_[known].appearance.code, places_[query].appearance.code);
 }
 
 /// Edges that do not fit the others go.
@@ -319,12 +265,22 @@ std::size_t LoopClosure::place_near(std::int64_t timestamp_ns) const {
   return before + 1 < places_.size() && apart_ns(before + 1) < apart_ns(before) ? before + 1 : before;
 }
 
+/// Whether the first place after a relocalisation is where the tracker said; true if there is none.
+bool LoopClosure::is_accepted(std::size_t relocalisation) const {
+  const auto next = std::ranges::lower_bound(places_, relocalisation, {}, &Place::relocalisations);
+  const auto query = static_cast<std::size_t>(next - places_.begin());
+  const auto edge = std::ranges::find_if(candidates_, [&](const LoopCandidate& candidate) {
+    return candidate.by_tracker() && candidate.query == query;
+  });
+  return edge == candidates_.end() || edge->accepted;
+}
+
 /// Moved with the places before and after it; where nothing was optimised, as the tracker found itself. A
 /// frame that was found and not fused moves with the place that it was found by.
 SE3 LoopClosure::corrected(const PosedFrame& frame) const {
   const auto& [timestamp_ns, T_odometry_camera, relocalisations] = frame;
   if (optimised_.empty()) return odometry_.T_relocalised_camera(T_odometry_camera, relocalisations);
-  if (relocalisations > places_[place_before(timestamp_ns)].relocalisations) {
+  if (relocalisations > places_[place_before(timestamp_ns)].relocalisations && is_accepted(relocalisations)) {
     const Relocalisation& found = odometry_.relocalisation(relocalisations);
     return optimised_[found.known] * found.T_known_camera *
            (found.T_odometry_camera.inverse() * T_odometry_camera);
@@ -369,9 +325,7 @@ SE3 LoopClosure::corrected_pose_near(std::int64_t timestamp_ns) const {
 Result<Trajectory> LoopClosure::poses_with(std::vector<LoopCandidate> loops) const {
   LoopClosure other = *this;
   for (LoopCandidate& loop : loops) loop.accepted = true;
-  std::ranges::copy_if(candidates_, std::back_inserter(loops), [](const LoopCandidate& candidate) {
-    return candidate.was_lost() && candidate.accepted;
-  });
+  std::ranges::copy_if(candidates_, std::back_inserter(loops), &LoopCandidate::by_tracker);
   other.candidates_ = std::move(loops);
   if (auto done = other.optimise(); !done) return tl::unexpected(done.error());
   return other.corrected_trajectory();

@@ -1,8 +1,8 @@
 // Loops: places that are seen again, and all poses of a recording made consistent with them at its end. The
 // paper leaves this open ("has not achieved loop closure with fast camera motion").
 //
-// Fused frames become places every few frames. Each is compared with the older ones by what it looks like
-// (color_fern_code.hpp), and by where the path leads; the most similar and the nearest are verified by
+// Fused frames become places every few frames. Each is compared with the older ones by what it looks like,
+// and by where the path leads (place_search.hpp); the most similar and the nearest are verified by
 // features and by depth in both directions (core/places). Which edges are accepted is in loop_edges.hpp. The
 // graph of places is optimised at the end, or online as well when a loop shows that the poses are wrong
 // (pose_graph.hpp); between places, poses move with their neighbours.
@@ -99,11 +99,8 @@ class LoopClosure {
   void add_relocalisation_edge(std::size_t query);
   [[nodiscard]] std::size_t place_near(std::int64_t timestamp_ns) const;
   void look_for_loops(std::size_t query);
-  [[nodiscard]] std::size_t first_recent(std::size_t query) const;
-  [[nodiscard]] std::vector<std::size_t> candidates_by_appearance(std::size_t query) const;
-  [[nodiscard]] std::vector<std::size_t> candidates_by_path(std::size_t query) const;
   [[nodiscard]] bool is_candidate(std::size_t known, std::size_t query) const;
-  [[nodiscard]] double dissimilarity(std::size_t known, std::size_t query) const;
+  [[nodiscard]] bool is_accepted(std::size_t relocalisation) const;
   [[nodiscard]] Result<void> optimise();
   [[nodiscard]] SE3 corrected(const PosedFrame& frame) const;
   [[nodiscard]] std::size_t place_before(std::int64_t timestamp_ns) const;

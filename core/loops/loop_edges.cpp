@@ -53,7 +53,7 @@ bool agree(std::span<const Place> places, const LoopCandidate& a, const LoopCand
 enum class Verdict { decided, needs_support };
 
 Verdict decide_alone(LoopCandidate& candidate, const config::LoopsConfig& config) {
-  if (candidate.was_lost()) {
+  if (candidate.by_tracker()) {
     candidate.accepted = candidate.chi2 <= config.max_supported_chi2;
     candidate.verdict = candidate.accepted ? kFoundItself : kContradicts;
     return Verdict::decided;
@@ -104,7 +104,7 @@ GraphEdge path_edge(std::span<const Place> places, std::size_t a, std::size_t b,
 GraphEdge loop_edge(std::span<const Place> places, const LoopCandidate& candidate,
                     const config::LoopsConfig& config) {
   GraphEdge edge{candidate.known, candidate.query, candidate.pair.T_known_query, candidate.pair.covariance,
-                 candidate.evidence != LoopEvidence::pair_and_tracker};
+                 !candidate.by_tracker()};
   edge.covariance += covariance_by_axis(config.loop_rotation_sigma_rad, config.loop_position_sigma_m);
   for (const Vector6d& motion :
        motion_of_edge(places[candidate.known], places[candidate.query], edge.T_a_b)) {
@@ -123,8 +123,8 @@ void decide(std::span<const Place> places, const config::LoopsConfig& config,
   }
   for (LoopCandidate* const candidate : pending) {
     const bool supported = std::ranges::any_of(candidates, [&](const LoopCandidate& other) {
-      return &other != candidate && other.pair.same && other.chi2 <= config.max_supported_chi2 &&
-             agree(places, *candidate, other, config);
+      return &other != candidate && other.pair.same && other.evidence != LoopEvidence::tracker_alone &&
+             other.chi2 <= config.max_supported_chi2 && agree(places, *candidate, other, config);
     });
     candidate->accepted = supported;
     candidate->verdict = supported ? "agrees with another loop near to it"

@@ -1,5 +1,6 @@
 // What the filter and the verified pairs say of the motion between places, and which loops are accepted:
-// those that agree with the poses so far within their drift, or with another loop near to them in time.
+// those that agree with the poses so far within their drift, or with another verified loop near to them in
+// time, and those by which a lost tracker found itself.
 // Appearance alone moves nothing.
 #pragma once
 

@@ -21,7 +21,7 @@ double seconds_of(const Place& place) { return 1e-9 * static_cast<double>(place.
 std::string_view verified_by(const LoopCandidate& candidate) {
   const places::VerifiedPair& pair = candidate.pair;
   if (!pair.same) return "nothing";
-  if (candidate.evidence == LoopEvidence::tracker) return "tracker";
+  if (candidate.evidence == LoopEvidence::tracker_alone) return "tracker";
   return pair.by_depth_alone ? "depth" : "features";
 }
 

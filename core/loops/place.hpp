@@ -32,7 +32,7 @@ struct Place {
 enum class LoopEvidence {
   pair,              ///< its images and depth
   pair_and_tracker,  ///< and a lost tracker found itself by it, which is support enough
-  tracker,           ///< that alone: the pair itself could not be verified
+  tracker_alone,     ///< images and depth of the pair itself could not be verified
 };
 
 /// A pair of places that was looked at.
@@ -46,7 +46,7 @@ struct LoopCandidate {
   std::string verdict;  ///< why it was taken or refused
   LoopEvidence evidence = LoopEvidence::pair;
 
-  [[nodiscard]] bool was_lost() const { return evidence != LoopEvidence::pair; }
+  [[nodiscard]] bool by_tracker() const { return evidence != LoopEvidence::pair; }
 };
 
 }  // namespace fusebench::loops

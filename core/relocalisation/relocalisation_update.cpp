@@ -65,7 +65,7 @@ filter::GaussianState with_reference_pose(const filter::GaussianState& state, co
   result.mean.model_rate_offset = carried * state.mean.model_rate_offset;
   result.mean.model_readout = filter::transported(carried, state.mean.model_readout);
   result.mean.T_world_imu_reference = place.T_world_imu_reference;
-  // How the camera moved at the keyframe was not kept: the sharpest frame of a place is, so it hardly did.
+  // How the camera moved at the keyframe is not kept, and that of another frame would be wrong.
   result.mean.reference_rate.setZero();
   result.mean.reference_offset.setZero();
   result.mean.reference_rate_offset.setZero();

@@ -87,7 +87,7 @@ void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopEr
          rotation_rad > kFalseSigmas * largest_sigma(covariance.topLeftCorner<3, 3>())) ||
         (translation_m > kFalseTranslation_m &&
          translation_m > kFalseSigmas * largest_sigma(covariance.bottomRightCorner<3, 3>()));
-    const bool verified = candidate.evidence != loops::LoopEvidence::tracker;
+    const bool verified = candidate.evidence != loops::LoopEvidence::tracker_alone;
     result.verified += verified ? 1U : 0U;
     result.false_verified += verified && is_false ? 1U : 0U;
     if (!candidate.accepted) continue;

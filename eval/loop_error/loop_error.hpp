@@ -13,7 +13,7 @@
 namespace fusebench::loop_error {
 
 /// A place is a revisit if, by the true poses, it sees at least this share of the surface of a place that was
-/// left loops.least_age_s ago.
+/// seen loops.least_age_s ago or before.
 inline constexpr double kRevisitOverlap = 0.3;
 /// A place with more motion blur counts as blurred.
 inline constexpr double kBlurred_px = 2.0;
@@ -32,7 +32,7 @@ struct LoopError {
   Revisits sharp;
   Revisits blurred;
   std::size_t verified = 0;  ///< pairs that passed the checks of their images
-  std::size_t accepted = 0;
+  std::size_t accepted = 0;  ///< of these, and those that only the tracker says
   std::size_t false_verified = 0;
   std::size_t false_accepted = 0;
   // Of accepted loops; 0 without one, where records have null.

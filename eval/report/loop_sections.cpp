@@ -89,7 +89,8 @@ page::PageTable::Row row_of(const run_charts::RunSeries& run) {
 std::string explanation() {
   return fmt::format(
       "Places are frames that are kept to be recognised; a candidate is a pair of places that look "
-      "alike or see the same by the poses so far, and a loop one that was accepted. Online: each pose as it was known when its frame came; "
+      "alike or see the same by the poses so far, and a loop one that was accepted. Online: each pose as it "
+      "was known when its frame came; "
       "final: as all were known at the end. Mode \"its own\": the system closes loops by its method, and "
       "keeps no list of them. Returns: places that see {:.0f} % or more of what an older "
       "place saw, by the true poses, and how many of them have a loop; blurred are those with more "

@@ -84,6 +84,12 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
   return timing;
 }
 
+void log_sensors(const record::RunRecord& record, RunProgress& progress) {
+  for (const filter::SensorConstant& constant : record.sensors)
+    progress.log +=
+        fmt::format("sensor {} = {:.6g} +- {:.2g}\n", constant.name, constant.value, constant.sigma);
+}
+
 void log_silent_failures(const record::RunRecord& record, RunProgress& progress) {
   if (record.metrics.silent_frames().value_or(0) == 0) return;
   const record::RecordedSilentFailures& silent = *record.metrics.silent.value;
@@ -119,9 +125,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   record.reason = progress->reason;
   record.frames = progress->frames;
   record.sensors = estimated_sensors(progress->output, run.recording.rig.timing);
-  for (const filter::SensorConstant& constant : record.sensors)
-    progress->log +=
-        fmt::format("sensor {} = {:.6g} +- {:.2g}\n", constant.name, constant.value, constant.sigma);
+  log_sensors(record, *progress);
   record.metrics = metrics_of(progress->output, run.recording, config, workers);
   if (*revised) {
     const RunOutput output = final_output(**revised, progress->output);

@@ -20,10 +20,12 @@ namespace {
 
 /// Whether a group of options belongs to a system, by its name; see system.method.
 bool has_effect(std::string_view group, std::string_view system) {
-  constexpr std::array<std::string_view, 5> kOfAll = {"system", "depth", "tsdf", "health", "evaluation"};
-  if (std::ranges::find(kOfAll, group) != kOfAll.end() || group == system) return true;
-  return system == "filter" && std::ranges::none_of(config::option_choices(config::SystemMethod{}),
-                                                    [&](const auto& other) { return other.first == group; });
+  constexpr std::array<std::string_view, 10> kOfTheFilter = {
+      "patches",     "photometric",    "geometric",      "alignment",  "iekf",
+      "color_drift", "relocalisation", "place_features", "place_pose", "loops"};
+  if (std::ranges::find(kOfTheFilter, group) != kOfTheFilter.end()) return system == "filter";
+  return group == system || std::ranges::none_of(config::option_choices(config::SystemMethod{}),
+                                                 [&](const auto& other) { return other.first == group; });
 }
 
 /// An option that somebody edited so that the configuration needs an IMU; nothing if the variant does.

@@ -72,8 +72,8 @@ struct RunSpec {
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);
 
-/// A sentence on edited options that the configuration's system does not have, as loops.mode of one that is
-/// not the filter; nothing if all are its own.
+/// A sentence on edited options that the configuration's system is known not to have, as loops.mode of one
+/// that is not the filter; nothing if there are none.
 [[nodiscard]] std::optional<std::string> options_without_effect(const config::EffectiveConfig& config);
 
 /// An opened recording as a run of that specification sees it: cut to the window, with its IMU. Errors: those

@@ -16,7 +16,7 @@ enum class CandidateFate {
   accepted_by_tracker,  ///< a lost tracker found itself there; images and depth of the pair do not verify it
   no_pose,              ///< neither features nor depth tell for certain how the two stand to each other
   depth_differs,        ///< there is a pose, by which the two do not see the same
-  poses_differ,         ///< the two see the same, but that contradicts the path or the other loops
+  poses_differ,  ///< verified or found by the tracker, but that contradicts the path or the other loops
 };
 
 /// A candidate, as far as reports need it.

@@ -69,13 +69,24 @@ TEST(LoopEdges, AreAcceptedWithinDriftAloneAndBeyondItWithSupport) {
 
 TEST(LoopEdges, ATrackerThatFoundItselfIsSupportEnough) {
   const std::vector<Place> places = places_along_x();
-  for (const LoopEvidence evidence : {LoopEvidence::pair_and_tracker, LoopEvidence::tracker}) {
+  for (const LoopEvidence evidence : {LoopEvidence::pair_and_tracker, LoopEvidence::tracker_alone}) {
     LoopCandidate near = verified(places, 0, 36, {0, 1.5, 0});
     LoopCandidate far = verified(places, 0, 36, {0, 6, 0});
     near.evidence = far.evidence = evidence;
     EXPECT_EQ(accepted(places, {near, far}), (Accepted{true, false}));
-    EXPECT_EQ(loop_edge(places, near, {}).robust, evidence == LoopEvidence::tracker);
+    EXPECT_FALSE(loop_edge(places, near, {}).robust) << "the current world is by it";
   }
+}
+
+/// That both are at the same wrong door would make them agree.
+TEST(LoopEdges, ATrackerAloneSupportsNoOther) {
+  const std::vector<Place> places = places_along_x();
+  LoopCandidate found = verified(places, 0, 36, {0, 1.5, 0});
+  const LoopCandidate other = verified(places, 1, 38, {0, 1.5, 0});
+  found.evidence = LoopEvidence::tracker_alone;
+  EXPECT_EQ(accepted(places, {found, other}), (Accepted{true, false}));
+  found.evidence = LoopEvidence::pair_and_tracker;
+  EXPECT_EQ(accepted(places, {found, other}), (Accepted{true, true}));
 }
 
 TEST(LoopEdges, WhatIsNotVerifiedIsNotAccepted) {

@@ -41,7 +41,7 @@ RelocalisedPose place_at(const SE3& T_world_imu, double sigma) {
   return place;
 }
 
-TEST(Resumption, AnExactPlaceIsTakenAndTellsTheVelocity) {
+TEST(RelocalisationUpdate, AnExactPlaceIsTakenAndTellsTheVelocity) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.10, -0.05, 0.02;
   const SE3 found = pose_plus(kPredicted, off);
@@ -52,7 +52,7 @@ TEST(Resumption, AnExactPlaceIsTakenAndTellsTheVelocity) {
   EXPECT_EQ(state.mean.gyroscope_bias_radps, Vector3d::Zero());
 }
 
-TEST(Resumption, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
+TEST(RelocalisationUpdate, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
   Vector6d off;
   off << 0.005, -0.003, 0.004, 0.02, -0.05, 0.02;  // well within the prediction's uncertainty
   const GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
@@ -69,7 +69,7 @@ TEST(Resumption, EqualsAKalmanUpdateWhereThePredictionIsHonest) {
   EXPECT_LT((claimed - posterior).norm(), 0.01 * posterior.norm());
 }
 
-TEST(Resumption, ContradictionIsTheInnovationInStandardDeviations) {
+TEST(RelocalisationUpdate, ContradictionIsTheInnovationInStandardDeviations) {
   GaussianState prediction = lost_at(kPredicted, 0.2, 0.5);
   RelocalisedPose place = place_at(kPredicted, 0.01);
   place.reference_covariance.setZero();
@@ -80,7 +80,7 @@ TEST(Resumption, ContradictionIsTheInnovationInStandardDeviations) {
   EXPECT_NEAR(normalised_innovation(prediction, place), 0.09 / (0.01 + 0.0001) / 6, 1e-9);
 }
 
-TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
+TEST(RelocalisationUpdate, AFilterThatWasTooSureOfItselfIsOverruled) {
   Vector6d off;
   off << 0.3, -0.2, 0.4, 2.0, -1.0, 0.5;  // tens of standard deviations
   const SE3 found = pose_plus(kPredicted, off);
@@ -93,10 +93,13 @@ TEST(Resumption, AFilterThatWasTooSureOfItselfIsOverruled) {
   EXPECT_NEAR(state.covariance(kVelocity, kVelocity), 1.0, 1e-12);
 }
 
-TEST(Resumption, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
+TEST(RelocalisationUpdate, ImagesAreComparedWithTheFrameOfThePlaceFromNowOn) {
   const RelocalisedPose place = place_at(kPredicted, 0.001);
-  const GaussianState state = relocalisation_update(lost_at(kPredicted, 0.2, 0.5), place, {});
+  GaussianState lost = lost_at(kPredicted, 0.2, 0.5);
+  lost.mean.reference_rate = Vector6d::Constant(2.0);  // of the frame that patches were cut from before
+  const GaussianState state = relocalisation_update(lost, place, {});
   EXPECT_LT(pose_minus(state.mean.T_world_imu_reference, kReference).norm(), 1e-15);
+  EXPECT_EQ(state.mean.reference_rate.norm(), 0);
   EXPECT_EQ(state.mean.reference_offset.norm(), 0);  // the place was where the filter thought
   // Against that frame the pose is as certain as the match, whatever the frame's own error.
   const Eigen::MatrixXd measured = testing::carried(measured_combinations(state.mean), state.covariance);
