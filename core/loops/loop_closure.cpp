@@ -187,8 +187,9 @@ Result<void> LoopClosure::optimise() {
     if (!poses) return tl::unexpected(poses.error());
     fit = true;
     for (LoopCandidate& candidate : candidates_) {
-      const GraphEdge edge = loop_edge(places_, candidate, config_.loops);
-      if (!candidate.accepted || !edge.robust || squared_residual(edge, *poses) <= worst_allowed) continue;
+      if (!candidate.accepted || candidate.by_tracker() ||
+          squared_residual(loop_edge(places_, candidate, config_.loops), *poses) <= worst_allowed)
+        continue;
       candidate.accepted = fit = false;
       candidate.verdict = "does not fit the other edges after the optimisation";
     }

@@ -4,19 +4,11 @@
 #include <utility>
 
 #include "core/base/geometry.hpp"
+#include "core/places/smallest_first.hpp"
 
 namespace fusebench::loops {
 
 namespace {
-
-/// Those with the smallest numbers.
-std::vector<std::size_t> first_of(std::vector<std::pair<double, std::size_t>> ranked, int count) {
-  std::ranges::sort(ranked);
-  ranked.resize(std::min(ranked.size(), static_cast<std::size_t>(count)));
-  std::vector<std::size_t> first;
-  for (const auto& [number, index] : ranked) first.push_back(index);
-  return first;
-}
 
 /// How many of the places were seen long before the last one.
 std::size_t count_of_old(std::span<const Place> places, const config::LoopsConfig& config) {
@@ -39,7 +31,7 @@ std::vector<std::size_t> similar_places(std::span<const Place> places, const con
     const double different = dissimilarity(places[known], places.back());
     if (different <= config.max_dissimilarity) similar.emplace_back(different, known);
   }
-  return first_of(std::move(similar), config.max_candidates);
+  return places::smallest_first(std::move(similar), static_cast<std::size_t>(config.max_candidates));
 }
 
 std::vector<std::size_t> places_in_view(std::span<const Place> places,
@@ -62,7 +54,7 @@ std::vector<std::size_t> places_in_view(std::span<const Place> places,
     if (apart_m <= kViewShare * places[query].view_depth_m && turned_rad <= kMostTurned_rad)
       near.emplace_back(apart_m, known);
   }
-  return first_of(std::move(near), config.max_path_candidates);
+  return places::smallest_first(std::move(near), static_cast<std::size_t>(config.max_path_candidates));
 }
 
 }  // namespace fusebench::loops

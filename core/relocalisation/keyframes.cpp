@@ -14,10 +14,13 @@
 #include "core/places/place_certainty.hpp"
 #include "core/places/place_verification.hpp"
 #include "core/places/pose_from_points.hpp"
+#include "core/places/smallest_first.hpp"
 
 namespace fusebench::relocalisation {
 
 namespace {
+
+constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less, or look less alike, add nothing
 
 double angle_between_axes_rad(const SE3& a, const SE3& b) {
   const Vector3d axis_a = a.rotation * Vector3d::UnitZ();
@@ -76,17 +79,6 @@ std::vector<FoundPlace> comparable_best_first(std::vector<FoundPlace> found,
   std::erase_if(found, [best = found.empty() ? 0.0 : found.front().support, &config](
                            const FoundPlace& place) { return place.support < config.rival_support * best; });
   return found;
-}
-
-/// The candidates with the smallest numbers; of equal ones those that were kept first.
-template <class Candidate>
-std::vector<Candidate> first_of(std::vector<std::pair<double, Candidate>> ranked) {
-  constexpr std::size_t kMostAligned = 3;  // keyframes that overlap by less, or look less alike, add nothing
-  std::ranges::stable_sort(ranked, {}, &std::pair<double, Candidate>::first);
-  ranked.resize(std::min(ranked.size(), kMostAligned));
-  std::vector<Candidate> first;
-  for (auto& [number, candidate] : ranked) first.push_back(std::move(candidate));
-  return first;
 }
 
 }  // namespace
@@ -225,7 +217,7 @@ std::vector<Keyframes::AlignmentCandidate> Keyframes::seen_by_prediction(const p
         places::depth_agreement(query, *kept_[k].small, T_keyframe_camera, camera_, config_).overlap;
     if (overlap >= config_.loops.min_consistent_share) overlaps.push_back({-overlap, {k, T_keyframe_camera}});
   }
-  return first_of(std::move(overlaps));
+  return places::smallest_first(std::move(overlaps), kMostAligned);
 }
 
 std::vector<Keyframes::AlignmentCandidate> Keyframes::most_similar(const places::SmallImages& query) const {
@@ -235,7 +227,7 @@ std::vector<Keyframes::AlignmentCandidate> Keyframes::most_similar(const places:
     const double different = ferns::dissimilarity(kept_[k].depth_code, code);
     if (different <= config_.loops.max_dissimilarity) similar.push_back({different, {k, SE3{}}});
   }
-  return first_of(std::move(similar));
+  return places::smallest_first(std::move(similar), kMostAligned);
 }
 
 std::vector<FoundPlace> Keyframes::aligned(const places::SmallImages& query,
