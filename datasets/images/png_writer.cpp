@@ -1,76 +1,103 @@
 #include "datasets/images/png_writer.hpp"
 
-#include <png.h>
+#include <libdeflate.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
-#include <csetjmp>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
 
 namespace fusebench::images {
 
 namespace {
 
-// A quarter of the default's time for a tenth more bytes: 18 ms instead of 75 for 640x480 colour.
-constexpr int kCompressionLevel = 2;
-constexpr int kFilters = PNG_FILTER_SUB;
+// Colour of 640x480 pixels with sensor noise: 8 ms, and 1 % fewer bytes than level 2, since noise has few
+// repetitions to search for.
+constexpr int kCompressionLevel = 1;
+constexpr std::uint8_t kFilterSub = 1;
 
-void remember(png_structp png, png_const_charp reason) {
-  *static_cast<std::string*>(png_get_error_ptr(png)) = reason;
-  png_longjmp(png, 1);
+using Bytes = std::vector<std::uint8_t>;
+
+void append_number(std::uint32_t value, Bytes& bytes) {
+  for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
-void ignore(png_structp, png_const_charp) {}
+/// Length, type, content and checksum (PNG specification, 5.3).
+void append_chunk(std::string_view type, std::span<const std::uint8_t> content, Bytes& file) {
+  append_number(static_cast<std::uint32_t>(content.size()), file);
+  const std::size_t begin = file.size();
+  file.insert(file.end(), type.begin(), type.end());
+  file.insert(file.end(), content.begin(), content.end());
+  append_number(libdeflate_crc32(0, file.data() + begin, file.size() - begin), file);
+}
 
-/// State of the library; released in the destructor.
-struct Writer {
-  explicit Writer(std::string& reason)
-      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, remember, ignore)),
-        info(png != nullptr ? png_create_info_struct(png) : nullptr) {}
-  ~Writer() { png_destroy_write_struct(&png, &info); }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
+/// Width, height, bits of a sample, colour type; methods of compression, filter and interlace are 0.
+Bytes header_of(const PixelView& image) {
+  constexpr std::uint8_t kGrey = 0;
+  constexpr std::uint8_t kTrueColor = 2;
+  Bytes header;
+  append_number(static_cast<std::uint32_t>(image.width_px), header);
+  append_number(static_cast<std::uint32_t>(image.height_px), header);
+  header.push_back(image.type == SampleType::uint16 ? 16 : 8);
+  header.push_back(image.channels == 3 ? kTrueColor : kGrey);
+  header.insert(header.end(), 3, 0);
+  return header;
+}
 
-  png_structp png;
-  png_infop info;
-};
-
-/// False if the library gave up. It does so by a jump over frames, so that nothing here may need a
-/// destructor.
-bool write_rows(png_structp png, png_infop info, std::FILE* file, const PixelView& image) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
+/// Rows in the file's byte order, each after the type of its filter: differences to the pixel before
+/// (specification, 9.2).
+Bytes filtered_rows(const PixelView& image) {
   const bool wide = image.type == SampleType::uint16;
-  png_init_io(png, file);
-  png_set_compression_level(png, kCompressionLevel);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, kFilters);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width_px), static_cast<png_uint_32>(image.height_px),
-               wide ? 16 : 8, image.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(png, info);
-  if (wide && std::endian::native == std::endian::little) png_set_swap(png);
-  const std::size_t row_bytes = png_get_rowbytes(png, info);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(image.height_px); ++row) {
-    png_write_row(png, reinterpret_cast<png_const_bytep>(image.pixels.data() + row * row_bytes));
+  const std::size_t pixel_bytes = static_cast<std::size_t>(image.channels) * (wide ? 2 : 1);
+  const std::size_t row_bytes = pixel_bytes * static_cast<std::size_t>(image.width_px);
+  const auto rows = static_cast<std::size_t>(image.height_px);
+  const bool swap = wide && std::endian::native == std::endian::little;
+  Bytes row(row_bytes);
+  Bytes filtered(rows * (row_bytes + 1));
+  for (std::size_t y = 0; y < rows; ++y) {
+    std::memcpy(row.data(), image.pixels.data() + y * row_bytes, row_bytes);
+    for (std::size_t i = 0; swap && i + 1 < row_bytes; i += 2) std::swap(row[i], row[i + 1]);
+    std::uint8_t* out = filtered.data() + y * (row_bytes + 1);
+    *out++ = kFilterSub;
+    std::copy_n(row.data(), std::min(pixel_bytes, row_bytes), out);
+    for (std::size_t i = pixel_bytes; i < row_bytes; ++i)
+      out[i] = static_cast<std::uint8_t>(row[i] - row[i - pixel_bytes]);
   }
-  png_write_end(png, info);
-  return true;
+  return filtered;
+}
+
+/// In the zlib format. Empty if there is not enough memory for the compressor.
+Bytes compressed(const Bytes& content) {
+  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
+      libdeflate_alloc_compressor(kCompressionLevel), libdeflate_free_compressor);
+  if (!compressor) return {};
+  Bytes result(libdeflate_zlib_compress_bound(compressor.get(), content.size()));
+  result.resize(libdeflate_zlib_compress(compressor.get(), content.data(), content.size(), result.data(),
+                                         result.size()));
+  return result;
 }
 
 }  // namespace
 
 tl::expected<void, std::string> write_png_file(const std::filesystem::path& file, const PixelView& image) {
+  const Bytes pixels = compressed(filtered_rows(image));
+  if (pixels.empty()) return tl::unexpected(std::string("not enough memory"));
+  Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+  append_chunk("IHDR", header_of(image), bytes);
+  append_chunk("IDAT", pixels, bytes);
+  append_chunk("IEND", {}, bytes);
+
   const auto reason_of_system = [] { return tl::unexpected(std::string(std::strerror(errno))); };
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(std::fopen(file.c_str(), "wb"), std::fclose);
   if (!output) return reason_of_system();
-  std::string reason = "not enough memory";
-  const Writer writer(reason);
-  if (writer.info == nullptr || !write_rows(writer.png, writer.info, output.get(), image)) {
-    // The error of the operating system is more specific than "Write Error".
-    if (std::ferror(output.get()) != 0) return reason_of_system();
-    return tl::unexpected(reason);
-  }
+  if (std::fwrite(bytes.data(), 1, bytes.size(), output.get()) != bytes.size()) return reason_of_system();
   if (std::fclose(output.release()) != 0) return reason_of_system();
   return {};
 }

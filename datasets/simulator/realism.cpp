@@ -86,7 +86,6 @@ void make_realistic(SimulationOptions& options) {
   options.untold_shutters = true;
   options.stamps = {kJitter_s, kDroppedShare};
   options.auto_exposure.on = true;
-  options.samples_by_motion = true;
   options.gain_drift = 0;  // the controller's, instead
   options.color_processing = kinect_color();
   if (options.depth_noise == sensors::DepthNoise::handa) options.depth_noise = sensors::DepthNoise::kinect;
@@ -117,13 +116,10 @@ std::string realism_text(const SimulationOptions& o) {
   }
   if (const sensors::ExposureControl& e = o.auto_exposure; e.on) {
     text += fmt::format(
-        "\n[auto_exposure]  # instead of exposure_s and blur_samples\nunit_exposure_s = {}\n"
+        "\n[auto_exposure]  # instead of exposure_s\nunit_exposure_s = {}\n"
         "target_grey = {}\nleast_s = {}\nmost_s = {}\nmost_gain = {}\nlag_frames = {}\n",
         e.unit_exposure_s, e.target_grey, e.least_s, e.most_s, e.most_gain, e.lag_frames);
   }
-  // With automatic exposure both are said above, or nothing is.
-  if (o.samples_by_motion != o.auto_exposure.on)
-    text += fmt::format("\n[exposure]\nsamples_by_motion = {}\n", o.samples_by_motion);
   if (const sensors::ColorProcessing& c = o.color_processing; c.mosaic) {
     text += fmt::format(
         "\n[color_processing]  # noise in light, instead of read_noise_grey and shot_noise\n"

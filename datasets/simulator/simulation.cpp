@@ -47,7 +47,7 @@ Result<void> check_options(const SimulationOptions& o) {
   for (const auto& [name, value, low, high] :
        {std::tuple{"duration_s", o.duration_s, 0.0, kLongest_s},
         std::tuple{"exposure_s", o.exposure_s, 0.0, 0.1},
-        std::tuple{"blur_samples", static_cast<double>(o.blur_samples), 1.0, 256.0},
+        std::tuple{"blur_samples", static_cast<double>(o.blur_samples), 0.0, 256.0},
         std::tuple{"gain_drift", o.gain_drift, 0.0, 0.5}, std::tuple{"vignetting", o.vignetting, 0.0, 0.9},
         std::tuple{"read_noise_grey", o.read_noise_grey, 0.0, 50.0},
         std::tuple{"shot_noise", o.shot_noise, 0.0, 0.5},

@@ -44,7 +44,7 @@ struct SimulationOptions {
   calibration::RigCalibration
       rig;  ///< the true one: cameras with their read-out times, extrinsics, IMU densities
   double exposure_s = 0.008;
-  int blur_samples = 8;
+  int blur_samples = 0;      ///< as ColorSensor::blur_samples
   double gain_drift = 0.03;  ///< these four: see ColorSensor
   double vignetting = 0.15;
   double read_noise_grey = 1.0;
@@ -61,7 +61,6 @@ struct SimulationOptions {
   bool untold_shutters = false;  ///< calibration.toml says nothing of read-outs and of the delay of depth
   sensors::StampErrors stamps;
   sensors::ExposureControl auto_exposure;  ///< instead of exposure_s and gain_drift
-  bool samples_by_motion = false;          ///< instead of blur_samples: one for each 2 px of turning, 4 to 32
   sensors::ColorProcessing color_processing;
   sensors::DepthErrors depth_errors;
 };

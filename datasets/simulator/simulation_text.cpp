@@ -14,12 +14,8 @@ namespace fusebench::simulator {
 
 namespace {
 
-/// To be raised when the same options produce other bytes. 2: errors of disparity of a Kinect are in pixels
-/// of its 640 columns; where these are the image's, recordings keep their bytes and their identity.
-int simulator_version(const SimulationOptions& options) {
-  const PinholeCamera& depth = options.rig.depth ? options.rig.depth->pinhole : options.rig.color.pinhole;
-  return sensors::native_pixels(options.depth_noise, depth).per_image_px() == 1 ? 1 : 2;
-}
+/// To be raised when the same options produce other bytes.
+constexpr int kSimulatorVersion = 3;
 
 std::string_view name_of(sensors::DepthNoise noise) {
   switch (noise) {
@@ -85,13 +81,13 @@ std::string sensors_text(const SimulationOptions& o) {
       "initial_gyroscope_bias_radps = {}\ninitial_accelerometer_bias_mps2 = {}\n"
       "gyroscope_gain = {}\naccelerometer_gain = {}\n"
       "gyroscope_range_radps = {}\naccelerometer_range_mps2 = {}\ntime_offset_s = {}\n",
-      o.rate_hz, o.exposure_s, o.blur_samples, o.gain_drift, o.vignetting, o.read_noise_grey, o.shot_noise,
-      toml_text(name_of(o.depth_noise)), o.imu_rate_hz, toml_text(o.imu.sensor.name),
-      n.gyroscope_radps_sqrthz, n.accelerometer_mps2_sqrthz, n.gyroscope_bias_radps2_sqrthz,
-      n.accelerometer_bias_mps3_sqrthz, o.imu.sensor.initial_gyroscope_bias_radps,
-      o.imu.sensor.initial_accelerometer_bias_mps2, matrix_text(o.imu.gyroscope_gain),
-      matrix_text(o.imu.accelerometer_gain), o.imu.gyroscope_range_radps, o.imu.accelerometer_range_mps2,
-      o.imu.time_offset_s);
+      o.rate_hz, o.exposure_s, o.blur_samples > 0 ? std::to_string(o.blur_samples) : "\"by motion\"",
+      o.gain_drift, o.vignetting, o.read_noise_grey, o.shot_noise, toml_text(name_of(o.depth_noise)),
+      o.imu_rate_hz, toml_text(o.imu.sensor.name), n.gyroscope_radps_sqrthz, n.accelerometer_mps2_sqrthz,
+      n.gyroscope_bias_radps2_sqrthz, n.accelerometer_bias_mps3_sqrthz,
+      o.imu.sensor.initial_gyroscope_bias_radps, o.imu.sensor.initial_accelerometer_bias_mps2,
+      matrix_text(o.imu.gyroscope_gain), matrix_text(o.imu.accelerometer_gain), o.imu.gyroscope_range_radps,
+      o.imu.accelerometer_range_mps2, o.imu.time_offset_s);
 }
 
 std::string scene_text(const SimulationOptions& o) {
@@ -122,7 +118,7 @@ std::string faults_text(const SimulationOptions& o) {
 /// All options but the calibration, which has a file of its own.
 std::string options_text(const SimulationOptions& o) {
   return fmt::format("simulator_version = {}\nlayout = {}\nseed = {}\nduration_s = {}\n\n{}\n{}\n{}{}{}",
-                     simulator_version(o), toml_text(layouts::to_string(o.layout)), o.seed, o.duration_s,
+                     kSimulatorVersion, toml_text(layouts::to_string(o.layout)), o.seed, o.duration_s,
                      scene_text(o), motion_text(o), sensors_text(o), faults_text(o), realism_text(o));
 }
 

@@ -21,22 +21,13 @@ namespace {
 
 constexpr int kMaxFaultSamples = 64;
 
-/// A longer exposure is made of more instants, so that the steps between them stay as small.
+/// A longer exposure is made of more instants, so that the steps between them stay as small. 0: by the
+/// motion.
 int samples_of_exposure(const SimulationOptions& options, double exposure_s) {
-  if (options.exposure_s <= 0 || exposure_s <= options.exposure_s) return options.blur_samples;
+  if (options.blur_samples == 0 || options.exposure_s <= 0 || exposure_s <= options.exposure_s)
+    return options.blur_samples;
   const double samples = std::ceil(options.blur_samples * exposure_s / options.exposure_s);
   return std::max(options.blur_samples, static_cast<int>(std::min(samples, double{kMaxFaultSamples})));
-}
-
-/// Steps of about two pixels by the camera's turning, within limits.
-int samples_of_motion(const SimulationOptions& options, const CaptureSetup& setup, std::int64_t capture_ns,
-                      double exposure_s) {
-  constexpr double kStep_px = 2;
-  constexpr double kFewest = 4;
-  constexpr double kMost = 32;
-  const double rate_radps = setup.body.evaluate(capture_ns).angular_velocity_body_radps.norm();
-  const double blur_px = rate_radps * exposure_s * options.rig.color.pinhole.fx_px;
-  return static_cast<int>(std::clamp(std::ceil(blur_px / kStep_px), kFewest, kMost));
 }
 
 /// exposure: that of the controller, if there is one.
@@ -103,58 +94,6 @@ std::optional<sensors::MovingObject> object_before(const SimulationOptions& opti
                                }};
 }
 
-/// Data common to all frames.
-struct ImageContext {
-  const SimulationOptions& options;
-  const CaptureSetup& setup;
-  const faults::Scenery& scenery;
-  std::vector<sensors::FrameExposure> exposures;  // by frame; empty without a controller
-  Workers alone{1};                               // frames are what runs in parallel
-
-  [[nodiscard]] const render::Renderer& scene(const faults::FrameFaults& faults) const {
-    return faults.no_texture ? *scenery.matt : scenery.scene;
-  }
-
-  [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
-    const auto before = object_before(options, scenery, setup, faults, SE3{});
-    sensors::ColorSensor sensor = color_sensor(options, faults, exposures.empty() ? nullptr : &exposures[k]);
-    if (options.samples_by_motion)
-      sensor.blur_samples = samples_of_motion(options, setup, setup.frame_ns[k], sensor.exposure_s);
-    return sensors::expose_color(scene(faults), sensor, setup.body, setup.T_body_color, setup.frame_ns[k],
-                                 options.seed, k, alone, before ? &*before : nullptr);
-  }
-
-  [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const faults::FrameFaults& faults) const {
-    const calibration::RigCalibration& rig = options.rig;
-    const sensors::DepthSensor sensor = depth_sensor(options);
-    if (faults.no_depth) return {sensor.camera.width_px, sensor.camera.height_px, std::uint16_t{0}};
-    const SE3 T_color_depth = rig.depth ? rig.depth->T_color_depth : SE3{};
-    const auto before = object_before(options, scenery, setup, faults, T_color_depth);
-    const std::int64_t depth_ns = setup.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
-    Image<std::uint16_t> depth =
-        sensors::sense_depth(scene(faults), sensor, setup.body, setup.T_body_color * T_color_depth, depth_ns,
-                             options.seed, k, alone, before ? &*before : nullptr);
-    // Registered depth has the pixels of the colour image, which are distorted.
-    if (!rig.depth && !rig.color.distortion.is_zero()) depth = sensors::distort_depth(depth, rig.color);
-    return depth;
-  }
-};
-
-Result<void> write_frame(const ImageContext& context, std::size_t k, const std::filesystem::path& folder) {
-  const layouts::LayoutDescription& layout = layouts::describe(context.options.layout);
-  const std::vector<std::int64_t>& frame_ns = context.setup.frame_ns;
-  const faults::FrameFaults faults =
-      faults::faults_at(context.options.faults, frame_ns[k] - frame_ns.front());
-  const CaptureSetup& setup = context.setup;
-  if (!setup.color.dropped[k]) {
-    const auto color =
-        images::write_png(folder / layout.color_name(k, setup.color.stamp_ns[k]), context.color(k, faults));
-    if (!color) return color;
-  }
-  if (setup.depth.dropped[k]) return {};
-  return images::write_png(folder / layout.depth_name(k, setup.depth.stamp_ns[k]), context.depth(k, faults));
-}
-
 /// What the exposure controller meters: the light of a coarse image of each frame, without blur.
 std::vector<std::vector<float>> metered_light(const SimulationOptions& options, const CaptureSetup& setup,
                                               const faults::Scenery& scenery, const Workers& workers) {
@@ -183,6 +122,69 @@ std::vector<std::vector<float>> metered_light(const SimulationOptions& options, 
   return light_of_frame;
 }
 
+/// Data common to all frames.
+struct ImageContext {
+  const SimulationOptions& options;
+  const CaptureSetup& setup;
+  const faults::Scenery& scenery;
+  std::vector<sensors::FrameExposure> exposures;  // by frame; empty without a controller
+  rays::RayField color_rays;
+  std::optional<sensors::DepthDistortion> depth_distortion;
+  Workers alone{1};  // frames are what runs in parallel
+
+  ImageContext(const SimulationOptions& options_in, const CaptureSetup& setup_in,
+               const faults::Scenery& scenery_in, const Workers& workers)
+      : options(options_in), setup(setup_in), scenery(scenery_in), color_rays(options.rig.color, workers) {
+    // Registered depth has the pixels of the colour image, which are distorted.
+    if (!options.rig.depth && !options.rig.color.distortion.is_zero())
+      depth_distortion.emplace(options.rig.color, workers);
+    if (options.auto_exposure.on) {
+      exposures = sensors::controlled_exposures(options.auto_exposure,
+                                                metered_light(options, setup, scenery, workers));
+    }
+  }
+
+  [[nodiscard]] const render::Renderer& scene(const faults::FrameFaults& faults) const {
+    return faults.no_texture ? *scenery.matt : scenery.scene;
+  }
+
+  [[nodiscard]] ColorImage color(std::size_t k, const faults::FrameFaults& faults) const {
+    const auto before = object_before(options, scenery, setup, faults, SE3{});
+    const sensors::ColorSensor sensor =
+        color_sensor(options, faults, exposures.empty() ? nullptr : &exposures[k]);
+    return sensors::expose_color(scene(faults), sensor, color_rays, setup.body, setup.T_body_color,
+                                 setup.frame_ns[k], options.seed, k, alone, before ? &*before : nullptr);
+  }
+
+  [[nodiscard]] Image<std::uint16_t> depth(std::size_t k, const faults::FrameFaults& faults) const {
+    const calibration::RigCalibration& rig = options.rig;
+    const sensors::DepthSensor sensor = depth_sensor(options);
+    if (faults.no_depth) return {sensor.camera.width_px, sensor.camera.height_px, std::uint16_t{0}};
+    const SE3 T_color_depth = rig.depth ? rig.depth->T_color_depth : SE3{};
+    const auto before = object_before(options, scenery, setup, faults, T_color_depth);
+    const std::int64_t depth_ns = setup.frame_ns[k] + std::llround(1e9 * rig.color.timing.depth_delay_s);
+    const Image<std::uint16_t> depth =
+        sensors::sense_depth(scene(faults), sensor, setup.body, setup.T_body_color * T_color_depth, depth_ns,
+                             options.seed, k, alone, before ? &*before : nullptr);
+    return depth_distortion ? depth_distortion->distorted(depth) : depth;
+  }
+};
+
+Result<void> write_frame(const ImageContext& context, std::size_t k, const std::filesystem::path& folder) {
+  const layouts::LayoutDescription& layout = layouts::describe(context.options.layout);
+  const std::vector<std::int64_t>& frame_ns = context.setup.frame_ns;
+  const faults::FrameFaults faults =
+      faults::faults_at(context.options.faults, frame_ns[k] - frame_ns.front());
+  const CaptureSetup& setup = context.setup;
+  if (!setup.color.dropped[k]) {
+    const auto color =
+        images::write_png(folder / layout.color_name(k, setup.color.stamp_ns[k]), context.color(k, faults));
+    if (!color) return color;
+  }
+  if (setup.depth.dropped[k]) return {};
+  return images::write_png(folder / layout.depth_name(k, setup.depth.stamp_ns[k]), context.depth(k, faults));
+}
+
 Result<void> create_folders(const layouts::LayoutDescription& layout, const std::filesystem::path& folder) {
   for (const std::string& name : {layout.color_name(0, 0), layout.depth_name(0, 0)}) {
     const std::filesystem::path images = (folder / name).parent_path();
@@ -201,12 +203,7 @@ Result<void> write_images(const SimulationOptions& options, const CaptureSetup& 
                           const faults::Scenery& scenery, const std::filesystem::path& folder,
                           const Workers& workers, const SimulationControl& control) {
   if (auto created = create_folders(layouts::describe(options.layout), folder); !created) return created;
-  std::vector<sensors::FrameExposure> exposures;
-  if (options.auto_exposure.on) {
-    exposures =
-        sensors::controlled_exposures(options.auto_exposure, metered_light(options, setup, scenery, workers));
-  }
-  const ImageContext context{options, setup, scenery, std::move(exposures)};
+  const ImageContext context(options, setup, scenery, workers);
   const std::size_t count = setup.frame_ns.size();
   std::vector<std::optional<Error>> errors(count);
   std::atomic<bool> failed = false;

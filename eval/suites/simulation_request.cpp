@@ -33,10 +33,7 @@ Result<simulator::SimulationOptions> simulation_options(const SimulationRequest&
     options->auto_exposure.on = false;
     options->exposure_s = *request.exposure_s;
   }
-  if (request.blur_samples) {
-    options->samples_by_motion = false;
-    options->blur_samples = *request.blur_samples;
-  }
+  options->blur_samples = request.blur_samples;
   if (request.rolling_shutter_s > 0) options->rig.color.timing.color_readout_s = request.rolling_shutter_s;
   options->imu.time_offset_s = request.time_offset_s;
   if (request.no_noise) simulator::remove_noise(*options);

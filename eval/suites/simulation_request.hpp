@@ -29,7 +29,7 @@ struct SimulationRequest {
   std::filesystem::path scene;       ///< instead of the furnished room; empty: none
   simulator::scene::SceneFileOptions scene_options;
   std::optional<double> exposure_s;  ///< instead of automatic exposure, or of 8 ms
-  std::optional<int> blur_samples;   ///< instead of as many as a realistic exposure needs, or of 8
+  int blur_samples = 0;              ///< 0: as many as the motion needs
   double rolling_shutter_s = 0;
   double time_offset_s = 0;
   bool no_noise = false;

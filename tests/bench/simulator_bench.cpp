@@ -1,4 +1,5 @@
-// Images of the simulator: a furnished room at 640x480. Arguments: blur samples (or noise model), threads.
+// Images of the simulator: a furnished room at 640x480. Arguments: blur samples (0: by motion) or noise
+// model, threads.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -55,8 +56,9 @@ void colour_image(benchmark::State& state) {
   sensor.read_noise_grey = 1;
   sensor.shot_noise = 0.01;
   sensor.blur_samples = static_cast<int>(state.range(0));
+  const simulator::rays::RayField rays(sensor.camera, workers);
   const auto expose = [&](const Workers& by) {
-    return expose_color(room_renderer(), sensor, motion, {}, kMiddle_ns, 1, 0, by);
+    return expose_color(room_renderer(), sensor, rays, motion, {}, kMiddle_ns, 1, 0, by);
   };
   if (expose(workers).data != expose(Workers(1)).data) {
     return state.SkipWithError("depends on the number of threads");
@@ -91,7 +93,7 @@ void depth_image(benchmark::State& state) {
                         {"pixels", exact.data.size(), testing::bytes_of<std::uint16_t>(exact.data.size())});
 }
 
-BENCHMARK(colour_image)->ArgsProduct({{1, 8}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(colour_image)->ArgsProduct({{0, 1, 8}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(depth_image)->ArgsProduct({{0, 1, 2}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

@@ -123,16 +123,17 @@ RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
-void RayCaster::cast(const Eigen::Vector3f& origin, std::span<const float> x, std::span<const float> y,
-                     std::span<const float> z, std::span<RayHit> hits) const {
+namespace {
+
+/// Traces `count` rays in packets of eight. fill(packet, lane, index of the ray) sets origin and direction;
+/// visit(index of the ray, index of its triangle or RayHit::kNothing).
+template <class Fill, class Visit>
+void trace(RTCScene scene, std::size_t count, const Fill& fill, const Visit& visit) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   const auto lanes = [](float* values) { return Eigen::Map<Lanes, Eigen::Aligned32>(values); };
   RTCRayHit8 packet;
-  lanes(packet.ray.org_x) = origin.x();
-  lanes(packet.ray.org_y) = origin.y();
-  lanes(packet.ray.org_z) = origin.z();
   lanes(packet.ray.tnear) = 0;
   lanes(packet.ray.time) = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {
@@ -141,27 +142,57 @@ void RayCaster::cast(const Eigen::Vector3f& origin, std::span<const float> x, st
     packet.ray.flags[i] = 0;
   }
   alignas(32) std::array<int, kLanes> valid{};
-  for (std::size_t begin = 0; begin < hits.size(); begin += kLanes) {
-    const std::size_t count = std::min(kLanes, hits.size() - begin);
+  for (std::size_t begin = 0; begin < count; begin += kLanes) {
+    const std::size_t used = std::min(kLanes, count - begin);
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const std::size_t from = begin + std::min(i, count - 1);
-      valid[i] = i < count ? -1 : 0;
-      packet.ray.dir_x[i] = x[from];
-      packet.ray.dir_y[i] = y[from];
-      packet.ray.dir_z[i] = z[from];
+      valid[i] = i < used ? -1 : 0;
+      fill(packet, i, begin + std::min(i, used - 1));
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
     lanes(packet.ray.tfar) = std::numeric_limits<float>::infinity();
-    rtcIntersect8(valid.data(), state_->scene, &context, &packet);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t index = packet.hit.primID[i];
-      hits[begin + i] =
-          packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
-              ? RayHit{}
-              : hit_on(state_->triangles[index], index, origin.cast<double>(),
-                       Eigen::Vector3f(x[begin + i], y[begin + i], z[begin + i]).cast<double>());
+    rtcIntersect8(valid.data(), scene, &context, &packet);
+    for (std::size_t i = 0; i < used; ++i) {
+      const bool hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      visit(begin + i, hit ? packet.hit.primID[i] : RayHit::kNothing);
     }
   }
+}
+
+void set_ray(RTCRayHit8& packet, std::size_t lane, const Eigen::Vector3f& origin,
+             const Eigen::Vector3f& direction) {
+  packet.ray.org_x[lane] = origin.x();
+  packet.ray.org_y[lane] = origin.y();
+  packet.ray.org_z[lane] = origin.z();
+  packet.ray.dir_x[lane] = direction.x();
+  packet.ray.dir_y[lane] = direction.y();
+  packet.ray.dir_z[lane] = direction.z();
+}
+
+}  // namespace
+
+void RayCaster::cast(const Eigen::Vector3f& origin, std::span<const float> x, std::span<const float> y,
+                     std::span<const float> z, std::span<RayHit> hits) const {
+  trace(
+      state_->scene, hits.size(),
+      [&](RTCRayHit8& packet, std::size_t lane, std::size_t i) {
+        set_ray(packet, lane, origin, {x[i], y[i], z[i]});
+      },
+      [&](std::size_t i, std::uint32_t triangle) {
+        hits[i] = triangle == RayHit::kNothing
+                      ? RayHit{}
+                      : hit_on(state_->triangles[triangle], triangle, origin.cast<double>(),
+                               Eigen::Vector3f(x[i], y[i], z[i]).cast<double>());
+      });
+}
+
+void RayCaster::nearest_triangles(const Rays& rays, std::span<std::uint32_t> triangles) const {
+  trace(
+      state_->scene, triangles.size(),
+      [&](RTCRayHit8& packet, std::size_t lane, std::size_t i) {
+        set_ray(packet, lane, {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+                {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]});
+      },
+      [&](std::size_t i, std::uint32_t triangle) { triangles[i] = triangle; });
 }
 
 bool RayCaster::blocked(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -34,6 +35,15 @@ class RayCaster {
   /// length.
   void cast(const Eigen::Vector3f& origin, std::span<const float> x, std::span<const float> y,
             std::span<const float> z, std::span<RayHit> hits) const;
+
+  /// Rays with an origin each. The spans have the same length.
+  struct Rays {
+    std::array<std::span<const float>, 3> origin;
+    std::array<std::span<const float>, 3> direction;
+  };
+  /// The nearest triangle of each ray, RayHit::kNothing where there is none. Fast where eight rays that
+  /// follow each other are close together.
+  void nearest_triangles(const Rays& rays, std::span<std::uint32_t> triangles) const;
 
   /// Whether anything lies between origin and origin + direction.
   [[nodiscard]] bool blocked(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;

@@ -26,7 +26,8 @@ class RayField {
 
  private:
   PinholeCamera camera_;
-  Image<Eigen::Vector2f> corners_;  // (width + 1) x (height + 1); empty without distortion
+  Image<float> corners_x_;  // these two: (width + 1) x (height + 1); empty without distortion
+  Image<float> corners_y_;
 };
 
 }  // namespace fusebench::simulator::rays

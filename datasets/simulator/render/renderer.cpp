@@ -2,78 +2,27 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include "core/base/error.hpp"
+#include "core/simd/lane_points.hpp"
 #include "datasets/simulator/rays/ray_caster.hpp"
+#include "datasets/simulator/render/surface_shading.hpp"
+#include "datasets/simulator/render/triangle_planes.hpp"
 
 namespace fusebench::simulator::render {
+
+using simd::Float8;
+using simd::Int8;
+using simd::kLanes;
 
 namespace {
 
 constexpr std::size_t kRowsPerChunk = 8;
-
-/// A quantity that is linear on a triangle.
-struct Linear {
-  float at_a = 0;
-  float along_u = 0;
-  float along_v = 0;
-
-  static Linear between(float a, float b, float c) { return {a, b - a, c - a}; }
-  [[nodiscard]] float at(const rays::RayHit& hit) const { return at_a + hit.u * along_u + hit.v * along_v; }
-};
-
-/// Shading data of a textured triangle, in one cache line.
-struct TriangleShading {
-  Linear u;
-  Linear v;
-  Linear light;
-  float texels_per_metre = 0;
-  std::int32_t texture = scene::SimulatedScene::kNoTexture;
-};
-
-float texel_density(const scene::SimulatedScene& scene, const std::array<std::uint32_t, 3>& triangle,
-                    int side) {
-  const Eigen::Vector3f a = scene.mesh.vertices[triangle[0]];
-  const Eigen::Vector3f ab = scene.mesh.vertices[triangle[1]] - a;
-  const Eigen::Vector3f ac = scene.mesh.vertices[triangle[2]] - a;
-  const Eigen::Vector2f s = scene.texture_coordinates[triangle[1]] - scene.texture_coordinates[triangle[0]];
-  const Eigen::Vector2f t = scene.texture_coordinates[triangle[2]] - scene.texture_coordinates[triangle[0]];
-  const float area = ab.cross(ac).norm();
-  const float texture_area = std::abs(s.x() * t.y() - s.y() * t.x());
-  return area > 0 ? static_cast<float>(side) * std::sqrt(texture_area / area) : 0.0F;
-}
-
-/// One row of rays in the world frame, and their hits.
-struct RowOfRays {
-  std::vector<float> x;
-  std::vector<float> y;
-  std::vector<float> z;
-  std::vector<rays::RayHit> hits;
-
-  explicit RowOfRays(int width)
-      : x(static_cast<std::size_t>(width)), y(x.size()), z(x.size()), hits(x.size()) {}
-
-  /// Directions keep z = 1 in the camera, so that distances are z-depths.
-  void cast(const rays::RayCaster& caster, const rays::RayField& field, int row, const SE3& T_world_camera,
-            const Vector2d& offset_px) {
-    field.row(row, offset_px, x, y);
-    const Eigen::Matrix3f r = T_world_camera.rotation_matrix().cast<float>();
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const float cx = x[i];
-      const float cy = y[i];
-      x[i] = r(0, 0) * cx + r(0, 1) * cy + r(0, 2);
-      y[i] = r(1, 0) * cx + r(1, 1) * cy + r(1, 2);
-      z[i] = r(2, 0) * cx + r(2, 1) * cy + r(2, 2);
-    }
-    caster.cast(T_world_camera.translation.cast<float>(), x, y, z, hits);
-  }
-};
-
-bool is_nearer(const rays::RayHit& a, const rays::RayHit& b) {
-  return a.triangle != rays::RayHit::kNothing &&
-         (b.triangle == rays::RayHit::kNothing || a.distance < b.distance);
-}
+constexpr unsigned kAllLanes = 0xFF;
 
 /// fill(row) for all rows.
 template <class Fill>
@@ -91,133 +40,326 @@ void check_arguments(const PinholeCamera& camera, const RowPoses& poses) {
         "one pose, or one for each row");
 }
 
+/// The first `count` of eight lanes.
+unsigned first_lanes(std::size_t count) { return count >= kLanes ? kAllLanes : (1U << count) - 1; }
+
+std::size_t whole_packets(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
+/// Directions of a row of pixels on the plane z = 1 of the camera, filled up to whole packets.
+struct CameraRow {
+  std::vector<float> x;
+  std::vector<float> y;
+
+  CameraRow(const rays::RayField& field, int row, const Vector2d& offset_px) {
+    const auto width = static_cast<std::size_t>(field.camera().width_px);
+    x.resize(whole_packets(width));
+    y.resize(x.size());
+    field.row(row, offset_px, std::span(x).first(width), std::span(y).first(width));
+    std::fill(x.begin() + static_cast<std::ptrdiff_t>(width), x.end(), x[width - 1]);
+    std::fill(y.begin() + static_cast<std::ptrdiff_t>(width), y.end(), y[width - 1]);
+  }
+  [[nodiscard]] simd::Points packet(std::size_t begin) const {
+    return {simd::load(&x[begin]), simd::load(&y[begin]), simd::all_lanes(1.0F)};
+  }
+};
+
+/// Where a camera is, in single precision.
+struct CameraPose {
+  Eigen::Matrix3f R;
+  Eigen::Vector3f t;
+
+  explicit CameraPose(const SE3& T) : R(T.rotation_matrix().cast<float>()), t(T.translation.cast<float>()) {}
+
+  /// Rays of the camera; distances along them are z-depths.
+  [[nodiscard]] RayPacket rays(const simd::Points& directions_camera) const {
+    return {{simd::all_lanes(t.x()), simd::all_lanes(t.y()), simd::all_lanes(t.z())},
+            simd::rotated(R, directions_camera)};
+  }
+};
+
+/// Rays that are traced together, filled up to whole packets by copies of the last one.
+class RayList {
+ public:
+  void add(const RayPacket& packet) {
+    const std::size_t begin = values_[0].size();
+    for (auto& values : values_) values.resize(begin + kLanes);
+    const std::array<Float8, 6> lanes = {packet.origins.x,    packet.origins.y,    packet.origins.z,
+                                         packet.directions.x, packet.directions.y, packet.directions.z};
+    for (std::size_t k = 0; k < lanes.size(); ++k) simd::store(lanes[k], &values_[k][begin]);
+  }
+  void add(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      values_[k].push_back(origin[static_cast<Eigen::Index>(k)]);
+      values_[k + 3].push_back(direction[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  void fill_up() {
+    for (auto& values : values_) {
+      if (!values.empty()) values.resize(whole_packets(values.size()), values.back());
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return values_[0].size(); }
+  [[nodiscard]] RayPacket packet(std::size_t begin) const {
+    const auto at = [&](std::size_t k) { return simd::load(&values_[k][begin]); };
+    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}};
+  }
+  [[nodiscard]] rays::RayCaster::Rays rays() const {
+    return {{values_[0], values_[1], values_[2]}, {values_[3], values_[4], values_[5]}};
+  }
+
+ private:
+  std::array<std::vector<float>, 6> values_;  // origin, direction
+};
+
+RayList rays_of_row(const rays::RayField& field, int row, const Vector2d& offset_px,
+                    const SE3& T_world_camera) {
+  const CameraRow camera(field, row, offset_px);
+  const CameraPose pose(T_world_camera);
+  RayList list;
+  for (std::size_t begin = 0; begin < camera.x.size(); begin += kLanes)
+    list.add(pose.rays(camera.packet(begin)));
+  return list;
+}
+
+/// Eight pixels of a row from column `begin` on; those beyond its end are of the next row, or 0.
+template <class Lanes, class Pixel>
+Lanes load_row(const Image<Pixel>& image, int row, std::size_t begin) {
+  Lanes lanes{};
+  const std::size_t at = image.index(0, row) + begin;
+  std::memcpy(&lanes, &image.data[at], std::min(kLanes, image.data.size() - at) * sizeof(Pixel));
+  return lanes;
+}
+
 }  // namespace
 
 struct Renderer::State {
   rays::RayCaster caster;
-  std::vector<TriangleShading> shading;
-  std::vector<std::array<Eigen::Vector3f, 3>> colors;  // by triangle, linear; empty if all have textures
-  std::vector<texture::Texture> textures;
-  std::vector<float> gloss;              // by texture; empty: all matt
-  std::vector<Eigen::Vector3f> normals;  // by triangle; empty if all is matt
-  std::vector<scene::Highlight> highlights;
-  scene::Screens screens;
+  TrianglePlanes planes;
+  SurfaceShading shading;
 
   explicit State(const scene::SimulatedScene& scene)
-      : caster(scene.mesh),
-        textures(scene.textures),
-        gloss(scene.gloss),
-        highlights(scene.highlights),
-        screens(scene.screens) {
-    if (!gloss.empty()) find_normals(scene.mesh);
-    shading.reserve(scene.mesh.triangles.size());
-    bool plain = false;
-    for (std::size_t i = 0; i < scene.mesh.triangles.size(); ++i) {
-      shading.push_back(shading_of(scene, i));
-      plain |= shading.back().texture == scene::SimulatedScene::kNoTexture;
+      : caster(scene.mesh), planes(scene.mesh, scene.triangle_textures), shading(scene) {}
+
+  /// Where rays meet triangles that they are known to hit (-1: nothing).
+  [[nodiscard]] PacketHits meet(Int8 triangles, const RayPacket& rays) const {
+    PacketHits hits;
+    for_each_value(triangles, simd::lane_bits(triangles >= 0), [&](std::int32_t triangle, Int8 same) {
+      const PacketHits on_plane = planes.meet(triangle, rays);
+      hits.take(same & (on_plane.distance > 0.0F), on_plane);
+    });
+    hits.u = simd::clamp(hits.u, 0, 1);
+    hits.v = simd::min(simd::clamp(hits.v, 0, 1), 1.0F - hits.u);
+    return hits;
+  }
+
+  /// The nearest hits, by packet.
+  [[nodiscard]] std::vector<PacketHits> trace(const RayList& rays) const {
+    std::vector<std::uint32_t> triangles(rays.size());
+    caster.nearest_triangles(rays.rays(), triangles);
+    std::vector<PacketHits> hits;
+    hits.reserve(rays.size() / kLanes);
+    for (std::size_t i = 0; i < rays.size(); i += kLanes) {
+      Int8 packet;
+      std::memcpy(&packet, &triangles[i], sizeof(packet));  // kNothing is -1
+      hits.push_back(meet(packet, rays.packet(i)));
     }
-    if (plain) copy_colors(scene.mesh);
+    return hits;
   }
 
-  /// Radiance of a hit; footprint_m: side of the square at the hit, across the ray, that is averaged.
-  /// page: what screens show.
-  [[nodiscard]] Eigen::Vector3f light_of(const rays::RayHit& hit, float footprint_m,
-                                         std::int32_t page) const {
-    const TriangleShading& at = shading[hit.triangle];
-    const Eigen::Vector3f reflectance = reflectance_of(hit, footprint_m, page);
-    return at.texture == scene::SimulatedScene::kNoTexture ? reflectance : at.light.at(hit) * reflectance;
-  }
-
-  [[nodiscard]] std::int32_t page_at(double time_s) const {
-    if (screens.pages <= 1) return 0;
-    const auto period = static_cast<std::uint64_t>(time_s / kPage_s);
-    return static_cast<std::int32_t>(period % static_cast<std::uint64_t>(screens.pages));
-  }
-
-  /// What a glossy surface adds to its own light: the lamps' images, 10 degrees wide, and a faint room that
-  /// is brighter above. Not shadowed. ray: from the origin, z-depth as length.
-  [[nodiscard]] float mirrored_light(const rays::RayHit& hit, const Eigen::Vector3f& origin,
-                                     const Eigen::Vector3f& ray) const {
-    constexpr float kRoom = 0.03F;
-    const float shine = gloss_of(hit);
-    if (shine <= 0) return 0;
-    const Eigen::Vector3f& normal = normals[hit.triangle];
-    const Eigen::Vector3f direction = ray.normalized();
-    const Eigen::Vector3f mirrored = direction - 2 * direction.dot(normal) * normal;
-    const Eigen::Vector3f point = origin + hit.distance * ray;
-    float light = kRoom * (0.5F + 0.5F * mirrored.z());
-    for (const scene::Highlight& lamp : highlights) {
-      float lobe = std::max(0.0F, mirrored.dot((lamp.position - point).normalized()));
-      for (int i = 0; i < 6; ++i) lobe *= lobe;  // to the power of 64
-      light += lamp.strength * lobe;
+  /// Of hits in the given lanes; see SurfaceShading::light_of().
+  [[nodiscard]] texture::Texture::Samples light_of(const PacketHits& hits, const RayPacket& rays,
+                                                   unsigned lanes, Float8 footprint, Int8 page) const {
+    texture::Texture::Samples light = shading.light_of(hits, lanes, footprint, page);
+    if (!shading.has_gloss()) return light;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      const std::int32_t triangle = hits.triangle[lane];
+      const float gloss = shading.gloss_of(triangle);
+      if (gloss <= 0) continue;
+      const Eigen::Vector3f ray = rays.direction(lane);
+      const Eigen::Vector3f point = rays.origin(lane) + hits.distance[lane] * ray;
+      const Eigen::Vector3f& normal = planes.normal(static_cast<std::size_t>(triangle));
+      light[lane] += shading.mirrored_light(gloss, normal, point, ray);
     }
-    return shine * light;
+    return light;
   }
+};
 
-  [[nodiscard]] float gloss_of(const rays::RayHit& hit) const {
-    const std::int32_t texture = shading[hit.triangle].texture;
-    const bool known = texture >= 0 && static_cast<std::size_t>(texture) < gloss.size();
-    return known ? gloss[static_cast<std::size_t>(texture)] : 0.0F;
-  }
+/// The samples of a row. Rays near which other rays met a triangle are tried with that one; the rest are
+/// traced at the end, those of a pixel together.
+class Renderer::RowLight {
+ public:
+  RowLight(const State& scene, const rays::RayField& field, std::span<const RowSample> samples,
+           std::span<Eigen::Array4f> light)
+      : scene_(scene), field_(field), samples_(samples), light_(light) {}
 
-  /// Of the texture; the colour itself where there is none.
-  [[nodiscard]] Eigen::Vector3f reflectance_of(const rays::RayHit& hit, float footprint_m,
-                                               std::int32_t page = 0) const {
-    const TriangleShading& at = shading[hit.triangle];
-    if (at.texture == scene::SimulatedScene::kNoTexture) {
-      const std::array<Eigen::Vector3f, 3>& c = colors[hit.triangle];
-      return c[0] + hit.u * (c[1] - c[0]) + hit.v * (c[2] - c[0]);
+  void add() {
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      const RowSample& sample = samples_[s];
+      const CameraRow rays(field_, sample.row, sample.offset_px);
+      if (sample.nearby == nullptr || sample.foreground != nullptr) {
+        for (std::size_t i = 0; i < light_.size(); ++i) leave(s, rays, i);
+      } else {
+        add_nearby(s, rays);
+      }
     }
-    // Seen obliquely the square becomes a rectangle; the side of a square of the same area avoids most of the
-    // aliasing without blurring along the short side too much.
-    constexpr float kMinCosine = 0.05F;
-    const float texels =
-        footprint_m * at.texels_per_metre / std::sqrt(std::max(kMinCosine, hit.cos_incidence));
-    const Eigen::Array4f reflectance =
-        textures[static_cast<std::size_t>(at.texture + (at.texture == screens.first_texture ? page : 0))]
-            .sample(at.u.at(hit), at.v.at(hit), texels);
-    return reflectance.head<3>().matrix();
+    if (!left_.empty()) add_left();
   }
 
  private:
-  void find_normals(const Mesh& mesh) {
-    for (const auto& t : mesh.triangles) {
-      const Eigen::Vector3f a = mesh.vertices[t[0]];
-      const Eigen::Vector3f normal = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-      const float length = normal.norm();
-      normals.push_back(length > 0 ? Eigen::Vector3f(normal / length) : Eigen::Vector3f::UnitZ());
+  /// A ray that is still to be traced.
+  struct Left {
+    std::uint32_t pixel;  ///< column
+    std::uint32_t sample;
+    Eigen::Vector3f direction_camera;
+  };
+  void leave(std::size_t sample, const CameraRow& rays, std::size_t i) {
+    left_.push_back(
+        {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(sample), {rays.x[i], rays.y[i], 1.0F}});
+  }
+
+  void add_nearby(std::size_t s, const CameraRow& rays) {
+    const RowSample& sample = samples_[s];
+    const CameraPose pose(sample.T_world_camera);
+    const CameraPose to_nearby(sample.nearby->poses.of_row(sample.row).inverse() * sample.T_world_camera);
+    const CameraRow middles(field_, sample.row, Vector2d::Zero());
+    const Int8 page = simd::all_lanes(scene_.shading.page_at(sample.time_s));
+    const Float8 footprint = simd::all_lanes(sample.footprint_px / static_cast<float>(field_.camera().fx_px));
+    for (std::size_t begin = 0; begin < light_.size(); begin += kLanes) {
+      const unsigned wanted = wanted_lanes(sample, begin);
+      if (wanted == 0) continue;
+      unsigned found = 0;
+      if (sample.pixels != Pixels::at_edges) {
+        const RayPacket world = pose.rays(rays.packet(begin));
+        const PacketHits hits = try_nearby(sample, to_nearby, rays, middles, world, begin);
+        found = wanted & simd::lane_bits(hits.triangle >= 0);
+        const texture::Texture::Samples light = scene_.light_of(hits, world, found, footprint, page);
+        for (unsigned lanes = found; lanes != 0; lanes &= lanes - 1) {
+          const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+          light_[begin + lane] += sample.weight * light[lane];
+        }
+      }
+      for (unsigned lanes = wanted & ~found; lanes != 0; lanes &= lanes - 1)
+        leave(s, rays, begin + static_cast<std::size_t>(std::countr_zero(lanes)));
     }
   }
 
-  static TriangleShading shading_of(const scene::SimulatedScene& scene, std::size_t i) {
-    TriangleShading result;
-    if (scene.triangle_textures.empty() || scene.triangle_textures[i] == scene::SimulatedScene::kNoTexture)
-      return result;
-    const std::array<std::uint32_t, 3>& t = scene.mesh.triangles[i];
-    const auto& st = scene.texture_coordinates;
-    result.texture = scene.triangle_textures[i];
-    result.u = Linear::between(st[t[0]].x(), st[t[1]].x(), st[t[2]].x());
-    result.v = Linear::between(st[t[0]].y(), st[t[1]].y(), st[t[2]].y());
-    result.light = scene.light.empty()
-                       ? Linear{1, 0, 0}
-                       : Linear::between(scene.light[t[0]], scene.light[t[1]], scene.light[t[2]]);
-    result.texels_per_metre =
-        texel_density(scene, t, scene.textures[static_cast<std::size_t>(result.texture)].side());
-    return result;
+  [[nodiscard]] unsigned wanted_lanes(const RowSample& sample, std::size_t begin) const {
+    const unsigned there = first_lanes(light_.size() - begin);
+    if (sample.pixels == Pixels::all) return there;
+    const Int8 face = load_row<Int8>(sample.nearby->face, sample.row, begin);
+    const unsigned at_edge = simd::lane_bits(face == VisibleTriangles::kEdge);
+    return there & (sample.pixels == Pixels::at_edges ? at_edge : ~at_edge);
   }
 
-  void copy_colors(const Mesh& mesh) {
-    const auto linear = [&](std::uint32_t vertex) -> Eigen::Vector3f {
-      if (mesh.colors.empty()) return Eigen::Vector3f::Constant(0.5F);
-      Eigen::Vector3f light;
-      for (int c = 0; c < 3; ++c) {
-        light[c] = static_cast<float>(
-            texture::linear_from_srgb(mesh.colors[vertex][static_cast<std::size_t>(c)] / 255.0));
-      }
-      return light;
+  /// Hits of rays that land inside a face, on triangles of that face that one of the eight landed on. A
+  /// nearer surface would be where the ray lands by the depth of the nearest one around.
+  [[nodiscard]] PacketHits try_nearby(const RowSample& sample, const CameraPose& to_nearby,
+                                      const CameraRow& rays, const CameraRow& middles, const RayPacket& world,
+                                      std::size_t begin) const {
+    const VisibleTriangles& nearby = *sample.nearby;
+    const simd::Points directions = simd::rotated(to_nearby.R, rays.packet(begin));
+    const auto landing = [&](const Image<float>& inverse_depth) {
+      return pixel_of(sample, to_nearby.t, directions, load_row<Float8>(inverse_depth, sample.row, begin),
+                      middles.packet(begin), begin);
     };
-    for (const auto& t : mesh.triangles) colors.push_back({linear(t[0]), linear(t[1]), linear(t[2])});
+    const Int8 at = landing(nearby.inverse_depth_per_m);
+    const Int8 face = simd::gather(nearby.face.data.data(), at);
+    const Int8 face_before =
+        simd::gather(nearby.face.data.data(), landing(nearby.nearest_inverse_depth_per_m));
+    const Int8 triangle = simd::gather(nearby.triangle.data.data(), at);
+    const Int8 usable = (face != VisibleTriangles::kEdge) & (face == face_before);
+    PacketHits hits;
+    for_each_value(triangle, simd::lane_bits(usable), [&](std::int32_t candidate, Int8) {
+      const PacketHits on_plane = scene_.planes.meet(candidate, world);
+      const Int8 same_face = face == scene_.planes.faces()[candidate];
+      hits.take(usable & same_face & TrianglePlanes::inside(on_plane), on_plane);
+    });
+    return hits;
   }
+
+  /// Index of the pixel nearby that looks at the point of a ray with this inverse depth. directions: in the
+  /// frame of the camera nearby, to which t_nearby moves the ray's camera.
+  [[nodiscard]] Int8 pixel_of(const RowSample& sample, const Eigen::Vector3f& t_nearby,
+                              const simd::Points& directions, Float8 inverse_depth,
+                              const simd::Points& middles, std::size_t begin) const {
+    const PinholeCamera& camera = field_.camera();
+    const simd::Points moved{simd::multiply_add(t_nearby.x(), inverse_depth, directions.x),
+                             simd::multiply_add(t_nearby.y(), inverse_depth, directions.y),
+                             simd::multiply_add(t_nearby.z(), inverse_depth, directions.z)};
+    // Distortion is nearly constant over such steps.
+    const Float8 du = static_cast<float>(camera.fx_px) * (moved.x / moved.z - middles.x);
+    const Float8 dv = static_cast<float>(camera.fy_px) * (moved.y / moved.z - middles.y);
+    const Float8 u = du + simd::kLaneNumber + (static_cast<float>(begin) + 0.5F);
+    const Float8 v = dv + (static_cast<float>(sample.row) + 0.5F);
+    const Int8 column = simd::to_int(simd::clamp(u, 0, static_cast<float>(camera.width_px - 1)));
+    const Int8 row = simd::to_int(simd::clamp(v, 0, static_cast<float>(camera.height_px - 1)));
+    return row * camera.width_px + column;
+  }
+
+  /// Traces the rays that are left, in the order of their pixels.
+  void add_left() {
+    std::ranges::stable_sort(left_, {}, &Left::pixel);
+    std::vector<CameraPose> poses, poses_before;
+    bool anything_before = false;
+    for (const RowSample& sample : samples_) {
+      poses.emplace_back(sample.T_world_camera);
+      const Foreground* before = sample.foreground;
+      poses_before.emplace_back(before != nullptr ? before->T_object_camera : SE3{});
+      anything_before |= before != nullptr;
+    }
+    const RayList rays = rays_left(poses);
+    const std::vector<PacketHits> hits = scene_.trace(rays);
+    if (!anything_before) {
+      for (std::size_t i = 0; i < hits.size(); ++i)
+        shade_left(scene_, hits[i], rays.packet(i * kLanes), i * kLanes, hits[i].triangle >= 0);
+      return;
+    }
+    // All samples have a foreground, and the same thing in it.
+    const State& thing = *samples_.front().foreground->thing.state_;
+    const RayList rays_before = rays_left(poses_before);
+    const std::vector<PacketHits> hits_before = thing.trace(rays_before);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const std::size_t begin = i * kLanes;
+      const PacketHits& far = hits[i];
+      const PacketHits& near = hits_before[i];
+      const Int8 hidden = (near.triangle >= 0) & ((far.triangle < 0) | (near.distance < far.distance));
+      shade_left(thing, near, rays_before.packet(begin), begin, hidden);
+      shade_left(scene_, far, rays.packet(begin), begin, ~hidden & (far.triangle >= 0));
+    }
+  }
+
+  [[nodiscard]] RayList rays_left(const std::vector<CameraPose>& poses) const {
+    RayList list;
+    for (const Left& ray : left_) list.add(poses[ray.sample].t, poses[ray.sample].R * ray.direction_camera);
+    list.fill_up();
+    return list;
+  }
+
+  void shade_left(const State& seen, const PacketHits& hits, const RayPacket& rays, std::size_t begin,
+                  Int8 which) const {
+    const unsigned lanes = first_lanes(left_.size() - begin) & simd::lane_bits(which);
+    if (lanes == 0) return;
+    Float8 footprint{};
+    Int8 page{};
+    for (std::size_t lane = 0; lane < std::min(kLanes, left_.size() - begin); ++lane) {
+      const RowSample& sample = samples_[left_[begin + lane].sample];
+      footprint[lane] = sample.footprint_px / static_cast<float>(field_.camera().fx_px);
+      page[lane] = seen.shading.page_at(sample.time_s);
+    }
+    const texture::Texture::Samples light = seen.light_of(hits, rays, lanes, footprint, page);
+    for (unsigned bits = lanes; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      const Left& ray = left_[begin + lane];
+      light_[ray.pixel] += samples_[ray.sample].weight * light[lane];
+    }
+  }
+
+  const State& scene_;
+  const rays::RayField& field_;
+  std::span<const RowSample> samples_;
+  std::span<Eigen::Array4f> light_;
+  std::vector<Left> left_;
 };
 
 Renderer::Renderer(const scene::SimulatedScene& scene) : state_(std::make_unique<State>(scene)) {}
@@ -225,29 +367,11 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::add_light_of_row(const rays::RayField& rays, int row, const SE3& T_world_camera,
-                                const Vector2d& offset_px, float footprint_px, float weight,
-                                std::span<Eigen::Vector3f> light, const Foreground* foreground,
-                                double time_s) const {
-  RowOfRays line(rays.camera().width_px);
-  line.cast(state_->caster, rays, row, T_world_camera, offset_px);
-  RowOfRays before(foreground != nullptr ? rays.camera().width_px : 0);
-  if (foreground != nullptr)
-    before.cast(foreground->thing.state_->caster, rays, row, foreground->T_object_camera, offset_px);
-  const float footprint = footprint_px / static_cast<float>(rays.camera().fx_px);
-  const std::int32_t shown = state_->page_at(time_s);
-  const Eigen::Vector3f origin = T_world_camera.translation.cast<float>();
-  for (std::size_t i = 0; i < light.size(); ++i) {
-    const bool hidden = foreground != nullptr && is_nearer(before.hits[i], line.hits[i]);
-    const rays::RayHit& hit = hidden ? before.hits[i] : line.hits[i];
-    const State& seen = hidden ? *foreground->thing.state_ : *state_;
-    if (hit.triangle == rays::RayHit::kNothing) continue;
-    const std::int32_t page = hidden ? 0 : shown;
-    light[i] += weight * seen.light_of(hit, footprint * hit.distance, page);
-    if (hidden || state_->normals.empty()) continue;
-    const Eigen::Vector3f ray(line.x[i], line.y[i], line.z[i]);
-    light[i].array() += weight * state_->mirrored_light(hit, origin, ray);
-  }
+void Renderer::add_light_of_row(const rays::RayField& rays, std::span<const RowSample> samples,
+                                std::span<Eigen::Array4f> light) const {
+  for (const RowSample& sample : samples)
+    check(sample.pixels == Pixels::all || sample.nearby != nullptr, "edges are known of what is seen nearby");
+  RowLight(*state_, rays, samples, light).add();
 }
 
 void Renderer::render_light(const PinholeCamera& camera, const RowPoses& poses, const Vector2d& offset_px,
@@ -256,9 +380,34 @@ void Renderer::render_light(const PinholeCamera& camera, const RowPoses& poses, 
   const rays::RayField rays(camera);
   light = Image<Eigen::Vector3f>(camera.width_px, camera.height_px, Eigen::Vector3f::Zero());
   for_rows(workers, camera.height_px, [&](int row) {
-    const std::span<Eigen::Vector3f> pixels(&light(0, row), static_cast<std::size_t>(light.width));
-    add_light_of_row(rays, row, poses.of_row(row), offset_px, 1.0F, 1.0F, pixels);
+    std::vector<Eigen::Array4f> pixels(static_cast<std::size_t>(camera.width_px), Eigen::Array4f::Zero());
+    const RowSample sample{.row = row, .T_world_camera = poses.of_row(row), .offset_px = offset_px};
+    add_light_of_row(rays, {&sample, 1}, pixels);
+    for (int u = 0; u < camera.width_px; ++u)
+      light(u, row) = pixels[static_cast<std::size_t>(u)].head<3>().matrix();
   });
+}
+
+VisibleTriangles Renderer::visible_triangles(const rays::RayField& rays, RowPoses poses,
+                                             const Workers& workers) const {
+  const PinholeCamera& camera = rays.camera();
+  check_arguments(camera, poses);
+  VisibleTriangles visible;
+  visible.poses = std::move(poses);
+  visible.triangle = Image<std::int32_t>(camera.width_px, camera.height_px);
+  visible.inverse_depth_per_m = Image<float>(camera.width_px, camera.height_px);
+  for_rows(workers, camera.height_px, [&](int row) {
+    const std::vector<PacketHits> hits =
+        state_->trace(rays_of_row(rays, row, Vector2d::Zero(), visible.poses.of_row(row)));
+    for (int u = 0; u < camera.width_px; ++u) {
+      const PacketHits& packet = hits[static_cast<std::size_t>(u) / kLanes];
+      const std::size_t lane = static_cast<std::size_t>(u) % kLanes;
+      visible.triangle(u, row) = packet.triangle[lane];
+      visible.inverse_depth_per_m(u, row) = packet.triangle[lane] < 0 ? 0.0F : 1.0F / packet.distance[lane];
+    }
+  });
+  mark_edges(state_->planes.faces(), visible);
+  return visible;
 }
 
 void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& poses, const Workers& workers,
@@ -266,17 +415,26 @@ void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& pose
   check_arguments(camera, poses);
   const rays::RayField rays(camera);
   surfaces = Image<Surface>(camera.width_px, camera.height_px);
+  const Float8 footprint = simd::all_lanes(1.0F / static_cast<float>(camera.fx_px));
   for_rows(workers, camera.height_px, [&](int row) {
-    RowOfRays line(camera.width_px);
-    line.cast(state_->caster, rays, row, poses.of_row(row), Vector2d::Zero());
-    for (int u = 0; u < camera.width_px; ++u) {
-      const rays::RayHit& hit = line.hits[static_cast<std::size_t>(u)];
-      if (hit.triangle == rays::RayHit::kNothing) continue;
-      surfaces(u, row) = {hit.distance, hit.cos_incidence, hit.triangle};
-      if (!material) continue;
-      const float footprint_m = hit.distance / static_cast<float>(camera.fx_px);
-      surfaces(u, row).reflectance = state_->reflectance_of(hit, footprint_m).sum() / 3;
-      surfaces(u, row).gloss = state_->gloss_of(hit);
+    const std::vector<PacketHits> hits =
+        state_->trace(rays_of_row(rays, row, Vector2d::Zero(), poses.of_row(row)));
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const std::size_t begin = i * kLanes;
+      const PacketHits& packet = hits[i];
+      const unsigned seen = simd::lane_bits(packet.triangle >= 0) &
+                            first_lanes(static_cast<std::size_t>(camera.width_px) - begin);
+      texture::Texture::Samples reflectance;
+      if (material) reflectance = state_->shading.light_of(packet, seen, footprint, Int8{}, false);
+      for (unsigned left = seen; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        Surface& surface = surfaces(static_cast<int>(begin + lane), row);
+        const std::int32_t triangle = packet.triangle[lane];
+        surface = {packet.distance[lane], packet.cos_incidence[lane], static_cast<std::uint32_t>(triangle)};
+        if (!material) continue;
+        surface.reflectance = reflectance[lane].head<3>().sum() / 3;
+        surface.gloss = state_->shading.gloss_of(triangle);
+      }
     }
   });
 }

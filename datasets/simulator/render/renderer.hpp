@@ -11,20 +11,10 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "datasets/simulator/rays/ray_field.hpp"
+#include "datasets/simulator/render/visible_triangles.hpp"
 #include "datasets/simulator/scene/scene.hpp"
 
 namespace fusebench::simulator::render {
-
-/// Where the rays of an image start: one pose for each row, so that a rolling shutter is a list of poses.
-/// Rows share a pose if the list has one entry.
-struct RowPoses {
-  std::vector<SE3> T_world_camera;
-
-  [[nodiscard]] const SE3& of_row(int row) const {
-    return T_world_camera.size() == 1 ? T_world_camera.front()
-                                      : T_world_camera[static_cast<std::size_t>(row)];
-  }
-};
 
 class Renderer;
 
@@ -36,6 +26,24 @@ struct Foreground {
 
 /// How long a screen shows a page.
 inline constexpr double kPage_s = 0.8;
+
+enum class Pixels { all, inside_faces, at_edges };  ///< by VisibleTriangles::face
+
+/// One sample of the pixels of a row.
+struct RowSample {
+  int row = 0;
+  SE3 T_world_camera;
+  Vector2d offset_px = Vector2d::Zero();  ///< rays go through (u, row) + offset
+  /// Side of the square that the sample stands for; less than 1 where samples of a pixel are averaged.
+  float footprint_px = 1;
+  float weight = 1;
+  double time_s = 0;  ///< of screens that change what they show
+  Pixels pixels = Pixels::all;
+  /// Seen from nearby poses by the same camera; spares most of the search for triangles. May be null with
+  /// Pixels::all.
+  const VisibleTriangles* nearby = nullptr;
+  const Foreground* foreground = nullptr;  ///< hides what is behind it; may be null
+};
 
 /// A ray caster over a scene. Rays are independent, so results do not depend on the number of threads.
 class Renderer {
@@ -50,13 +58,14 @@ class Renderer {
   void render_light(const PinholeCamera& camera, const RowPoses& poses, const Vector2d& offset_px,
                     const Workers& workers, Image<Eigen::Vector3f>& light) const;
 
-  /// Adds the light of one row (as above, times weight) to `light`, which has the camera's width.
-  /// footprint_px: the side of the square that the sample stands for; less than 1 where samples of a pixel
-  /// are averaged. A foreground hides what is behind it. time_s: of screens that change what they show.
-  void add_light_of_row(const rays::RayField& rays, int row, const SE3& T_world_camera,
-                        const Vector2d& offset_px, float footprint_px, float weight,
-                        std::span<Eigen::Vector3f> light, const Foreground* foreground = nullptr,
-                        double time_s = 0) const;
+  /// Adds weight times the light (as above) of each sample to `light`, which has the camera's width; the
+  /// fourth component means nothing. All samples are of one row, and have the same thing in the foreground or
+  /// none.
+  void add_light_of_row(const rays::RayField& rays, std::span<const RowSample> samples,
+                        std::span<Eigen::Array4f> light) const;
+
+  [[nodiscard]] VisibleTriangles visible_triangles(const rays::RayField& rays, RowPoses poses,
+                                                   const Workers& workers) const;
 
   /// What a ray meets, for depth sensors.
   struct Surface {
@@ -71,6 +80,7 @@ class Renderer {
 
  private:
   struct State;
+  class RowLight;
   std::unique_ptr<State> state_;
 };
 

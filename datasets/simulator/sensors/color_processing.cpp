@@ -75,7 +75,7 @@ Eigen::Vector3f interpolated(const Image<float>& raw, int u, int v) {
 
 /// Grey levels after the tone curve.
 Image<Eigen::Vector3f> encoded(const Image<float>& raw, double contrast, const Workers& workers) {
-  const SrgbEncoder encoder;
+  const SrgbEncoder& encoder = SrgbEncoder::instance();
   const auto share = static_cast<float>(contrast);
   Image<Eigen::Vector3f> grey(raw.width, raw.height);
   fill_rows(workers, raw.height, [&](int v) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/simulator/random/random_numbers.hpp"
+#include "datasets/simulator/sensors/exposure_samples.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 #include "datasets/simulator/sensors/srgb_encoder.hpp"
 
@@ -14,76 +15,102 @@ namespace fusebench::simulator::sensors {
 namespace {
 
 constexpr std::size_t kRowsPerChunk = 8;
+constexpr double kMotionOfObject_px = 16;  // at least, of an object that is near the camera and moves
 
 // Keys of independent random streams of one seed.
 constexpr std::uint64_t kPixelNoise = 0xC0;
 constexpr std::uint64_t kGainPhase = 0xC1;
 
-/// Places within the pixel for the samples of an exposure: a low-discrepancy sequence (Roberts' R2), from
-/// which mean and trend over time are taken out, since they would shift the image and change the length of
-/// its blur.
-std::vector<Vector2d> sample_offsets(int samples) {
-  constexpr double kPlastic = 1.32471795724474602596;
-  std::vector<Vector2d> offsets;
-  Vector2d mean = Vector2d::Zero();
-  Vector2d trend = Vector2d::Zero();
-  double squares = 0;
-  const auto time_of = [&](int i) { return i + 0.5 - 0.5 * samples; };
-  for (int i = 0; i < samples; ++i) {
-    const Vector2d place(0.5 + i / kPlastic, 0.5 + i / (kPlastic * kPlastic));
-    offsets.emplace_back(place.array() - place.array().floor());
-    mean += offsets.back() / samples;
-    trend += time_of(i) * offsets.back();
-    squares += time_of(i) * time_of(i);
-  }
-  if (squares > 0) trend /= squares;
-  for (int i = 0; i < samples; ++i) {
-    const Vector2d centred = offsets[static_cast<std::size_t>(i)] - mean - time_of(i) * trend;
-    offsets[static_cast<std::size_t>(i)] = centred.cwiseMax(-0.5).cwiseMin(0.5);
-  }
-  return offsets;
-}
-
 /// Parameters that are constant within an image.
 struct Exposure {
   const render::Renderer& renderer;
   const ColorSensor& sensor;
+  const rays::RayField& rays;
   const synthetic_imu::PoseSpline& motion;
   const SE3& T_body_camera;
   std::int64_t capture_ns;
   std::uint64_t noise_key;
   float gain;
-  rays::RayField rays;
-  std::vector<Vector2d> offsets;
-  SrgbEncoder encoder;
   const MovingObject* before;
 
-  [[nodiscard]] std::int64_t instant_ns(int row, std::size_t sample) const {
-    const double middle = (static_cast<double>(sample) + 0.5) / static_cast<double>(offsets.size()) - 0.5;
-    const auto after_ns = static_cast<std::int64_t>(std::llround(1e9 * sensor.exposure_s * middle));
+  /// Of row `row`, after a share of the exposure.
+  [[nodiscard]] std::int64_t instant_ns(int row, double share) const {
+    const auto after_ns = static_cast<std::int64_t>(std::llround(1e9 * sensor.exposure_s * (share - 0.5)));
     const std::int64_t row_ns =
         row_time_ns(capture_ns, sensor.camera.timing.color_readout_s, row, sensor.camera.pinhole.height_px);
     return row_ns + after_ns;
   }
 
-  [[nodiscard]] SE3 T_world_camera(int row, std::size_t sample) const {
-    return motion.evaluate(instant_ns(row, sample)).T_world_body * T_body_camera;
+  /// Of the rows, after a share of the exposure.
+  [[nodiscard]] render::RowPoses poses(double share) const {
+    const bool rolls = sensor.camera.timing.color_readout_s != 0;
+    const int rows = rolls ? sensor.camera.pinhole.height_px : 1;
+    render::RowPoses poses;
+    for (int row = 0; row < rows; ++row) {
+      const SE3 T_world_body = motion.evaluate(instant_ns(row, share)).T_world_body;
+      poses.T_world_camera.push_back(T_world_body * T_body_camera);
+    }
+    return poses;
+  }
+
+  /// Of what is visible, during the exposure.
+  [[nodiscard]] double motion_px(const render::VisibleTriangles& visible) const {
+    return render::longest_image_motion_px(visible, rays, poses(0), poses(1));
+  }
+
+  /// By the motion of the image, unless the sensor has a number of samples.
+  [[nodiscard]] std::vector<SampleSet> sample_sets(double motion_px) const {
+    if (sensor.blur_samples > 0) return {sample_set(sensor.blur_samples)};
+    // An object before the camera has a motion and edges of its own.
+    return samples_of_motion(before == nullptr ? motion_px : std::max(motion_px, kMotionOfObject_px));
+  }
+
+  /// A sample of all rows.
+  struct Instant {
+    double share;  ///< of the exposure
+    render::RowPoses poses;
+    Vector2d offset_px;
+    float footprint_px;
+    float weight;
+    render::Pixels pixels;
+  };
+  [[nodiscard]] std::vector<Instant> instants(const std::vector<SampleSet>& sets) const {
+    std::vector<Instant> instants;
+    for (const SampleSet& set : sets) {
+      const auto count = static_cast<double>(set.offsets_px.size());
+      for (const Vector2d& offset_px : set.offsets_px) {
+        const double share = (static_cast<double>(&offset_px - set.offsets_px.data()) + 0.5) / count;
+        instants.push_back(
+            {share, poses(share), offset_px, set.footprint_px, static_cast<float>(1 / count), set.pixels});
+      }
+    }
+    return instants;
   }
 
   /// The row's light, averaged over the exposure.
-  void integrate(int row, const std::vector<SE3>& poses, std::span<Eigen::Vector3f> light) const {
-    const auto count = static_cast<float>(offsets.size());
-    for (std::size_t s = 0; s < offsets.size(); ++s) {
-      std::optional<render::Foreground> thing;
-      if (before != nullptr)
-        thing.emplace(render::Foreground{before->surface, before->T_object_camera(instant_ns(row, s))});
-      renderer.add_light_of_row(rays, row, poses[s], offsets[s], 1.0F / std::sqrt(count), 1.0F / count, light,
-                                thing ? &*thing : nullptr, seconds_between(0, instant_ns(row, s)));
+  void integrate(int row, const std::vector<Instant>& instants, const render::VisibleTriangles& visible,
+                 std::span<Eigen::Array4f> light) const {
+    std::vector<render::Foreground> things;
+    std::vector<render::RowSample> samples;
+    things.reserve(instants.size());
+    for (const Instant& at : instants) {
+      const std::int64_t time_ns = instant_ns(row, at.share);
+      if (before != nullptr) things.push_back({before->surface, before->T_object_camera(time_ns)});
+      samples.push_back({.row = row,
+                         .T_world_camera = at.poses.of_row(row),
+                         .offset_px = at.offset_px,
+                         .footprint_px = at.footprint_px,
+                         .weight = at.weight,
+                         .time_s = seconds_between(0, time_ns),
+                         .pixels = at.pixels,
+                         .nearby = &visible,
+                         .foreground = before != nullptr ? &things.back() : nullptr});
     }
+    renderer.add_light_of_row(rays, samples, light);
   }
 
   /// Vignetting and gain of one row.
-  void transmit(int row, const ColorImage& image, std::span<Eigen::Vector3f> light) const {
+  void transmit(int row, const ColorImage& image, std::span<Eigen::Array4f> light) const {
     const double centre_x = 0.5 * (image.width - 1);
     const double centre_y = 0.5 * (image.height - 1);
     const double corner2 = centre_x * centre_x + centre_y * centre_y;
@@ -95,11 +122,12 @@ struct Exposure {
   }
 
   /// Noise and encoding of one row.
-  void develop(int row, std::span<const Eigen::Vector3f> light, ColorImage& image) const {
+  void develop(int row, std::span<const Eigen::Array4f> light, ColorImage& image) const {
     const bool noisy = sensor.read_noise_grey > 0 || sensor.shot_noise > 0;
     const auto read2 = static_cast<float>(sensor.read_noise_grey * sensor.read_noise_grey);
     const auto shot2 = static_cast<float>(sensor.shot_noise * sensor.shot_noise);
     const random::NormalTable& normal = random::NormalTable::instance();
+    const SrgbEncoder& encoder = SrgbEncoder::instance();
     for (int u = 0; u < image.width; ++u) {
       std::array<float, 3> draws{};
       if (noisy) draws = normal.triple(random::mix_key(noise_key, image.index(u, row)));
@@ -137,46 +165,51 @@ double exposure_gain(double drift, std::int64_t capture_ns, std::uint64_t seed) 
 }
 
 ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sensor,
-                        const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
-                        std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
-                        const Workers& workers, const MovingObject* before) {
+                        const rays::RayField& rays, const synthetic_imu::PoseSpline& motion,
+                        const SE3& T_body_camera, std::int64_t capture_ns, std::uint64_t seed,
+                        std::uint64_t frame, const Workers& workers, const MovingObject* before) {
   const PinholeCamera& camera = sensor.camera.pinhole;
   check(camera.width_px > 0 && camera.height_px > 0, "a simulated camera has a size");
-  check(sensor.blur_samples >= 1, "an exposure has at least one sample");
+  check(sensor.blur_samples >= 0, "an exposure has a number of samples");
   const Exposure exposure{
       .renderer = renderer,
       .sensor = sensor,
+      .rays = rays,
       .motion = motion,
       .T_body_camera = T_body_camera,
       .capture_ns = capture_ns,
       .noise_key = random::mix_key(random::mix_key(seed, kPixelNoise), frame),
       .gain = static_cast<float>(sensor.gain * exposure_gain(sensor.gain_drift, capture_ns, seed)),
-      .rays = rays::RayField(sensor.camera, workers),
-      .offsets = sample_offsets(sensor.blur_samples),
-      .encoder = {},
       .before = before};
+  render::VisibleTriangles visible;
+  std::vector<Exposure::Instant> instants;
+  if (!sensor.covered) {
+    visible = renderer.visible_triangles(rays, exposure.poses(0.5), workers);
+    const double motion_px = exposure.motion_px(visible);
+    instants = exposure.instants(exposure.sample_sets(motion_px));
+    // From the middle of the exposure to its ends, and by half a pixel within the pixel.
+    const double distance_px = std::min(0.5 * motion_px + 1, static_cast<double>(camera.width_px));
+    render::find_nearest_around(static_cast<int>(std::ceil(distance_px)), visible);
+  }
   ColorImage image(camera.width_px, camera.height_px);
-  const auto rows = static_cast<std::size_t>(camera.height_px);
-  const bool rolling = sensor.camera.timing.color_readout_s != 0;
   const bool mosaic = sensor.processing.mosaic;  // neighbours are needed: the whole image, then its colours
   Image<Eigen::Vector3f> whole(mosaic ? camera.width_px : 0, mosaic ? camera.height_px : 0);
-  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    std::vector<SE3> poses(exposure.offsets.size());
-    std::vector<Eigen::Vector3f> light(static_cast<std::size_t>(camera.width_px));
-    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      if (rolling || row == static_cast<int>(begin)) {
-        for (std::size_t s = 0; s < poses.size(); ++s) poses[s] = exposure.T_world_camera(row, s);
-      }
-      std::ranges::fill(light, Eigen::Vector3f::Zero());
-      if (!sensor.covered) exposure.integrate(row, poses, light);
-      exposure.transmit(row, image, light);
-      if (mosaic) {
-        std::ranges::copy(light, &whole(0, row));
-      } else {
-        exposure.develop(row, light, image);
-      }
-    }
-  });
+  workers.for_chunks(static_cast<std::size_t>(camera.height_px), kRowsPerChunk,
+                     [&](std::size_t begin, std::size_t end) {
+                       std::vector<Eigen::Array4f> light(static_cast<std::size_t>(camera.width_px));
+                       for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+                         std::ranges::fill(light, Eigen::Array4f::Zero());
+                         exposure.integrate(row, instants, visible, light);
+                         exposure.transmit(row, image, light);
+                         if (!mosaic) {
+                           exposure.develop(row, light, image);
+                           continue;
+                         }
+                         std::ranges::transform(light, &whole(0, row), [](const Eigen::Array4f& pixel) {
+                           return Eigen::Vector3f(pixel.head<3>().matrix());
+                         });
+                       }
+                     });
   if (mosaic)
     return processed_color(whole, sensor.processing, sensor.amplifier_gain, exposure.noise_key, workers);
   return image;

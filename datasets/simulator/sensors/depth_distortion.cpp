@@ -1,28 +1,47 @@
 #include "datasets/simulator/sensors/depth_distortion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.hpp"
 
 namespace fusebench::simulator::sensors {
 
-Image<std::uint16_t> distort_depth(const Image<std::uint16_t>& ideal,
-                                   const calibration::CalibratedCamera& camera) {
+namespace {
+
+constexpr std::size_t kRowsPerChunk = 16;
+
+/// Index of the pixel of the ideal image that a pixel of the distorted one shows, -1: none.
+std::int32_t ideal_pixel(const calibration::CalibratedCamera& camera, int u, int v) {
   const PinholeCamera& p = camera.pinhole;
-  check(ideal.width == p.width_px && ideal.height == p.height_px, "depth has the size of its camera");
-  Image<std::uint16_t> distorted(ideal.width, ideal.height);
-  for (int v = 0; v < ideal.height; ++v) {
-    for (int u = 0; u < ideal.width; ++u) {
-      const Vector2d on_plane =
-          camera.distortion.undistort({(u - p.cx_px) / p.fx_px, (v - p.cy_px) / p.fy_px});
-      const Vector2d pixel = p.project({on_plane.x(), on_plane.y(), 1.0});
-      if (!(std::abs(pixel.x()) < 1e6 && std::abs(pixel.y()) < 1e6)) continue;
-      const int x = static_cast<int>(std::lround(pixel.x()));
-      const int y = static_cast<int>(std::lround(pixel.y()));
-      if (ideal.contains(x, y)) distorted(u, v) = ideal(x, y);
+  const Vector2d on_plane = camera.distortion.undistort({(u - p.cx_px) / p.fx_px, (v - p.cy_px) / p.fy_px});
+  const Vector2d pixel = p.project({on_plane.x(), on_plane.y(), 1.0});
+  if (!(std::abs(pixel.x()) < 1e6 && std::abs(pixel.y()) < 1e6)) return -1;
+  const int x = static_cast<int>(std::lround(pixel.x()));
+  const int y = static_cast<int>(std::lround(pixel.y()));
+  const bool inside = x >= 0 && y >= 0 && x < p.width_px && y < p.height_px;
+  return inside ? y * p.width_px + x : -1;
+}
+
+}  // namespace
+
+DepthDistortion::DepthDistortion(const calibration::CalibratedCamera& camera, const Workers& workers)
+    : source_(camera.pinhole.width_px, camera.pinhole.height_px) {
+  const auto rows = static_cast<std::size_t>(source_.height);
+  workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      for (int u = 0; u < source_.width; ++u) source_(u, v) = ideal_pixel(camera, u, v);
     }
-  }
-  return distorted;
+  });
+}
+
+Image<std::uint16_t> DepthDistortion::distorted(const Image<std::uint16_t>& ideal) const {
+  check(ideal.width == source_.width && ideal.height == source_.height, "depth has the size of its camera");
+  Image<std::uint16_t> result(ideal.width, ideal.height);
+  std::ranges::transform(source_.data, result.data.begin(), [&](std::int32_t source) {
+    return source < 0 ? std::uint16_t{0} : ideal.data[static_cast<std::size_t>(source)];
+  });
+  return result;
 }
 
 }  // namespace fusebench::simulator::sensors

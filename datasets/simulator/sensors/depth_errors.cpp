@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "datasets/simulator/random/random_numbers.hpp"
 #include "datasets/simulator/random/smooth_noise.hpp"
@@ -64,17 +65,22 @@ void apply_depth_errors(const DepthErrors& errors, const NativePixels& native, s
   const random::NormalTable& normal = random::NormalTable::instance();
   const auto rows = static_cast<std::size_t>(surfaces.height);
   workers.for_chunks(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> smooth_row(static_cast<std::size_t>(surfaces.width));
+    std::vector<float> patch_row(smooth_row.size());
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      smooth.row(v, smooth_row);
+      patches.row(v, patch_row);
       for (int u = 0; u < surfaces.width; ++u) {
         Surface& surface = surfaces(u, v);
         if (surface.depth_m <= 0) continue;
-        const bool lost = errors.lost_light && is_lost(surface, patches.at(u, v));
+        const auto column = static_cast<std::size_t>(u);
+        const bool lost = errors.lost_light && is_lost(surface, patch_row[column]);
         if (lost || (errors.border && is_in_border(surfaces, u, v))) {
           surface.depth_m = 0;
           continue;
         }
         float disparity_px = focal_baseline / surface.depth_m;
-        if (errors.smooth_px > 0) disparity_px += static_cast<float>(errors.smooth_px) * smooth.at(u, v);
+        if (errors.smooth_px > 0) disparity_px += static_cast<float>(errors.smooth_px) * smooth_row[column];
         if (errors.pattern_px > 0)
           disparity_px += static_cast<float>(errors.pattern_px) *
                           normal(random::mix_key(pattern_key, surfaces.index(u, v)));

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "datasets/simulator/random/random_numbers.hpp"
@@ -48,40 +50,61 @@ constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kFieldKey = 3;
 constexpr std::uint64_t kFadeKey = 4;
 
-/// Occlusion in the right image: true where a nearer surface hides the point of a pixel of the left image
-/// row, or the point is outside the right image. native_px: of the sensor, for one of the image.
-std::vector<bool> occluded_in_right(const DepthImage& disparity_px, float native_px, int row) {
-  const auto width = static_cast<std::size_t>(disparity_px.width);
+/// fill(row) for all rows.
+template <class Fill>
+void for_rows(const Workers& workers, int rows, const Fill& fill) {
+  workers.for_chunks(static_cast<std::size_t>(rows), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) fill(row);
+  });
+}
+
+/// Occlusion in the right image: 1 where a nearer surface hides the point of a pixel of the left image row,
+/// or the point is outside the right image. native_px: of the sensor, for one of the image.
+std::vector<std::uint8_t> occluded_in_right(std::span<const float> disparity_px, float native_px) {
+  const std::size_t width = disparity_px.size();
   std::vector<float> nearest(width, 0.0F);  // by column of the right image
-  const auto partner = [&](int u) {
-    return static_cast<int>(std::lround(static_cast<float>(u) - disparity_px(u, row) / native_px));
-  };
-  for (int u = 0; u < disparity_px.width; ++u) {
-    const int right = partner(u);
-    if (right < 0 || disparity_px(u, row) <= 0) continue;
-    float& best = nearest[static_cast<std::size_t>(right)];
-    best = std::max(best, disparity_px(u, row));
+  std::vector<int> partner(width);
+  for (std::size_t u = 0; u < width; ++u)
+    partner[u] = static_cast<int>(std::floor(static_cast<float>(u) - disparity_px[u] / native_px + 0.5F));
+  for (std::size_t u = 0; u < width; ++u) {
+    if (partner[u] < 0 || disparity_px[u] <= 0) continue;
+    float& best = nearest[static_cast<std::size_t>(partner[u])];
+    best = std::max(best, disparity_px[u]);
   }
-  std::vector<bool> occluded(width, false);
-  for (int u = 0; u < disparity_px.width; ++u) {
-    const int right = partner(u);
-    occluded[static_cast<std::size_t>(u)] =
-        right < 0 || nearest[static_cast<std::size_t>(right)] > disparity_px(u, row) + kOcclusion_px;
+  std::vector<std::uint8_t> occluded(width, 1);
+  for (std::size_t u = 0; u < width; ++u) {
+    if (partner[u] < 0) continue;
+    occluded[u] = nearest[static_cast<std::size_t>(partner[u])] > disparity_px[u] + kOcclusion_px ? 1 : 0;
   }
   return occluded;
 }
 
-/// Whether the window around a pixel straddles a jump and the pixel lies on the far side.
-bool behind_jump(const DepthImage& disparity_px, int half_window, int u, int v) {
-  float least = disparity_px(u, v);
-  float most = least;
-  for (int y = std::max(0, v - half_window); y <= std::min(disparity_px.height - 1, v + half_window); ++y) {
-    for (int x = std::max(0, u - half_window); x <= std::min(disparity_px.width - 1, u + half_window); ++x) {
-      least = std::min(least, disparity_px(x, y));
-      most = std::max(most, disparity_px(x, y));
+/// Values of `of` within half_window of each pixel, along rows or columns (step: distance of neighbours),
+/// reduced by `best`. The window is cut off at the border.
+template <class Best>
+void reduce_windows(const DepthImage& of, int half_window, bool along_rows, const Best& best,
+                    const Workers& workers, DepthImage& result) {
+  result = of;
+  for_rows(workers, of.height, [&](int v) {
+    float* out = &result(0, v);
+    for (int shift = -half_window; shift <= half_window; ++shift) {
+      const int row = along_rows ? v : v + shift;
+      if (shift == 0 || row < 0 || row >= of.height) continue;
+      const int step = along_rows ? shift : 0;
+      const float* in = of.data.data() + of.index(0, row);
+      for (int u = std::max(0, -step); u < std::min(of.width, of.width - step); ++u)
+        out[u] = best(out[u], in[u + step]);
     }
-  }
-  return most - least > kJump_px && disparity_px(u, v) - least < most - disparity_px(u, v);
+  });
+}
+
+/// Least or greatest value (`best` of two) in the square window around each pixel.
+template <class Best>
+DepthImage in_square_window(const DepthImage& of, int half_window, const Best& best, const Workers& workers) {
+  DepthImage across, result;
+  reduce_windows(of, half_window, true, best, workers, across);
+  reduce_windows(across, half_window, false, best, workers, result);
+  return result;
 }
 
 /// 0 up to where the dots begin to fade, 1 where they are gone.
@@ -99,30 +122,37 @@ DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer
                          [&](const render::Renderer::Surface& surface) {
                            return surface.depth_m > 0 ? focal_baseline / surface.depth_m : 0.0F;
                          });
+  const DepthImage least = in_square_window(
+      disparity_px, half_window, [](float a, float b) { return std::min(a, b); }, workers);
+  const DepthImage most = in_square_window(
+      disparity_px, half_window, [](float a, float b) { return std::max(a, b); }, workers);
   const random::SmoothNoise noise(random::mix_key(key, kFieldKey), native.in_image(kNoiseSpacing_px));
   const std::uint64_t fade_key = random::mix_key(key, kFadeKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
-  workers.for_chunks(
-      static_cast<std::size_t>(surfaces.height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-        for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-          const std::vector<bool> occluded = occluded_in_right(disparity_px, native_px, v);
-          for (int u = 0; u < surfaces.width; ++u) {
-            const render::Renderer::Surface& surface = surfaces(u, v);
-            if (surface.depth_m <= 0 || occluded[static_cast<std::size_t>(u)] ||
-                surface.cos_incidence < kMinCosine || behind_jump(disparity_px, half_window, u, v)) {
-              continue;
-            }
-            const float fade = faded(sensor, surface.depth_m);
-            if (random::unit_interval(random::mix_key(fade_key, surfaces.index(u, v))) <
-                static_cast<double>(fade))
-              continue;
-            const float exact = disparity_px(u, v) + sensor.noise_px * (1 + fade) * noise.at(u, v);
-            const float measured = std::round(sensor.steps_per_pixel * exact) / sensor.steps_per_pixel;
-            if (measured > 0 && measured <= sensor.max_disparity_px)
-              depth_m(u, v) = focal_baseline / measured;
-          }
-        }
-      });
+  for_rows(workers, surfaces.height, [&](int v) {
+    const auto width = static_cast<std::size_t>(surfaces.width);
+    const std::vector<std::uint8_t> occluded =
+        occluded_in_right(std::span(&disparity_px(0, v), width), native_px);
+    std::vector<float> noise_row(width);
+    noise.row(v, noise_row);
+    for (int u = 0; u < surfaces.width; ++u) {
+      const render::Renderer::Surface& surface = surfaces(u, v);
+      const float disparity = disparity_px(u, v);
+      // On the far side of a jump within the window.
+      const bool behind_jump =
+          most(u, v) - least(u, v) > kJump_px && disparity - least(u, v) < most(u, v) - disparity;
+      if (surface.depth_m <= 0 || occluded[static_cast<std::size_t>(u)] != 0 ||
+          surface.cos_incidence < kMinCosine || behind_jump)
+        continue;
+      const float fade = faded(sensor, surface.depth_m);
+      if (fade > 0 &&
+          random::unit_interval(random::mix_key(fade_key, surfaces.index(u, v))) < static_cast<double>(fade))
+        continue;
+      const float exact = disparity + sensor.noise_px * (1 + fade) * noise_row[static_cast<std::size_t>(u)];
+      const float measured = std::floor(sensor.steps_per_pixel * exact + 0.5F) / sensor.steps_per_pixel;
+      if (measured > 0 && measured <= sensor.max_disparity_px) depth_m(u, v) = focal_baseline / measured;
+    }
+  });
   return depth_m;
 }
 

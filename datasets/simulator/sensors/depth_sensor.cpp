@@ -18,7 +18,7 @@ constexpr std::uint64_t kDepthErrors = 0xD1;
 constexpr int kKinectColumns = 640;
 
 std::uint16_t raw_value(float depth_m, double units_per_metre) {
-  const double units = std::round(static_cast<double>(depth_m) * units_per_metre);
+  const double units = std::floor(static_cast<double>(depth_m) * units_per_metre + 0.5);
   return units > 0 && units <= std::numeric_limits<std::uint16_t>::max() ? static_cast<std::uint16_t>(units)
                                                                          : 0;
 }

@@ -27,8 +27,10 @@ struct ColorSensor {
   double read_noise_grey = 0;  ///< standard deviation, grey levels, of each channel
   double shot_noise =
       0;  ///< standard deviation of full-scale linear light 1; at light L it is this times sqrt(L)
-  int blur_samples = 8;  ///< instants of the exposure, each at another place within the pixel; at least 1
-  double gain = 1;       ///< factor on all light, on top of the drift
+  /// Instants of the exposure, each at another place within the pixel; 0: as many as the motion of the image
+  /// needs (exposure_samples.hpp).
+  int blur_samples = 0;
+  double gain = 1;             ///< factor on all light, on top of the drift
   double amplifier_gain = 1;   ///< the part of it that amplifies noise as well (only with a mosaic)
   bool covered = false;        ///< no light comes in; the noise stays
   ColorProcessing processing;  ///< with a mosaic it brings noise of its own, instead of the two above
@@ -63,12 +65,13 @@ struct DepthSensor {
 };
 
 /// The image that the sensor takes around capture_ns (middle of the exposure of its middle row).
-/// T_body_camera places the camera on the body that the spline moves. The same seed and frame give the same
-/// bytes. before: may be null.
+/// rays: of sensor.camera. T_body_camera places the camera on the body that the spline moves. The same seed
+/// and frame give the same bytes. before: may be null.
 [[nodiscard]] ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sensor,
-                                      const synthetic_imu::PoseSpline& motion, const SE3& T_body_camera,
-                                      std::int64_t capture_ns, std::uint64_t seed, std::uint64_t frame,
-                                      const Workers& workers, const MovingObject* before = nullptr);
+                                      const rays::RayField& rays, const synthetic_imu::PoseSpline& motion,
+                                      const SE3& T_body_camera, std::int64_t capture_ns, std::uint64_t seed,
+                                      std::uint64_t frame, const Workers& workers,
+                                      const MovingObject* before = nullptr);
 
 /// Raw values as the format stores them (0: no measurement, or beyond 65535 units).
 [[nodiscard]] Image<std::uint16_t> sense_depth(const render::Renderer& renderer, const DepthSensor& sensor,

@@ -12,11 +12,11 @@ namespace fusebench::simulator::sensors {
 /// Grey levels (0 to 255, not rounded) of linear light by table; the error is below 0.01 grey levels.
 class SrgbEncoder {
  public:
-  SrgbEncoder() {
-    for (std::size_t i = 0; i < grey_.size(); ++i) {
-      grey_[i] = static_cast<float>(255.0 * texture::srgb_from_linear(static_cast<double>(i) / kCells));
-    }
+  static const SrgbEncoder& instance() {
+    static const SrgbEncoder encoder;
+    return encoder;
   }
+
   struct Encoded {
     float grey = 0;
     float slope = 0;  ///< grey levels per unit of light
@@ -29,6 +29,12 @@ class SrgbEncoder {
   }
 
  private:
+  SrgbEncoder() {
+    for (std::size_t i = 0; i < grey_.size(); ++i) {
+      grey_[i] = static_cast<float>(255.0 * texture::srgb_from_linear(static_cast<double>(i) / kCells));
+    }
+  }
+
   static constexpr int kCells = 4096;
   std::array<float, kCells + 1> grey_{};
 };

@@ -1,5 +1,7 @@
 #include "datasets/simulator/texture/texture.hpp"
 
+#include <utility>
+
 #include "core/base/error.hpp"
 
 namespace fusebench::simulator::texture {
@@ -7,21 +9,27 @@ namespace fusebench::simulator::texture {
 Texture::Texture(const Image<Eigen::Vector3f>& image) : side_(image.width) {
   check(side_ > 0 && image.height == side_ && std::has_single_bit(static_cast<unsigned>(side_)),
         "a texture is square and its side a power of two");
-  for (const Eigen::Vector3f& pixel : image.data) texels_.emplace_back(pixel.x(), pixel.y(), pixel.z(), 0.0F);
-  levels_.push_back({0, side_});
+  add_level(image);
+  Image<Eigen::Vector3f> fine = image;
   for (int side = side_ / 2; side >= 1; side /= 2) {
-    const Level fine = levels_.back();
-    levels_.push_back({texels_.size(), side});
-    const auto texel = [&](int x, int y) {
-      return texels_[fine.offset + static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.side) +
-                     static_cast<std::size_t>(x)];
-    };
+    Image<Eigen::Vector3f> coarse(side, side);
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {
-        const Eigen::Array4f sum = texel(2 * x, 2 * y) + texel(2 * x + 1, 2 * y) + texel(2 * x, 2 * y + 1) +
-                                   texel(2 * x + 1, 2 * y + 1);
-        texels_.emplace_back(0.25F * sum);
+        coarse(x, y) = 0.25F * (fine(2 * x, 2 * y) + fine(2 * x + 1, 2 * y) + fine(2 * x, 2 * y + 1) +
+                                fine(2 * x + 1, 2 * y + 1));
       }
+    }
+    add_level(coarse);
+    fine = std::move(coarse);
+  }
+}
+
+void Texture::add_level(const Image<Eigen::Vector3f>& image) {
+  offsets_.push_back(static_cast<std::int32_t>(texels_.size()));
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x <= image.width; ++x) {
+      for (const float channel : image(x % image.width, y)) texels_.emplace_back(channel);
+      texels_.emplace_back(0.0F);
     }
   }
 }

@@ -3,14 +3,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/base/image.hpp"
+#include "core/simd/half_lanes.hpp"
 
 namespace fusebench::simulator::texture {
 
@@ -21,55 +23,79 @@ class Texture {
   explicit Texture(const Image<Eigen::Vector3f>& image);
 
   [[nodiscard]] int side() const { return side_; }
-  [[nodiscard]] int levels() const { return static_cast<int>(levels_.size()); }
+  [[nodiscard]] int levels() const { return static_cast<int>(offsets_.size()); }
 
-  /// Reflectance at (u, v) in repeats of the image, averaged over about `footprint` texels of the full image
-  /// (trilinear). The fourth component means nothing.
+  /// Reflectances by lane; the fourth component means nothing.
+  using Samples = std::array<Eigen::Array4f, simd::kLanes>;
+
+  /// At (u, v) in repeats of the image, averaged over about `footprint` texels of the full image (trilinear).
+  /// Sets the samples of the lanes whose bit is set.
+  void sample(simd::Float8 u, simd::Float8 v, simd::Float8 footprint, unsigned lanes,
+              Samples& samples) const {
+    const simd::Float8 level = simd::clamp(log2_piecewise(footprint), 0, static_cast<float>(levels() - 1));
+    const simd::Int8 lower = simd::to_int(level);
+    const simd::Float8 share = level - simd::to_float(lower);
+    const Places fine = places(lower, u, v);
+    const Places coarse = places(simd::min(lower + 1, simd::all_lanes(levels() - 1)), u, v);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      const Float4 near = bilinear(fine, lane);
+      const Float4 mixed = near + share[lane] * (bilinear(coarse, lane) - near);
+      std::memcpy(samples[lane].data(), &mixed, sizeof(mixed));
+    }
+  }
+
+  /// One place.
   [[nodiscard]] Eigen::Array4f sample(float u, float v, float footprint) const {
-    const float level = std::clamp(log2_piecewise(footprint), 0.0F, static_cast<float>(levels() - 1));
-    const int lower = static_cast<int>(level);
-    const float fraction = level - static_cast<float>(lower);
-    const Eigen::Array4f fine = bilinear(lower, u, v);
-    if (fraction == 0.0F) return fine;
-    return fine + fraction * (bilinear(lower + 1, u, v) - fine);
+    Samples samples;
+    sample(simd::all_lanes(u), simd::all_lanes(v), simd::all_lanes(footprint), 1, samples);
+    return samples[0];
   }
 
  private:
-  struct Level {
-    std::size_t offset = 0;
-    int side = 0;
-  };
+  /// Rows of side + 1 texels, the last of which repeats the first, so that two neighbours are one load.
+  static constexpr int kChannels = 4;
+  using Float4 [[gnu::vector_size(16)]] = float;
 
   /// Base-2 logarithm that is exact at powers of two and linear between them: monotonic, continuous, cheap.
-  static float log2_piecewise(float x) {
-    const auto bits = std::bit_cast<std::int32_t>(x);
-    return static_cast<float>(bits - (127 << 23)) * 0x1p-23F;
+  static simd::Float8 log2_piecewise(simd::Float8 x) {
+    const auto bits = std::bit_cast<simd::Int8>(x);
+    return simd::to_float(bits - (127 << 23)) * 0x1p-23F;
   }
 
-  [[nodiscard]] Eigen::Array4f bilinear(int level, float u, float v) const {
-    const Level& at = levels_[static_cast<std::size_t>(level)];
-    const float x = u * static_cast<float>(at.side) - 0.5F;
-    const float y = v * static_cast<float>(at.side) - 0.5F;
-    const float floor_x = std::floor(x);
-    const float floor_y = std::floor(y);
-    const int mask = at.side - 1;
-    const int x0 = static_cast<int>(floor_x) & mask;
-    const int y0 = static_cast<int>(floor_y) & mask;
-    const int x1 = (x0 + 1) & mask;
-    const int y1 = (y0 + 1) & mask;
-    const Eigen::Array4f* texels = texels_.data() + at.offset;
-    const Eigen::Array4f* row0 = texels + static_cast<std::ptrdiff_t>(y0) * at.side;
-    const Eigen::Array4f* row1 = texels + static_cast<std::ptrdiff_t>(y1) * at.side;
-    const float fx = x - floor_x;
-    const float fy = y - floor_y;
-    const Eigen::Array4f top = row0[x0] + fx * (row0[x1] - row0[x0]);
-    const Eigen::Array4f bottom = row1[x0] + fx * (row1[x1] - row1[x0]);
-    return top + fy * (bottom - top);
+  /// Where the four texels around a place are, two by two.
+  struct Places {
+    simd::Int8 above, below;   ///< index of the left one
+    simd::Float8 right, down;  ///< shares of the right and the lower ones
+  };
+  [[nodiscard]] Places places(simd::Int8 level, simd::Float8 u, simd::Float8 v) const {
+    const auto scale = std::bit_cast<simd::Float8>((127 - level) << 23);  // 2^-level
+    const simd::Float8 side = static_cast<float>(side_) * scale;
+    const simd::Float8 x = u * side - 0.5F;
+    const simd::Float8 y = v * side - 0.5F;
+    const simd::Int8 floor_x = simd::floor_to_int(x);
+    const simd::Int8 floor_y = simd::floor_to_int(y);
+    const simd::Int8 mask = simd::to_int(side) - 1;
+    const simd::Int8 stride = kChannels * (mask + 2);
+    const simd::Int8 column = simd::gather(offsets_.data(), level) + kChannels * (floor_x & mask);
+    return {column + stride * (floor_y & mask), column + stride * ((floor_y + 1) & mask),
+            x - simd::to_float(floor_x), y - simd::to_float(floor_y)};
   }
+
+  [[nodiscard]] Float4 bilinear(const Places& at, std::size_t lane) const {
+    const simd::Float8 above = simd::load(texels_.data() + at.above[lane]);
+    const simd::Float8 below = simd::load(texels_.data() + at.below[lane]);
+    const simd::Float8 pair = above + at.down[lane] * (below - above);
+    const Float4 left = __builtin_shufflevector(pair, pair, 0, 1, 2, 3);
+    const Float4 right = __builtin_shufflevector(pair, pair, 4, 5, 6, 7);
+    return left + at.right[lane] * (right - left);
+  }
+
+  void add_level(const Image<Eigen::Vector3f>& image);
 
   int side_ = 0;
-  std::vector<Level> levels_;  // full image first, down to one texel
-  std::vector<Eigen::Array4f> texels_;
+  std::vector<std::int32_t> offsets_;  // of the levels in texels_: full image first, down to one texel
+  std::vector<simd::Half> texels_;     // kChannels each
 };
 
 /// sRGB (IEC 61966-2-1) value 0-1 of linear light 0-1, and back.

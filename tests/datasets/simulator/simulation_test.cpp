@@ -167,7 +167,7 @@ TEST_F(Simulation, ErrorsNameTheOption) {
     const auto result = simulate(options, folder_ / "never", one_, {});
     return result ? std::string("no error") : result.error().message;
   };
-  EXPECT_NE(message([](auto& o) { o.blur_samples = 0; }).find("blur_samples = 0"), std::string::npos);
+  EXPECT_NE(message([](auto& o) { o.blur_samples = -1; }).find("blur_samples = -1"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.exposure_s = NAN; }).find("exposure_s"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.duration_s = 0; }).find("duration_s"), std::string::npos);
   EXPECT_NE(message([](auto& o) { o.rate_hz = 25; }, RecordingLayout::icl).find("rate_hz = 25"),

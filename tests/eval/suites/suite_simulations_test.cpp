@@ -101,7 +101,7 @@ TEST_F(SuiteSimulationsTest, RoutesBringTheirScenesAndDurations) {
   ASSERT_TRUE(room && flat);
   EXPECT_EQ(room->room, simulator::RoomKind::furnished);
   EXPECT_EQ(room->duration_s, usual_duration_s(MotionPreset::loop_room));
-  EXPECT_TRUE(room->auto_exposure.on && room->samples_by_motion);
+  EXPECT_TRUE(room->auto_exposure.on && room->blur_samples == 0);
   EXPECT_EQ(flat->room, simulator::RoomKind::flat);
   EXPECT_EQ(flat->duration_s, 120);
   EXPECT_EQ(suite->simulations[3].name, "shake_revisit_0.03s");
@@ -110,7 +110,7 @@ TEST_F(SuiteSimulationsTest, RoutesBringTheirScenesAndDurations) {
     ASSERT_TRUE(shaken);
     EXPECT_FALSE(shaken->auto_exposure.on);
     EXPECT_EQ(shaken->exposure_s, i == 2 ? 0.008 : 0.03);
-    EXPECT_TRUE(shaken->samples_by_motion && shaken->untold_shutters);
+    EXPECT_TRUE(shaken->blur_samples == 0 && shaken->untold_shutters);
   }
 }
 

@@ -112,6 +112,7 @@ TEST(Room, HasCornersInMostViewsAndAPlainPart) {
   ColorSensor sensor;
   sensor.camera.pinhole = {640, 480, 525.0, 525.0, 319.5, 239.5};
   sensor.blur_samples = 4;
+  const simulator::rays::RayField rays(sensor.camera, Workers(1));
   for (const std::uint64_t seed : {1, 2, 3}) {
     const SimulatedScene& room = room_of_seed(seed);
     const Renderer renderer(room);
@@ -119,7 +120,7 @@ TEST(Room, HasCornersInMostViewsAndAPlainPart) {
     for (int i = 0; i < 16; ++i) {
       const SE3 pose = view(room, i * std::numbers::pi / 8, i % 2 == 0 ? 0.1 : 0.5);
       const GreyImage grey =
-          to_grey(expose_color(renderer, sensor, testing::straight_motion(Vector3d::Zero()), pose,
+          to_grey(expose_color(renderer, sensor, rays, testing::straight_motion(Vector3d::Zero()), pose,
                                testing::kHalfSecond_ns, 1, 0, Workers(2)));
       int cells = 0;
       for (int y = 0; y + 20 < grey.height; y += 20) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "datasets/simulator/scene/room.hpp"
+#include "datasets/simulator/sensors/exposure_samples.hpp"
 #include "datasets/simulator/sensors/image_sensors.hpp"
 #include "datasets/simulator/texture/texture.hpp"
 #include "tests/datasets/simulator/simple_scenes.hpp"
@@ -10,9 +11,11 @@
 namespace fusebench {
 
 using namespace simulator::texture;
+using namespace simulator::rays;
 using namespace simulator::scene;
 using namespace simulator::render;
 using namespace simulator::sensors;
+using synthetic_imu::PoseSpline;
 
 namespace {
 
@@ -32,8 +35,9 @@ ColorSensor ideal_sensor(int samples) {
 
 ColorImage expose(const SimulatedScene& scene, const ColorSensor& sensor, const Vector3d& velocity_mps,
                   std::uint64_t seed = 1, std::uint64_t frame = 0, int threads = 1) {
-  return expose_color(Renderer(scene), sensor, straight_motion(velocity_mps), {}, kHalfSecond_ns, seed, frame,
-                      Workers(threads));
+  const Workers workers(threads);
+  return expose_color(Renderer(scene), sensor, RayField(sensor.camera, workers),
+                      straight_motion(velocity_mps), {}, kHalfSecond_ns, seed, frame, workers);
 }
 
 double light_of(const Rgb& pixel) { return linear_from_srgb(pixel[0] / 255.0); }
@@ -96,8 +100,9 @@ TEST(ColorSensor, DistortionIsThatOfTheCameraModel) {
   sensor.camera.distortion = {0.26, -0.95, -0.005, 0.0026, 1.16};
   // An upright edge at x = 0.3 on the plane at 1 m: a curve in the image.
   const SE3 T_body_camera{Quaterniond::Identity(), {-0.3, 0, 0}};
-  const ColorImage image = expose_color(Renderer(edge_at(1)), sensor, straight_motion(Vector3d::Zero()),
-                                        T_body_camera, kHalfSecond_ns, 1, 0, Workers(1));
+  const ColorImage image =
+      expose_color(Renderer(edge_at(1)), sensor, RayField(sensor.camera, Workers(1)),
+                   straight_motion(Vector3d::Zero()), T_body_camera, kHalfSecond_ns, 1, 0, Workers(1));
   const PinholeCamera& camera = sensor.camera.pinhole;
   for (const double y : {-0.3, 0.0, 0.25}) {
     const Vector2d distorted = sensor.camera.distortion.distort({0.3, y});
@@ -198,8 +203,9 @@ TEST(ColorSensor, TheSameBytesForAnyThreadsAndOthersForOtherSeeds) {
   sensor.gain_drift = 0.05;
   const SE3 T_body_camera{so3_exp({-1.6, 0.2, 0.1}), room.free_space.center()};
   const auto image = [&](std::uint64_t seed, std::uint64_t frame, int threads) {
-    return expose_color(renderer, sensor, straight_motion({0.3, 0.2, 0}), T_body_camera, kHalfSecond_ns, seed,
-                        frame, Workers(threads))
+    const Workers workers(threads);
+    return expose_color(renderer, sensor, RayField(sensor.camera, workers), straight_motion({0.3, 0.2, 0}),
+                        T_body_camera, kHalfSecond_ns, seed, frame, workers)
         .data;
   };
   const auto one = image(1, 0, 1);
@@ -207,6 +213,118 @@ TEST(ColorSensor, TheSameBytesForAnyThreadsAndOthersForOtherSeeds) {
   EXPECT_EQ(one, image(1, 0, 3));
   EXPECT_NE(one, image(2, 0, 1));
   EXPECT_NE(one, image(1, 1, 1));
+}
+
+/// The image of one seed without noise, by a number of samples (0: by the motion).
+ColorImage view_of(const Renderer& renderer, const PoseSpline& motion, const SE3& T_body_camera,
+                   double exposure_s, int samples) {
+  ColorSensor sensor = ideal_sensor(samples);
+  sensor.camera.pinhole = {320, 240, 262.0, 262.0, 159.5, 119.5};
+  sensor.exposure_s = exposure_s;
+  return expose_color(renderer, sensor, RayField(sensor.camera, Workers(1)), motion, T_body_camera,
+                      kHalfSecond_ns, 1, 0, Workers(2));
+}
+
+struct ImageDifference {
+  double rms = 0;    ///< grey levels
+  double mean = 0;   ///< first minus second
+  double wrong = 0;  ///< share of pixels that differ by more than 40 grey levels
+};
+ImageDifference difference(const ColorImage& first, const ColorImage& second) {
+  ImageDifference result;
+  const auto count = static_cast<double>(first.data.size());
+  for (std::size_t i = 0; i < first.data.size(); ++i) {
+    const double by = static_cast<double>(first.data[i][1]) - second.data[i][1];
+    result.rms += by * by / count;
+    result.mean += by / count;
+    result.wrong += std::abs(by) > 40 ? 1 / count : 0;
+  }
+  result.rms = std::sqrt(result.rms);
+  return result;
+}
+
+/// The scene with vertices of its own for each triangle: then each triangle is a face, most pixels are at an
+/// edge, and most rays are traced.
+SimulatedScene without_faces(const SimulatedScene& scene) {
+  SimulatedScene apart = scene;
+  apart.mesh.vertices.clear();
+  apart.texture_coordinates.clear();
+  apart.light.clear();
+  for (auto& triangle : apart.mesh.triangles) {
+    for (std::uint32_t& vertex : triangle) {
+      apart.mesh.vertices.push_back(scene.mesh.vertices[vertex]);
+      apart.texture_coordinates.push_back(scene.texture_coordinates[vertex]);
+      apart.light.push_back(scene.light[vertex]);
+      vertex = static_cast<std::uint32_t>(apart.mesh.vertices.size()) - 1;
+    }
+  }
+  return apart;
+}
+
+TEST(ColorSensor, RaysThatAreTriedWithSeenTrianglesShowWhatTracedRaysShow) {
+  const SimulatedScene room = make_room(4);
+  const Renderer renderer(room);
+  const Renderer traced(without_faces(room));
+  // 2 m/s: things at 1 and at 3 m move against each other by 5 px during the exposure.
+  for (const Vector3d& velocity_mps : {Vector3d(0.02, 0, 0), Vector3d(2, 0.5, 0), Vector3d(0.3, -0.4, 1.8)}) {
+    const PoseSpline motion = straight_motion(velocity_mps);
+    for (const double turn_rad : {0.0, 1.3, 2.9}) {
+      const SE3 T_body_camera{so3_exp({0, 0, turn_rad}) * so3_exp({-1.8, 0, 0}), room.free_space.center()};
+      const ImageDifference by = difference(view_of(renderer, motion, T_body_camera, 0.015, 8),
+                                            view_of(traced, motion, T_body_camera, 0.015, 8));
+      EXPECT_LT(by.rms, 0.05) << velocity_mps.transpose() << ' ' << turn_rad;
+      EXPECT_LT(by.wrong, 2e-5);
+    }
+  }
+}
+
+TEST(ColorSensor, ACardHidesTheWallAtEveryInstantOfTheExposure) {
+  // A white card at 1 m before a black wall at 3 m, past which the camera moves by 7 px of the wall against
+  // the card to either side of the middle of the exposure: where the wall is seen in the middle, the card is
+  // later.
+  SimulatedScene scene = plane_at(3, 0);
+  testing::add_rectangle(scene, {-0.1F, -0.1F, 1}, {0.2F, 0, 0}, {0, 0.2F, 0}, kWhite);
+  const double speed_mps = 2;
+  const double exposure_s = 0.04;
+  const ColorImage image = view_of(Renderer(scene), straight_motion({speed_mps, 0, 0}), {}, exposure_s, 64);
+  const double blur_px = 262 * speed_mps * exposure_s;
+  for (int u = 0; u < image.width; ++u) {
+    // The card covers 159.5 +- 26.2 px, and blurs over blur_px: the share of the exposure it is before a
+    // pixel.
+    const double middle = u - 159.5;
+    const double from = std::max(-0.5 * blur_px, -26.2 - middle);
+    const double to = std::min(0.5 * blur_px, 26.2 - middle);
+    EXPECT_NEAR(light_of(image(u, 119)), std::max(0.0, to - from) / blur_px, 0.04) << u;
+  }
+}
+
+TEST(ColorSensor, SamplesByMotionShowWhatManySamplesShow) {
+  const SimulatedScene room = make_room(4);
+  const Renderer renderer(room);
+  const SE3 T_body_camera{so3_exp({0, 0, 0.7}) * so3_exp({-1.8, 0, 0}), room.free_space.center()};
+  for (const double speed_mps : {0.0, 0.1, 0.4, 1.5, 3.0}) {
+    const PoseSpline motion = straight_motion({speed_mps, 0.2 * speed_mps, 0});
+    const ColorImage many = view_of(renderer, motion, T_body_camera, 0.01, 128);
+    const ImageDifference by_motion = difference(view_of(renderer, motion, T_body_camera, 0.01, 0), many);
+    const ImageDifference by_eight = difference(view_of(renderer, motion, T_body_camera, 0.01, 8), many);
+    // Eight samples, which shifts of the pixel's lattice by a tenth of a pixel would exceed as well.
+    EXPECT_LT(by_motion.rms, 1.5 * by_eight.rms + 1.0) << speed_mps;
+    EXPECT_NEAR(by_motion.mean, 0, 0.15) << speed_mps;
+  }
+}
+
+TEST(ColorSensor, TheBlurOfAnImageAtRestDoesNotDependOnTheSamples) {
+  for (const int samples : {1, 2, 3, 4, 8, 16}) {
+    const SampleSet set = sample_set(samples);
+    double variance_px2 = 0.25 * static_cast<double>(set.footprint_px * set.footprint_px);
+    Vector2d mean = Vector2d::Zero();
+    for (const Vector2d& offset : set.offsets_px) {
+      variance_px2 += 0.5 * offset.squaredNorm() / samples;
+      mean += offset / samples;
+    }
+    EXPECT_NEAR(variance_px2, 1.0 / 12 + 1.0 / 32, 0.012) << samples;
+    EXPECT_LT(mean.norm(), 0.02) << samples;
+  }
 }
 
 }  // namespace
