@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/config/config.hpp"
 #include "core/paper_system.hpp"
 #include "core/systems/bundlefusion/bundlefusion_system.hpp"
 #include "core/systems/elasticfusion/elasticfusion_system.hpp"
@@ -20,10 +21,22 @@ MadeSystem make_filter(const config::Config& config, const SensorRig& rig, std::
   return std::make_unique<PaperSystem>(config, rig, imu, workers);
 }
 
-template <class WithoutImu>
-MadeSystem make_without_imu(const config::Config& config, const SensorRig& rig,
-                            std::span<const ImuSample> /*imu*/, const Workers& workers) {
-  return std::make_unique<WithoutImu>(config, rig, workers);
+MadeSystem make_infinitam(const config::Config& config, const SensorRig& rig,
+                          std::span<const ImuSample> /*imu*/, const Workers& workers) {
+  return std::make_unique<systems::infinitam::InfinitamSystem>(config.infinitam, config.depth, config.tsdf,
+                                                               rig, workers);
+}
+
+MadeSystem make_opencv_odometry(const config::Config& config, const SensorRig& rig,
+                                std::span<const ImuSample> /*imu*/, const Workers& workers) {
+  return std::make_unique<systems::opencv_odometry::OpencvOdometrySystem>(
+      config.opencv_odometry.method, config.depth, config.tsdf, rig, workers);
+}
+
+MadeSystem make_bundlefusion(const config::Config& config, const SensorRig& rig,
+                             std::span<const ImuSample> /*imu*/, const Workers& workers) {
+  return std::make_unique<systems::bundlefusion::BundlefusionSystem>(config.bundlefusion, config.depth,
+                                                                     config.tsdf, rig, workers);
 }
 
 MadeSystem make_elasticfusion(const config::Config& config, const SensorRig& rig,
@@ -40,16 +53,15 @@ constexpr std::array kSystems = {
     SystemRow{config::SystemMethod::infinitam, "infinitam",
               "InfiniTAM's trackers and relocaliser (Kaehler et al. 2015, Glocker et al. 2015) on this "
               "program's TSDF and ray casting",
-              "infinitam depth tsdf", kAnyThreads, &make_without_imu<systems::infinitam::InfinitamSystem>},
+              "infinitam depth tsdf", kAnyThreads, &make_infinitam},
     SystemRow{config::SystemMethod::opencv_odometry, "opencv_odometry",
               "OpenCV's odometries (module rgbd) from frame to frame, fused by this program's TSDF",
-              "opencv_odometry depth tsdf", kAnyThreads,
-              &make_without_imu<systems::opencv_odometry::OpencvOdometrySystem>},
+              "opencv_odometry depth tsdf", kAnyThreads, &make_opencv_odometry},
     SystemRow{
         config::SystemMethod::bundlefusion, "bundlefusion",
         "BundleFusion's chunks of matched keypoints and depth, adjusted all together (Dai et al. 2017), "
         "fused at the end by this program's TSDF",
-        "bundlefusion depth tsdf", kAnyThreads, &make_without_imu<systems::bundlefusion::BundlefusionSystem>},
+        "bundlefusion depth tsdf", kAnyThreads, &make_bundlefusion},
     SystemRow{config::SystemMethod::elasticfusion, "elasticfusion",
               "ElasticFusion's surfels (Whelan et al. 2015), tracked by colour and depth together and bent "
               "where places are seen again",

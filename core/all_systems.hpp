@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/system.hpp"
 
 namespace fusebench::core {

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "core/alignment/reference_points.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/terms_config.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::core {
@@ -13,7 +15,7 @@ void FramePreparation::prepare(const RgbdFrame& frame, const filter::FilterState
   const health::StageClock clock(stages, health::Stage::preprocess);
   source_ = &frame;
   timing_ = preprocessing::estimated_timing(frame, rig_.timing, motion.sensors);
-  compensated_ = config_.terms.motion_compensation && !timing_.is_one_instant();
+  compensated_ = terms_.motion_compensation && !timing_.is_one_instant();
   if (compensated_) {
     motion_ = motion;
     velocity_ = preprocessing::camera_velocity(motion, rig_.T_imu_camera);
@@ -21,8 +23,8 @@ void FramePreparation::prepare(const RgbdFrame& frame, const filter::FilterState
   } else {
     frame_ = frame;
   }
-  build_pyramid(frame_.grey, alignment::pyramid_levels(rig_.camera, config_), pyramid_);
-  preprocessing::gate_depth(frame_.depth_m, config_.depth, ungated_depth_m_);
+  build_pyramid(frame_.grey, alignment::pyramid_levels(rig_.camera, patches_.levels, alignment_), pyramid_);
+  preprocessing::gate_depth(frame_.depth_m, depth_, ungated_depth_m_);
   std::swap(frame_.depth_m, ungated_depth_m_);
 }
 
@@ -39,6 +41,15 @@ void FramePreparation::prepare_color(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::preprocess);
   preprocessing::compensate_color(*source_, rig_.camera, timing_, velocity_, ungated_depth_m_, workers_,
                                   frame_.color);
+}
+
+std::span<const GreyImage> FramePreparation::pyramid() const {
+  return std::span(pyramid_).first(static_cast<std::size_t>(patches_.levels));
+}
+
+const DepthImage& FramePreparation::patch_depth_m() const {
+  const bool ungated = patches_.reference_surface == config::ReferenceSurface::frame_ungated;
+  return ungated ? ungated_depth_m_ : frame_.depth_m;
 }
 
 }  // namespace fusebench::core

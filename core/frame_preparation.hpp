@@ -6,7 +6,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/health/stage_times.hpp"
 #include "core/measurement/patch_measurement.hpp"
@@ -19,8 +19,15 @@ namespace fusebench::core {
 class FramePreparation {
  public:
   /// All references must outlive it.
-  FramePreparation(const config::Config& config, const SensorRig& rig, const Workers& workers)
-      : config_(config), rig_(rig), workers_(workers) {}
+  FramePreparation(const config::TermsConfig& terms, const config::PatchConfig& patches,
+                   const config::DepthConfig& depth, const config::AlignmentConfig& alignment,
+                   const SensorRig& rig, const Workers& workers)
+      : terms_(terms),
+        patches_(patches),
+        depth_(depth),
+        alignment_(alignment),
+        rig_(rig),
+        workers_(workers) {}
 
   /// Grey and depth, compensated for the motion (if rows or depth are of other instants than the frame, as
   /// far as the state knows, and the variant undoes that) and gated. Colour has to wait for prepare_color().
@@ -48,22 +55,20 @@ class FramePreparation {
 
   [[nodiscard]] const RgbdFrame& frame() const { return frame_; }
   /// The levels that patches have.
-  [[nodiscard]] std::span<const GreyImage> pyramid() const {
-    return std::span(pyramid_).first(static_cast<std::size_t>(config_.patches.levels));
-  }
+  [[nodiscard]] std::span<const GreyImage> pyramid() const;
   /// And the coarser ones that whole images are aligned by.
   [[nodiscard]] std::span<const GreyImage> whole_pyramid() const { return pyramid_; }
   /// Depth that patches are cut by: gated or, if the configuration says so, not.
-  [[nodiscard]] const DepthImage& patch_depth_m() const {
-    const bool ungated = config_.patches.reference_surface == config::ReferenceSurface::frame_ungated;
-    return ungated ? ungated_depth_m_ : frame_.depth_m;
-  }
+  [[nodiscard]] const DepthImage& patch_depth_m() const;
   [[nodiscard]] measurement::ObservedFrame observed(const Novelty& novelty) const {
     return {pyramid(), frame_.depth_m, novelty.color, novelty.depth};
   }
 
  private:
-  const config::Config& config_;
+  const config::TermsConfig& terms_;
+  const config::PatchConfig& patches_;
+  const config::DepthConfig& depth_;
+  const config::AlignmentConfig& alignment_;
   const SensorRig& rig_;
   const Workers& workers_;
   std::vector<GreyImage> pyramid_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/config/config.hpp"
+
 namespace fusebench::core {
 
 namespace {
@@ -42,6 +44,11 @@ measurement::ReadoutMotion readout_motion(const filter::FilterState& prior, cons
   motion.tells_color_readout = change_radps > kLeastSignal * noise_radps;
   return motion;
 }
+
+FrameUpdate::FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers)
+    : config_(config),
+      search_(config.alignment, config.patches.levels, config.photometric, config.iekf, rig),
+      measurement_(config, rig, workers) {}
 
 filter::IekfResult FrameUpdate::run_from(const filter::MeasuredVector& start,
                                          const filter::GaussianState& prior, const Tracking& last,

@@ -4,7 +4,7 @@
 
 #include "core/alignment/start_search.hpp"
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/frame_preparation.hpp"
 #include "core/measurement/patch_measurement.hpp"
@@ -16,8 +16,7 @@ namespace fusebench::core {
 class FrameUpdate {
  public:
   /// All references must outlive it.
-  FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers)
-      : config_(config), search_(config, rig), measurement_(config, rig, workers) {}
+  FrameUpdate(const config::Config& config, const SensorRig& rig, const Workers& workers);
 
   /// Updates the prior by the patches of the last frames in the prepared frame. Where the prediction is
   /// uncertain and the patches are hardly recognised, the update starts once more from the coarsest level,

@@ -4,6 +4,9 @@
 
 #include <tuple>
 
+#include "core/config/groups/health_config.hpp"
+#include "core/config/groups/prediction_config.hpp"
+#include "core/config/groups/terms_config.hpp"
 #include "core/prediction/motion_prior.hpp"
 
 namespace fusebench::core {
@@ -16,9 +19,9 @@ void repeat_last(const Tracking& now, const SensorRig& rig, health::FrameReport&
   report.model_blocks = now.model.block_count();
 }
 
-bool is_carried_on(const Tracking& now, const Novelty& novelty, const config::Config& config) {
-  return !novelty.color && config.terms.prior == config::Prior::constant_velocity &&
-         config.terms.photometric_weight > 0 && now.estimate && now.lost_frames == 0 && !now.carried_on;
+bool is_carried_on(const Tracking& now, const Novelty& novelty, const config::TermsConfig& terms) {
+  return !novelty.color && terms.prior == config::Prior::constant_velocity && terms.photometric_weight > 0 &&
+         now.estimate && now.lost_frames == 0 && !now.carried_on;
 }
 
 void carry_on(Tracking& now, const filter::GaussianState& predicted, std::int64_t now_ns,
@@ -35,15 +38,16 @@ void carry_on(Tracking& now, const filter::GaussianState& predicted, std::int64_
   report.model_blocks = now.model.block_count();
 }
 
-void keep_moving(Tracking& now, std::int64_t now_ns, const SensorRig& rig, const config::Config& config,
+void keep_moving(Tracking& now, std::int64_t now_ns, const SensorRig& rig,
+                 const config::HealthConfig& health_options, const config::MotionConfig& motion,
                  health::FrameReport& report) {
   report.health = health::FrameHealth::diverged;
   report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
                               health::to_string(report.health));
-  std::ignore = now.occlusion_gate.admits(report, config.health);
+  std::ignore = now.occlusion_gate.admits(report, health_options);
   if (!now.estimate) return;
-  now.estimate = prediction::predict_by_constant_velocity(
-                     *now.estimate, seconds_between(now.timestamp_ns, now_ns), config.motion)
+  now.estimate = prediction::predict_by_constant_velocity(*now.estimate,
+                                                          seconds_between(now.timestamp_ns, now_ns), motion)
                      .state;
   ++now.frames;
   ++now.lost_frames;

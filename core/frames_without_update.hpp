@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/health/frame_report.hpp"
 #include "core/tracking_state.hpp"
 
@@ -18,12 +18,13 @@ void repeat_last(const Tracking& tracking, const SensorRig& rig, health::FrameRe
 /// measured by it alone, the pose would be one of another instant. Without an IMU the velocity carries the
 /// state to the frame, once: a colour camera that stalls must not end the tracking by depth.
 [[nodiscard]] bool is_carried_on(const Tracking& tracking, const Novelty& novelty,
-                                 const config::Config& config);
+                                 const config::TermsConfig& terms);
 void carry_on(Tracking& tracking, const filter::GaussianState& predicted, std::int64_t now_ns,
               const SensorRig& rig, health::FrameReport& report);
 
 /// The prediction is not finite: the frame is lost, and the velocity before carries the state to it.
-void keep_moving(Tracking& tracking, std::int64_t now_ns, const SensorRig& rig, const config::Config& config,
+void keep_moving(Tracking& tracking, std::int64_t now_ns, const SensorRig& rig,
+                 const config::HealthConfig& health_options, const config::MotionConfig& motion,
                  health::FrameReport& report);
 
 }  // namespace fusebench::core

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/pipeline.hpp"
 #include "core/systems/system.hpp"
 

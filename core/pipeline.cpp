@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
@@ -39,7 +40,7 @@ struct Pipeline::State final : RestartableEstimator {
         rig(rig_in),
         imu(imu_in),
         workers(workers_in),
-        preparation(config, rig, workers),
+        preparation(config.terms, config.patches, config.depth, config.alignment, rig, workers),
         deformed_update(config, rig, workers),
         tracking(std::in_place, config, rig) {
     // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
@@ -103,10 +104,10 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
   const Result<filter::GaussianState> predicted = predict(frame.capture_ns(), report.stages);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
   if (!filter::is_valid(*predicted)) {
-    keep_moving(now, frame.capture_ns(), rig, config, report);
+    keep_moving(now, frame.capture_ns(), rig, config.health, config.motion, report);
     return report;
   }
-  if (is_carried_on(now, novelty, config)) {
+  if (is_carried_on(now, novelty, config.terms)) {
     carry_on(now, *predicted, frame.capture_ns(), rig, report);
     return report;
   }
@@ -130,7 +131,8 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
     refresh(report.stages);  // Sec. 2.3: patch update
   }
   if (report.status == health::FrameStatus::initialised)
-    report.health = health::judge_start(preparation.observed(novelty), now.reference.patches.size(), config);
+    report.health = health::judge_start(preparation.observed(novelty), now.reference.patches.size(),
+                                        config.health, config.iekf, config.patches.size_px);
   health::describe_state(*now.estimate, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
   return report;
@@ -164,8 +166,12 @@ void Pipeline::State::restart(const std::optional<filter::FilterState>& motion) 
 Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
                                                        health::StageTimes& stages) const {
   const health::StageClock clock(stages, health::Stage::predict);
-  if (!tracking->estimate) return prediction::initial_state(imu, now_ns, rig, config, initial_motion);
-  return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig, config);
+  if (!tracking->estimate)
+    return prediction::initial_state(imu, now_ns, rig, config.terms, config.initialisation,
+                                     config.self_calibration, initial_motion);
+  return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig,
+                                   config.terms, config.motion, config.initialisation,
+                                   config.self_calibration);
 }
 
 health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
@@ -218,9 +224,11 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   if (config.terms.patch_motion == config::PatchMotion::own_translation && novelty.color)
     deformed_update.move_patches_alone(prior);
   const std::span<const measurement::PatchOutcome> outcomes = deformed_update.measurement().outcomes();
-  health::describe_update(deformed_update.measurement(), update, now.reference.patches, config, report);
-  report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config);
-  report.reason = health::rejection_reason(report, after_gap, config);
+  health::describe_update(deformed_update.measurement(), update, now.reference.patches, config.health,
+                          config.iekf, report);
+  report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config.health,
+                                       config.iekf, config.patches.size_px);
+  report.reason = health::rejection_reason(report, after_gap, config.terms, config.iekf, config.health);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     now.residual_scale = {std::max(1.0, now.residual_scale.photometric),
@@ -237,7 +245,8 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
   if (report.health == health::FrameHealth::good && !novelty.complete())
     report.health = health::FrameHealth::repeated;
   if (report.health != health::FrameHealth::occluded && novelty.complete())
-    now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config);
+    now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config.iekf,
+                                                     config.photometric, config.geometric);
   health::find_survivors(now.reference.patches, outcomes, config.patches, now.survivors);
   return true;
 }
@@ -320,7 +329,8 @@ void Pipeline::State::refresh(health::StageTimes& stages) {
 
 void Pipeline::State::cut_patches() {
   Tracking& now = *tracking;
-  patches::refresh_patches(reference_frame(), now.model, now.survivors, config, workers, patch_workspace,
+  patches::refresh_patches(reference_frame(), now.model, now.survivors,
+                           {config.patches, config.depth, config.terms.deformation}, workers, patch_workspace,
                            now.reference.patches);
   now.reference.points.take(preparation.whole_pyramid(), preparation.frame().depth_m, rig.camera,
                             config.alignment);

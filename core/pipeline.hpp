@@ -8,7 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/health/frame_report.hpp"
 #include "core/loops/loop_closure.hpp"
 #include "core/tsdf/tsdf_volume.hpp"

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/config/groups/prediction_config.hpp"
+
 namespace fusebench::core {
 
 namespace {

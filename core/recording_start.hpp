@@ -14,7 +14,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/health/frame_report.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "core/alignment/tracking_reference.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/color_drift.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/health/update_acceptance.hpp"
@@ -24,8 +24,7 @@ namespace fusebench::core {
 /// The complete state of tracking after a frame; a restart replaces it. Buffers without state (images,
 /// workspaces) are elsewhere.
 struct Tracking {
-  Tracking(const config::Config& config, const SensorRig& rig)
-      : model(config.tsdf), relocalisation(config, rig), loops(config, rig), revisits(config, rig.camera) {}
+  Tracking(const config::Config& config, const SensorRig& rig);
 
   tsdf::TsdfVolume model;
   relocalisation::Relocalisation relocalisation;

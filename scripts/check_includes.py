@@ -44,9 +44,11 @@ def read_rooms(text):
 
 
 def namespace_of(folder):
-    """The namespace of a room; that of base is an inline one within fusebench, so its names need no prefix."""
+    """The namespace of a room; names of base need no prefix, and the groups of options are part of config."""
     if folder == "core/base":
         return "fusebench"
+    if folder == "core/config/groups":
+        return "fusebench::config"
     parts = folder.split("/")
     return "::".join(["fusebench", *(parts[1:] or parts)])
 

@@ -5,6 +5,8 @@
 
 #include "core/base/error.hpp"
 #include "core/base/geometry.hpp"
+#include "core/config/groups/alignment_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 
 namespace fusebench::alignment {
 
@@ -26,8 +28,9 @@ Robust huber(double residual, double sigmas) {
 
 }  // namespace
 
-ImageAlignment::ImageAlignment(const config::Config& config, const SensorRig& rig)
-    : config_(config), rig_(rig), brightness_prior_(config.photometric) {}
+ImageAlignment::ImageAlignment(const config::AlignmentConfig& alignment,
+                               const config::PhotometricConfig& photometric, const SensorRig& rig)
+    : alignment_(alignment), photometric_(photometric), rig_(rig), brightness_prior_(photometric) {}
 
 void ImageAlignment::observe(std::span<const GreyImage> pyramid, const ReferencePoints& reference,
                              const SE3& T_world_reference, int coarsest_level) {
@@ -50,8 +53,8 @@ filter::MeasurementQuadratic ImageAlignment::linearise(const filter::PoseHypothe
   const GreyImage& image = pyramid_[static_cast<std::size_t>(level_)];
   const std::span<const ReferencePoint> points = reference_->level(level_);
   used_.assign(points.size(), 0);
-  const double share = 1.0 / config_.alignment.pixels_per_measurement;
-  const double per_noise = 1.0 / config_.photometric.noise_grey;
+  const double share = 1.0 / alignment_.pixels_per_measurement;
+  const double per_noise = 1.0 / photometric_.noise_grey;
   filter::MeasurementQuadratic sum;
   filter::PoseQuadratic& pose = sum.by_reference;
   light_.information.setZero();
@@ -67,7 +70,7 @@ filter::MeasurementQuadratic ImageAlignment::linearise(const filter::PoseHypothe
     const IntensitySample seen = sample_bilinear(image, pixel.x(), pixel.y());
     const double reference = points[i].intensity;
     const double residual = seen.value - (light_.value.x() * reference + light_.value.y());
-    const Robust robust = huber(residual * per_noise, config_.photometric.huber_sigmas);
+    const Robust robust = huber(residual * per_noise, photometric_.huber_sigmas);
     const double weight = share * per_noise * per_noise * robust.weight;
     const Eigen::RowVector3d by_point =
         Eigen::RowVector2d(seen.dx, seen.dy) * camera.camera.projection_jacobian(in_camera);
@@ -95,7 +98,7 @@ double ImageAlignment::trial_cost(const filter::PoseHypothesis& poses, const fil
   const patches::PosedCamera camera = posed(poses);
   const GreyImage& image = pyramid_[static_cast<std::size_t>(level_)];
   const std::span<const ReferencePoint> points = reference_->level(level_);
-  const double per_noise = 1.0 / config_.photometric.noise_grey;
+  const double per_noise = 1.0 / photometric_.noise_grey;
   double cost = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (used_[i] == 0) continue;
@@ -106,9 +109,9 @@ double ImageAlignment::trial_cost(const filter::PoseHypothesis& poses, const fil
     const IntensitySample seen = sample_bilinear(image, std::clamp(pixel.x(), 0.0, image.width - 1.0),
                                                  std::clamp(pixel.y(), 0.0, image.height - 1.0));
     const double residual = seen.value - (light_.trial.x() * points[i].intensity + light_.trial.y());
-    cost += huber(residual * per_noise, config_.photometric.huber_sigmas).cost;
+    cost += huber(residual * per_noise, photometric_.huber_sigmas).cost;
   }
-  return cost / config_.alignment.pixels_per_measurement + brightness_prior_.cost(light_.trial);
+  return cost / alignment_.pixels_per_measurement + brightness_prior_.cost(light_.trial);
 }
 
 }  // namespace fusebench::alignment

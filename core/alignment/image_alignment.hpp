@@ -8,7 +8,7 @@
 
 #include "core/alignment/reference_points.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/measurement/patch_brightness.hpp"
 #include "core/patches/posed_camera.hpp"
@@ -18,7 +18,8 @@ namespace fusebench::alignment {
 class ImageAlignment final : public filter::PoseMeasurement {
  public:
   /// The references must outlive it.
-  ImageAlignment(const config::Config& config, const SensorRig& rig);
+  ImageAlignment(const config::AlignmentConfig& alignment, const config::PhotometricConfig& photometric,
+                 const SensorRig& rig);
 
   /// pyramid: of the frame to align. The views must stay valid.
   void observe(std::span<const GreyImage> pyramid, const ReferencePoints& reference,
@@ -37,7 +38,8 @@ class ImageAlignment final : public filter::PoseMeasurement {
  private:
   [[nodiscard]] patches::PosedCamera posed(const filter::PoseHypothesis& poses) const;
 
-  const config::Config& config_;
+  const config::AlignmentConfig& alignment_;
+  const config::PhotometricConfig& photometric_;
   const SensorRig& rig_;
   measurement::BrightnessPrior brightness_prior_;
   measurement::PatchBrightness light_;

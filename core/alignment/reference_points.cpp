@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.hpp"
+#include "core/config/groups/alignment_config.hpp"
 #include "core/patches/posed_camera.hpp"
 
 namespace fusebench::alignment {
@@ -62,8 +63,8 @@ std::span<const ReferencePoint> ReferencePoints::level(int level) const {
   return levels_[static_cast<std::size_t>(level - finest_)];
 }
 
-int pyramid_levels(const PinholeCamera& camera, const config::Config& config) {
-  return std::max(config.patches.levels, alignment_levels(camera, config.alignment));
+int pyramid_levels(const PinholeCamera& camera, int patch_levels, const config::AlignmentConfig& alignment) {
+  return std::max(patch_levels, alignment_levels(camera, alignment));
 }
 
 }  // namespace fusebench::alignment

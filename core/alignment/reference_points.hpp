@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 
 namespace fusebench::alignment {
 
@@ -34,6 +34,7 @@ class ReferencePoints {
 
 /// Number of pyramid levels of a frame: those of the patches, and those that alignment needs (none where it
 /// is switched off; levels below eight pixels in height are of no use).
-[[nodiscard]] int pyramid_levels(const PinholeCamera& camera, const config::Config& config);
+[[nodiscard]] int pyramid_levels(const PinholeCamera& camera, int patch_levels,
+                                 const config::AlignmentConfig& alignment);
 
 }  // namespace fusebench::alignment

@@ -6,6 +6,9 @@
 #include <limits>
 
 #include "core/base/geometry.hpp"
+#include "core/config/groups/alignment_config.hpp"
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "core/filter/pose_clones.hpp"
 
 namespace fusebench::alignment {
@@ -37,13 +40,19 @@ double landing_sigma_px(const filter::GaussianState& prior, const ReferencePoint
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-StartSearch::StartSearch(const config::Config& config, const SensorRig& rig)
-    : config_(config), rig_(rig), alignment_(config, rig) {}
+StartSearch::StartSearch(const config::AlignmentConfig& alignment, int patch_levels,
+                         const config::PhotometricConfig& photometric, const config::IekfConfig& iekf,
+                         const SensorRig& rig)
+    : config_(alignment),
+      patch_levels_(patch_levels),
+      iekf_(iekf),
+      rig_(rig),
+      alignment_(alignment, photometric, rig) {}
 
 int StartSearch::coarsest_level(double sigma_px, const ReferencePoints& reference) const {
-  const double distance_px = config_.alignment.reach_sigmas * sigma_px;
-  const auto reach_px = [&](int level) { return config_.alignment.reach_px * (1 << level); };
-  if (distance_px <= reach_px(config_.patches.levels - 1)) return -1;
+  const double distance_px = config_.reach_sigmas * sigma_px;
+  const auto reach_px = [&](int level) { return config_.reach_px * (1 << level); };
+  if (distance_px <= reach_px(patch_levels_ - 1)) return -1;
   int level = reference.finest_level();
   while (level < reference.coarsest_level() && distance_px > reach_px(level)) ++level;
   return level;
@@ -57,8 +66,8 @@ FoundStart StartSearch::find(const filter::GaussianState& prior, const Reference
   found.coarsest_level =
       thorough ? reference.coarsest_level() : coarsest_level(found.landing_sigma_px, reference);
   if (found.coarsest_level < 0) return found;
-  config::IekfConfig iterations = config_.iekf;
-  iterations.max_iterations = config_.alignment.max_iterations;
+  config::IekfConfig iterations = iekf_;
+  iterations.max_iterations = config_.max_iterations;
   const SE3 T_world_reference = prior.mean.T_world_imu_reference * rig_.T_imu_camera;
   // The camera moved on as before, or it stands still.
   const std::array<filter::MeasuredVector, 2> starts = {

@@ -7,7 +7,7 @@
 #include "core/alignment/image_alignment.hpp"
 #include "core/alignment/reference_points.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
 
 namespace fusebench::alignment {
@@ -22,7 +22,9 @@ struct FoundStart {
 class StartSearch {
  public:
   /// The references must outlive it.
-  StartSearch(const config::Config& config, const SensorRig& rig);
+  StartSearch(const config::AlignmentConfig& alignment, int patch_levels,
+              const config::PhotometricConfig& photometric, const config::IekfConfig& iekf,
+              const SensorRig& rig);
 
   /// prior: its reference pose is that of the frame that `reference` was taken from. pyramid: of the new
   /// frame. `thorough`: on all levels, whatever the prior says.
@@ -32,7 +34,9 @@ class StartSearch {
  private:
   [[nodiscard]] int coarsest_level(double sigma_px, const ReferencePoints& reference) const;
 
-  const config::Config& config_;
+  const config::AlignmentConfig& config_;
+  int patch_levels_;
+  const config::IekfConfig& iekf_;
   const SensorRig& rig_;
   ImageAlignment alignment_;
 };

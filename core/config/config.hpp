@@ -1,20 +1,23 @@
 // Every option of the estimator, declared once: name, default, range and one sentence (with its source). The
-// groups are in headers of their own, in the order of the data's way.
+// groups are in core/config/groups, in the order of the data's way.
 // The file reader, --set, range checks, `fusebench config`, docs/configuration.md and the configuration hash
 // all derive from the visit() of each struct (see options.hpp). A field without an option does not compile.
 #pragma once
 
-#include "core/config/evaluation_config.hpp"
-#include "core/config/filter_config.hpp"
-#include "core/config/frame_config.hpp"
-#include "core/config/health_config.hpp"
-#include "core/config/loops_config.hpp"
+#include "core/config/groups/alignment_config.hpp"
+#include "core/config/groups/evaluation_config.hpp"
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/health_config.hpp"
+#include "core/config/groups/loops_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/prediction_config.hpp"
+#include "core/config/groups/relocalisation_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
+#include "core/config/groups/systems_config.hpp"
+#include "core/config/groups/terms_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/config/options.hpp"
-#include "core/config/patches_config.hpp"
-#include "core/config/prediction_config.hpp"
-#include "core/config/relocalisation_config.hpp"
-#include "core/config/systems_config.hpp"
-#include "core/config/terms_config.hpp"
 
 namespace fusebench::config {
 

@@ -10,6 +10,7 @@
 
 #include "core/base/nearest_name.hpp"
 #include "core/base/printable.hpp"
+#include "core/config/config.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/io/fingerprint.hpp"
 
@@ -257,8 +258,19 @@ Result<void> check_relations(const Config& config) {
   return check_place_relations(config);
 }
 
+EffectiveConfig::EffectiveConfig() : values_(std::make_unique<Config>()) {}
+EffectiveConfig::EffectiveConfig(const EffectiveConfig& other)
+    : origins(other.origins), values_(std::make_unique<Config>(*other.values_)) {}
+EffectiveConfig::EffectiveConfig(EffectiveConfig&& other) noexcept = default;
+EffectiveConfig& EffectiveConfig::operator=(const EffectiveConfig& other) {
+  if (this != &other) *this = EffectiveConfig(other);
+  return *this;
+}
+EffectiveConfig& EffectiveConfig::operator=(EffectiveConfig&& other) noexcept = default;
+EffectiveConfig::~EffectiveConfig() = default;
+
 Result<void> EffectiveConfig::set(std::string_view key, const OptionValue& value, const std::string& origin) {
-  if (auto done = set_option(values, key, value); !done)
+  if (auto done = set_option(*values_, key, value); !done)
     return tl::unexpected(with_origin(done.error(), origin));
   origins[std::string(key)] = origin;
   return {};
@@ -297,7 +309,7 @@ Result<void> apply_config_file(EffectiveConfig& config, const std::filesystem::p
   const auto document = read_toml(file);
   if (!document) return tl::unexpected(document.error());
   for (const TomlTable& table : document->tables) {
-    if (auto known = check_group(config.values, table); !known) return known;
+    if (auto known = check_group(config.values(), table); !known) return known;
   }
   for (const TomlEntry& entry : document->entries) {
     const auto* value = std::get_if<OptionValue>(&entry.value);
@@ -308,7 +320,7 @@ Result<void> apply_config_file(EffectiveConfig& config, const std::filesystem::p
     // A file of all options, as `fusebench config` prints it, edits those alone that it changes.
     EffectiveConfig edited = config;
     if (auto done = edited.set(entry.key, *value, entry.place); !done) return done;
-    if (config_hash(edited.values) != config_hash(config.values)) config = std::move(edited);
+    if (config_hash(edited.values()) != config_hash(config.values())) config = std::move(edited);
   }
   return {};
 }

@@ -3,11 +3,14 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/config/config.hpp"
+#include "core/base/error.hpp"
+#include "core/config/groups/config_fwd.hpp"
+#include "core/config/options.hpp"
 
 namespace fusebench::config {
 
@@ -22,8 +25,18 @@ namespace fusebench::config {
 [[nodiscard]] Result<void> check_relations(const Config& config);
 
 /// A configuration and where each value that is not the default came from.
-struct EffectiveConfig {
-  Config values;
+class EffectiveConfig {
+ public:
+  EffectiveConfig();  ///< the defaults
+  EffectiveConfig(const EffectiveConfig& other);
+  EffectiveConfig(EffectiveConfig&& other) noexcept;
+  EffectiveConfig& operator=(const EffectiveConfig& other);
+  EffectiveConfig& operator=(EffectiveConfig&& other) noexcept;
+  ~EffectiveConfig();
+
+  [[nodiscard]] const Config& values() const { return *values_; }
+  [[nodiscard]] Config& values() { return *values_; }
+
   std::map<std::string, std::string>
       origins;  ///< key -> "variant dm", "my.toml:12", "--set"; absent = default
 
@@ -35,6 +48,9 @@ struct EffectiveConfig {
   [[nodiscard]] Result<void> set(std::string_view key, const OptionValue& value, const std::string& origin);
   /// "key=value", as `--set` takes it.
   [[nodiscard]] Result<void> set_assignment(std::string_view assignment);
+
+ private:
+  std::unique_ptr<Config> values_;  // held by pointer, so that few sources depend on the list of options
 };
 
 /// Parses an untyped value: true/false, integer, number, else text.

@@ -2,26 +2,13 @@
 // (reading, writing, range checks, documentation, hashing) is a visitor.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <type_traits>
-#include <utility>
 #include <variant>
-#include <vector>
-
-#include "core/base/error.hpp"
 
 namespace fusebench::config {
-
-/// Names of an enumeration's values, in the order in which they are documented.
-template <class Enum, std::size_t N>
-constexpr std::array<std::pair<std::string_view, Enum>, N> choices(
-    const std::pair<std::string_view, Enum> (&list)[N]) {
-  return std::to_array(list);
-}
 
 /// A value as it comes from a file or the command line, before it meets an option.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;

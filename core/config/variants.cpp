@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/nearest_name.hpp"
+#include "core/config/config.hpp"
 
 namespace fusebench::config {
 
@@ -129,6 +130,11 @@ EffectiveConfig variant_config(const Variant& variant) {
     check(set.has_value(), "the table of variants edits existing options");
   }
   return config;
+}
+
+bool needs_imu(const Config& config) {
+  return (config.system.method == SystemMethod::filter && config.terms.prior == Prior::imu) ||
+         (config.system.method == SystemMethod::elasticfusion && config.elasticfusion.use_imu);
 }
 
 }  // namespace fusebench::config

@@ -4,8 +4,9 @@
 #include <span>
 #include <string_view>
 
-#include "core/config/config.hpp"
+#include "core/base/error.hpp"
 #include "core/config/config_access.hpp"
+#include "core/config/groups/config_fwd.hpp"
 
 namespace fusebench::config {
 
@@ -27,9 +28,6 @@ struct Variant {
 [[nodiscard]] EffectiveConfig variant_config(const Variant& variant);
 
 /// True if the effective configuration cannot run without inertial samples.
-[[nodiscard]] inline bool needs_imu(const Config& config) {
-  return (config.system.method == SystemMethod::filter && config.terms.prior == Prior::imu) ||
-         (config.system.method == SystemMethod::elasticfusion && config.elasticfusion.use_imu);
-}
+[[nodiscard]] bool needs_imu(const Config& config);
 
 }  // namespace fusebench::config

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/groups/filter_config.hpp"
+
 namespace fusebench::filter {
 
 void ColorDrift::observe(const Vector6d& correction_imu, const config::ColorDriftConfig& config) {

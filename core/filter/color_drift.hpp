@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
-#include "core/config/filter_config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 
 namespace fusebench::filter {
 

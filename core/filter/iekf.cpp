@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "core/config/groups/filter_config.hpp"
+
 namespace fusebench::filter {
 
 namespace {

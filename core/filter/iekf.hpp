@@ -9,7 +9,7 @@
 // their correlations.
 #pragma once
 
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/filter/pose_clones.hpp"
 

@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <numeric>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/health_config.hpp"
+
 namespace fusebench::health {
 
 namespace {
@@ -64,8 +67,9 @@ std::string_view to_string(FrameHealth health) {
 
 FrameHealth judge_health(const measurement::ObservedFrame& frame,
                          std::span<const measurement::PatchOutcome> outcomes, double blur_px,
-                         const config::Config& config) {
-  if (mean_grey(frame.pyramid.back()) < config.health.dark_grey) return FrameHealth::dark;
+                         const config::HealthConfig& health, const config::IekfConfig& iekf,
+                         int patch_size_px) {
+  if (mean_grey(frame.pyramid.back()) < health.dark_grey) return FrameHealth::dark;
   int in_view = 0, covered = 0, tracked = 0, accepted = 0;
   for (const measurement::PatchOutcome& outcome : outcomes) {
     in_view += outcome.in_view ? 1 : 0;
@@ -73,22 +77,22 @@ FrameHealth judge_health(const measurement::ObservedFrame& frame,
     tracked += outcome.tracked ? 1 : 0;
     accepted += outcome.accepted ? 1 : 0;
   }
-  if (in_view > 0 && covered > config.health.covered_share * in_view) return FrameHealth::occluded;
-  if (depth_share(frame.depth_m) < config.health.min_depth_share) return FrameHealth::short_of_depth;
-  if (texture_share(frame.pyramid.back(), config.health.texture_gradient_grey) <
-      config.health.min_texture_share)
+  if (in_view > 0 && covered > health.covered_share * in_view) return FrameHealth::occluded;
+  if (depth_share(frame.depth_m) < health.min_depth_share) return FrameHealth::short_of_depth;
+  if (texture_share(frame.pyramid.back(), health.texture_gradient_grey) < health.min_texture_share)
     return FrameHealth::short_of_texture;
   if (tracked > 0 && 2 * accepted < tracked) return FrameHealth::inconsistent;
-  if (accepted < config.iekf.min_patches && !outcomes.empty()) return FrameHealth::short_of_patches;
-  if (blur_px > config.patches.size_px) return FrameHealth::blurred;
+  if (accepted < iekf.min_patches && !outcomes.empty()) return FrameHealth::short_of_patches;
+  if (blur_px > patch_size_px) return FrameHealth::blurred;
   return FrameHealth::good;
 }
 
 FrameHealth judge_start(const measurement::ObservedFrame& frame, std::size_t patches,
-                        const config::Config& config) {
-  const FrameHealth images = judge_health(frame, {}, 0.0, config);
+                        const config::HealthConfig& health, const config::IekfConfig& iekf,
+                        int patch_size_px) {
+  const FrameHealth images = judge_health(frame, {}, 0.0, health, iekf, patch_size_px);
   if (images == FrameHealth::dark) return images;
-  if (patches >= static_cast<std::size_t>(config.iekf.min_patches)) return FrameHealth::good;
+  if (patches >= static_cast<std::size_t>(iekf.min_patches)) return FrameHealth::good;
   return images == FrameHealth::good ? FrameHealth::short_of_patches : images;
 }
 

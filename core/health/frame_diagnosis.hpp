@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/measurement/patch_measurement.hpp"
 
 namespace fusebench::health {
@@ -31,11 +31,13 @@ enum class FrameHealth {
 /// and the predicted length of its motion blur.
 [[nodiscard]] FrameHealth judge_health(const measurement::ObservedFrame& frame,
                                        std::span<const measurement::PatchOutcome> outcomes, double blur_px,
-                                       const config::Config& config);
+                                       const config::HealthConfig& health, const config::IekfConfig& iekf,
+                                       int patch_size_px);
 
 /// Judges a frame as the first one, from which `patches` usable ones were cut: good if the next frame can be
 /// tracked from it. Without light, or with fewer patches than iekf.min_patches, it cannot.
 [[nodiscard]] FrameHealth judge_start(const measurement::ObservedFrame& frame, std::size_t patches,
-                                      const config::Config& config);
+                                      const config::HealthConfig& health, const config::IekfConfig& iekf,
+                                      int patch_size_px);
 
 }  // namespace fusebench::health

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/health_config.hpp"
 #include "core/filter/pose_clones.hpp"
 
 namespace fusebench::health {
@@ -40,8 +42,8 @@ void describe_certainty(const filter::GaussianState& estimate, FrameReport& repo
 }
 
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
-                     std::span<const patches::Patch> patches, const config::Config& config,
-                     FrameReport& report) {
+                     std::span<const patches::Patch> patches, const config::HealthConfig& health,
+                     const config::IekfConfig& iekf, FrameReport& report) {
   double chi2_photometric = 0;
   double chi2_geometric = 0;
   std::vector<double> motion_px, correlations;
@@ -53,7 +55,7 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
     report.patches_contradicting += outcome.contradicts_color ? 1 : 0;
     report.patches_shrunk += outcome.tracked && outcome.shrunk ? 1 : 0;
     report.patches_extended += outcome.tracked && outcome.extended ? 1 : 0;
-    if (outcome.tracked && outcome.contrast_grey >= config.health.min_contrast_grey)
+    if (outcome.tracked && outcome.contrast_grey >= health.min_contrast_grey)
       correlations.push_back(outcome.correlation);
     if (outcome.tracked) motion_px.push_back((outcome.centre_px - patch.centre_px.cast<double>()).norm());
     if (!outcome.accepted) continue;
@@ -66,7 +68,7 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
   if (report.pixels_photometric > 0) report.chi2_photometric = chi2_photometric / report.pixels_photometric;
   if (report.pixels_geometric > 0) report.chi2_geometric = chi2_geometric / report.pixels_geometric;
   report.patch_motion_px = median(motion_px);
-  if (measurement.color_is_new() && correlations.size() >= static_cast<std::size_t>(config.iekf.min_patches))
+  if (measurement.color_is_new() && correlations.size() >= static_cast<std::size_t>(iekf.min_patches))
     report.correlation = median(correlations);
   report.variance_photometric = measurement.photometric_variance();
   report.variance_geometric = measurement.geometric_variance();

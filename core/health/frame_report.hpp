@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/intensity_residual.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/health/frame_diagnosis.hpp"
@@ -71,7 +72,7 @@ void describe_certainty(const filter::GaussianState& estimate, FrameReport& repo
 
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
-                     std::span<const patches::Patch> patches, const config::Config& config,
-                     FrameReport& report);
+                     std::span<const patches::Patch> patches, const config::HealthConfig& health,
+                     const config::IekfConfig& iekf, FrameReport& report);
 
 }  // namespace fusebench::health

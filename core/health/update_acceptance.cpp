@@ -2,39 +2,45 @@
 
 #include <fmt/format.h>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/health_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/terms_config.hpp"
+
 namespace fusebench::health {
 
-bool fails_chi2_gate(const FrameReport& report, const config::Config& config) {
-  return config.terms.photometric_weight > 0 && report.chi2_photometric > config.health.max_chi2_after_gap;
+bool fails_chi2_gate(const FrameReport& report, const config::TermsConfig& terms,
+                     const config::HealthConfig& health) {
+  return terms.photometric_weight > 0 && report.chi2_photometric > health.max_chi2_after_gap;
 }
 
-std::string rejection_reason(const FrameReport& report, bool after_gap, const config::Config& config) {
-  if (report.patches_accepted < config.iekf.min_patches) {
+std::string rejection_reason(const FrameReport& report, bool after_gap, const config::TermsConfig& terms,
+                             const config::IekfConfig& iekf, const config::HealthConfig& health) {
+  if (report.patches_accepted < iekf.min_patches) {
     return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
-                       report.patches_accepted, report.patches, config.iekf.min_patches);
+                       report.patches_accepted, report.patches, iekf.min_patches);
   }
-  if (config.terms.relocalisation &&
-      (report.model_rotation_sigma_rad > radians(config.health.max_rotation_sigma_deg) ||
-       report.model_position_sigma_m > config.health.max_position_sigma_m)) {
+  if (terms.relocalisation && (report.model_rotation_sigma_rad > radians(health.max_rotation_sigma_deg) ||
+                               report.model_position_sigma_m > health.max_position_sigma_m)) {
     return fmt::format(
         "uncertain: the pose against the model is known to {:.2f} degrees and {:.1f} cm "
         "(health.max_rotation_sigma_deg = {}, health.max_position_sigma_m = {})",
         degrees(report.model_rotation_sigma_rad), 100 * report.model_position_sigma_m,
-        config.health.max_rotation_sigma_deg, config.health.max_position_sigma_m);
+        health.max_rotation_sigma_deg, health.max_position_sigma_m);
   }
   // Whatever the frame suffers from: a pose that most of the intensities contradict is none.
-  if (config.terms.relocalisation && 2 * report.patches_contradicting > report.patches_tracked) {
+  if (terms.relocalisation && 2 * report.patches_contradicting > report.patches_tracked) {
     return fmt::format("inconsistent: the intensities of {} of {} tracked patches do not fit the pose",
                        report.patches_contradicting, report.patches_tracked);
   }
-  if (config.terms.relocalisation && config.terms.photometric_weight > 0 && report.correlation &&
-      *report.correlation < config.health.min_correlation) {
+  if (terms.relocalisation && terms.photometric_weight > 0 && report.correlation &&
+      *report.correlation < health.min_correlation) {
     return fmt::format(
         "the patches are not recognised: their correlation is {:.2f} (health.min_correlation = {})",
-        *report.correlation, config.health.min_correlation);
+        *report.correlation, health.min_correlation);
   }
   // Without relocalisation there is nothing better to turn to.
-  if (after_gap && config.terms.relocalisation && fails_chi2_gate(report, config)) {
+  if (after_gap && terms.relocalisation && fails_chi2_gate(report, terms, health)) {
     return fmt::format("after a gap the patches do not fit: {:.1f} times the variance of their noise",
                        report.chi2_photometric);
   }

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/loops/place_search.hpp"
@@ -28,6 +29,17 @@ double median_depth_m(const DepthImage& depth_m) {
 }
 
 }  // namespace
+
+bool LoopClosure::enabled() const { return config_.loops.mode != config::LoopMode::off; }
+
+bool LoopClosure::may_correct_online() const {
+  return config_.loops.mode == config::LoopMode::online &&
+         corrections_ < config_.loops.max_online_corrections;
+}
+
+Matrix6d LoopClosure::covariance_of(const LoopCandidate& candidate) const {
+  return loop_edge(places_, candidate, config_.loops).covariance;
+}
 
 void LoopClosure::add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera) {
   if (!enabled()) return;
@@ -54,7 +66,8 @@ void LoopClosure::add_fused(const RgbdFrame& frame, const filter::GaussianState&
   fused_since_place_ = 0;
   Place place;
   place.timestamp_ns = frame.timestamp_ns;
-  place.appearance = places::appearance_of(frame, rig_.camera, config_);
+  place.appearance = places::appearance_of(frame, rig_.camera, config_.loops, config_.place_features,
+                                           config_.relocalisation);
   place.view_depth_m = median_depth_m(place.appearance.small.depth_m);
   place.T_world_camera = T_world_camera;
   place.relocalisations = odometry_.relocalisations();

@@ -21,7 +21,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/loops/loop_edges.hpp"
 #include "core/loops/odometry_world.hpp"
@@ -40,7 +40,7 @@ class LoopClosure {
   /// The references must outlive it.
   LoopClosure(const config::Config& config, const SensorRig& rig) : config_(config), rig_(rig) {}
 
-  [[nodiscard]] bool enabled() const { return config_.loops.mode != config::LoopMode::off; }
+  [[nodiscard]] bool enabled() const;
 
   /// A frame that was fused (compensated, gated, with colour), with the estimate that it was fused at.
   void add_fused(const RgbdFrame& frame, const filter::GaussianState& estimate, double blur_px);
@@ -52,10 +52,7 @@ class LoopClosure {
   void add_pose(std::int64_t timestamp_ns, const SE3& T_world_camera);
 
   /// With mode online, as long as there is a correction left.
-  [[nodiscard]] bool may_correct_online() const {
-    return config_.loops.mode == config::LoopMode::online &&
-           corrections_ < config_.loops.max_online_corrections;
-  }
+  [[nodiscard]] bool may_correct_online() const;
   /// With mode online, after the last calls of these two: how the world of the estimate moves
   /// (T_corrected_current), if the frame showed that the poses are wrong. All that is in it, estimate, model
   /// and keyframes, then has to move. Errors: those of optimised_poses().
@@ -81,9 +78,7 @@ class LoopClosure {
   [[nodiscard]] std::span<const Place> places() const { return places_; }
   [[nodiscard]] std::span<const LoopCandidate> candidates() const { return candidates_; }
   /// Of a verified pair's pose: rotation on the right (rad), position in the frame of the known place (m).
-  [[nodiscard]] Matrix6d covariance_of(const LoopCandidate& candidate) const {
-    return loop_edge(places_, candidate, config_.loops).covariance;
-  }
+  [[nodiscard]] Matrix6d covariance_of(const LoopCandidate& candidate) const;
 
  private:
   /// A frame that has a pose.

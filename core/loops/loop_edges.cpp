@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/solvers.hpp"
+#include "core/config/groups/loops_config.hpp"
 #include "core/filter/pose_clones.hpp"
 
 namespace fusebench::loops {

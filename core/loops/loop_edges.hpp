@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/loops/place.hpp"
 #include "core/loops/pose_graph.hpp"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/loops_config.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/raycast/raycast.hpp"
 #include "core/tsdf/tsdf_lanes.hpp"
@@ -28,7 +30,7 @@ void PendingRevisits::look(const tsdf::TsdfVolume& model, const RgbdFrame& frame
   const int rows = cells(camera_.height_px);
   old_.assign(static_cast<std::size_t>(columns * rows), false);
   misfits_.clear();
-  const auto field = tsdf::field_in_view(model, camera_, T_world_camera, config_.depth);
+  const auto field = tsdf::field_in_view(model, camera_, T_world_camera, depth_);
   if (!field) return;
   std::vector<raycast::PixelRay> rays;
   for (int row = 0; row < rows; ++row) {
@@ -36,22 +38,21 @@ void PendingRevisits::look(const tsdf::TsdfVolume& model, const RgbdFrame& frame
       rays.push_back({static_cast<double>(middle_px(column, camera_.width_px)),
                       static_cast<double>(middle_px(row, camera_.height_px))});
   }
-  raycast::raycast_pixels(*field, camera_, T_world_camera, rays, config_.depth, workers, surfaces_);
+  raycast::raycast_pixels(*field, camera_, T_world_camera, rays, depth_, workers, surfaces_);
   for (std::size_t cell = 0; cell < rays.size(); ++cell) {
     const raycast::SurfacePoint& surface = surfaces_[cell];
     const raycast::PixelRay& ray = rays[cell];
     if (!surface.valid) continue;
     const auto place =
         model.nearest_voxel(T_world_camera * camera_.back_project(ray.u_px, ray.v_px, surface.depth_m));
-    if (!place ||
-        seconds_between(model.last_fused_ns(place->slot), frame.timestamp_ns) < config_.loops.least_age_s)
+    if (!place || seconds_between(model.last_fused_ns(place->slot), frame.timestamp_ns) < loops_.least_age_s)
       continue;
     old_[cell] = true;
     const auto measured_m =
         static_cast<double>(frame.depth_m(static_cast<int>(ray.u_px), static_cast<int>(ray.v_px)));
     if (!(measured_m > 0)) continue;
     const double allowed_m =
-        std::max(kLeastMisfit_m, kMisfitSigmas * preprocessing::depth_sigma_m(measured_m, config_.depth));
+        std::max(kLeastMisfit_m, kMisfitSigmas * preprocessing::depth_sigma_m(measured_m, depth_));
     misfits_.push_back(std::abs(measured_m - surface.depth_m) / allowed_m);
   }
 }
@@ -65,15 +66,14 @@ bool PendingRevisits::do_not_fit() const {
 std::optional<DepthImage> PendingRevisits::depth_to_fuse(const tsdf::TsdfVolume& model,
                                                          const RgbdFrame& frame, const SE3& T_world_camera,
                                                          const Workers& workers) {
-  if (config_.loops.max_pending_s == 0) return std::nullopt;  // whatever was seen, so nothing is looked at
+  if (loops_.max_pending_s == 0) return std::nullopt;  // whatever was seen, so nothing is looked at
   look(model, frame, T_world_camera, workers);
   if (!do_not_fit()) {
     pending_since_ns_.reset();
     return std::nullopt;
   }
   if (!pending_since_ns_) pending_since_ns_ = frame.timestamp_ns;
-  if (seconds_between(*pending_since_ns_, frame.timestamp_ns) >= config_.loops.max_pending_s)
-    return std::nullopt;
+  if (seconds_between(*pending_since_ns_, frame.timestamp_ns) >= loops_.max_pending_s) return std::nullopt;
   DepthImage rest_m = frame.depth_m;
   const int columns = cells(camera_.width_px);
   for (int y = 0; y < rest_m.height; ++y) {

@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/raycast/surface_point.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
@@ -17,8 +17,9 @@ namespace fusebench::loops {
 class PendingRevisits {
  public:
   /// Both must outlive it.
-  PendingRevisits(const config::Config& config, const PinholeCamera& camera)
-      : config_(config), camera_(camera) {}
+  PendingRevisits(const config::DepthConfig& depth, const config::LoopsConfig& loops,
+                  const PinholeCamera& camera)
+      : depth_(depth), loops_(loops), camera_(camera) {}
 
   /// What of the frame's depth (metres) may be fused at this pose: all of it but what is seen before, on or
   /// behind surfaces that nothing was fused into for loops.least_age_s, if these do not fit (by median, more
@@ -32,7 +33,8 @@ class PendingRevisits {
             const Workers& workers);
   [[nodiscard]] bool do_not_fit() const;
 
-  const config::Config& config_;
+  const config::DepthConfig& depth_;
+  const config::LoopsConfig& loops_;
   const PinholeCamera& camera_;
   std::optional<std::int64_t> pending_since_ns_;  ///< stamp of the first frame in a row that did not fit
   std::vector<raycast::SurfacePoint> surfaces_;   ///< of the model, a pixel of each cell of the image

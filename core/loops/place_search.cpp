@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/geometry.hpp"
+#include "core/config/groups/loops_config.hpp"
 #include "core/places/smallest_first.hpp"
 
 namespace fusebench::loops {

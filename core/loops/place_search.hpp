@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/loops/place.hpp"
 
 namespace fusebench::loops {

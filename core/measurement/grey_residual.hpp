@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "core/simd/lanes.hpp"
 
 namespace fusebench::measurement {

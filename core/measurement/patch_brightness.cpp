@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "core/config/groups/residuals_config.hpp"
+
 namespace fusebench::measurement {
 
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
 
 namespace fusebench::measurement {

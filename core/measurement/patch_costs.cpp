@@ -2,6 +2,7 @@
 // poses and without derivatives.
 #include <vector>
 
+#include "core/config/groups/residuals_config.hpp"
 #include "core/measurement/grey_residual.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/measurement/posed_levels.hpp"
@@ -11,7 +12,7 @@ namespace fusebench::measurement {
 
 double PatchMeasurement::trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
                                     double fraction) {
-  const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
+  const PosedLevels posed(rig_, poses, stages(), origin_world_);
   std::vector<double> costs(states_.size(), 0.0);
   workers_.for_chunks(states_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -50,9 +51,9 @@ double PatchMeasurement::geometric_cost(std::size_t patch, const PosedLevels& po
 
 double PatchMeasurement::photometric_cost(std::size_t patch, const PosedLevels& posed) const {
   const Weighting weighting = photometric_weighting();
-  const config::Sampling sampling = config_.photometric.sampling;
+  const config::Sampling sampling = photometric_.sampling;
   const GreyResidual residual_of(states_[patch].brightness.trial,
-                                 scale_.photometric * config_.photometric.noise_grey);
+                                 scale_.photometric * photometric_.noise_grey);
   simd::Float8 cost{};
   for (std::size_t l = finest_; l < levels_.size(); ++l) {
     const patches::LevelLanes& lanes = levels_[l].lanes;

@@ -5,6 +5,7 @@
 
 #include "core/base/bits.hpp"
 #include "core/base/error.hpp"
+#include "core/config/config.hpp"
 #include "core/measurement/grey_residual.hpp"
 #include "core/measurement/patch_scatter.hpp"
 #include "core/measurement/patch_squares.hpp"
@@ -31,11 +32,14 @@ Vector3d origin_of(std::span<const patches::Patch> patches) {
 
 PatchMeasurement::PatchMeasurement(const config::Config& config, const SensorRig& rig, const Workers& workers)
     : config_(config),
+      photometric_(config.photometric),
       rig_(rig),
       workers_(workers),
       brightness_prior_(config.photometric),
       gates_(config.geometric, config.depth, scale_.geometric),
       levels_(static_cast<std::size_t>(config.patches.levels)) {}
+
+int PatchMeasurement::stages() const { return config_.patches.levels; }
 
 void PatchMeasurement::observe(const ObservedFrame& frame, std::span<const patches::Patch> patches,
                                const ResidualScale& scale) {
@@ -148,8 +152,8 @@ void PatchMeasurement::associate_planes(std::size_t patch, const PosedLevels& po
 }
 
 PatchMeasurement::Weighting PatchMeasurement::photometric_weighting() const {
-  return {static_cast<float>(weights_.photometric / config_.photometric.pixels_per_measurement),
-          static_cast<float>(config_.photometric.huber_sigmas)};
+  return {static_cast<float>(weights_.photometric / photometric_.pixels_per_measurement),
+          static_cast<float>(photometric_.huber_sigmas)};
 }
 
 PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
@@ -160,8 +164,8 @@ PatchMeasurement::Weighting PatchMeasurement::geometric_weighting() const {
 void PatchMeasurement::sum_photometric(std::size_t patch, const PosedLevels& posed) {
   PatchState& state = states_[patch];
   const Weighting weighting = photometric_weighting();
-  const config::Sampling sampling = config_.photometric.sampling;
-  const GreyResidual residual_of(state.brightness.value, scale_.photometric * config_.photometric.noise_grey);
+  const config::Sampling sampling = photometric_.sampling;
+  const GreyResidual residual_of(state.brightness.value, scale_.photometric * photometric_.noise_grey);
   QuadraticSums sums;
   BrightnessSums light;
   FitSums fit;
@@ -235,8 +239,9 @@ void PatchMeasurement::judge(std::size_t patch, bool gate) {
   outcome.gain = state.brightness.value.x();
   judge_visibility(levels_.front().lanes.pixels_of(patch), levels_.front().lanes.warped_of(patch),
                    frame_->pyramid.front(), config_.patches, outcome);
-  outcome.contradicts_color = outcome.tracked && !fits_color(outcome, config_, weights_);
-  outcome.accepted = outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_, weights_));
+  outcome.contradicts_color = outcome.tracked && !fits_color(outcome, config_.iekf, weights_);
+  outcome.accepted =
+      outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_.iekf, weights_));
   if (!outcome.accepted) {
     // A rejected patch contributes neither its residuals nor its brightness prior.
     state.counts = false;

@@ -11,7 +11,7 @@
 #include "core/base/intensity_residual.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/measurement/patch_brightness.hpp"
 #include "core/measurement/patch_outcome.hpp"
@@ -43,7 +43,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   void observe(const ObservedFrame& frame, std::span<const patches::Patch> patches,
                const ResidualScale& scale);
 
-  [[nodiscard]] int stages() const override { return config_.patches.levels; }
+  [[nodiscard]] int stages() const override;
   [[nodiscard]] filter::MeasurementQuadratic linearise(const filter::PoseHypothesis& poses, int stage,
                                                        bool gate) override;
   [[nodiscard]] double trial_cost(const filter::PoseHypothesis& poses, const filter::TangentVector& step,
@@ -106,6 +106,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   [[nodiscard]] double geometric_cost(std::size_t patch, const PosedLevels& posed) const;
 
   const config::Config& config_;
+  const config::PhotometricConfig& photometric_;  ///< of config_
   const SensorRig& rig_;
   const Workers& workers_;
   std::optional<ObservedFrame> frame_;

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/patches_config.hpp"
 #include "core/patches/patch_deformation.hpp"
 #include "core/simd/image_lanes.hpp"
 
@@ -81,20 +83,20 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
   }
 }
 
-bool fits_color(const PatchOutcome& outcome, const config::Config& config, const TermWeights& weights) {
+bool fits_color(const PatchOutcome& outcome, const config::IekfConfig& config, const TermWeights& weights) {
   const bool photometric =
       weights.photometric <= 0 ||
-      outcome.chi2_photometric <= config.iekf.max_chi2_per_measurement * outcome.photometric_residuals;
+      outcome.chi2_photometric <= config.max_chi2_per_measurement * outcome.photometric_residuals;
   // A patch with a gain near 0 fits any image: a gain far from 1 indicates a wrong match rather than a change
   // of brightness.
   constexpr double kMaxGain = 2.0;
   return photometric && outcome.gain > 1.0 / kMaxGain && outcome.gain < kMaxGain;
 }
 
-bool is_consistent(const PatchOutcome& outcome, const config::Config& config, const TermWeights& weights) {
+bool is_consistent(const PatchOutcome& outcome, const config::IekfConfig& config,
+                   const TermWeights& weights) {
   return fits_color(outcome, config, weights) &&
-         outcome.chi2_geometric <=
-             config.iekf.max_chi2_per_measurement * std::max(1, outcome.geometric_residuals);
+         outcome.chi2_geometric <= config.max_chi2_per_measurement * std::max(1, outcome.geometric_residuals);
 }
 
 }  // namespace fusebench::measurement

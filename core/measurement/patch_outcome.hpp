@@ -5,7 +5,7 @@
 
 #include "core/base/image.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/patches/patch_lanes.hpp"
 
 namespace fusebench::measurement {
@@ -53,10 +53,10 @@ struct TermWeights {
 };
 
 /// The chi-square gate, and a plausible gain. Needs the sums of the residuals and the gain.
-[[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::Config& config,
+[[nodiscard]] bool is_consistent(const PatchOutcome& outcome, const config::IekfConfig& config,
                                  const TermWeights& weights);
 /// The part of it that is of colour.
-[[nodiscard]] bool fits_color(const PatchOutcome& outcome, const config::Config& config,
+[[nodiscard]] bool fits_color(const PatchOutcome& outcome, const config::IekfConfig& config,
                               const TermWeights& weights);
 
 }  // namespace fusebench::measurement

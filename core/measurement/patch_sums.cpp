@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "core/patches/measured_surfaces.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
@@ -83,14 +85,14 @@ Eigen::Matrix<double, 2, filter::kPoseSize> BrightnessSums::by_pose() const {
   return sum;
 }
 
-AssociationGates::AssociationGates(const config::GeometricConfig& geometric,
-                                   const config::DepthConfig& depth_in, double scale)
+AssociationGates::AssociationGates(const config::GeometricConfig& geometric, const config::DepthConfig& depth,
+                                   double scale)
     : max_distance_m(static_cast<float>(geometric.max_distance_m)),
       min_normal_cosine(static_cast<float>(std::cos(radians(geometric.max_normal_angle_deg)))),
-      min_incidence_cosine(static_cast<float>(std::cos(radians(depth_in.max_incidence_deg)))),
+      min_incidence_cosine(static_cast<float>(std::cos(radians(depth.max_incidence_deg)))),
       model_noise_m(static_cast<float>(geometric.model_noise_m)),
       noise_scale(static_cast<float>(scale)),
-      depth(depth_in) {}
+      depth_sigma(depth) {}
 
 PlanePairs associate(const patches::PosedLanes& camera, const patches::PixelLanes& pixels,
                      const DepthImage& depth_m, const AssociationGates& gates, const PlanePairs& before) {
@@ -129,7 +131,7 @@ PlanePairs associate(const patches::PosedLanes& camera, const patches::PixelLane
                 (incidence_cosine >= gates.min_incidence_cosine);
   pairs.point_imu = camera.to_imu(measured);
   // Depth noise acts along the ray; its component along the normal enters the residual.
-  const simd::Float8 along_normal_m = preprocessing::depth_sigma_m(measured_m, gates.depth) * range_m /
+  const simd::Float8 along_normal_m = gates.depth_sigma.at_m(measured_m) * range_m /
                                       (near ? measured_m : simd::all_lanes(1.0F)) * incidence_cosine;
   pairs.sigma_m = gates.noise_scale *
                   simd::sqrt(simd::multiply_add(along_normal_m, along_normal_m,

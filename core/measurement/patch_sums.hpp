@@ -5,9 +5,10 @@
 #include <bit>
 
 #include "core/base/image.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/patches/patch_lanes.hpp"
+#include "core/preprocessing/depth_sigma.hpp"
 
 namespace fusebench::measurement {
 
@@ -91,7 +92,7 @@ struct AssociationGates {
   float min_incidence_cosine;
   float model_noise_m;
   float noise_scale;
-  config::DepthConfig depth;
+  preprocessing::DepthSigma depth_sigma;
 };
 
 /// Projective association: the measurement at the pixel where each model point lands, if distance, normals

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "core/measurement/patch_measurement.hpp"
 
 namespace fusebench::measurement {
@@ -22,19 +24,20 @@ double followed(double scale, double robust_sum, int residuals, double huber_sig
 }  // namespace
 
 ResidualScale followed_scale(const ResidualScale& scale, std::span<const PatchOutcome> outcomes,
-                             const config::Config& config) {
-  double photometric = 0, geometric = 0;
+                             const config::IekfConfig& iekf, const config::PhotometricConfig& photometric,
+                             const config::GeometricConfig& geometric) {
+  double photometric_sum = 0, geometric_sum = 0;
   int photometric_count = 0, geometric_count = 0;
   for (const PatchOutcome& outcome : outcomes) {
     if (!outcome.accepted) continue;
-    photometric += outcome.robust_photometric;
-    geometric += outcome.robust_geometric;
+    photometric_sum += outcome.robust_photometric;
+    geometric_sum += outcome.robust_geometric;
     photometric_count += outcome.photometric_residuals;
     geometric_count += outcome.geometric_residuals;
   }
-  const double share = config.iekf.scale_share;
-  return {followed(scale.photometric, photometric, photometric_count, config.photometric.huber_sigmas, share),
-          followed(scale.geometric, geometric, geometric_count, config.geometric.huber_sigmas, share)};
+  const double share = iekf.scale_share;
+  return {followed(scale.photometric, photometric_sum, photometric_count, photometric.huber_sigmas, share),
+          followed(scale.geometric, geometric_sum, geometric_count, geometric.huber_sigmas, share)};
 }
 
 }  // namespace fusebench::measurement

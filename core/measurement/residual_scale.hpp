@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 
 namespace fusebench::measurement {
 
@@ -20,7 +20,9 @@ struct ResidualScale {
 /// for which the mean of min(r^2, k |r|) is that of normal residuals (in the manner of Huber's Proposal 2,
 /// 1964), so that outliers count little. Stays within a factor of kMaxScale of the configuration.
 [[nodiscard]] ResidualScale followed_scale(const ResidualScale& scale, std::span<const PatchOutcome> outcomes,
-                                           const config::Config& config);
+                                           const config::IekfConfig& iekf,
+                                           const config::PhotometricConfig& photometric,
+                                           const config::GeometricConfig& geometric);
 
 inline constexpr double kMaxScale = 5.0;
 

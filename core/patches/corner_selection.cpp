@@ -5,6 +5,8 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
+#include "core/config/groups/patches_config.hpp"
+
 namespace fusebench::patches {
 
 namespace {

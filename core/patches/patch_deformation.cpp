@@ -6,6 +6,9 @@
 #include <optional>
 
 #include "core/base/bits.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/terms_config.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::patches {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/patches/patch_lanes.hpp"
 #include "core/patches/patches.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/raycast/raycast.hpp"
 #include "core/raycast/surface_search.hpp"
 #include "core/tsdf/tsdf_volume.hpp"

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
 #include "core/patches/corner_selection.hpp"
 #include "core/patches/measured_surfaces.hpp"
 #include "core/patches/patch_deformation.hpp"
@@ -29,11 +31,11 @@ struct Squares {
   };
 
   Squares(std::span<const TrackedCentre> centres_in, const ReferenceFrame& frame_in,
-          const config::Config& config_in)
+          const CutOptions& options_in)
       : centres(centres_in),
         frame(frame_in),
-        config(config_in),
-        size_px(config_in.patches.size_px),
+        options(options_in),
+        size_px(options_in.patches.size_px),
         levels(frame_in.pyramid.size()) {}
 
   [[nodiscard]] Corner corner(std::size_t patch, std::size_t level) const {
@@ -55,13 +57,13 @@ struct Squares {
   /// than one at the measurement.
   [[nodiscard]] float reach_m(float measured_m) const {
     constexpr float kMargin = 1.5F;
-    const double noise_m = preprocessing::depth_sigma_m(static_cast<double>(measured_m), config.depth);
-    return kMargin * static_cast<float>(std::max(config.patches.occlusion_distance_m, 3.0 * noise_m));
+    const double noise_m = preprocessing::depth_sigma_m(static_cast<double>(measured_m), options.depth);
+    return kMargin * static_cast<float>(std::max(options.patches.occlusion_distance_m, 3.0 * noise_m));
   }
 
   std::span<const TrackedCentre> centres;
   const ReferenceFrame& frame;
-  const config::Config& config;
+  const CutOptions& options;
   int size_px;
   std::size_t levels;
 };
@@ -111,12 +113,12 @@ bool takes_any_depth(const config::PatchConfig& config) {
 /// The surface behind a pixel, if it is usable there.
 class UsableSurface {
  public:
-  UsableSurface(const ReferenceFrame& frame, const config::Config& config)
+  UsableSurface(const ReferenceFrame& frame, const CutOptions& options)
       : frame_(frame),
-        config_(config),
+        options_(options),
         R_world_camera_(frame.T_world_camera.rotation_matrix()),
-        min_cosine_(takes_any_depth(config.patches) ? -1.0
-                                                    : std::cos(radians(config.depth.max_incidence_deg))) {}
+        min_cosine_(takes_any_depth(options.patches) ? -1.0
+                                                     : std::cos(radians(options.depth.max_incidence_deg))) {}
 
   [[nodiscard]] std::optional<PatchPixel> operator()(const raycast::ExpectedSurface& pixel,
                                                      const raycast::SurfacePoint& surface) const {
@@ -125,8 +127,8 @@ class UsableSurface {
     const auto v = static_cast<double>(pixel.v_px);
     const Vector3d from_camera = R_world_camera_ * frame_.camera.back_project(u, v, surface.depth_m);
     if (-from_camera.dot(surface.normal_world) < min_cosine_ * from_camera.norm()) return std::nullopt;
-    const double allowed_m = std::max(config_.patches.occlusion_distance_m,
-                                      3.0 * preprocessing::depth_sigma_m(surface.depth_m, config_.depth));
+    const double allowed_m = std::max(options_.patches.occlusion_distance_m,
+                                      3.0 * preprocessing::depth_sigma_m(surface.depth_m, options_.depth));
     const auto measured_m = static_cast<double>(pixel.depth_m);
     if (measured_m > 0 && std::abs(measured_m - surface.depth_m) > allowed_m) return std::nullopt;
     PatchPixel usable;
@@ -139,7 +141,7 @@ class UsableSurface {
 
  private:
   const ReferenceFrame& frame_;
-  const config::Config& config_;
+  const CutOptions& options_;
   Matrix3d R_world_camera_;
   double min_cosine_;
 };
@@ -194,8 +196,8 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
       pixels.push_back(*pixel);
       pixels.back().intensity = frame.pyramid[l](x >> l, y >> l);
       pixels.back().depth_confirmed =
-          takes_any_depth(squares.config.patches) ||
-          preprocessing::is_one_surface(frame.depth_m, x, y, reach_px, squares.config.depth.edge_jump);
+          takes_any_depth(squares.options.patches) ||
+          preprocessing::is_one_surface(frame.depth_m, x, y, reach_px, squares.options.depth.edge_jump);
     }
   }
   use_model_depth_in_holes(patch);
@@ -203,10 +205,10 @@ void fill_patch(const Squares& squares, std::size_t p, const UsableSurface& usab
 
 /// Of the pixels that the patches need.
 std::span<const raycast::SurfacePoint> surfaces_of(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
-                                                   const config::Config& config, const Workers& workers,
+                                                   const CutOptions& options, const Workers& workers,
                                                    PatchWorkspace& work) {
-  if (config.patches.reference_surface == config::ReferenceSurface::model)
-    return work.surfaces.find(model, frame.camera, frame.T_world_camera, config.depth, work.pixels,
+  if (options.patches.reference_surface == config::ReferenceSurface::model)
+    return work.surfaces.find(model, frame.camera, frame.T_world_camera, options.depth, work.pixels,
                               work.first, workers);
   work.measured = measured_surfaces(frame.depth_m, frame.camera, frame.T_world_camera, work.pixels);
   return work.measured;
@@ -214,10 +216,10 @@ std::span<const raycast::SurfacePoint> surfaces_of(const ReferenceFrame& frame, 
 
 /// Patches with the pixels that have a usable surface.
 void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
-                 std::span<const TrackedCentre> centres, const config::Config& config, const Workers& workers,
+                 std::span<const TrackedCentre> centres, const CutOptions& options, const Workers& workers,
                  PatchWorkspace& work, std::vector<Patch>& patches) {
   check(frame.pyramid.size() <= kMaxLevels, "a pyramid has at most six levels");
-  const Squares squares(centres, frame, config);
+  const Squares squares(centres, frame, options);
   work.pixels.clear();
   work.pixel_of.resize(squares.first(centres.size(), 0));
   work.first.assign(1, 0);
@@ -225,8 +227,8 @@ void cut_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
     add_pixels(squares, p, work);
     work.first.push_back(work.pixels.size());
   }
-  const std::span<const raycast::SurfacePoint> surfaces = surfaces_of(frame, model, config, workers, work);
-  const UsableSurface usable(frame, config);
+  const std::span<const raycast::SurfacePoint> surfaces = surfaces_of(frame, model, options, workers, work);
+  const UsableSurface usable(frame, options);
   patches.resize(centres.size());
   workers.for_chunks(patches.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) fill_patch(squares, p, usable, work, surfaces, patches[p]);
@@ -266,9 +268,9 @@ std::vector<Patch> take_kept(std::span<const TrackedCentre> centres, std::vector
 }  // namespace
 
 void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
-                     std::span<const TrackedCentre> survivors, const config::Config& config,
+                     std::span<const TrackedCentre> survivors, const CutOptions& options,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches) {
-  std::vector<TrackedCentre> centres = select_separated(survivors, frame, config.patches);
+  std::vector<TrackedCentre> centres = select_separated(survivors, frame, options.patches);
   std::vector<Patch> kept = take_kept(centres, patches);
   std::vector<Eigen::Vector2i> existing;
   for (const TrackedCentre& c : centres) {
@@ -276,31 +278,31 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                           static_cast<int>(std::lround(c.pixel_px.y())));
   }
   for (const Eigen::Vector2i& corner :
-       select_corners(frame.pyramid[0], frame.depth_m, existing, config.patches)) {
+       select_corners(frame.pyramid[0], frame.depth_m, existing, options.patches)) {
     centres.push_back({corner.cast<double>(), 0});
   }
   std::erase_if(centres, [](const TrackedCentre& centre) { return centre.kept.has_value(); });
 
-  cut_patches(frame, model, centres, config, workers, work, patches);
-  const int square = config.patches.size_px * config.patches.size_px;
+  cut_patches(frame, model, centres, options, workers, work, patches);
+  const int square = options.patches.size_px * options.patches.size_px;
   const auto too_few = [&](const Patch& patch) {
     const auto usable = static_cast<int>(patch.levels.front().pixels.size());
-    return usable < config.patches.min_valid_px || usable < config.patches.min_valid_fraction * square;
+    return usable < options.patches.min_valid_px || usable < options.patches.min_valid_fraction * square;
   };
   std::erase_if(patches, too_few);
   for (Patch& patch : patches) {
-    set_deformation(patch, frame.camera, frame.T_world_camera, config.terms.deformation);
+    set_deformation(patch, frame.camera, frame.T_world_camera, options.deformation);
   }
   std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
   patches.insert(patches.begin(), std::move_iterator(kept.begin()), std::move_iterator(kept.end()));
 }
 
 std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
-                                   std::span<const TrackedCentre> survivors, const config::Config& config,
+                                   std::span<const TrackedCentre> survivors, const CutOptions& options,
                                    const Workers& workers) {
   PatchWorkspace work;
   std::vector<Patch> patches;
-  refresh_patches(frame, model, survivors, config, workers, work, patches);
+  refresh_patches(frame, model, survivors, options, workers, work, patches);
   return patches;
 }
 

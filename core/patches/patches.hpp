@@ -10,7 +10,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/patches/patch_surfaces.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
@@ -69,6 +69,13 @@ struct TrackedCentre {
   std::optional<std::size_t> kept = std::nullopt;
 };
 
+/// The options by which patches are cut.
+struct CutOptions {
+  const config::PatchConfig& patches;
+  const config::DepthConfig& depth;
+  config::Deformation deformation;
+};
+
 /// Reusable buffers for cutting patches.
 struct PatchWorkspace {
   std::vector<raycast::ExpectedSurface>
@@ -84,12 +91,12 @@ struct PatchWorkspace {
 /// normals from the model (or from the frame: patches.reference_surface). `patches` are those that were
 /// tracked: kept survivors among them stay as they are, and the memory of all is used again.
 void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
-                     std::span<const TrackedCentre> survivors, const config::Config& config,
+                     std::span<const TrackedCentre> survivors, const CutOptions& options,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches);
 /// The same into memory of its own.
 [[nodiscard]] std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                                                  std::span<const TrackedCentre> survivors,
-                                                 const config::Config& config, const Workers& workers);
+                                                 const CutOptions& options, const Workers& workers);
 
 /// The mean share that a frame which was just fused has in the model where the patches cut from it are: near
 /// 1 where the surface is new, small where many frames made it, 0 where the frame measured no depth and

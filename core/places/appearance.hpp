@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/ferns/fern_code.hpp"
 #include "core/places/landmarks.hpp"
 #include "core/places/small_images.hpp"
@@ -16,6 +16,8 @@ struct Appearance {
 };
 
 [[nodiscard]] Appearance appearance_of(const RgbdFrame& frame, const PinholeCamera& camera,
-                                       const config::Config& config);
+                                       const config::LoopsConfig& loops,
+                                       const config::PlaceFeaturesConfig& features,
+                                       const config::RelocalisationConfig& relocalisation);
 
 }  // namespace fusebench::places

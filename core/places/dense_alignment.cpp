@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "core/base/solvers.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/loops_config.hpp"
 #include "core/places/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
@@ -132,11 +134,11 @@ std::vector<double> narrowing_gates_m(double reach_m, double narrow_m) {
 
 std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                              const AlignmentStart& start, const PinholeCamera& camera,
-                                             const config::Config& config) {
+                                             const config::DepthConfig& depth,
+                                             const config::LoopsConfig& loops) {
   constexpr double kLastStep = 1e-5;  // rad and m
-  const config::LoopsConfig& loops = config.loops;
   const double most_pairs = most_points(query.depth_m);
-  const Surface surface(known.depth_m, camera, config.depth);
+  const Surface surface(known.depth_m, camera, depth);
   const std::vector<Vector3d> points_query = points_of(query.depth_m, camera);
   const Matrix6d prior = start.from_features
                              ? Matrix6d(start.pose.covariance.ldlt().solve(Matrix6d::Identity()))
@@ -145,7 +147,7 @@ std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const Sma
   Matrix6d information = Matrix6d::Zero();
   for (const double gate_m : narrowing_gates_m(start.reach_m, loops.dense_gate_m)) {
     for (int step = 0; step < kStepsOfGate; ++step) {
-      const DepthSums sums = sums_at(pose, points_query, surface, gate_m, config.depth);
+      const DepthSums sums = sums_at(pose, points_query, surface, gate_m, depth);
       if (sums.pairs < loops.dense_min_share * most_pairs) return std::nullopt;
       const double share = loops.dense_measurements / (sums.variance() * most_pairs);
       information = share * sums.information + prior;

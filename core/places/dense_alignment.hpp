@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/places/small_images.hpp"
 
 namespace fusebench::places {
@@ -31,6 +31,7 @@ struct AlignmentStart {
 [[nodiscard]] std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                                            const AlignmentStart& start,
                                                            const PinholeCamera& camera,
-                                                           const config::Config& config);
+                                                           const config::DepthConfig& depth,
+                                                           const config::LoopsConfig& loops);
 
 }  // namespace fusebench::places

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/loops_config.hpp"
 #include "core/places/small_images.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
@@ -38,10 +40,10 @@ std::size_t for_each_seen(const SmallImages& from, const SmallImages& to, const 
   return measured;
 }
 
-bool on_surface(const SeenPixel& seen, const config::Config& config) {
+bool on_surface(const SeenPixel& seen, const config::DepthConfig& depth, const config::LoopsConfig& loops) {
   constexpr double kAllowance_m = 0.01;  // what interpolation and calibration leave
-  const double sigma_m = preprocessing::depth_sigma_m(seen.here_m, config.depth);
-  return std::abs(seen.here_m - seen.there_m) <= config.loops.depth_sigmas * sigma_m + kAllowance_m;
+  const double sigma_m = preprocessing::depth_sigma_m(seen.here_m, depth);
+  return std::abs(seen.here_m - seen.there_m) <= loops.depth_sigmas * sigma_m + kAllowance_m;
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -68,11 +70,12 @@ struct PairSums {
 }  // namespace
 
 DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to, const SE3& T_to_from,
-                               const PinholeCamera& camera, const config::Config& config) {
+                               const PinholeCamera& camera, const config::DepthConfig& depth,
+                               const config::LoopsConfig& loops) {
   std::size_t seen = 0, consistent = 0, violating = 0;
   const std::size_t measured = for_each_seen(from, to, T_to_from, camera, [&](const SeenPixel& pixel) {
     ++seen;
-    if (on_surface(pixel, config)) {
+    if (on_surface(pixel, depth, loops)) {
       ++consistent;
     } else if (pixel.here_m < pixel.there_m) {
       ++violating;
@@ -82,13 +85,14 @@ DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to, c
 }
 
 std::optional<double> grey_correlation(const SmallImages& from, const SmallImages& to, const SE3& T_to_from,
-                                       const PinholeCamera& camera, const config::Config& config) {
+                                       const PinholeCamera& camera, const config::DepthConfig& depth,
+                                       const config::LoopsConfig& loops, double min_contrast_grey) {
   PairSums sums;
   for_each_seen(from, to, T_to_from, camera, [&](const SeenPixel& seen) {
-    if (on_surface(seen, config)) sums.add(from.grey(seen.x, seen.y), to.grey(seen.u, seen.v));
+    if (on_surface(seen, depth, loops)) sums.add(from.grey(seen.x, seen.y), to.grey(seen.u, seen.v));
   });
   if (sums.n < 1) return std::nullopt;
-  const double least = config.health.min_contrast_grey * config.health.min_contrast_grey;
+  const double least = min_contrast_grey * min_contrast_grey;
   if (sums.variance_a() < least || sums.variance_b() < least) return std::nullopt;
   return sums.covariance() / std::sqrt(sums.variance_a() * sums.variance_b());
 }

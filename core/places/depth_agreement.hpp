@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/places/small_images.hpp"
 
 namespace fusebench::places {
@@ -19,12 +19,15 @@ struct DepthAgreement {
 /// On the surface: within loops.depth_sigmas of the depth noise, and 1 cm more.
 [[nodiscard]] DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to,
                                              const SE3& T_to_from, const PinholeCamera& camera,
-                                             const config::Config& config);
+                                             const config::DepthConfig& depth,
+                                             const config::LoopsConfig& loops);
 
 /// How well intensities correlate (ZNCC) where the depth of `from` lies on the surface of `to`; nothing if
-/// one of them has too little contrast there (health.min_contrast_grey).
+/// one of them has less contrast there than `min_contrast_grey`.
 [[nodiscard]] std::optional<double> grey_correlation(const SmallImages& from, const SmallImages& to,
                                                      const SE3& T_to_from, const PinholeCamera& camera,
-                                                     const config::Config& config);
+                                                     const config::DepthConfig& depth,
+                                                     const config::LoopsConfig& loops,
+                                                     double min_contrast_grey);
 
 }  // namespace fusebench::places

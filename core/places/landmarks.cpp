@@ -2,15 +2,17 @@
 
 #include <cmath>
 
+#include "core/config/groups/relocalisation_config.hpp"
+
 namespace fusebench::places {
 
 namespace {
 
 Landmarks with_depth(const std::vector<PlaceFeature>& features, const DepthImage& depth_m,
-                     const PinholeCamera& camera, const config::Config& config) {
+                     const PinholeCamera& camera, const config::RelocalisationConfig& config) {
   Landmarks landmarks;
   for (const PlaceFeature& feature : features) {
-    const double z_m = landmark_depth_m(depth_m, feature.pixel_px, config.relocalisation);
+    const double z_m = landmark_depth_m(depth_m, feature.pixel_px, config);
     if (z_m <= 0) continue;
     landmarks.features.push_back(feature);
     landmarks.points_camera.push_back(camera.back_project(feature.pixel_px.x(), feature.pixel_px.y(), z_m));
@@ -38,24 +40,26 @@ double landmark_depth_m(const DepthImage& depth_m, const Vector2d& pixel_px,
 }
 
 Landmarks landmarks_of(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera,
-                       const config::Config& config) {
-  return with_depth(find_place_features(grey, config.place_features), depth_m, camera, config);
+                       const config::PlaceFeaturesConfig& features,
+                       const config::RelocalisationConfig& relocalisation) {
+  return with_depth(find_place_features(grey, features), depth_m, camera, relocalisation);
 }
 
 Landmarks coarse_landmarks_of(const GreyImage& grey, const DepthImage& depth_m, const PinholeCamera& camera,
-                              int max_count, const config::Config& config) {
+                              int max_count, const config::PlaceFeaturesConfig& features,
+                              const config::RelocalisationConfig& relocalisation) {
   constexpr int kLeastWidth_px = 320;
   const bool halved = grey.width >= 2 * kLeastWidth_px;
   const GreyImage half = halved ? build_pyramid(grey, 2).back() : GreyImage{};
   const double step = halved ? 2.0 : 1.0;
-  config::PlaceFeaturesConfig fewer = config.place_features;
+  config::PlaceFeaturesConfig fewer = features;
   fewer.max_count = max_count;
-  std::vector<PlaceFeature> features = find_place_features(halved ? half : grey, fewer);
-  for (PlaceFeature& feature : features) {
+  std::vector<PlaceFeature> found = find_place_features(halved ? half : grey, fewer);
+  for (PlaceFeature& feature : found) {
     feature.pixel_px *= step;
     feature.scale *= step;
   }
-  return with_depth(features, depth_m, camera, config);
+  return with_depth(found, depth_m, camera, relocalisation);
 }
 
 }  // namespace fusebench::places

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/config/groups/relocalisation_config.hpp"
+
 namespace fusebench::places {
 
 namespace {

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/places/pose_from_points.hpp"
 
 namespace fusebench::places {

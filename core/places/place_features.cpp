@@ -7,6 +7,8 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
+#include "core/config/groups/relocalisation_config.hpp"
+
 namespace fusebench::places {
 
 namespace {

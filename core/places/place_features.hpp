@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 
 namespace fusebench::places {
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/config/config.hpp"
 #include "core/places/depth_agreement.hpp"
 #include "core/places/place_certainty.hpp"
 #include "core/places/pose_from_points.hpp"
@@ -53,8 +54,8 @@ std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallI
                                           const PinholeCamera& camera, const config::Config& config,
                                           VerifiedPair& pair) {
   const config::LoopsConfig& loops = config.loops;
-  const auto aligned =
-      aligned_by_depth(known, query, {{T_known_query, Matrix6d::Identity()}, false, reach_m}, camera, config);
+  const auto aligned = aligned_by_depth(known, query, {{T_known_query, Matrix6d::Identity()}, false, reach_m},
+                                        camera, config.depth, config.loops);
   if (!aligned) {
     pair.reason = "their depth cannot be aligned";
     return std::nullopt;
@@ -67,7 +68,8 @@ std::optional<RelativePose> pose_by_depth(const SmallImages& known, const SmallI
                               degrees(rotation_sigma_rad), 100 * position_sigma_m);
     return std::nullopt;
   }
-  const auto correlation = grey_correlation(query, known, aligned->T_known_query, camera, config);
+  const auto correlation = grey_correlation(query, known, aligned->T_known_query, camera, config.depth,
+                                            config.loops, config.health.min_contrast_grey);
   if (correlation && *correlation < loops.min_grey_correlation) {
     pair.reason = fmt::format("intensities correlate by {:.2f} where depth fits (at least {})", *correlation,
                               loops.min_grey_correlation);
@@ -82,8 +84,10 @@ std::string contradiction_of_depth(const SmallImages& known, const SmallImages& 
                                    const PinholeCamera& camera, const config::Config& config,
                                    VerifiedPair& pair) {
   const config::LoopsConfig& loops = config.loops;
-  const DepthAgreement forth = depth_agreement(query, known, pair.T_known_query, camera, config);
-  const DepthAgreement back = depth_agreement(known, query, pair.T_known_query.inverse(), camera, config);
+  const DepthAgreement forth =
+      depth_agreement(query, known, pair.T_known_query, camera, config.depth, config.loops);
+  const DepthAgreement back =
+      depth_agreement(known, query, pair.T_known_query.inverse(), camera, config.depth, config.loops);
   pair.consistent_share = std::min(forth.consistent, back.consistent);
   pair.violating_share = std::max(forth.violating, back.violating);
   if (pair.consistent_share < loops.min_consistent_share)
@@ -119,7 +123,7 @@ VerifiedPair verify_from_features(const SmallImages& known, const SmallImages& q
                                   const RelativePose& pose, const PinholeCamera& camera,
                                   const config::Config& config) {
   VerifiedPair pair;
-  const auto refined = aligned_by_depth(known, query, {pose, true, 0}, camera, config);
+  const auto refined = aligned_by_depth(known, query, {pose, true, 0}, camera, config.depth, config.loops);
   conclude(refined ? *refined : pose, known, query, camera, config, pair);
   return pair;
 }
@@ -134,8 +138,8 @@ VerifiedPair verify_pair(const Appearance& known, const Appearance& query, const
     return pair;
   };
   if (pose) return with_counts(verify_from_features(known.small, query.small, *pose, camera, config));
-  if (depth_agreement(query.small, known.small, T_known_query_by_path, camera, config).overlap <
-      config.loops.min_consistent_share)
+  if (depth_agreement(query.small, known.small, T_known_query_by_path, camera, config.depth, config.loops)
+          .overlap < config.loops.min_consistent_share)
     return by_features;
   VerifiedPair by_depth = verify_by_depth(known.small, query.small, T_known_query_by_path, 0, camera, config);
   // Where depth was aligned, what it contradicts is the reason, and before, what features lacked as well.

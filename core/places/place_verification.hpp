@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/places/appearance.hpp"
 #include "core/places/dense_alignment.hpp"
 

@@ -8,6 +8,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "core/base/solvers.hpp"
+#include "core/config/groups/relocalisation_config.hpp"
 
 namespace fusebench::places {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/config/groups/prediction_config.hpp"
+#include "core/config/groups/terms_config.hpp"
 #include "core/prediction/smoothed_sample.hpp"
 #include "core/prediction/timing_prior.hpp"
 
@@ -114,16 +116,18 @@ filter::GaussianState initialise_without_imu(const config::InitialisationConfig&
 }
 
 Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples, std::int64_t first_frame_ns,
-                                            const SensorRig& rig, const config::Config& config,
+                                            const SensorRig& rig, const config::TermsConfig& terms,
+                                            const config::InitialisationConfig& initialisation,
+                                            const config::SelfCalibrationConfig& self_calibration,
                                             const std::optional<filter::FilterState>& motion) {
-  const bool inertial = config.terms.prior == config::Prior::imu;
+  const bool inertial = terms.prior == config::Prior::imu;
   Result<filter::GaussianState> initial =
-      inertial ? initialise_with_imu(samples, first_frame_ns, rig, config.initialisation)
-               : initialise_without_imu(config.initialisation);
+      inertial ? initialise_with_imu(samples, first_frame_ns, rig, initialisation)
+               : initialise_without_imu(initialisation);
   if (!initial) return initial;
-  for (const TimingPrior& prior : timing_priors(rig.timing, config))
+  for (const TimingPrior& prior : timing_priors(rig.timing, terms, initialisation, self_calibration))
     set_variance(*initial, prior.at, 1, prior.sigma_s);
-  if (inertial && !rig.imu_axes_are_exact) set_imu_priors(*initial, config.self_calibration);
+  if (inertial && !rig.imu_axes_are_exact) set_imu_priors(*initial, self_calibration);
   if (motion) {
     initial->mean.velocity_world_mps = motion->velocity_world_mps;
     if (!inertial) initial->mean.angular_velocity_imu_radps = motion->angular_velocity_imu_radps;

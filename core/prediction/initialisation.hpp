@@ -8,7 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 
 namespace fusebench::prediction {
@@ -26,19 +26,15 @@ namespace fusebench::prediction {
 /// Initial state without an IMU: at rest with wide velocity covariances. The "IMU" frame is the camera's.
 [[nodiscard]] filter::GaussianState initialise_without_imu(const config::InitialisationConfig& config);
 
-/// Read-out times and delay of depth: errors of zero, as uncertain as the rig says, where they are estimated.
-void set_timing_priors(filter::GaussianState& state, const SensorTiming& timing,
-                       const config::Config& config);
-
 /// Rotation and scale of the IMU.
 void set_imu_priors(filter::GaussianState& state, const config::SelfCalibrationConfig& config);
 
 /// Selects one of these two by the configured prior, with the priors of the sensors' constants. `motion`, if
 /// known, gives the velocities; only the means, since the frames that they were estimated from are used as
 /// measurements next.
-[[nodiscard]] Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples,
-                                                          std::int64_t first_frame_ns, const SensorRig& rig,
-                                                          const config::Config& config,
-                                                          const std::optional<filter::FilterState>& motion);
+[[nodiscard]] Result<filter::GaussianState> initial_state(
+    std::span<const ImuSample> samples, std::int64_t first_frame_ns, const SensorRig& rig,
+    const config::TermsConfig& terms, const config::InitialisationConfig& initialisation,
+    const config::SelfCalibrationConfig& self_calibration, const std::optional<filter::FilterState>& motion);
 
 }  // namespace fusebench::prediction

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/config/groups/prediction_config.hpp"
+#include "core/config/groups/terms_config.hpp"
 #include "core/prediction/timing_prior.hpp"
 
 namespace fusebench::prediction {
@@ -115,10 +117,13 @@ Prediction predict_by_constant_velocity(const filter::GaussianState& state, doub
 
 Result<filter::GaussianState> predict_state(const filter::GaussianState& state, const FrameInterval& interval,
                                             std::span<const ImuSample> samples, const SensorRig& rig,
-                                            const config::Config& config) {
-  if (config.terms.prior == config::Prior::constant_velocity) {
+                                            const config::TermsConfig& terms,
+                                            const config::MotionConfig& motion,
+                                            const config::InitialisationConfig& initialisation,
+                                            const config::SelfCalibrationConfig& self_calibration) {
+  if (terms.prior == config::Prior::constant_velocity) {
     const double duration_s = seconds_between(interval.begin_ns, interval.end_ns);
-    return predict_by_constant_velocity(state, duration_s, config.motion).state;
+    return predict_by_constant_velocity(state, duration_s, motion).state;
   }
   const filter::FilterState& x = state.mean;
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
@@ -127,9 +132,9 @@ Result<filter::GaussianState> predict_state(const filter::GaussianState& state, 
                    rig.imu_noise);
   if (!increments) return tl::unexpected(increments.error());
   filter::GaussianState predicted =
-      predict_by_imu(state, *increments, rig.imu_noise, config.motion).state;  // Eqs. 8-10, 14
+      predict_by_imu(state, *increments, rig.imu_noise, motion).state;  // Eqs. 8-10, 14
   add_timing_walk(predicted.covariance, rig.timing, seconds_between(interval.begin_ns, interval.end_ns),
-                  config);
+                  terms, initialisation, self_calibration);
   return predicted;
 }
 

@@ -6,7 +6,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/prediction/imu_preintegration.hpp"
 
@@ -40,9 +40,10 @@ struct FrameInterval {
 
 /// Sec. 2.2.1: predicts by the prior of the configuration. The samples are of the whole recording, sorted;
 /// error data_corrupt if they do not cover the interval.
-[[nodiscard]] Result<filter::GaussianState> predict_state(const filter::GaussianState& state,
-                                                          const FrameInterval& interval,
-                                                          std::span<const ImuSample> samples,
-                                                          const SensorRig& rig, const config::Config& config);
+[[nodiscard]] Result<filter::GaussianState> predict_state(
+    const filter::GaussianState& state, const FrameInterval& interval, std::span<const ImuSample> samples,
+    const SensorRig& rig, const config::TermsConfig& terms, const config::MotionConfig& motion,
+    const config::InitialisationConfig& initialisation,
+    const config::SelfCalibrationConfig& self_calibration);
 
 }  // namespace fusebench::prediction

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 
 namespace fusebench::prediction {
@@ -20,10 +20,13 @@ struct TimingPrior {
 /// The offset of the IMU's clock (held without an IMU), the read-outs, and the delay of depth, as calibration
 /// and options have them.
 [[nodiscard]] std::array<TimingPrior, 4> timing_priors(const SensorTiming& timing,
-                                                       const config::Config& config);
+                                                       const config::TermsConfig& terms,
+                                                       const config::InitialisationConfig& initialisation,
+                                                       const config::SelfCalibrationConfig& self_calibration);
 
 /// Lets each wander by self_calibration.timing_walk times its sigma in a second (random walk).
 void add_timing_walk(filter::StateMatrix& covariance, const SensorTiming& timing, double duration_s,
-                     const config::Config& config);
+                     const config::TermsConfig& terms, const config::InitialisationConfig& initialisation,
+                     const config::SelfCalibrationConfig& self_calibration);
 
 }  // namespace fusebench::prediction

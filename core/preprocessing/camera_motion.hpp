@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/preprocessing/depth_sigma.hpp"
 #include "core/simd/lanes.hpp"
 
 namespace fusebench::preprocessing {
@@ -13,22 +14,10 @@ namespace fusebench::preprocessing {
   return config.noise_floor_m + config.noise_quadratic_per_m * z * z;
 }
 
-/// The standard deviation of depth, for eight measurements at once.
-class DepthSigma {
- public:
-  explicit DepthSigma(const config::DepthConfig& config)
-      : floor_m_(static_cast<float>(config.noise_floor_m)),
-        quadratic_per_m_(static_cast<float>(config.noise_quadratic_per_m)),
-        offset_m_(static_cast<float>(config.noise_offset_m)) {}
-
-  [[nodiscard]] simd::Float8 at_m(simd::Float8 depth_m) const {
-    const simd::Float8 z = depth_m - offset_m_;
-    return simd::multiply_add(quadratic_per_m_ * z, z, simd::all_lanes(floor_m_));
-  }
-
- private:
-  float floor_m_, quadratic_per_m_, offset_m_;
-};
+inline DepthSigma::DepthSigma(const config::DepthConfig& config)
+    : floor_m_(static_cast<float>(config.noise_floor_m)),
+      quadratic_per_m_(static_cast<float>(config.noise_quadratic_per_m)),
+      offset_m_(static_cast<float>(config.noise_offset_m)) {}
 
 /// depth_sigma_m() of eight measurements.
 [[nodiscard]] inline simd::Float8 depth_sigma_m(simd::Float8 depth_m, const config::DepthConfig& config) {

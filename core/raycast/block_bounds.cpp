@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/config/groups/frame_config.hpp"
+
 namespace fusebench::raycast {
 
 namespace {

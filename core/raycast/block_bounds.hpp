@@ -3,6 +3,7 @@
 
 #include "core/base/image.hpp"
 #include "core/base/types.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/simd/lanes.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 

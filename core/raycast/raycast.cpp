@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "core/config/groups/frame_config.hpp"
 #include "core/raycast/block_bounds.hpp"
 #include "core/raycast/ray_lanes.hpp"
 #include "core/tsdf/tsdf_lanes.hpp"

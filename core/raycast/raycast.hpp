@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/raycast/surface_point.hpp"
 #include "core/tsdf/tsdf_lanes.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/config/groups/frame_config.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::raycast {
@@ -47,7 +48,9 @@ SurfaceSearch::SurfaceSearch(const tsdf::TsdfLanes& field, const PinholeCamera& 
     : field_(field),
       rays_(camera, T_world_camera, field.volume().voxel_m()),
       camera_voxel_(T_world_camera.translation / field.volume().voxel_m()),
-      depth_(depth),
+      depth_sigma_(depth),
+      nearest_m_(static_cast<float>(depth.min_m)),
+      farthest_m_(static_cast<float>(depth.max_m)),
       voxel_m_(static_cast<float>(field.volume().voxel_m())) {}
 
 void SurfaceSearch::find(std::span<const ExpectedSurface> pixels, std::span<SurfacePoint> surfaces) const {
@@ -93,8 +96,7 @@ SurfaceSearch::PixelGroup SurfaceSearch::group_of(std::span<const ExpectedSurfac
     group.reach_m[lane] = pixel.reach_m;
   }
   if (beside) {
-    const simd::Float8 noise_m =
-        kReach_sigmas * preprocessing::depth_sigma_m(group.depth_m, depth_) + kReach_voxels * voxel_m_;
+    const simd::Float8 noise_m = kReach_sigmas * depth_sigma_.at_m(group.depth_m) + kReach_voxels * voxel_m_;
     group.reach_m = simd::min(group.reach_m, noise_m);
   }
   return group;
@@ -127,10 +129,8 @@ SurfaceSearch::Box SurfaceSearch::box_around(std::span<const ExpectedSurface> pi
 template <class Field>
 Hits SurfaceSearch::search(const PixelGroup& group, const Eigen::Vector3f& origin, const Field& field) const {
   const RayLanes rays = rays_.through(group.u_px, group.v_px, origin);
-  const simd::Float8 begin_m =
-      simd::max(group.depth_m - group.reach_m, simd::all_lanes(static_cast<float>(depth_.min_m)));
-  const simd::Float8 end_m =
-      simd::min(group.depth_m + group.reach_m, simd::all_lanes(static_cast<float>(depth_.max_m)));
+  const simd::Float8 begin_m = simd::max(group.depth_m - group.reach_m, simd::all_lanes(nearest_m_));
+  const simd::Float8 end_m = simd::min(group.depth_m + group.reach_m, simd::all_lanes(farthest_m_));
   const simd::Float8 z_per_metre = rays.z_per_voxel * (1.0F / voxel_m_);
   Brackets bracket;
   simd::Float8 z_m = group.depth_m;

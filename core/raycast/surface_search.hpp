@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <span>
 
+#include "core/config/groups/config_fwd.hpp"
+#include "core/preprocessing/depth_sigma.hpp"
 #include "core/raycast/ray_lanes.hpp"
 #include "core/tsdf/tsdf_brick.hpp"
 #include "core/tsdf/tsdf_lanes.hpp"
@@ -51,7 +53,8 @@ class SurfaceSearch {
   const tsdf::TsdfLanes& field_;
   PixelRays rays_;
   Vector3d camera_voxel_;
-  config::DepthConfig depth_;
+  preprocessing::DepthSigma depth_sigma_;
+  float nearest_m_, farthest_m_;
   float voxel_m_;
 };
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/relocalisation/relocalisation_update.hpp"
 
@@ -22,15 +22,17 @@ struct RefusedPlace {
 
 class AgreeingPlaces {
  public:
-  /// The configuration must outlive it.
-  explicit AgreeingPlaces(const config::Config& config) : config_(config) {}
+  /// The options must outlive it.
+  AgreeingPlaces(const config::RelocalisationConfig& relocalisation, const config::LoopsConfig& loops,
+                 const config::TermsConfig& terms, const config::InitialisationConfig& initialisation)
+      : relocalisation_(relocalisation), loops_(loops), terms_(terms), initialisation_(initialisation) {}
 
   /// Stamps ascend. A place that does not agree with the one before, or comes later than
   /// relocalisation.agreeing_within_s, begins anew.
   void add(const RefusedPlace& place);
 
   /// True if relocalisation.agreeing_frames agree.
-  [[nodiscard]] bool are_enough() const { return agreeing_ >= config_.relocalisation.agreeing_frames; }
+  [[nodiscard]] bool are_enough() const;
 
   /// The motion at a later stamp by the places that agree, where the prediction has lost it; nothing if there
   /// is one only, or the last was longer ago than agreeing_within_s. What places do not tell is the
@@ -43,7 +45,10 @@ class AgreeingPlaces {
  private:
   [[nodiscard]] bool is_recent(std::int64_t timestamp_ns) const;
 
-  const config::Config& config_;
+  const config::RelocalisationConfig& relocalisation_;
+  const config::LoopsConfig& loops_;
+  const config::TermsConfig& terms_;
+  const config::InitialisationConfig& initialisation_;
   RefusedPlace first_;  ///< these two: of those that agree
   RefusedPlace last_;
   int agreeing_ = 0;
@@ -53,6 +58,7 @@ class AgreeingPlaces {
 /// known of it whatever the filter claims: with an IMU the rotation by the gyroscope; else, and of the
 /// position, only that it is unknown like that of a start in motion (`initialisation`).
 [[nodiscard]] double squared_disagreement(const RefusedPlace& a, const RefusedPlace& b,
-                                          const config::Config& config);
+                                          const config::TermsConfig& terms,
+                                          const config::InitialisationConfig& initialisation);
 
 }  // namespace fusebench::relocalisation

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "core/config/config.hpp"
 #include "core/ferns/depth_fern_code.hpp"
 #include "core/places/depth_agreement.hpp"
 #include "core/places/place_certainty.hpp"
@@ -115,7 +116,7 @@ bool Keyframes::offer(const GreyImage& grey, const DepthImage& depth_m, const SE
 
   std::optional<places::Landmarks> landmarks;
   if (!has_plenty_of_corners(grey, depth_m, config_)) {
-    landmarks = places::landmarks_of(grey, depth_m, camera_, config_);
+    landmarks = places::landmarks_of(grey, depth_m, camera_, config_.place_features, config_.relocalisation);
     if (landmarks->features.size() < static_cast<std::size_t>(config.min_landmarks)) {
       featureless_ = FeaturelessFrame{T_world_camera, blur_px};
       return false;
@@ -160,7 +161,8 @@ std::vector<FoundPlace> Keyframes::find(const GreyImage& grey) {
   matches.reserve(kept_.size());
   for (Keyframe& keyframe : kept_) {
     if (!keyframe.landmarks)
-      keyframe.landmarks = places::landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_, config_);
+      keyframe.landmarks = places::landmarks_of(keyframe.grey, keyframe.depth.unpacked_m(), camera_,
+                                                config_.place_features, config_.relocalisation);
     matches.push_back(places::match_features(query, keyframe.landmarks->features, config_.place_features));
   }
   std::vector<std::size_t> order(kept_.size());
@@ -213,8 +215,9 @@ std::vector<Keyframes::AlignmentCandidate> Keyframes::seen_by_prediction(const p
   std::vector<std::pair<double, AlignmentCandidate>> overlaps;
   for (std::size_t k = 0; k < kept_.size(); ++k) {
     const SE3 T_keyframe_camera = kept_[k].T_world_camera.inverse() * T_world_camera;
-    const double overlap =
-        places::depth_agreement(query, *kept_[k].small, T_keyframe_camera, camera_, config_).overlap;
+    const double overlap = places::depth_agreement(query, *kept_[k].small, T_keyframe_camera, camera_,
+                                                   config_.depth, config_.loops)
+                               .overlap;
     if (overlap >= config_.loops.min_consistent_share) overlaps.push_back({-overlap, {k, T_keyframe_camera}});
   }
   return places::smallest_first(std::move(overlaps), kMostAligned);

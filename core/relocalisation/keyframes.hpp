@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/ferns/fern_code.hpp"
 #include "core/places/landmarks.hpp"
 #include "core/places/small_images.hpp"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "core/config/config.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
 
@@ -49,6 +50,13 @@ UnknownMotion unknown_motion(const config::Config& config) {
 }
 
 }  // namespace
+
+Relocalisation::Relocalisation(const config::Config& config, const SensorRig& rig)
+    : config_(config),
+      rig_(rig),
+      keyframes_(rig.camera, config),
+      refused_(config.relocalisation, config.loops, config.terms, config.initialisation),
+      rivals_(config.relocalisation) {}
 
 void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera,
                                   std::int64_t timestamp_ns, double blur_px) {
@@ -138,12 +146,13 @@ std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame,
   result.prior = relocalisation_update(prediction, pose_of(*found), unknown_motion(config_));
   if (!filter::is_valid(result.prior)) return std::nullopt;
   const int patch_levels = config_.patches.levels;
-  const std::vector<GreyImage> pyramid =
-      build_pyramid(keyframe.grey, alignment::pyramid_levels(rig_.camera, config_));
+  const std::vector<GreyImage> pyramid = build_pyramid(
+      keyframe.grey, alignment::pyramid_levels(rig_.camera, config_.patches.levels, config_.alignment));
   const DepthImage depth_m = keyframe.depth.unpacked_m();
   const patches::ReferenceFrame reference{std::span(pyramid).first(static_cast<std::size_t>(patch_levels)),
                                           depth_m, rig_.camera, keyframe.T_world_camera};
-  result.reference.patches = patches::refresh_patches(reference, model, {}, config_, workers);
+  result.reference.patches = patches::refresh_patches(
+      reference, model, {}, {config_.patches, config_.depth, config_.terms.deformation}, workers);
   result.reference.points.take(pyramid, depth_m, rig_.camera, config_.alignment);
   result.reference.timestamp_ns = keyframe.timestamp_ns;
   return result;

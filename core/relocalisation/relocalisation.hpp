@@ -13,7 +13,7 @@
 #include "core/alignment/tracking_reference.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
 #include "core/relocalisation/agreeing_places.hpp"
 #include "core/relocalisation/keyframes.hpp"
@@ -39,8 +39,7 @@ struct UsableImages {
 class Relocalisation {
  public:
   /// The references must outlive it.
-  Relocalisation(const config::Config& config, const SensorRig& rig)
-      : config_(config), rig_(rig), keyframes_(rig.camera, config), refused_(config), rivals_(config) {}
+  Relocalisation(const config::Config& config, const SensorRig& rig);
 
   /// Offers a tracked and fused frame (motion compensated, depth gated) as one to be found again by.
   void add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera, std::int64_t timestamp_ns,

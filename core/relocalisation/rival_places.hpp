@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/relocalisation/keyframes.hpp"
 
 namespace fusebench::relocalisation {
@@ -27,7 +27,7 @@ struct PredictedPosition {
 class RivalPlaces {
  public:
   /// The configuration must outlive it.
-  explicit RivalPlaces(const config::Config& config) : config_(config.relocalisation) {}
+  explicit RivalPlaces(const config::RelocalisationConfig& config) : config_(config) {}
 
   /// The places that an image fits (best first): if some of them are elsewhere, all are remembered for
   /// relocalisation.rivals_within_s. Stamps ascend.

@@ -1,11 +1,14 @@
 #include "core/tsdf/band_blocks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <utility>
 
 #include "core/base/bits.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/simd/lanes.hpp"
 
@@ -178,6 +181,11 @@ class PixelSegments {
 };
 
 }  // namespace
+
+double half_band_m(double depth_m, const config::TsdfConfig& tsdf, const config::DepthConfig& depth) {
+  return std::max(std::max(tsdf.truncation_m, 2.0 * tsdf.voxel_m),
+                  tsdf.truncation_sigmas * preprocessing::depth_sigma_m(depth_m, depth));
+}
 
 void OrderedBlocks::clear() {
   table_.clear();

@@ -1,7 +1,6 @@
 // Which blocks of the lattice a depth image touches.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,19 +8,15 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/tsdf/block_table.hpp"
 
 namespace fusebench::tsdf {
 
 /// Half width of the band (metres) around a measurement: tsdf.truncation_m, two voxels, or
 /// tsdf.truncation_sigmas of the depth noise, whichever is most.
-[[nodiscard]] inline double half_band_m(double depth_m, const config::TsdfConfig& tsdf,
-                                        const config::DepthConfig& depth) {
-  return std::max(std::max(tsdf.truncation_m, 2.0 * tsdf.voxel_m),
-                  tsdf.truncation_sigmas * preprocessing::depth_sigma_m(depth_m, depth));
-}
+[[nodiscard]] double half_band_m(double depth_m, const config::TsdfConfig& tsdf,
+                                 const config::DepthConfig& depth);
 
 /// A set of blocks in the order in which they were first met.
 class OrderedBlocks {

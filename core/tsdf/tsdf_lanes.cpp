@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/groups/frame_config.hpp"
+
 namespace fusebench::tsdf {
 
 namespace {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/tsdf/trilinear.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 

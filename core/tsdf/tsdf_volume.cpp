@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/tsdf/voxel_fusion.hpp"
 
@@ -16,7 +18,10 @@ constexpr std::size_t kReadBeyond = 1;  // gather() of halves reads pairs
 
 }  // namespace
 
-TsdfVolume::TsdfVolume(const config::TsdfConfig& config) : config_(config), region_slots_(kRegionBlocks, -1) {
+TsdfVolume::TsdfVolume(const config::TsdfConfig& config)
+    : config_(std::make_shared<const config::TsdfConfig>(config)),
+      voxel_m_(config.voxel_m),
+      region_slots_(kRegionBlocks, -1) {
   distances_m_.grow_to(kBlockVoxels + kReadBeyond);
   std::fill_n(distances_m_.data(), kBlockVoxels + kReadBeyond, std::numeric_limits<simd::Half>::quiet_NaN());
 }
@@ -41,12 +46,12 @@ Result<void> TsdfVolume::integrate(const RgbdFrame& frame, const PinholeCamera& 
                 "the estimate has diverged before this frame");
   }
 
-  touched_.find(frame.depth_m, camera, T_world_camera, kBlockSide * config_.voxel_m, config_, depth,
-                frame_count_, workers);
+  touched_.find(frame.depth_m, camera, T_world_camera, kBlockSide * voxel_m_, *config_, depth, frame_count_,
+                workers);
   const Result<void> allocated = allocate();
   if (!allocated) return allocated;
 
-  const VoxelUpdate update(frame, camera, T_world_camera, depth, config_, frame_count_++);
+  const VoxelUpdate update(frame, camera, T_world_camera, depth, *config_, frame_count_++);
   const std::vector<BlockIndex>& touched = touched_.blocks();
   for (const int slot : touched_slots_) last_fused_ns_[static_cast<std::size_t>(slot)] = frame.timestamp_ns;
   workers.for_chunks(touched.size(), kBlocksPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -66,13 +71,13 @@ Result<void> TsdfVolume::allocate() {
     touched_slots_[i] = table_.find(touched[i]);
     if (touched_slots_[i] < 0) ++added;
   }
-  const auto most = static_cast<std::size_t>(config_.max_blocks);
+  const auto most = static_cast<std::size_t>(config_->max_blocks);
   if (block_count() + added > most) {
     const bool all_found = touched.size() <= most;
     return fail(ErrorCode::run_failed,
                 fmt::format("the model is full: tsdf.max_blocks = {}, and this "
                             "frame needs {}{} more than the {} in use",
-                            config_.max_blocks, all_found ? "" : "at least ", added, block_count()),
+                            config_->max_blocks, all_found ? "" : "at least ", added, block_count()),
                 "raise tsdf.max_blocks (about 4 kB each), enlarge "
                 "tsdf.voxel_m, or lower depth.max_m");
   }
@@ -128,13 +133,13 @@ std::size_t TsdfVolume::memory_bytes() const {
 }
 
 double TsdfVolume::measurement_weight(double depth_m, const config::DepthConfig& depth) const {
-  const double voxel_variance = config_.voxel_m * config_.voxel_m;
+  const double voxel_variance = voxel_m_ * voxel_m_;
   const double sigma_m = preprocessing::depth_sigma_m(depth_m, depth);
   return voxel_variance / (voxel_variance + sigma_m * sigma_m);
 }
 
 double TsdfVolume::truncation_m(double depth_m, const config::DepthConfig& depth) const {
-  return half_band_m(depth_m, config_, depth);
+  return half_band_m(depth_m, *config_, depth);
 }
 
 }  // namespace fusebench::tsdf

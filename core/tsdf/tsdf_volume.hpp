@@ -13,7 +13,7 @@
 #include "core/base/growing_array.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/simd/half_lanes.hpp"
 #include "core/tsdf/band_blocks.hpp"
 #include "core/tsdf/block_table.hpp"
@@ -79,7 +79,7 @@ class TsdfVolume {
                                        const SE3& T_world_camera, const config::DepthConfig& depth,
                                        const Workers& workers);
 
-  [[nodiscard]] double voxel_m() const { return config_.voxel_m; }
+  [[nodiscard]] double voxel_m() const { return voxel_m_; }
   [[nodiscard]] std::uint32_t frame_count() const { return frame_count_; }  ///< fused so far
   [[nodiscard]] std::size_t block_count() const { return indices_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
@@ -113,14 +113,15 @@ class TsdfVolume {
   /// Weight of one measurement of a surface at this depth, see integrate().
   [[nodiscard]] double measurement_weight(double depth_m, const config::DepthConfig& depth) const;
   /// Points whose coordinates are all below this in magnitude (metres) have lattice coordinates.
-  [[nodiscard]] double reach_m() const { return config_.voxel_m * (1 << 30); }
+  [[nodiscard]] double reach_m() const { return voxel_m_ * (1 << 30); }
 
  private:
   [[nodiscard]] Result<void> allocate();
   void add_block(const BlockIndex& index);
   [[nodiscard]] BlockVoxels block(std::size_t slot);
 
-  config::TsdfConfig config_;
+  std::shared_ptr<const config::TsdfConfig> config_;
+  double voxel_m_;
   BlockTable table_;    // block -> slot
   BlockTable regions_;  // those with a block, so that rays cross empty space in large steps
   std::vector<Eigen::Vector3i> region_indices_;
@@ -153,7 +154,7 @@ class TsdfVolume {
 }
 
 inline std::optional<VoxelPlace> TsdfVolume::nearest_voxel(const Vector3d& point_world) const {
-  const VoxelIndex voxel = (point_world / config_.voxel_m).array().round().matrix().cast<int>();
+  const VoxelIndex voxel = (point_world / voxel_m_).array().round().matrix().cast<int>();
   const int slot = find_block(block_of(voxel));
   if (slot < 0) return std::nullopt;
   return VoxelPlace{static_cast<std::size_t>(slot), offset_in_block(voxel)};

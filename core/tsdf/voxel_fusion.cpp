@@ -5,6 +5,9 @@
 #include <cstring>
 
 #include "core/base/bits.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
+#include "core/preprocessing/depth_gates.hpp"
 #include "core/simd/image_lanes.hpp"
 
 namespace fusebench::tsdf {

@@ -1,7 +1,8 @@
 // Projection of one frame onto the voxels of the model.
 #pragma once
 
-#include "core/preprocessing/depth_gates.hpp"
+#include "core/config/groups/config_fwd.hpp"
+#include "core/preprocessing/depth_sigma.hpp"
 #include "core/simd/lanes.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/config/config.hpp"
 #include "core/prediction/imu_preintegration.hpp"
 #include "eval/batch_estimation/measured_motion.hpp"
 

@@ -15,7 +15,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/smoother/batch_estimate.hpp"
 #include "datasets/recording/recording.hpp"
 #include "eval/run/run.hpp"

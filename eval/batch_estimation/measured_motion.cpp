@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "core/pipeline.hpp"
 #include "eval/run/frame_source.hpp"

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/config/config.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/batch_estimation/measured_motion.hpp"
 #include "eval/text/json_text.hpp"

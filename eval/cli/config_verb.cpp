@@ -32,7 +32,7 @@ std::string text_of(const config::EffectiveConfig& config, const std::vector<con
     lines.push_back(
         {fmt::format("{} = {}", row.key, row.value), "# " + config.origin(row.key), row.range, row.sentence});
   }
-  return text::aligned_columns(lines) + fmt::format("\n# hash {}\n", config::config_hash(config.values));
+  return text::aligned_columns(lines) + fmt::format("\n# hash {}\n", config::config_hash(config.values()));
 }
 
 std::string markdown_of(const std::vector<config::OptionRow>& rows) {
@@ -69,14 +69,14 @@ std::string json_of(const config::EffectiveConfig& config, const std::vector<con
                        {"range", row.range},
                        {"sentence", row.sentence}});
   }
-  return text::json_text(Json{{"config_hash", config::config_hash(config.values)}, {"options", options}}) +
+  return text::json_text(Json{{"config_hash", config::config_hash(config.values())}, {"options", options}}) +
          "\n";
 }
 
 Result<int> show_config(const ConfigOptions& options) {
   const auto config = console::effective_config(options.variant, options.file, options.sets);
   if (!config) return tl::unexpected(config.error());
-  const std::vector<config::OptionRow> rows = config::describe_options(config->values);
+  const std::vector<config::OptionRow> rows = config::describe_options(config->values());
   if (options.json) {
     console::print_output(json_of(*config, rows));
   } else {

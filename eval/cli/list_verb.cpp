@@ -117,7 +117,7 @@ Listing list_metrics() {
 
 Listing list_options() {
   Listing listing{{"option", "type", "default", "range", "meaning"}, {}};
-  for (const config::OptionRow& row : config::describe_options(config::Config{})) {
+  for (const config::OptionRow& row : config::describe_options(config::EffectiveConfig{}.values())) {
     listing.rows.push_back({row.key, row.type, row.value, row.range, row.sentence});
   }
   return listing;

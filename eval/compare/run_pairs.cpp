@@ -18,15 +18,15 @@ namespace fusebench::compare {
 namespace {
 
 /// Of a variant of this program; of another one the plain ones.
-config::Config defaults_of(const std::string& variant) {
+config::EffectiveConfig defaults_of(const std::string& variant) {
   const auto found = config::find_variant(variant);
-  return found ? config::variant_config(*found).values : config::Config{};
+  return found ? config::variant_config(*found) : config::EffectiveConfig{};
 }
 
-bool is_default(const config::Config& defaults, const record::RecordedOption& option) {
-  config::Config set = defaults;
-  return config::set_option(set, option.key, option.value) &&
-         config::config_hash(set) == config::config_hash(defaults);
+bool is_default(const config::EffectiveConfig& defaults, const record::RecordedOption& option) {
+  config::EffectiveConfig set = defaults;
+  return config::set_option(set.values(), option.key, option.value) &&
+         config::config_hash(set.values()) == config::config_hash(defaults.values());
 }
 
 auto order_of(const RunKey& key) {
@@ -121,7 +121,7 @@ void set_labels(std::vector<RunPair>& pairs) {
 
 RunKey key_of(const record::RunRecord& record) {
   std::vector<std::string> options;
-  const config::Config defaults = defaults_of(record.variant);
+  const config::EffectiveConfig defaults = defaults_of(record.variant);
   for (const record::RecordedOption& option : record.config) {
     // Whoever sets an option to what it is anyway asks for the same run as who does not.
     if (run_files::is_edit(option.origin) && !is_default(defaults, option))

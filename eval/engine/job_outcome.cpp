@@ -11,6 +11,7 @@
 #include "core/config/config_access.hpp"
 #include "core/io/staged_folder.hpp"
 #include "eval/profile/trace_file.hpp"
+#include "eval/run/run_specification.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::engine {
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path not_started_folder(const BatchJob& job) {
-  std::string name = "not-started-" + config::config_hash(job.spec.config.values).substr(0, 8);
+  std::string name = "not-started-" + config::config_hash(job.spec.config.values()).substr(0, 8);
   if (job.spec.frames) {
     name += fmt::format("-{}", job.spec.frames->begin);
     if (job.spec.frames->end) name += fmt::format("-{}", *job.spec.frames->end);
@@ -62,7 +63,7 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
     record.recording.first_frame = job.spec.frames->begin;
     if (job.spec.frames->end) record.recording.frames = *job.spec.frames->end - job.spec.frames->begin;
   }
-  record.config_hash = config::config_hash(job.spec.config.values);
+  record.config_hash = config::config_hash(job.spec.config.values());
   outcome.folder = not_started_folder(job);
   auto folder = io::StagedFolder::create(outcome.folder);
   if (!folder) return tl::unexpected(folder.error());
@@ -85,8 +86,7 @@ bool is_finished(const run::PreparedRun& run, const run::RecordHead& head) {
   if (run.spec.profile && !fs::exists(run.folder / profile::kTraceFile, ignored)) return false;
   if (run.spec.kept == run::KeptFiles::small) return true;
   // What a run of small files does not keep: pixels, or of a system without patches its model.
-  const bool has_patches =
-      !run.spec.program && run.spec.config.values.system.method == config::SystemMethod::filter;
+  const bool has_patches = run::runs_filter(run.spec);
   if (has_patches) return fs::exists(run.folder / "intensity.bin", ignored);
   return !head.has_model || fs::exists(run.folder / "mesh.ply", ignored);
 }

@@ -87,7 +87,7 @@ Result<BatchJob> job_of(const Common& common, const suites::PlannedRecording& re
 
 const suites::Exclusion* exclusion_of(const suites::Suite& suite, const BatchJob& job) {
   if (suite.exclusions.empty()) return nullptr;
-  const auto rows = config::describe_options(job.spec.config.values);
+  const auto rows = config::describe_options(job.spec.config.values());
   const auto found = std::ranges::find_if(suite.exclusions, [&](const suites::Exclusion& exclusion) {
     return exclusion.covers(job.recording.filename().string(), job.variant, rows);
   });
@@ -169,7 +169,7 @@ Result<void> add_runs(const Common& common, const suites::PlannedRecording& reco
         plan.excluded.push_back({to_string(*job), exclusion->reason});
         continue;
       }
-      if (auto related = config::check_relations(job->spec.config.values); !related) {
+      if (auto related = config::check_relations(job->spec.config.values()); !related) {
         const Error& error = related.error();
         if (point.empty()) return related;
         return fail(error.code, fmt::format("{}: {}", to_string(*job), error.message),

@@ -32,7 +32,7 @@ std::string plan_digest(std::span<const BatchJob> jobs) {
   digest.add(record::build_info().estimator);
   for (const BatchJob& job : jobs) {
     digest.add(to_string(job));
-    digest.add(config::config_hash(job.spec.config.values));
+    digest.add(config::config_hash(job.spec.config.values()));
   }
   return digest.hex();
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/config/groups/loops_config.hpp"
 #include "core/places/depth_agreement.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
@@ -43,18 +44,17 @@ bool may_overlap(const SE3& T_a_b) {
 /// The older place that is seen best, by the true poses; nothing if none is.
 std::optional<LoopCandidate> true_loop(std::span<const Place> places, const TruePoses& truth,
                                        std::size_t query, const PinholeCamera& camera,
-                                       const config::Config& config) {
+                                       const config::DepthConfig& depth, const config::LoopsConfig& loops) {
   std::optional<LoopCandidate> best;
   double best_share = kRevisitOverlap;
   for (std::size_t known = 0; known < query; ++known) {
-    if (seconds_between(places[known].timestamp_ns, places[query].timestamp_ns) < config.loops.least_age_s)
-      break;
+    if (seconds_between(places[known].timestamp_ns, places[query].timestamp_ns) < loops.least_age_s) break;
     if (!truth[known]) continue;
     const SE3 T_known_query = truth[known]->inverse() * *truth[query];
     if (!may_overlap(T_known_query)) continue;
     const double share =
         places::depth_agreement(places[known].appearance.small, places[query].appearance.small,
-                                T_known_query.inverse(), camera, config)
+                                T_known_query.inverse(), camera, depth, loops)
             .consistent;
     if (share < best_share) continue;
     best_share = share;
@@ -109,7 +109,8 @@ void add_edges(const loops::LoopClosure& closure, const TruePoses& truth, LoopEr
 }  // namespace
 
 Result<LoopError> loop_error(const loops::LoopClosure& closure, const Trajectory& truth,
-                             const PinholeCamera& camera, const config::Config& config) {
+                             const PinholeCamera& camera, const config::DepthConfig& depth,
+                             const config::LoopsConfig& loops) {
   const std::span<const Place> places = closure.places();
   const TruePoses true_poses = true_poses_of(places, truth);
   LoopError result;
@@ -124,7 +125,7 @@ Result<LoopError> loop_error(const loops::LoopClosure& closure, const Trajectory
   std::vector<LoopCandidate> true_loops;
   for (std::size_t query = 0; query < places.size(); ++query) {
     if (!true_poses[query]) continue;
-    auto loop = true_loop(places, true_poses, query, camera, config);
+    auto loop = true_loop(places, true_poses, query, camera, depth, loops);
     if (!loop) continue;
     Revisits& revisits = places[query].blur_px > kBlurred_px ? result.blurred : result.sharp;
     ++revisits.count;

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "core/base/image.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
 #include "core/mesh/ply_file.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/trajectory/association.hpp"
@@ -17,6 +19,10 @@
 namespace fusebench::pose_intensity {
 
 namespace {
+
+// Every system is probed at the same places, so these are the defaults.
+constexpr config::PatchConfig kProbePatches{};
+constexpr config::DepthConfig kProbeDepth{};
 
 /// The pose of each frame, where the trajectory has one.
 std::vector<std::optional<SE3>> poses_of_frames(const recording::Recording& recording,
@@ -41,8 +47,7 @@ struct ProbedFrame {
 /// Loads frames, and the true surface if that is asked for.
 class FrameLoader {
  public:
-  FrameLoader(const recording::Recording& recording, const ProbeOptions& options)
-      : recording_(recording), options_(options) {}
+  explicit FrameLoader(const recording::Recording& recording) : recording_(recording) {}
 
   Result<void> load_surface() {
     if (recording_.truth_mesh_file.empty() || recording_.ground_truth.empty())
@@ -58,30 +63,29 @@ class FrameLoader {
     auto frame = recording_.load_frame(number);
     if (!frame) return tl::unexpected(frame.error());
     ProbedFrame probed{std::move(frame->grey), {}, {}};
-    preprocessing::gate_depth(frame->depth_m, options_.depth, probed.depth_m);
+    preprocessing::gate_depth(frame->depth_m, kProbeDepth, probed.depth_m);
     probed.T_truth_camera = record::true_camera(recording_, recording_.frames[number].capture_ns);
     return probed;
   }
 
   [[nodiscard]] std::vector<Probe> probes(const ProbedFrame& frame) const {
     const PinholeCamera& camera = recording_.rig.camera;
-    if (!surface_) return probes_of(frame.grey, frame.depth_m, camera, options_.patches, nullptr);
+    if (!surface_) return probes_of(frame.grey, frame.depth_m, camera, kProbePatches, nullptr);
     if (!frame.T_truth_camera) return {};
     const DepthImage depth_m = true_depth_m(*surface_, camera, *frame.T_truth_camera);
-    return probes_of(frame.grey, frame.depth_m, camera, options_.patches, &depth_m);
+    return probes_of(frame.grey, frame.depth_m, camera, kProbePatches, &depth_m);
   }
 
  private:
   const recording::Recording& recording_;
-  const ProbeOptions& options_;
   std::optional<simulator::rays::RayCaster> surface_;
 };
 
 /// Leaves the probes that are seen in the next frame, by the true poses.
 void keep_seen(std::vector<Probe>& probes, const SE3& T_now_before, const ProbedFrame& now,
-               const PinholeCamera& camera, const ProbeOptions& options) {
+               const PinholeCamera& camera) {
   std::erase_if(probes, [&](const Probe& probe) {
-    return !is_seen(T_now_before * probe.point_camera, camera, now.depth_m, options.patches, options.depth);
+    return !is_seen(T_now_before * probe.point_camera, camera, now.depth_m, kProbePatches, kProbeDepth);
   });
 }
 
@@ -112,7 +116,7 @@ struct Sums {
 Result<PoseIntensity> pose_intensity(const recording::Recording& recording,
                                      std::span<const NamedTrajectory> trajectories,
                                      const ProbeOptions& options) {
-  FrameLoader loader(recording, options);
+  FrameLoader loader(recording);
   if (options.true_depth) {
     if (auto loaded = loader.load_surface(); !loaded) return tl::unexpected(loaded.error());
   }
@@ -131,8 +135,7 @@ Result<PoseIntensity> pose_intensity(const recording::Recording& recording,
     std::vector<Probe> probes = all ? loader.probes(*before) : std::vector<Probe>{};
     if (all && before->T_truth_camera && now->T_truth_camera) {
       result.visibility_by_truth = true;
-      keep_seen(probes, now->T_truth_camera->inverse() * *before->T_truth_camera, *now, recording.rig.camera,
-                options);
+      keep_seen(probes, now->T_truth_camera->inverse() * *before->T_truth_camera, *now, recording.rig.camera);
     }
     if (!probes.empty()) {
       ++result.frames;

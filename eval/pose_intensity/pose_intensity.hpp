@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/config/config.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/recording/recording.hpp"
 
@@ -46,8 +45,6 @@ struct PoseIntensity {
 };
 
 struct ProbeOptions {
-  config::PatchConfig patches;
-  config::DepthConfig depth;
   bool true_depth = false;         ///< of the recording's true mesh, at the true poses
   double max_difference_s = 0.02;  ///< between the stamps of a frame and of a pose
 };

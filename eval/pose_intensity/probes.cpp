@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
 #include "core/patches/corner_selection.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "datasets/simulator/rays/ray_caster.hpp"
 
 namespace fusebench::pose_intensity {

@@ -15,7 +15,7 @@
 #include "core/config/options.hpp"
 #include "core/filter/sensor_constants.hpp"
 #include "datasets/calibration/camera_model.hpp"
-#include "eval/loop_error/loop_error.hpp"
+#include "eval/loop_error/loop_metrics.hpp"
 #include "eval/mesh_error/mesh_metrics.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/metrics/intensity_readings.hpp"

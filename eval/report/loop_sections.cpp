@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "core/base/geometry.hpp"
-#include "eval/loop_error/loop_error.hpp"
+#include "eval/loop_error/loop_metrics.hpp"
 #include "eval/run_charts/chart_parts.hpp"
 #include "eval/run_charts/loop_charts.hpp"
 #include "eval/tables/systems_table.hpp"

@@ -65,7 +65,7 @@ class UniqueJobs {
   /// The number of the job.
   std::size_t add(engine::BatchJob job) {
     const std::string key = fmt::format("{} {} {}", job.recording.string(), job.variant,
-                                        config::config_hash(job.spec.config.values));
+                                        config::config_hash(job.spec.config.values()));
     const auto [place, is_new] = numbers_.emplace(key, jobs.size());
     if (is_new) jobs.push_back(std::move(job));
     return place->second;

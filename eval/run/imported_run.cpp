@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/config/config_access.hpp"
 #include "core/io/fingerprint.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/trajectory/trajectory_file.hpp"
@@ -130,7 +131,7 @@ Result<ImportedRun> import_run(const ImportSpec& spec) {
   run.folder = spec.out / recording->name / spec.name / hash->substr(0, 8);
   if (auto first = check_first_of_its_name(run); !first) return tl::unexpected(first.error());
   describe_foreign_output(output, *recording, record);
-  record.metrics = metrics_of(output, *recording, config::Config{}, Workers(spec.threads));
+  record.metrics = metrics_of(output, *recording, config::EffectiveConfig{}.values(), Workers(spec.threads));
   record.provenance = record::provenance_here(spec.threads);
   if (auto written = write(run, output, record::evaluated_truth_text(*recording)); !written)
     return tl::unexpected(written.error());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/loops/loop_tables.hpp"
+#include "eval/loop_error/loop_error.hpp"
 
 namespace fusebench::run {
 
@@ -19,13 +20,15 @@ std::string counts_line(const loops::LoopClosure& closure) {
 
 }  // namespace
 
-LoopResults loop_results(const PreparedRun& run, const loops::LoopClosure* closure, const Trajectory& truth) {
+LoopResults loop_results(const loops::LoopClosure* closure, const Trajectory& truth,
+                         const PinholeCamera& camera, const config::DepthConfig& depth,
+                         const config::LoopsConfig& loops) {
   if (closure == nullptr) return {};
   LoopResults results{
       loops::candidate_table(*closure), loops::place_table(*closure), counts_line(*closure), {}};
   if (truth.empty()) return results;
   results.error = record::Outcome<loop_error::LoopError>::from(
-      loop_error::loop_error(*closure, truth, run.recording.rig.camera, run.spec.config.values));
+      loop_error::loop_error(*closure, truth, camera, depth, loops));
   return results;
 }
 

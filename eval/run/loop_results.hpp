@@ -4,10 +4,11 @@
 #include <optional>
 #include <string>
 
+#include "core/base/types.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/loops/loop_closure.hpp"
-#include "eval/loop_error/loop_error.hpp"
+#include "eval/loop_error/loop_metrics.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run/run_placement.hpp"
 
 namespace fusebench::run {
 
@@ -20,7 +21,8 @@ struct LoopResults {
 
 /// truth: of the camera, at the stamps of the frames; empty if there is none. closure: of a system after its
 /// last frame; nothing of one that does not look for loops.
-[[nodiscard]] LoopResults loop_results(const PreparedRun& run, const loops::LoopClosure* closure,
-                                       const Trajectory& truth);
+[[nodiscard]] LoopResults loop_results(const loops::LoopClosure* closure, const Trajectory& truth,
+                                       const PinholeCamera& camera, const config::DepthConfig& depth,
+                                       const config::LoopsConfig& loops);
 
 }  // namespace fusebench::run

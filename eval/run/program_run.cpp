@@ -66,7 +66,7 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
   record.status = results->reason.empty() ? record::RunStatus::ok : record::RunStatus::failed;
   record.reason = results->reason;
   describe_foreign_output(output, recording, record);
-  record.metrics = metrics_of(output, recording, run.spec.config.values, Workers(run.spec.threads));
+  record.metrics = metrics_of(output, recording, run.spec.config.values(), Workers(run.spec.threads));
   record.timing = program_timing(*results, total);
   record.poses = program.trajectory.online ? record::PoseKind::online : record::PoseKind::final;
   const std::array<NamedText, 3> texts = {{{"trajectory.tum", trajectory::tum_text(output.trajectory)},

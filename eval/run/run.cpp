@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/all_systems.hpp"
+#include "core/config/config.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/meshing/marching_cubes.hpp"
 #include "core/trajectory/trajectory_file.hpp"
@@ -107,7 +108,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   if (!folder) return tl::unexpected(folder.error());
   record::RunRecord record = requested_record(run);
 
-  const config::Config& config = run.spec.config.values;
+  const config::Config& config = run.spec.config.values();
   const Workers workers(run.spec.threads);
   auto system = core::make_system(config, run.recording.rig, run.recording.imu, workers);
   auto progress = process_frames(run, *system, *folder, control);
@@ -115,7 +116,8 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   auto revised = revised_poses(run, *system, *progress, control);
   if (!revised) return tl::unexpected(revised.error());
   const Trajectory truth = record::true_trajectory(run.recording, record::frame_stamps(run.recording));
-  const LoopResults loops = loop_results(run, system->loops(), truth);
+  const LoopResults loops =
+      loop_results(system->loops(), truth, run.recording.rig.camera, config.depth, config.loops);
   systems::Surface surface = system->take_surface();
   system.reset();
   record.model = make_mesh(std::move(surface), config, workers, *progress);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "core/mesh/ply_file.hpp"
 #include "eval/mesh_error/surfel_discs.hpp"

@@ -6,7 +6,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/filter/sensor_constants.hpp"
 #include "core/filter/stamped_state.hpp"
 #include "datasets/recording/recording.hpp"

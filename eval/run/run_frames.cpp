@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "eval/metrics/intensity_file.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/frame_source.hpp"
@@ -84,7 +85,7 @@ void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOut
   ++progress.frames.lost;
   ++progress.lost_in_a_row;
   progress.log += fmt::format("frame {}: lost: {}\n", frame, outcome.reason);
-  const int limit = run.spec.config.values.iekf.max_lost_frames;
+  const int limit = run.spec.config.values().iekf.max_lost_frames;
   if (progress.lost_in_a_row > static_cast<std::size_t>(limit)) {
     progress.end(record::RunStatus::lost,
                  fmt::format("lost at frame {}: {} (iekf.max_lost_frames = {})",
@@ -117,7 +118,8 @@ Result<void> end_at_frame(RunProgress& progress, std::size_t frame, Error error,
 /// intensity.bin, if it is kept.
 Result<std::optional<metrics::IntensityWriter>> intensity_writer(const PreparedRun& run,
                                                                  const io::StagedFolder& folder) {
-  if (run.spec.kept != KeptFiles::all || run.spec.config.values.system.method != config::SystemMethod::filter)
+  if (run.spec.kept != KeptFiles::all ||
+      run.spec.config.values().system.method != config::SystemMethod::filter)
     return std::nullopt;
   const PinholeCamera& camera = run.recording.rig.camera;
   auto writer =
@@ -151,7 +153,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
   progress.frames.total = recording.frames.size();
   for (const std::string& note : record::reading_notes(recording, run.spec.recording))
     progress.log += note + "\n";
-  progress.output.has_filter = run.spec.config.values.system.method == config::SystemMethod::filter;
+  progress.output.has_filter = run.spec.config.values().system.method == config::SystemMethod::filter;
   auto intensity = intensity_writer(run, folder);
   if (!intensity) return tl::unexpected(intensity.error());
   progress.profile.decodes_ahead = run.spec.threads > 1;
@@ -201,7 +203,7 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
   }
   if (progress.status == record::RunStatus::ok && progress.frames.tracked == 0)
     progress.end(record::RunStatus::lost, "no frame could be used as the first one (see log.txt)");
-  end_if_hardly_tracked(progress, run.spec.config.values.evaluation);
+  end_if_hardly_tracked(progress, run.spec.config.values().evaluation);
   if (*intensity) {
     if (auto finished = (*intensity)->finish(); !finished) return tl::unexpected(finished.error());
   }

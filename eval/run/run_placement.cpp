@@ -15,7 +15,7 @@ namespace fusebench::run {
 std::string run_identity(const RunSpec& spec, const recording::Recording& recording) {
   const PinholeCamera& camera = recording.rig.camera;
   io::Fingerprint identity;
-  identity.add(config::config_hash(spec.config.values));
+  identity.add(config::config_hash(spec.config.values()));
   identity.add(recording.fingerprint);
   identity.add(recording::to_string(recording.imu_source));
   identity.add(recording.imu_note);
@@ -55,7 +55,7 @@ PreparedRun place_run(RunSpec spec, recording::Recording recording, const TakenF
 }
 
 Result<PreparedRun> prepare_run(RunSpec spec) {
-  if (auto related = config::check_relations(spec.config.values); !related)
+  if (auto related = config::check_relations(spec.config.values()); !related)
     return tl::unexpected(related.error());
   auto recording = open_for_run(spec);
   if (!recording) return tl::unexpected(recording.error());
@@ -67,13 +67,13 @@ record::RunRecord requested_record(const PreparedRun& run) {
   record.recording = record::recorded_recording(run.recording, run.spec.recording,
                                                 run.spec.frames ? run.spec.frames->begin : 0);
   record.variant = run.spec.variant;
-  for (const config::OptionRow& row : config::describe_options(run.spec.config.values)) {
+  for (const config::OptionRow& row : config::describe_options(run.spec.config.values())) {
     if (run.spec.program && !row.key.starts_with("evaluation.")) continue;
     record.config.push_back(
         {row.key, config::parse_option_value(row.value), run.spec.config.origin(row.key)});
   }
   record.config_hash =
-      run.spec.program ? run.spec.program->identity : config::config_hash(run.spec.config.values);
+      run.spec.program ? run.spec.program->identity : config::config_hash(run.spec.config.values());
   if (run.spec.program)
     record.program = {run.spec.program->definition, run.spec.program->version, run.spec.repetition};
   record.run_id = run.run_id;

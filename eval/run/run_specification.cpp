@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
 #include "eval/run_files/run_labels.hpp"
@@ -30,7 +31,7 @@ bool has_effect(std::string_view group, std::string_view system) {
 
 /// An option that somebody edited so that the configuration needs an IMU; nothing if the variant does.
 std::optional<std::string> edit_that_needs_imu(const config::EffectiveConfig& config) {
-  const bool filter = config.values.system.method == config::SystemMethod::filter;
+  const bool filter = config.values().system.method == config::SystemMethod::filter;
   const auto uses = filter ? std::pair("terms.prior", "\"imu\"") : std::pair("elasticfusion.use_imu", "true");
   const std::pair method("system.method", filter ? "\"filter\"" : "\"elasticfusion\"");
   for (const auto& [key, value] : {uses, method}) {
@@ -85,7 +86,7 @@ Result<void> provide_imu(recording::Recording& recording, const RunSpec& spec) {
 std::optional<std::string> options_without_effect(const config::EffectiveConfig& config) {
   std::string_view system;
   for (const auto& [name, method] : config::option_choices(config::SystemMethod{})) {
-    if (method == config.values.system.method) system = name;
+    if (method == config.values().system.method) system = name;
   }
   std::string keys;
   for (const auto& [key, origin] : config.origins) {
@@ -96,8 +97,12 @@ std::optional<std::string> options_without_effect(const config::EffectiveConfig&
   return fmt::format("without effect: {} (system.method = \"{}\" has no such options)", keys, system);
 }
 
+bool runs_filter(const RunSpec& spec) {
+  return !spec.program && spec.config.values().system.method == config::SystemMethod::filter;
+}
+
 bool wants_imu(const RunSpec& spec) {
-  return spec.program ? spec.program->imu != "none" : config::needs_imu(spec.config.values);
+  return spec.program ? spec.program->imu != "none" : config::needs_imu(spec.config.values());
 }
 
 std::string_view to_string(KeptFiles kept) { return kept == KeptFiles::all ? "all" : "small"; }

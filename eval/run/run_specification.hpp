@@ -69,6 +69,9 @@ struct RunSpec {
   std::filesystem::path out;
 };
 
+/// Whether the run is of the paper's filter and not of another system or program.
+[[nodiscard]] bool runs_filter(const RunSpec& spec);
+
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);
 

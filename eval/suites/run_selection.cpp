@@ -59,7 +59,7 @@ bool Exclusion::covers(std::string_view recording_name, std::string_view variant
     const auto value_in = [&](const std::vector<config::OptionRow>& rows) {
       return std::ranges::find(rows, wanted.first, &config::OptionRow::key)->value;
     };
-    return value_in(config::describe_options(scratch.values)) == value_in(options_of_run);
+    return value_in(config::describe_options(scratch.values())) == value_in(options_of_run);
   });
 }
 

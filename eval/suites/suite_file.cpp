@@ -167,7 +167,7 @@ Result<void> check_suite(const Suite& suite, const std::string& file) {
   for (const std::string& name : variants_of(suite)) {
     const auto config = suite_config(suite, *config::find_variant(name));
     if (!config) return tl::unexpected(config.error());
-    if (auto related = config::check_relations(config->values); !related) {
+    if (auto related = config::check_relations(config->values()); !related) {
       return lacks(fmt::format("variant {}: {}", name, related.error().message));
     }
   }

@@ -33,7 +33,7 @@ tl::unexpected<Error> wrong(const std::string& place, std::string text, std::str
 }
 
 bool is_integer_option(const std::string& key) {
-  for (const config::OptionRow& row : config::describe_options(config::Config{})) {
+  for (const config::OptionRow& row : config::describe_options(config::EffectiveConfig{}.values())) {
     if (row.key == key) return row.type == "integer";
   }
   return false;
@@ -41,7 +41,8 @@ bool is_integer_option(const std::string& key) {
 
 Result<void> check_option(const std::string& key, const std::string& place) {
   std::vector<std::string> names;
-  for (const config::OptionRow& row : config::describe_options(config::Config{})) names.push_back(row.key);
+  for (const config::OptionRow& row : config::describe_options(config::EffectiveConfig{}.values()))
+    names.push_back(row.key);
   if (std::ranges::find(names, key) != names.end()) return {};
   return wrong(place, fmt::format("unknown option '{}' in a sweep{}", key, nearest_hint(key, names)),
                "`fusebench list options` names them; other keys of [[sweep]] are design, samples and seed");

@@ -37,7 +37,7 @@ RunRecord full_record() {
   record.reason.clear();
   record.recording.notes.assign(4, "a note on what was done to the data on reading, as long as they are");
   record.config_hash = "0011223344556677";
-  for (const OptionRow& option : describe_options(Config{}))
+  for (const OptionRow& option : describe_options(EffectiveConfig{}.values()))
     record.config.push_back({option.key, parse_option_value(option.value), "default"});
   record.metrics.ate = {AteResult{}, {}};
   fill(*record.metrics.ate.value, 0.01);

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "core/pipeline.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/trajectory/trajectory.hpp"
@@ -76,7 +77,11 @@ void make_recording(BenchScene& scene) {
   scene.camera = recording->rig.camera;
   scene.timing = recording->rig.timing;
   const Workers workers(1);
-  Pipeline pipeline(scene.config, recording->rig, recording->imu, workers);
+  config::Config config;
+  config.patches = scene.config.patches;
+  config.depth = scene.config.depth;
+  config.tsdf = scene.config.tsdf;
+  Pipeline pipeline(config, recording->rig, recording->imu, workers);
   std::int64_t first_ns = 0;
   for (std::size_t i = 0; i <= kRecordedViews; ++i) {
     if (i == kRecordedViews) scene.model = pipeline.model();

@@ -9,13 +9,14 @@
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
+#include "tests/bench/scene_kinds.hpp"
 
 namespace fusebench::testing {
-
-enum class SceneKind : std::int64_t { room = 0, recording = 1 };
 
 /// A frame that was fused.
 struct FusedView {
@@ -24,9 +25,16 @@ struct FusedView {
   SE3 T_world_camera;
 };
 
+/// The options that the scene is made with.
+struct SceneOptions {
+  config::PatchConfig patches;
+  config::DepthConfig depth;
+  config::TsdfConfig tsdf;
+};
+
 struct BenchScene {
   SceneKind kind = SceneKind::room;
-  config::Config config;
+  SceneOptions config;
   PinholeCamera camera;
   SensorTiming timing;
   preprocessing::CameraVelocity velocity;  ///< at the frame
@@ -41,14 +49,5 @@ struct BenchScene {
     return preprocessing::frame_timing(sensed, timing);
   }
 };
-
-/// Made once. The room: 67 degrees of view at a width of 320 or 640 pixels, three near views, the last of
-/// which is the frame, rendered. The recording: 640 pixels, frame 30 of it, and the 30 frames before that as
-/// the estimator tracked and fused them with a synthetic IMU. What cannot be read or tracked throws
-/// (check()).
-[[nodiscard]] const BenchScene& bench_scene(SceneKind kind, int width_px);
-
-/// The folder of the recording below FUSEBENCH_DATA, or why there is none (data_missing).
-[[nodiscard]] Result<std::filesystem::path> recorded_folder();
 
 }  // namespace fusebench::testing

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/config/groups/patches_config.hpp"
 #include "core/patches/corner_selection.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
 #include "tests/support/gated_depth.hpp"

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/config/groups/frame_config.hpp"
 #include "tests/bench/bench_scene.hpp"
 
 namespace fusebench::testing {

@@ -3,6 +3,7 @@
 
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/config/config.hpp"
 #include "core/relocalisation/keyframes.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
 
@@ -54,7 +56,8 @@ void keyframe_landmarks(benchmark::State& state) {
   const BenchScene& scene = testing::scene_of(state);
   const testing::FusedView& view = scene.views.back();
   // They have the depth that the frame has there.
-  const Landmarks landmarks = landmarks_of(view.grey, view.depth_m, scene.camera, kDefaults);
+  const Landmarks landmarks =
+      landmarks_of(view.grey, view.depth_m, scene.camera, kDefaults.place_features, kDefaults.relocalisation);
   for (std::size_t i = 0; i < landmarks.features.size(); ++i) {
     const Vector2d& pixel_px = landmarks.features[i].pixel_px;
     const double depth_m = static_cast<double>(view.depth_m(static_cast<int>(std::lround(pixel_px.x())),
@@ -65,7 +68,8 @@ void keyframe_landmarks(benchmark::State& state) {
   }
   if (landmarks.features.size() < 100) return state.SkipWithError("the frame has few landmarks");
   for (auto _ : state)
-    benchmark::DoNotOptimize(landmarks_of(view.grey, view.depth_m, scene.camera, kDefaults));
+    benchmark::DoNotOptimize(landmarks_of(view.grey, view.depth_m, scene.camera, kDefaults.place_features,
+                                          kDefaults.relocalisation));
   const std::size_t pixels = view.grey.data.size();
   testing::report_rates(state, {"pixels", pixels, bytes_of<std::uint8_t>(pixels)});
   state.counters["features"] = static_cast<double>(landmarks.features.size());

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "eval/record/build_info.hpp"
-#include "tests/bench/bench_scene.hpp"
+#include "tests/bench/scene_kinds.hpp"
 
 int main(int argc, char** argv) {
   // What has no threads of ours has none of OpenCV's either, as `workers` says.

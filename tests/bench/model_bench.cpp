@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/meshing/marching_cubes.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/model_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"

@@ -1,6 +1,7 @@
 // Patches: cutting and packing them, and the frame's update with its linearisations and trials.
 #include <benchmark/benchmark.h>
 
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/patch_answers.hpp"
 #include "tests/bench/rates.hpp"
 #include "tests/bench/scene_arguments.hpp"
@@ -37,8 +38,9 @@ void refresh(benchmark::State& state, const PatchProblem& problem, const Workers
   PatchWorkspace memory;
   std::vector<Patch> patches;
   const auto cut = [&] {
-    refresh_patches(problem.reference(), problem.scene.model, survivors, problem.config, workers, memory,
-                    patches);
+    refresh_patches(problem.reference(), problem.scene.model, survivors,
+                    {problem.config.patches, problem.config.depth, problem.config.terms.deformation}, workers,
+                    memory, patches);
   };
   cut();
   if (!testing::are_cut_from(patches, problem.reference()))

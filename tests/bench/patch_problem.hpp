@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/config/config.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/preprocessing/depth_gates.hpp"
@@ -27,7 +28,8 @@ struct PatchProblem {
         reference_depth_m(gated_depth(scene.views.back().depth_m, config.depth)),
         pyramid(build_pyramid(scene.frame.grey, config.patches.levels)),
         depth_m(gated_depth(scene.frame.depth_m, config.depth)),
-        patches(patches::refresh_patches(reference(), scene.model, {}, config, workers)) {
+        patches(patches::refresh_patches(reference(), scene.model, {},
+                                         {config.patches, config.depth, config.terms.deformation}, workers)) {
     if (scene.kind == SceneKind::recording) target = best_fit(workers);
   }
   PatchProblem(const PatchProblem&) = delete;
@@ -102,7 +104,10 @@ struct PatchProblem {
  private:
   /// Iterations do not end by themselves: a last digit must not decide how many there are.
   static config::Config config_of(const BenchScene& scene, int max_count) {
-    config::Config config = scene.config;
+    config::Config config;
+    config.patches = scene.config.patches;
+    config.depth = scene.config.depth;
+    config.tsdf = scene.config.tsdf;
     config.patches.max_count = max_count;
     config.iekf.converged_rotation_rad = 0;
     config.iekf.converged_translation_m = 0;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/bench/bench_scene.hpp"
+#include "tests/bench/scene_kinds.hpp"
 
 namespace fusebench::testing {
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "tests/support/simulated_run.hpp"
 
@@ -34,7 +35,7 @@ const SimulatedRun& shared_run() {
   return run;
 }
 
-Config config_of(std::string_view variant) { return variant_config(*find_variant(variant)).values; }
+Config config_of(std::string_view variant) { return variant_config(*find_variant(variant)).values(); }
 
 int tracked(const std::vector<FrameReport>& reports) {
   return static_cast<int>(std::count_if(
@@ -321,7 +322,7 @@ TEST(Pipeline, MissingImuIsAnErrorThatSaysWhichTimes) {
 TEST(Variants, AreUniqueAndTheirEditsAreEffective) {
   std::set<std::string> hashes;
   for (const Variant& variant : all_variants()) {
-    EXPECT_TRUE(hashes.insert(config_hash(variant_config(variant).values)).second) << variant.name;
+    EXPECT_TRUE(hashes.insert(config_hash(variant_config(variant).values())).second) << variant.name;
     EXPECT_FALSE(variant.sentence.empty());
   }
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/config/groups/prediction_config.hpp"
+
 namespace fusebench {
 
 using namespace filter;

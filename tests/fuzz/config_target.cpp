@@ -16,7 +16,7 @@ void config(std::string_view bytes) {
     return;
   }
   // A configuration that was accepted is one: its values are within their ranges, and it has a hash.
-  check(!config::config_hash(effective.values).empty(), "a configuration has a hash");
+  check(!config::config_hash(effective.values()).empty(), "a configuration has a hash");
 }
 
 }  // namespace fusebench::fuzz

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <span>
 
+#include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "core/pipeline.hpp"
 
@@ -37,11 +38,11 @@ fusebench::RgbdFrame frame_at(int number, double x_m) {
 int main() {
   const auto variant = fusebench::config::find_variant("no-imu");
   if (!variant) return 1;
-  const fusebench::config::Config config = fusebench::config::variant_config(*variant).values;
+  const fusebench::config::EffectiveConfig config = fusebench::config::variant_config(*variant);
   fusebench::SensorRig rig;
   rig.camera = camera();
   const fusebench::Workers workers(1);
-  fusebench::core::Pipeline pipeline(config, rig, std::span<const fusebench::ImuSample>(), workers);
+  fusebench::core::Pipeline pipeline(config.values(), rig, std::span<const fusebench::ImuSample>(), workers);
   for (int i = 0; i < 4; ++i) {
     const auto report = pipeline.process(frame_at(i, 0.005 * i));
     if (!report) {

@@ -9,7 +9,6 @@
 
 namespace fusebench::perf {
 
-using namespace simd;
 using namespace metrics;
 using namespace trajectory_error;
 using namespace mesh_error;

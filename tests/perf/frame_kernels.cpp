@@ -2,6 +2,7 @@
 
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/frame_answers.hpp"
 #include "tests/bench/golden_frames.hpp"
 #include "tests/perf/kernel_counts.hpp"

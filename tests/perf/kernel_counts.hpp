@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/bench/bench_scene.hpp"
+#include "tests/bench/scene_kinds.hpp"
 
 namespace fusebench::perf {
 

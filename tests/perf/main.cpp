@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "eval/record/build_info.hpp"
+#include "tests/bench/scene_kinds.hpp"
 #include "tests/perf/kernel_counts.hpp"
 
 namespace {

@@ -1,6 +1,8 @@
 #include <optional>
 
+#include "core/config/config.hpp"
 #include "core/pipeline.hpp"
+#include "tests/bench/bench_scene.hpp"
 #include "tests/bench/patch_answers.hpp"
 #include "tests/perf/kernel_counts.hpp"
 #include "tests/support/simulated_frames.hpp"
@@ -23,8 +25,9 @@ void count_refresh(KernelCounts& counts, const testing::PatchProblem& problem, c
   counts.count(
       "refresh_patches", "patch",
       [&] {
-        refresh_patches(problem.reference(), problem.scene.model, {}, problem.config, workers, memory,
-                        patches);
+        refresh_patches(problem.reference(), problem.scene.model, {},
+                        {problem.config.patches, problem.config.depth, problem.config.terms.deformation},
+                        workers, memory, patches);
       },
       [&] {
         check(testing::are_cut_from(patches, problem.reference()), "patches are cut from the frame");

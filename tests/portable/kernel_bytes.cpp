@@ -6,6 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/measurement/patch_sums.hpp"
 #include "core/meshing/marching_cubes.hpp"
 #include "core/patches/patch_deformation.hpp"

@@ -6,6 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
+#include "core/config/groups/frame_config.hpp"
 #include "core/tsdf/band_blocks.hpp"
 
 namespace fusebench::testing {

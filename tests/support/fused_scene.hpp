@@ -1,28 +1,22 @@
 // Analytic scenes fused into a model: what the tests of the model, the raycaster and the mesh start from.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 #include "tests/support/analytic_scene.hpp"
 
 namespace fusebench {
 
 /// Fuses one rendered frame a pose; a failure fails the test that calls.
-inline tsdf::TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera,
-                             const std::vector<SE3>& poses, const config::TsdfConfig& tsdf = {},
-                             const config::DepthConfig& depth = {}, int threads = 2) {
-  const Workers workers(threads);
-  tsdf::TsdfVolume volume(tsdf);
-  for (const SE3& T_world_camera : poses) {
-    const auto fused =
-        volume.integrate(scene.render(camera, T_world_camera), camera, T_world_camera, depth, workers);
-    EXPECT_TRUE(fused.has_value()) << fused.error().message;
-  }
-  return volume;
-}
+tsdf::TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera, const std::vector<SE3>& poses,
+                      const config::TsdfConfig& tsdf, const config::DepthConfig& depth, int threads = 2);
+/// With the default options of depth.
+tsdf::TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera, const std::vector<SE3>& poses,
+                      const config::TsdfConfig& tsdf);
+/// With the default options.
+tsdf::TsdfVolume fuse(const AnalyticScene& scene, const PinholeCamera& camera, const std::vector<SE3>& poses);
 
 /// A room with a ball in it, seen from its middle.
 inline AnalyticScene room_with_a_ball() {

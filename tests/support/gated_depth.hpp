@@ -1,6 +1,7 @@
 // Gated depth as a value.
 #pragma once
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 
 namespace fusebench::testing {

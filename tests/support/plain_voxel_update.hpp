@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::testing {

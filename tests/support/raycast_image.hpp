@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/raycast/raycast.hpp"
 #include "core/tsdf/tsdf_lanes.hpp"
 

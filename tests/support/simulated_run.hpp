@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/pipeline.hpp"
 #include "tests/support/simulated_frames.hpp"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/all_systems.hpp"
+#include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "tests/support/simulated_frames.hpp"
 
@@ -21,7 +22,7 @@ struct TrackedSystem {
 inline config::Config config_of_variant(std::string_view name) {
   const auto variant = config::find_variant(name);
   EXPECT_TRUE(variant.has_value()) << name;
-  return config::variant_config(*variant).values;
+  return config::variant_config(*variant).values();
 }
 
 /// Errors fail the test that calls.

@@ -16,23 +16,24 @@ namespace {
 constexpr std::size_t kFramesOfChunk = 11;   // ten, and the one that it shares with the next
 constexpr std::size_t kFewestKeypoints = 5;  // fewer matches make no pair of frames
 
-config::DepthConfig keypoint_depth(const config::Config& config) {
-  config::DepthConfig depth = config.depth;
-  depth.min_m = config.bundlefusion.keypoint_min_depth_m;
-  depth.max_m = config.bundlefusion.keypoint_max_depth_m;
+config::DepthConfig keypoint_depth(config::DepthConfig depth, const config::BundlefusionConfig& config) {
+  depth.min_m = config.keypoint_min_depth_m;
+  depth.max_m = config.keypoint_max_depth_m;
   return depth;
 }
 
 }  // namespace
 
-BundlefusionSystem::BundlefusionSystem(const config::Config& config, const SensorRig& rig,
-                                       const Workers& workers)
+BundlefusionSystem::BundlefusionSystem(const config::BundlefusionConfig& config,
+                                       const config::DepthConfig& depth, const config::TsdfConfig& tsdf,
+                                       const SensorRig& rig, const Workers& workers)
     : config_(config),
-      keypoint_depth_(keypoint_depth(config)),
+      depth_(depth),
+      keypoint_depth_(keypoint_depth(depth, config)),
       camera_(rig.camera),
       workers_(workers),
-      graph_(config.bundlefusion, workers),
-      model_(config.tsdf) {
+      graph_(config, workers),
+      model_(tsdf) {
   cv::setNumThreads(workers.threads());
 }
 
@@ -73,8 +74,7 @@ Result<health::FrameOutcome> BundlefusionSystem::process(const RgbdFrame& frame)
 
 View BundlefusionSystem::view_of(const RgbdFrame& frame) {
   preprocessing::gate_depth(frame.depth_m, keypoint_depth_, gated_m_);
-  return {find_keypoints(frame.grey, gated_m_, camera_, config_.bundlefusion.max_keypoints,
-                         config_.bundlefusion.min_keypoint_scale_px),
+  return {find_keypoints(frame.grey, gated_m_, camera_, config_.max_keypoints, config_.min_keypoint_scale_px),
           make_depth_cloud(gated_m_, camera_)};
 }
 
@@ -101,7 +101,7 @@ std::optional<SE3> BundlefusionSystem::follow(View view) {
 }
 
 void BundlefusionSystem::start_chunk(View first, std::size_t frame) {
-  chunk_.emplace(std::move(first), config_.bundlefusion, workers_);
+  chunk_.emplace(std::move(first), config_, workers_);
   frames_of_chunk_ = {frame};
   frames_[frame].memberships.push_back({chunks_.size(), 0});
 }
@@ -162,7 +162,7 @@ Result<void> BundlefusionSystem::fuse_again(const RgbdFrame& frame) {
   const auto pose =
       std::ranges::lower_bound(final_trajectory_, frame.timestamp_ns, {}, &StampedPose::timestamp_ns);
   if (pose == final_trajectory_.end() || pose->timestamp_ns != frame.timestamp_ns) return {};
-  return model_.integrate(frame, camera_, pose->T_world_camera, config_.depth, workers_);
+  return model_.integrate(frame, camera_, pose->T_world_camera, depth_, workers_);
 }
 
 Surface BundlefusionSystem::take_surface() { return std::move(model_); }

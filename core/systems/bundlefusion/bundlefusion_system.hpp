@@ -10,6 +10,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/bundlefusion/chunk.hpp"
 #include "core/systems/bundlefusion/keyframe_graph.hpp"
 #include "core/systems/system.hpp"
@@ -19,7 +22,8 @@ namespace fusebench::systems::bundlefusion {
 class BundlefusionSystem final : public System {
  public:
   /// workers must outlive it. The threads of OpenCV are limited to as many.
-  BundlefusionSystem(const config::Config& config, const SensorRig& rig, const Workers& workers);
+  BundlefusionSystem(const config::BundlefusionConfig& config, const config::DepthConfig& depth,
+                     const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers);
 
   /// The world is the camera of the first frame that has keypoints. The pose is that of the chunk's first
   /// frame by all chunks before, times that within the chunk by the frames so far.
@@ -55,7 +59,8 @@ class BundlefusionSystem final : public System {
   [[nodiscard]] std::optional<SE3> T_world_chunk(std::size_t chunk) const;
   [[nodiscard]] std::optional<SE3> final_pose(const KnownFrame& frame) const;
 
-  config::Config config_;
+  config::BundlefusionConfig config_;
+  config::DepthConfig depth_;
   config::DepthConfig keypoint_depth_;
   PinholeCamera camera_;
   const Workers& workers_;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/config/config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/bundlefusion/pose_adjustment.hpp"
 
 namespace fusebench::systems::bundlefusion {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/bundlefusion/pose_adjustment.hpp"
 
 namespace fusebench::systems::bundlefusion {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/config/config.hpp"
 #include "core/systems/elasticfusion/deformation/loop_closer.hpp"
 #include "core/systems/elasticfusion/inertial_tracking.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_fusion.hpp"

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/base/solvers.hpp"
+#include "core/config/config.hpp"
 #include "core/prediction/initialisation.hpp"
 #include "core/prediction/motion_prior.hpp"
 
@@ -42,7 +43,8 @@ Matrix6d pose_covariance(const filter::GaussianState& state) {
 }  // namespace
 
 Result<void> InertialTracking::start(std::int64_t capture_ns) {
-  auto state = prediction::initial_state(samples_, capture_ns, rig_, config_, std::nullopt);
+  auto state = prediction::initial_state(samples_, capture_ns, rig_, config_.terms, config_.initialisation,
+                                         config_.self_calibration, std::nullopt);
   if (!state) return tl::unexpected(state.error());
   state_ = *state;
   capture_ns_ = capture_ns;
@@ -50,7 +52,8 @@ Result<void> InertialTracking::start(std::int64_t capture_ns) {
 }
 
 Result<void> InertialTracking::predict(std::int64_t capture_ns) {
-  auto state = prediction::predict_state(state_, {capture_ns_, capture_ns}, samples_, rig_, config_);
+  auto state = prediction::predict_state(state_, {capture_ns_, capture_ns}, samples_, rig_, config_.terms,
+                                         config_.motion, config_.initialisation, config_.self_calibration);
   if (!state) return tl::unexpected(state.error());
   state_ = *state;
   capture_ns_ = capture_ns;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/infinitam/depth_pyramid.hpp"
 
 namespace fusebench::systems::infinitam {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/ferns/fern_code.hpp"
 
 namespace fusebench::systems::infinitam {

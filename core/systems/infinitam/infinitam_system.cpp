@@ -19,14 +19,16 @@ bool has_depth(const RgbdFrame& frame) {
 
 }  // namespace
 
-InfinitamSystem::InfinitamSystem(const config::Config& config, const SensorRig& rig, const Workers& workers)
+InfinitamSystem::InfinitamSystem(const config::InfinitamConfig& config, const config::DepthConfig& depth,
+                                 const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers)
     : config_(config),
+      depth_(depth),
       camera_(rig.camera),
       workers_(workers),
-      model_(config_.tsdf),
-      renderer_(camera_, config_.depth),
-      tracker_(config_.infinitam, config_.depth, camera_, workers),
-      relocaliser_(camera_, config_.depth, config_.infinitam.defects) {}
+      model_(tsdf),
+      renderer_(camera_, depth_),
+      tracker_(config_, depth_, camera_, workers),
+      relocaliser_(camera_, depth_, config_.defects) {}
 
 Result<health::FrameOutcome> InfinitamSystem::process(const RgbdFrame& frame) {
   health::FrameOutcome outcome;
@@ -40,7 +42,7 @@ Result<health::FrameOutcome> InfinitamSystem::process(const RgbdFrame& frame) {
   FrameLevels levels;
   {
     const health::StageClock clock(outcome.stages, health::Stage::preprocess);
-    levels = levels_of(frame, config_.infinitam);
+    levels = levels_of(frame, config_);
   }
   Quality quality = Quality::good;
   if (frames_ == 0) {
@@ -52,9 +54,8 @@ Result<health::FrameOutcome> InfinitamSystem::process(const RgbdFrame& frame) {
     if (quality == Quality::failed) {
       outcome.status = health::FrameStatus::lost;
       outcome.reason = fmt::format("less than {:.0f} % of the depth pixels match the model",
-                                   100 * config_.infinitam.failed_inlier_share);
-      if (config_.infinitam.on_failure == config::InfinitamFailure::relocalise)
-        T_world_camera_ = T_world_before;
+                                   100 * config_.failed_inlier_share);
+      if (config_.on_failure == config::InfinitamFailure::relocalise) T_world_camera_ = T_world_before;
     }
   }
   const bool fused = (quality == Quality::good || frames_ <= kFramesFusedAnyway) && unfused_good_frames_ == 0;
@@ -70,9 +71,9 @@ Result<health::FrameOutcome> InfinitamSystem::process(const RgbdFrame& frame) {
 }
 
 InfinitamSystem::Quality InfinitamSystem::judge(const TrackedPose& pose) const {
-  if (config_.infinitam.on_failure == config::InfinitamFailure::ignore) return Quality::good;
-  if (pose.inlier_share >= config_.infinitam.good_inlier_share) return Quality::good;
-  return pose.inlier_share >= config_.infinitam.failed_inlier_share ? Quality::poor : Quality::failed;
+  if (config_.on_failure == config::InfinitamFailure::ignore) return Quality::good;
+  if (pose.inlier_share >= config_.good_inlier_share) return Quality::good;
+  return pose.inlier_share >= config_.failed_inlier_share ? Quality::poor : Quality::failed;
 }
 
 InfinitamSystem::Quality InfinitamSystem::track(const FrameLevels& levels, health::StageTimes& stages) {
@@ -86,7 +87,7 @@ InfinitamSystem::Quality InfinitamSystem::track(const FrameLevels& levels, healt
 /// Stores the frame, or looks for its place if it has failed; the quality afterwards.
 InfinitamSystem::Quality InfinitamSystem::relocalise(const FrameLevels& levels, Quality quality,
                                                      health::FrameOutcome& outcome) {
-  if (config_.infinitam.on_failure != config::InfinitamFailure::relocalise) return quality;
+  if (config_.on_failure != config::InfinitamFailure::relocalise) return quality;
   if (quality == Quality::good && unfused_good_frames_ > 0) --unfused_good_frames_;
   const ferns::FernCode code = relocaliser_.code_of(levels.depth_m.front());
   if (quality == Quality::good && unfused_good_frames_ == 0) relocaliser_.offer(code, T_world_camera_);
@@ -104,7 +105,7 @@ InfinitamSystem::Quality InfinitamSystem::relocalise(const FrameLevels& levels, 
 
 Result<void> InfinitamSystem::fuse(const RgbdFrame& frame, health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::fuse);
-  return model_.integrate(frame, camera_, T_world_camera_, config_.depth, workers_);
+  return model_.integrate(frame, camera_, T_world_camera_, depth_, workers_);
 }
 
 void InfinitamSystem::render(health::StageTimes& stages) {

@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/config/groups/config_fwd.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/infinitam/fern_relocaliser.hpp"
 #include "core/systems/infinitam/model_view.hpp"
 #include "core/systems/infinitam/pose_tracker.hpp"
@@ -16,7 +19,8 @@ namespace fusebench::systems::infinitam {
 class InfinitamSystem final : public System {
  public:
   /// workers must outlive it.
-  InfinitamSystem(const config::Config& config, const SensorRig& rig, const Workers& workers);
+  InfinitamSystem(const config::InfinitamConfig& config, const config::DepthConfig& depth,
+                  const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers);
 
   /// The first frame with depth is the first one; the world is its camera. Error run_failed: a full model.
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
@@ -30,7 +34,8 @@ class InfinitamSystem final : public System {
   Result<void> fuse(const RgbdFrame& frame, health::StageTimes& stages);
   void render(health::StageTimes& stages);
 
-  config::Config config_;
+  config::InfinitamConfig config_;
+  config::DepthConfig depth_;
   PinholeCamera camera_;
   const Workers& workers_;
   tsdf::TsdfVolume model_;

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/frame_config.hpp"
 #include "core/raycast/raycast.hpp"
 #include "core/systems/point_map.hpp"
 #include "core/tsdf/tsdf_volume.hpp"

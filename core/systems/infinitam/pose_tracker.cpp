@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "core/base/solvers.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/infinitam/depth_pyramid.hpp"
 
 namespace fusebench::systems::infinitam {

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/image_gradient.hpp"
 #include "core/systems/infinitam/color_matching.hpp"
 #include "core/systems/infinitam/depth_matching.hpp"

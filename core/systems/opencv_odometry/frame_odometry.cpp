@@ -6,6 +6,8 @@
 #include <opencv2/rgbd/depth.hpp>
 #include <utility>
 
+#include "core/config/groups/systems_config.hpp"
+
 namespace fusebench::systems::opencv_odometry {
 
 namespace {

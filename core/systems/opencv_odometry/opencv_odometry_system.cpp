@@ -6,13 +6,10 @@
 
 namespace fusebench::systems::opencv_odometry {
 
-OpencvOdometrySystem::OpencvOdometrySystem(const config::Config& config, const SensorRig& rig,
+OpencvOdometrySystem::OpencvOdometrySystem(config::OdometryMethod method, const config::DepthConfig& depth,
+                                           const config::TsdfConfig& tsdf, const SensorRig& rig,
                                            const Workers& workers)
-    : config_(config),
-      camera_(rig.camera),
-      workers_(workers),
-      odometry_(config_.opencv_odometry.method, camera_),
-      model_(config_.tsdf) {
+    : depth_(depth), camera_(rig.camera), workers_(workers), odometry_(method, camera_), model_(tsdf) {
   cv::setNumThreads(workers.threads());
 }
 
@@ -36,7 +33,7 @@ Result<health::FrameOutcome> OpencvOdometrySystem::process(const RgbdFrame& fram
   outcome.T_world_camera = T_world_camera_;
   if (outcome.status != health::FrameStatus::lost) {
     const health::StageClock clock(outcome.stages, health::Stage::fuse);
-    auto fused = model_.integrate(frame, camera_, T_world_camera_, config_.depth, workers_);
+    auto fused = model_.integrate(frame, camera_, T_world_camera_, depth_, workers_);
     if (!fused) return tl::unexpected(fused.error());
   }
   outcome.model_blocks = model_.block_count();

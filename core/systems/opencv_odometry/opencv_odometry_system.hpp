@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
+#include "core/config/groups/frame_config.hpp"
 #include "core/systems/opencv_odometry/frame_odometry.hpp"
 #include "core/systems/system.hpp"
 
@@ -11,7 +12,8 @@ namespace fusebench::systems::opencv_odometry {
 class OpencvOdometrySystem final : public System {
  public:
   /// workers must outlive it. The library's own threads are limited to as many.
-  OpencvOdometrySystem(const config::Config& config, const SensorRig& rig, const Workers& workers);
+  OpencvOdometrySystem(config::OdometryMethod method, const config::DepthConfig& depth,
+                       const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers);
 
   /// The first frame is the first one, and the world its camera. A motion that the library does not find
   /// makes the frame lost: it is not fused, and the next one is compared with the last one that was not lost.
@@ -20,7 +22,7 @@ class OpencvOdometrySystem final : public System {
   [[nodiscard]] Surface take_surface() override;
 
  private:
-  config::Config config_;
+  config::DepthConfig depth_;
   PinholeCamera camera_;
   const Workers& workers_;
   FrameOdometry odometry_;

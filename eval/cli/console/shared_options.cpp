@@ -63,7 +63,8 @@ Result<config::EffectiveConfig> effective_config(const std::string& variant,
   for (const std::string& assignment : sets) {
     if (auto set = config.set_assignment(assignment); !set) return tl::unexpected(set.error());
   }
-  if (auto related = config::check_relations(config.values); !related) return tl::unexpected(related.error());
+  if (auto related = config::check_relations(config.values()); !related)
+    return tl::unexpected(related.error());
   return config;
 }
 

@@ -93,7 +93,7 @@ Result<int> run(const AieOptions& options) {
   if (trajectories->empty())
     return fail(ErrorCode::usage, "no trajectory is given",
                 "name files, or take the recording's own with --truth");
-  const pose_intensity::ProbeOptions probes{{}, {}, options.true_depth};
+  const pose_intensity::ProbeOptions probes{.true_depth = options.true_depth};
   const auto result = pose_intensity::pose_intensity(*recording, *trajectories, probes);
   if (!result) return tl::unexpected(result.error());
   console::print_output(options.json ? to_json(*result) : to_text(*result));

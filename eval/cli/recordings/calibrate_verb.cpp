@@ -78,7 +78,7 @@ Result<int> run_depth_camera(const CalibrateVerbOptions& options) {
 
 /// What is calibrated, and how the estimator runs over it.
 struct CalibrateTask {
-  config::Config config;
+  config::EffectiveConfig config;
   recording::Recording recording;
 };
 
@@ -98,12 +98,12 @@ tl::unexpected<Error> no_samples(const recording::Recording& recording) {
 Result<CalibrateTask> prepare(const CalibrateVerbOptions& options) {
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
-  if (!config::needs_imu(spec->config.values)) {
+  if (!config::needs_imu(spec->config.values())) {
     return fail(ErrorCode::usage,
                 fmt::format("variant '{}' uses no IMU, and a calibration needs one", options.request.variant),
                 "take --variant full: the IMU only helps to find the poses, which are the images' own");
   }
-  if (auto related = config::check_relations(spec->config.values); !related)
+  if (auto related = config::check_relations(spec->config.values()); !related)
     return tl::unexpected(related.error());
   auto whole = datasets::open_recording(spec->recording, spec->open);
   if (!whole) return tl::unexpected(whole.error());
@@ -111,7 +111,7 @@ Result<CalibrateTask> prepare(const CalibrateVerbOptions& options) {
     return no_samples(*whole);
   auto view = run::view_for_run(std::move(*whole), *spec);
   if (!view) return tl::unexpected(view.error());
-  return CalibrateTask{std::move(spec->config.values), std::move(*view)};
+  return CalibrateTask{std::move(spec->config), std::move(*view)};
 }
 
 Result<int> run(const CalibrateVerbOptions& options) {
@@ -137,7 +137,8 @@ Result<int> run(const CalibrateVerbOptions& options) {
                                                  .scale_prior = 0.01 * options.scale_prior_percent,
                                                  .max_rounds = options.rounds};
   const Workers workers(options.request.threads);
-  const auto calibration = batch_estimation::calibrate(recording, task->config, how, workers, control);
+  const auto calibration =
+      batch_estimation::calibrate(recording, task->config.values(), how, workers, control);
   bar.clear();
   if (!calibration) return tl::unexpected(calibration.error());
   const auto written =

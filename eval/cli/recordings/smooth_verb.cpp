@@ -27,7 +27,7 @@ struct SmoothVerbOptions {
 Result<run::PreparedRun> prepare(const SmoothVerbOptions& options) {
   auto spec = console::spec_of(options.request);
   if (!spec) return tl::unexpected(spec.error());
-  if (!config::needs_imu(spec->config.values)) {
+  if (!config::needs_imu(spec->config.values())) {
     return fail(
         ErrorCode::usage,
         fmt::format("variant '{}' uses no IMU, and the batch estimate needs one", options.request.variant),
@@ -67,7 +67,7 @@ Result<int> run(const SmoothVerbOptions& options) {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
       .stop = &console::stop_requested()};
   const Workers workers(options.request.threads);
-  const auto smoothed = batch_estimation::smooth(recording, prepared->spec.config.values, workers, control);
+  const auto smoothed = batch_estimation::smooth(recording, prepared->spec.config.values(), workers, control);
   bar.clear();
   if (!smoothed) return tl::unexpected(smoothed.error());
   console::print_warnings(batch_estimation::smoothing_remarks(*smoothed));

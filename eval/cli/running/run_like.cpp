@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/run_files/run_labels.hpp"
@@ -24,13 +25,13 @@ Result<config::EffectiveConfig> recorded_config(const record::RunRecord& record)
   config::EffectiveConfig config = config::variant_config(*variant);
   for (const record::RecordedOption& option : record.config) {
     const bool edited = run_files::is_edit(option.origin);
-    config::Config set = config.values;
-    if (auto known = config::set_option(set, option.key, option.value); !known) {
+    config::EffectiveConfig set = config;
+    if (auto known = config::set_option(set.values(), option.key, option.value); !known) {
       Error error = known.error();
       error.message = fmt::format("the record's {}", error.message);
       return tl::unexpected(std::move(error));
     }
-    if (!edited && config::config_hash(set) == config::config_hash(config.values)) continue;
+    if (!edited && config::config_hash(set.values()) == config::config_hash(config.values())) continue;
     if (auto done = config.set(option.key, option.value, edited ? option.origin : "record"); !done)
       return tl::unexpected(done.error());
   }

@@ -30,7 +30,7 @@ std::vector<study::StudyRun> study_runs(const engine::BatchPlan& plan,
       record->reason = outcome.reason;
       record->recording.name = outcome.recording;
       record->variant = outcome.variant;
-      record->config_hash = config::config_hash(plan.jobs[i].spec.config.values);
+      record->config_hash = config::config_hash(plan.jobs[i].spec.config.values());
     }
     const bool is_there = record->status != record::RunStatus::failed;
     runs.push_back({outcome.recording, outcome.group, outcome.split, outcome.variant,

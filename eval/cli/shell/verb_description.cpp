@@ -30,7 +30,7 @@ std::vector<std::string> known_words(const std::vector<std::string>& flags) {
   if (std::ranges::find(flags, "--variant") != flags.end()) {
     for (const config::Variant& variant : config::all_variants()) words.emplace_back(variant.name);
   } else if (std::ranges::find(flags, "--set") != flags.end()) {
-    for (const config::OptionRow& row : config::describe_options(config::Config{}))
+    for (const config::OptionRow& row : config::describe_options(config::EffectiveConfig{}.values()))
       words.push_back(row.key + "=");
   }
   return words;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "eval/record/true_camera.hpp"
 #include "tests/bench/peers/cpu_stopwatch.hpp"
@@ -93,7 +94,7 @@ class Round {
         const std::vector<PlannedFrame>& frames, ContestResult& result)
       : frames_(frames),
         result_(result),
-        ours_(settings.config, recording),
+        ours_(settings.config.values(), recording),
         threads_before_(settings.threads_before) {
     for (Entrant& entrant : result.entrants) entrant.cpu_ms.emplace_back();
     for (std::size_t i = 0; i < peers.size(); ++i) {
@@ -183,7 +184,7 @@ Result<ContestResult> hold_contest(const Recording& recording, const std::vector
   if (recording.frames.size() <= kStartingFrames)
     return fail(ErrorCode::usage,
                 fmt::format("{} frames (allowed: more than {})", recording.frames.size(), kStartingFrames));
-  const auto frames = plan(recording, settings.config);
+  const auto frames = plan(recording, settings.config.values());
   if (!frames) return tl::unexpected(frames.error());
 
   ContestResult result;
@@ -205,7 +206,7 @@ Result<ContestResult> hold_contest(const Recording& recording, const std::vector
       auto loaded = recording.load_frame(i);
       if (!loaded) return tl::unexpected(loaded.error());
       const PlannedFrame& planned = (*frames)[i];
-      RgbdFrame to_fuse = fusible(*loaded, recording, settings.config, planned.velocity);
+      RgbdFrame to_fuse = fusible(*loaded, recording, settings.config.values(), planned.velocity);
       const ContestFrame frame{std::move(*loaded), std::move(to_fuse), planned.T_world_camera};
       if (auto taken = round.take(i, frame); !taken) return tl::unexpected(taken.error());
       if (settings.progress) settings.progress(repetition, i);

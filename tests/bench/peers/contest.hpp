@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/config/config.hpp"
+#include "core/config/config_access.hpp"
 #include "datasets/recording/recording.hpp"
 #include "tests/bench/peers/answers.hpp"
 #include "tests/bench/peers/contestant.hpp"
@@ -35,7 +35,7 @@ struct ContestResult {
 };
 
 struct ContestSettings {
-  Config config;  ///< of our pipeline
+  EffectiveConfig config;  ///< of our pipeline
   FieldSettings field;
   int repetitions = 3;
   int threads_before = 1;  ///< of the process, before any library was called

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/record/process_meter.hpp"
@@ -107,7 +108,8 @@ Result<void> compare(const Request& request) {
   if (!variant) return tl::unexpected(variant.error());
   EffectiveConfig effective = variant_config(*variant);
   ContestSettings settings;
-  settings.config = effective.values = comparable_config(effective.values, settings.field);
+  effective.values() = comparable_config(effective.values(), settings.field);
+  settings.config = effective;
   settings.threads_before = threads_before;
   settings.repetitions = request.repetitions;
   const auto recording = open(request, effective);

@@ -4,6 +4,7 @@
 
 #include <opencv2/core/version.hpp>
 
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/opencv_odometry/frame_odometry.hpp"
 
 namespace fusebench::peers {

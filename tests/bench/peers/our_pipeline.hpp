@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/base/parallel.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/pipeline.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "datasets/recording/recording.hpp"

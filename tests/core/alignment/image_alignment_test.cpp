@@ -4,21 +4,29 @@
 
 #include <vector>
 
+#include "core/config/groups/alignment_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "tests/support/numeric_jacobian.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
 
 using namespace alignment;
-using config::Config;
 
 namespace {
 
+/// The groups of options that these tests need.
+struct AlignmentOptions {
+  config::AlignmentConfig alignment;
+  config::PhotometricConfig photometric;
+};
+
 constexpr int kLevels = 5;
+constexpr int kPatchLevels = 3;
 
 /// A reference frame at the origin and another frame, with their pyramids.
 struct TwoFrames {
-  explicit TwoFrames(const SE3& T_world_camera, const Config& config = Config{})
+  explicit TwoFrames(const SE3& T_world_camera, const AlignmentOptions& config = AlignmentOptions{})
       : reference_frame(room.render(camera, SE3{}, 0)), frame(room.render(camera, T_world_camera, 0)) {
     rig.camera = camera;
     rig.T_imu_camera = {so3_exp({0.1, -0.2, 0.3}), {0.02, -0.01, 0.03}};
@@ -37,12 +45,12 @@ struct TwoFrames {
 };
 
 TEST(ImageAlignment, TheGradientIsThatOfTheCost) {
-  Config config;
+  AlignmentOptions config;
   config.alignment.coarsest_level = 3;
   config.photometric.gain_sigma = 0;  // fixed, so that brightness does not follow the pose
   config.photometric.offset_sigma_grey = 0;
   const TwoFrames frames(SE3(so3_exp({0.02, -0.03, 0.01}), {0.03, 0.01, -0.02}), config);
-  ImageAlignment measurement(config, frames.rig);
+  ImageAlignment measurement(config.alignment, config.photometric, frames.rig);
   measurement.observe(frames.pyramid, frames.reference, SE3{}, 3);
   // Not at the reference itself, where pixels land on pixels and the interpolated image has a kink.
   const SE3 T_world_imu = pose_plus(frames.rig.T_imu_camera.inverse(), Vector6d::Constant(0.0031));
@@ -59,7 +67,7 @@ TEST(ImageAlignment, TheGradientIsThatOfTheCost) {
 }
 
 TEST(ImageAlignment, TheReferenceHasAPointForEachPixelWithDepth) {
-  Config config;
+  AlignmentOptions config;
   const TwoFrames frames(SE3{}, config);
   EXPECT_EQ(frames.reference.finest_level(), 3);
   EXPECT_EQ(frames.reference.coarsest_level(), 4);  // 320x240: level 5 has seven rows
@@ -68,9 +76,9 @@ TEST(ImageAlignment, TheReferenceHasAPointForEachPixelWithDepth) {
 }
 
 TEST(ImageAlignment, ItCanBeSwitchedOff) {
-  Config config;
+  AlignmentOptions config;
   config.alignment.coarsest_level = 0;
-  EXPECT_EQ(pyramid_levels(testing::small_camera(), config), config.patches.levels);
+  EXPECT_EQ(pyramid_levels(testing::small_camera(), kPatchLevels, config.alignment), kPatchLevels);
   const TwoFrames frames(SE3{}, config);
   EXPECT_TRUE(frames.reference.empty());
 }

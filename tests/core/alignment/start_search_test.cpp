@@ -6,15 +6,25 @@
 #include <cmath>
 #include <vector>
 
+#include "core/config/groups/alignment_config.hpp"
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
 
 using namespace alignment;
-using config::Config;
 
 namespace {
+
+/// The groups of options that these tests need.
+struct SearchOptions {
+  config::AlignmentConfig alignment;
+  int patch_levels = 3;
+  config::PhotometricConfig photometric;
+  config::IekfConfig iekf;
+};
 
 /// The prediction that the camera stands still at the origin, with some uncertainty of its pose.
 filter::GaussianState prediction(const SensorRig& rig, double sigma_rad, double sigma_m) {
@@ -34,11 +44,14 @@ struct Search {
     frame = room.render(rig.camera, T_world_camera, 0);
   }
 
-  [[nodiscard]] int levels() const { return pyramid_levels(rig.camera, config); }
+  [[nodiscard]] int levels() const {
+    return pyramid_levels(rig.camera, config.patch_levels, config.alignment);
+  }
 
   FoundStart find(const filter::GaussianState& prior, bool thorough = false) {
     const std::vector<GreyImage> pyramid = build_pyramid(frame.grey, levels());
-    return StartSearch(config, rig).find(prior, reference, pyramid, thorough);
+    return StartSearch(config.alignment, config.patch_levels, config.photometric, config.iekf, rig)
+        .find(prior, reference, pyramid, thorough);
   }
 
   /// How far the pose of a start is from the truth, in pixels at 1 m.
@@ -51,7 +64,7 @@ struct Search {
            (rotation_angle_rad(off.rotation, Quaterniond::Identity()) + off.translation.norm());
   }
 
-  Config config;
+  SearchOptions config;
   SensorRig rig;
   testing::TexturedRoom room;
   SE3 T_world_camera;

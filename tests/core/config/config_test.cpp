@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "core/config/config.hpp"
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
@@ -149,8 +150,8 @@ TEST(Options, AssignmentsParseAndKeepTheirOrigin) {
   EffectiveConfig config;
   ASSERT_TRUE(config.set_assignment("terms.prior=constant_velocity").has_value());
   ASSERT_TRUE(config.set_assignment("depth.max_m=3.5").has_value());
-  EXPECT_EQ(config.values.terms.prior, Prior::constant_velocity);
-  EXPECT_EQ(config.values.depth.max_m, 3.5);
+  EXPECT_EQ(config.values().terms.prior, Prior::constant_velocity);
+  EXPECT_EQ(config.values().depth.max_m, 3.5);
   EXPECT_EQ(config.origin("depth.max_m"), "--set");
   EXPECT_EQ(config.origin("depth.min_m"), "default");
   EXPECT_FALSE(config.set_assignment("depth.max_m").has_value());
@@ -161,15 +162,16 @@ TEST(Options, HashIdentifiesValuesNotOrigins) {
   EffectiveConfig a;
   EffectiveConfig b;
   ASSERT_TRUE(a.set("depth.max_m", 5.0, "--set").has_value());
-  EXPECT_EQ(config_hash(a.values), config_hash(b.values));
-  EXPECT_EQ(config_hash(a.values).size(), 16U);
+  EXPECT_EQ(config_hash(a.values()), config_hash(b.values()));
+  EXPECT_EQ(config_hash(a.values()).size(), 16U);
   ASSERT_TRUE(b.set("depth.max_m", 5.000000001, "--set").has_value());
-  EXPECT_NE(config_hash(a.values), config_hash(b.values));
+  EXPECT_NE(config_hash(a.values()), config_hash(b.values()));
 }
 
 TEST(Options, VariantsDifferInTheirHashes) {
   std::vector<std::string> hashes;
-  for (const Variant& variant : all_variants()) hashes.push_back(config_hash(variant_config(variant).values));
+  for (const Variant& variant : all_variants())
+    hashes.push_back(config_hash(variant_config(variant).values()));
   std::sort(hashes.begin(), hashes.end());
   EXPECT_EQ(std::unique(hashes.begin(), hashes.end()), hashes.end());
 }
@@ -205,8 +207,8 @@ TEST(Options, RelationsOfThePlacesAreCheckedAndNamed) {
 
 TEST_F(ConfigFile, SetsValuesWithTheirLines) {
   ASSERT_TRUE(apply("[iekf]\nmax_iterations = 8\n\n[terms]\nprior = \"constant_velocity\"\n").has_value());
-  EXPECT_EQ(config_.values.iekf.max_iterations, 8);
-  EXPECT_EQ(config_.values.terms.prior, Prior::constant_velocity);
+  EXPECT_EQ(config_.values().iekf.max_iterations, 8);
+  EXPECT_EQ(config_.values().terms.prior, Prior::constant_velocity);
   EXPECT_EQ(config_.origin("iekf.max_iterations"), place(2));
   EXPECT_EQ(config_.origin("terms.prior"), place(5));
 }
@@ -243,7 +245,7 @@ TEST(Toml, ValuesReadBackTheSame) {
 
 TEST(Options, TheHashIsOfAllKeysAndValues) {
   for (const Variant& variant : all_variants()) {
-    const Config config = variant_config(variant).values;
+    const Config config = variant_config(variant).values();
     io::Fingerprint text;
     for (const OptionRow& row : describe_options(config)) text.add(row.key + "=" + row.value + "\n");
     EXPECT_EQ(config_hash(config), text.hex().substr(0, 16)) << variant.name;
@@ -252,9 +254,9 @@ TEST(Options, TheHashIsOfAllKeysAndValues) {
 
 TEST_F(ConfigFile, EditsOnlyWhatItChanges) {
   ASSERT_TRUE(config_.set("tsdf.voxel_m", 0.02, "variant x"));
-  const std::string hash = config_hash(config_.values);
+  const std::string hash = config_hash(config_.values());
   ASSERT_TRUE(apply("[tsdf]\nvoxel_m = 0.02\nmax_weight = 64\ntruncation_m = 0.04\n"));
-  EXPECT_EQ(config_hash(config_.values), hash);
+  EXPECT_EQ(config_hash(config_.values()), hash);
   EXPECT_EQ(config_.origin("tsdf.voxel_m"), "variant x");
   EXPECT_EQ(config_.origin("tsdf.max_weight"), "default");
   ASSERT_TRUE(apply("[tsdf]\nvoxel_m = 0.01\nmax_weight = 64\n"));

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/config/groups/filter_config.hpp"
 #include "core/filter/iekf.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "tests/support/known_measurement.hpp"

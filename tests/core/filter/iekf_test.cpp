@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/config/groups/filter_config.hpp"
 #include "core/patches/posed_camera.hpp"
 #include "core/prediction/motion_prior.hpp"
 #include "tests/support/large_matrices.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/config/groups/filter_config.hpp"
 #include "core/filter/iekf.hpp"
 #include "tests/support/known_measurement.hpp"
 #include "tests/support/large_matrices.hpp"

@@ -4,6 +4,9 @@
 
 #include <vector>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/health_config.hpp"
+
 namespace fusebench {
 
 using namespace config;
@@ -12,13 +15,15 @@ using namespace measurement;
 
 namespace {
 
+constexpr int kPatchSize_px = 10;
+
 /// An image of stripes of two grey levels, with depth in its upper part.
 struct Scene {
   int grey = 100;
   int contrast_grey = 20;
   int rows_with_depth = 48;
 
-  [[nodiscard]] FrameHealth judged(const Config& config,
+  [[nodiscard]] FrameHealth judged(const HealthConfig& health,
                                    const std::vector<PatchOutcome>& outcomes = {}) const {
     GreyImage image(64, 48);
     DepthImage depth_m(64, 48);
@@ -29,47 +34,47 @@ struct Scene {
       }
     }
     const std::vector<GreyImage> pyramid{image};
-    return judge_health({pyramid, depth_m}, outcomes, 0.0, config);
+    return judge_health({pyramid, depth_m}, outcomes, 0.0, health, IekfConfig{}, kPatchSize_px);
   }
 };
 
 TEST(FrameHealth, AFrameIsDarkBelowItsGreyLevel) {
-  Config config;
+  HealthConfig health;
   const Scene dim{.grey = 8, .contrast_grey = 6};  // 11 in the mean
-  EXPECT_EQ(dim.judged(config), FrameHealth::good);
-  config.health.dark_grey = 12;
-  EXPECT_EQ(dim.judged(config), FrameHealth::dark);
+  EXPECT_EQ(dim.judged(health), FrameHealth::good);
+  health.dark_grey = 12;
+  EXPECT_EQ(dim.judged(health), FrameHealth::dark);
 }
 
 TEST(FrameHealth, HowMuchDepthIsEnough) {
-  Config config;
-  EXPECT_EQ((Scene{.rows_with_depth = 12}).judged(config), FrameHealth::good);
-  EXPECT_EQ((Scene{.rows_with_depth = 4}).judged(config), FrameHealth::short_of_depth);
-  config.health.min_depth_share = 0.5;
-  EXPECT_EQ((Scene{.rows_with_depth = 12}).judged(config), FrameHealth::short_of_depth);
+  HealthConfig health;
+  EXPECT_EQ((Scene{.rows_with_depth = 12}).judged(health), FrameHealth::good);
+  EXPECT_EQ((Scene{.rows_with_depth = 4}).judged(health), FrameHealth::short_of_depth);
+  health.min_depth_share = 0.5;
+  EXPECT_EQ((Scene{.rows_with_depth = 12}).judged(health), FrameHealth::short_of_depth);
 }
 
 TEST(FrameHealth, WhatCountsAsTexture) {
-  Config config;
+  HealthConfig health;
   const Scene faint{.contrast_grey = 5};
-  EXPECT_EQ(faint.judged(config), FrameHealth::good);
-  config.health.texture_gradient_grey = 5;
-  EXPECT_EQ(faint.judged(config), FrameHealth::short_of_texture) << "a gradient has to exceed it";
-  config.health.min_texture_share = 0;
-  EXPECT_EQ(faint.judged(config), FrameHealth::good);
+  EXPECT_EQ(faint.judged(health), FrameHealth::good);
+  health.texture_gradient_grey = 5;
+  EXPECT_EQ(faint.judged(health), FrameHealth::short_of_texture) << "a gradient has to exceed it";
+  health.min_texture_share = 0;
+  EXPECT_EQ(faint.judged(health), FrameHealth::good);
 }
 
 TEST(FrameHealth, HowManyCoveredPatchesAreAnOcclusion) {
-  Config config;
+  HealthConfig health;
   std::vector<PatchOutcome> outcomes(10);
   for (std::size_t p = 0; p < outcomes.size(); ++p) {
     outcomes[p].in_view = outcomes[p].tracked = outcomes[p].accepted = true;
     outcomes[p].usable_pixels = 100;
     if (p < 2) outcomes[p].covered_pixels = 200;
   }
-  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::good);
-  config.health.covered_share = 0.19;
-  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::occluded);
+  EXPECT_EQ(Scene{}.judged(health, outcomes), FrameHealth::good);
+  health.covered_share = 0.19;
+  EXPECT_EQ(Scene{}.judged(health, outcomes), FrameHealth::occluded);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/config/config.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/loops/loop_tables.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/config/groups/loops_config.hpp"
 
 namespace fusebench {
 

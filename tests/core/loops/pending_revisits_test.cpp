@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "core/base/parallel.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/loops_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -13,6 +16,13 @@ namespace fusebench {
 using namespace loops;
 
 namespace {
+
+/// The groups of options that these tests need.
+struct RevisitOptions {
+  config::DepthConfig depth;
+  config::LoopsConfig loops;
+  config::TsdfConfig tsdf;
+};
 
 constexpr double kWall_m = 1.5;
 
@@ -40,11 +50,11 @@ struct RevisitedWall {
     return revisits.depth_to_fuse(model, frame, SE3{}, workers);
   }
 
-  config::Config config;
+  RevisitOptions config;
   PinholeCamera camera = testing::small_camera();
   Workers workers{1};
   tsdf::TsdfVolume model{config.tsdf};
-  PendingRevisits revisits{config, camera};
+  PendingRevisits revisits{config.depth, config.loops, camera};
 };
 
 int measured(const DepthImage& depth_m, int from_column, int to_column) {

@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/image.hpp"
+#include "core/config/config.hpp"
 #include "tests/support/gated_depth.hpp"
 #include "tests/support/textured_room.hpp"
 
@@ -41,10 +42,10 @@ struct Scene {
   [[nodiscard]] std::vector<Patch> cut(int max_count, Deformation deformation) const {
     TsdfVolume model(config.tsdf);
     EXPECT_TRUE(model.integrate(first.frame, rig.camera, SE3{}, config.depth, workers).has_value());
-    Config own = config;
-    own.patches.max_count = max_count;
-    own.terms.deformation = deformation;
-    return refresh_patches({first.pyramid, first.frame.depth_m, rig.camera, SE3{}}, model, {}, own, workers);
+    PatchConfig own = config.patches;
+    own.max_count = max_count;
+    return refresh_patches({first.pyramid, first.frame.depth_m, rig.camera, SE3{}}, model, {},
+                           {own, config.depth, deformation}, workers);
   }
 
   Config config;

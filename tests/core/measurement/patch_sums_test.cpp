@@ -1,5 +1,7 @@
 // The sums over eight pixels at a time against plain double precision, one pixel at a time (tests/support).
 #include "core/measurement/patch_sums.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/residuals_config.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "tests/support/scalar_residuals.hpp"
 
@@ -16,8 +18,15 @@ using namespace measurement;
 
 namespace {
 
+/// The groups of options that these tests need.
+struct ScaleOptions {
+  IekfConfig iekf;
+  PhotometricConfig photometric;
+  GeometricConfig geometric;
+};
+
 /// Patches of residuals that are `sigma` times as large as the scale says, with a share of gross outliers.
-std::vector<PatchOutcome> outcomes(double sigma, const ResidualScale& scale, const Config& config,
+std::vector<PatchOutcome> outcomes(double sigma, const ResidualScale& scale, const ScaleOptions& config,
                                    double outliers, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, sigma);
@@ -41,10 +50,11 @@ std::vector<PatchOutcome> outcomes(double sigma, const ResidualScale& scale, con
 }
 
 ResidualScale after_frames(double sigma, double outliers) {
-  const Config config;
+  const ScaleOptions config;
   ResidualScale scale;
   for (unsigned frame = 0; frame < 60; ++frame)
-    scale = followed_scale(scale, outcomes(sigma, scale, config, outliers, frame), config);
+    scale = followed_scale(scale, outcomes(sigma, scale, config, outliers, frame), config.iekf,
+                           config.photometric, config.geometric);
   return scale;
 }
 
@@ -62,11 +72,14 @@ TEST(ResidualScale, OutliersCountLittle) {
 }
 
 TEST(ResidualScale, RejectedPatchesTellNothingAndTheScaleIsBounded) {
-  const Config config;
+  const ScaleOptions config;
   std::vector<PatchOutcome> rejected = outcomes(100.0, {}, config, 0.0, 1);
   for (PatchOutcome& outcome : rejected) outcome.accepted = false;
-  EXPECT_EQ(followed_scale({0.7, 1.3}, rejected, config).photometric, 0.7);
-  EXPECT_EQ(followed_scale({0.7, 1.3}, rejected, config).geometric, 1.3);
+  EXPECT_EQ(
+      followed_scale({0.7, 1.3}, rejected, config.iekf, config.photometric, config.geometric).photometric,
+      0.7);
+  EXPECT_EQ(followed_scale({0.7, 1.3}, rejected, config.iekf, config.photometric, config.geometric).geometric,
+            1.3);
   EXPECT_EQ(after_frames(100.0, 0.0).photometric, kMaxScale);
   EXPECT_EQ(after_frames(0.001, 0.0).geometric, 1.0 / kMaxScale);
 }

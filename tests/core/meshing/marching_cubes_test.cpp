@@ -10,6 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/meshing/marching_cubes_table.hpp"
 #include "tests/support/fused_scene.hpp"
 

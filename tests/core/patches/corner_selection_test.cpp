@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "core/config/groups/patches_config.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {

@@ -8,6 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/terms_config.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "tests/support/fused_scene.hpp"
 #include "tests/support/raycast_image.hpp"
 

@@ -8,6 +8,10 @@
 #include <cstdint>
 
 #include "core/base/image.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/patches_config.hpp"
+#include "core/config/groups/terms_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "core/patches/measured_surfaces.hpp"
 #include "tests/support/gated_depth.hpp"
 #include "tests/support/textured_room.hpp"
@@ -21,10 +25,17 @@ using namespace patches;
 
 namespace {
 
+/// The groups of options that these tests need.
+struct PatchesOptions {
+  PatchConfig patches;
+  DepthConfig depth;
+  TsdfConfig tsdf;
+};
+
 /// One frame of the room, fused into a model.
 struct FusedFrame {
   PinholeCamera camera = testing::small_camera();
-  Config config;
+  PatchesOptions config;
   Workers workers{1};
   RgbdFrame frame = testing::TexturedRoom{}.render(camera, SE3{}, 0);
   TsdfVolume model{config.tsdf};
@@ -39,7 +50,8 @@ struct FusedFrame {
   }
 
   [[nodiscard]] std::vector<Patch> cut(const std::vector<TrackedCentre>& centres) const {
-    return refresh_patches({pyramid, gated_m, camera, SE3{}}, model, centres, config, workers);
+    return refresh_patches({pyramid, gated_m, camera, SE3{}}, model, centres,
+                           {config.patches, config.depth, Deformation::pixelwise}, workers);
   }
 
   [[nodiscard]] bool one_surface(const PatchPixel& pixel, int reach_px) const {
@@ -75,8 +87,9 @@ TEST(Patches, KeptOnesStayAsTheyAreWithNewOnesAround) {
   const Eigen::Vector2i before = patches[5].centre_px;
   const std::vector<TrackedCentre> survivors = {{before.cast<double>() + Vector2d(3, 1), 4, 5}};
   PatchWorkspace work;
-  refresh_patches({scene.pyramid, scene.gated_m, scene.camera, SE3{}}, scene.model, survivors, scene.config,
-                  scene.workers, work, patches);
+  refresh_patches({scene.pyramid, scene.gated_m, scene.camera, SE3{}}, scene.model, survivors,
+                  {scene.config.patches, scene.config.depth, Deformation::pixelwise}, scene.workers, work,
+                  patches);
   ASSERT_GT(patches.size(), 10U);
   EXPECT_EQ(patches[0].levels.front().pixels.front().intensity, -7);
   EXPECT_EQ(patches[0].levels.front().pixels.front().reference_pixel, key);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/config.hpp"
 #include "core/places/depth_agreement.hpp"
 #include "core/places/place_verification.hpp"
 #include "tests/support/textured_room.hpp"
@@ -24,7 +25,8 @@ const SE3 kStart = pose_plus(kTrue, (Vector6d() << 0.02, -0.03, 0.02, 0.03, 0.02
 
 Appearance appearance_at(const SE3& T_world_camera, const config::Config& config,
                          const TexturedRoom& room = {}) {
-  return appearance_of(room.render(small_camera(), T_world_camera, 1), small_camera(), config);
+  return appearance_of(room.render(small_camera(), T_world_camera, 1), small_camera(), config.loops,
+                       config.place_features, config.relocalisation);
 }
 
 /// A wall across the view, and nothing else.
@@ -46,7 +48,7 @@ TEST(DenseAlignment, DepthAloneFindsThePose) {
   const config::Config config;
   const auto found =
       aligned_by_depth(appearance_at(kCorner, config).small, appearance_at(kCorner * kTrue, config).small,
-                       {start_with(1, 1), false, 0}, small_camera(), config);
+                       {start_with(1, 1), false, 0}, small_camera(), config.depth, config.loops);
   ASSERT_TRUE(found);
   EXPECT_LT(rotation_angle_rad(found->T_known_query.rotation, kTrue.rotation), radians(0.3));
   EXPECT_LT((found->T_known_query.translation - kTrue.translation).norm(), 0.006);
@@ -61,7 +63,8 @@ TEST(DenseAlignment, AWideReachFindsThePoseFromFarAway) {
   const RelativePose start{pose_plus(kTrue, (Vector6d() << 0.07, -0.08, 0.06, 0.2, -0.15, 0.17).finished()),
                            Matrix6d::Identity()};
   const auto error_m = [&](double reach_m) {
-    const auto found = aligned_by_depth(known, query, {start, false, reach_m}, small_camera(), config);
+    const auto found =
+        aligned_by_depth(known, query, {start, false, reach_m}, small_camera(), config.depth, config.loops);
     return found ? (found->T_known_query.translation - kTrue.translation).norm() : 1.0;
   };
   EXPECT_GT(error_m(0), 0.05) << "the start is too near: the test is empty";
@@ -72,10 +75,10 @@ TEST(DenseAlignment, AWallLeavesThePoseToTheFeatures) {
   const config::Config config;
   const Appearance known = appearance_at({}, config, wall());
   const Appearance query = appearance_at(kTrue, config, wall());
-  EXPECT_FALSE(
-      aligned_by_depth(known.small, query.small, {start_with(1, 1), false, 0}, small_camera(), config));
-  const auto found =
-      aligned_by_depth(known.small, query.small, {start_with(0.01, 0.01), true, 0}, small_camera(), config);
+  EXPECT_FALSE(aligned_by_depth(known.small, query.small, {start_with(1, 1), false, 0}, small_camera(),
+                                config.depth, config.loops));
+  const auto found = aligned_by_depth(known.small, query.small, {start_with(0.01, 0.01), true, 0},
+                                      small_camera(), config.depth, config.loops);
   ASSERT_TRUE(found);
   const Vector3d moved = found->T_known_query.translation - kTrue.translation;
   const Vector3d before = kStart.translation - kTrue.translation;
@@ -89,22 +92,30 @@ TEST(DenseAlignment, TooLittleDepthIsNoPose) {
   const Appearance known = appearance_at(kCorner, config);
   Appearance query = appearance_at(kCorner * kTrue, config);
   std::fill(query.small.depth_m.data.begin(), query.small.depth_m.data.end(), 0.0F);
-  EXPECT_FALSE(
-      aligned_by_depth(known.small, query.small, {start_with(1, 1), false, 0}, small_camera(), config));
+  EXPECT_FALSE(aligned_by_depth(known.small, query.small, {start_with(1, 1), false, 0}, small_camera(),
+                                config.depth, config.loops));
 }
 
 TEST(DepthAgreement, APlaceAgreesWithItselfAndNotWithOneElsewhere) {
   const config::Config config;
   const Appearance here = appearance_at({}, config);
-  const DepthAgreement same = depth_agreement(here.small, here.small, SE3{}, small_camera(), config);
+  const DepthAgreement same =
+      depth_agreement(here.small, here.small, SE3{}, small_camera(), config.depth, config.loops);
   EXPECT_GT(same.overlap, 0.99);
   EXPECT_GT(same.consistent, 0.99);
   EXPECT_EQ(same.violating, 0);
-  EXPECT_NEAR(grey_correlation(here.small, here.small, SE3{}, small_camera(), config).value(), 1, 1e-9);
+  EXPECT_NEAR(grey_correlation(here.small, here.small, SE3{}, small_camera(), config.depth, config.loops,
+                               config.health.min_contrast_grey)
+                  .value(),
+              1, 1e-9);
   const Appearance nearer = appearance_at({Quaterniond::Identity(), {0, 0, 0.4}}, config);
-  EXPECT_GT(depth_agreement(nearer.small, here.small, SE3{}, small_camera(), config).violating, 0.5)
+  EXPECT_GT(
+      depth_agreement(nearer.small, here.small, SE3{}, small_camera(), config.depth, config.loops).violating,
+      0.5)
       << "surfaces stand where the other place saw free space";
-  EXPECT_LT(depth_agreement(here.small, nearer.small, SE3{}, small_camera(), config).violating, 0.1)
+  EXPECT_LT(
+      depth_agreement(here.small, nearer.small, SE3{}, small_camera(), config.depth, config.loops).violating,
+      0.1)
       << "and behind what the other one saw: hidden";
 }
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/config/groups/relocalisation_config.hpp"
 #include "core/places/pose_from_points.hpp"
 #include "tests/support/textured_room.hpp"
 
@@ -15,7 +16,7 @@ using testing::TexturedRoom;
 namespace {
 
 constexpr int kMostFeatures = 300;
-constexpr config::Config kDefaults{};
+constexpr config::PlaceFeaturesConfig kFeatureOptions{};
 
 PinholeCamera camera_of(int width_px) {
   const PinholeCamera small = testing::small_camera();
@@ -32,7 +33,7 @@ PinholeCamera camera_of(int width_px) {
 
 Landmarks seen_from(const SE3& T_room_camera, const PinholeCamera& camera) {
   const RgbdFrame frame = TexturedRoom{}.render(camera, T_room_camera, 0);
-  return coarse_landmarks_of(frame.grey, frame.depth_m, camera, kMostFeatures, kDefaults);
+  return coarse_landmarks_of(frame.grey, frame.depth_m, camera, kMostFeatures, kFeatureOptions, {});
 }
 
 TEST(CoarseLandmarks, TellThePoseOfAnotherView) {
@@ -43,10 +44,10 @@ TEST(CoarseLandmarks, TellThePoseOfAnotherView) {
     const Landmarks query = seen_from(T_known_query, camera);
     EXPECT_LE(known.features.size(), static_cast<std::size_t>(kMostFeatures));
     std::vector<SeenPoint> seen;
-    for (const FeatureMatch& match : match_features(query.features, known.features, kDefaults.place_features))
+    for (const FeatureMatch& match : match_features(query.features, known.features, kFeatureOptions))
       seen.push_back({known.points_camera[match.known], query.features[match.query].pixel_px,
                       query.features[match.query].scale});
-    const auto pose = pose_from_points(seen, camera, kDefaults.place_pose);
+    const auto pose = pose_from_points(seen, camera, {});
     ASSERT_TRUE(pose) << width_px;
     EXPECT_GT(pose->inliers.size(), 0.5 * static_cast<double>(seen.size()));
     EXPECT_LT((pose->T_a_camera.translation - T_known_query.translation).norm(), 0.02) << width_px;

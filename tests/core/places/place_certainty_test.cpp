@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "core/config/groups/relocalisation_config.hpp"
+
 namespace fusebench {
 
 using namespace places;

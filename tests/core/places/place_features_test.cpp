@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/config/groups/relocalisation_config.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {

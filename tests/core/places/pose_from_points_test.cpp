@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/base/solvers.hpp"
+#include "core/config/groups/relocalisation_config.hpp"
 
 namespace fusebench {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/config/groups/prediction_config.hpp"
 #include "tests/support/analytic_motion.hpp"
 
 namespace fusebench {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/config/groups/prediction_config.hpp"
 #include "tests/support/analytic_motion.hpp"
 #include "tests/support/large_matrices.hpp"
 #include "tests/support/numeric_jacobian.hpp"

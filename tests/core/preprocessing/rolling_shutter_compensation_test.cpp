@@ -1,5 +1,6 @@
 // Rolling-shutter frames rendered exactly, row by row, against the global-shutter render of the same instant.
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
+#include "core/config/config.hpp"
 
 #include <gtest/gtest.h>
 
@@ -292,7 +293,7 @@ TEST(MotionCompensation, MakesFastMotionTrackableThroughARollingShutter) {
     double share_m;  ///< of the errors without compensation
   };
   for (const Row& row : {Row{"full", 0.005, 0.003, 0.75}, Row{"no-imu", 0.015, 0.004, 1.5}}) {
-    Config with = variant_config(*find_variant(row.variant)).values;
+    Config with = variant_config(*find_variant(row.variant)).values();
     with.terms.motion_compensation = true;
     Config without = with;
     without.terms.motion_compensation = false;
@@ -322,7 +323,7 @@ TEST(MotionCompensation, FramesAreFusedWithTheirOwnColour) {
   for (std::size_t k = 0; k < run.frames.size(); ++k)
     run.frames[k].color = ColorImage(run.frames[k].grey.width, run.frames[k].grey.height, colors[k]);
   const Workers workers(1);
-  Pipeline pipeline(variant_config(*find_variant("full")).values, run.rig, run.imu, workers);
+  Pipeline pipeline(variant_config(*find_variant("full")).values(), run.rig, run.imu, workers);
   for (const RgbdFrame& frame : run.frames) ASSERT_TRUE(pipeline.process(frame).has_value());
   const Mesh mesh = extract_mesh(pipeline.model(), 0.0, workers);
   ASSERT_FALSE(mesh.colors.empty());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/config/groups/frame_config.hpp"
 #include "tests/support/fused_scene.hpp"
 #include "tests/support/plain_field.hpp"
 

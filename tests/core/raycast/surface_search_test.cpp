@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 
+#include "core/config/groups/frame_config.hpp"
 #include "tests/support/fused_scene.hpp"
 #include "tests/support/raycast_image.hpp"
 

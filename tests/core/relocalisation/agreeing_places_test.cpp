@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/geometry.hpp"
+#include "core/config/config.hpp"
 #include "core/relocalisation/relocalisation.hpp"
 #include "tests/support/textured_room.hpp"
 
@@ -20,6 +21,11 @@ constexpr Config kDefaultConfig{};
 constexpr std::int64_t kPeriod_ns = 33'000'000;
 const Vector3d kSpeed_mps{0.4, -0.1, 0.2};
 const Vector3d kTurn_radps{0.1, -0.5, 0.2};
+
+AgreeingPlaces agreeing_places() {
+  return {kDefaultConfig.relocalisation, kDefaultConfig.loops, kDefaultConfig.terms,
+          kDefaultConfig.initialisation};
+}
 
 /// Where the camera is in frame k: a quiet motion.
 SE3 truth_at(int k) {
@@ -49,7 +55,7 @@ RefusedPlace right_place(int k) {
 }
 
 TEST(AgreeingPlaces, ThatAreRightAreEnoughWhateverTheFilterClaims) {
-  AgreeingPlaces places(kDefaultConfig);
+  AgreeingPlaces places = agreeing_places();
   for (int k = 0; k < kDefaultConfig.relocalisation.agreeing_frames; ++k) {
     EXPECT_FALSE(places.are_enough()) << k;
     places.add(right_place(k));
@@ -61,7 +67,7 @@ TEST(AgreeingPlaces, ThatAreRightAreEnoughWhateverTheFilterClaims) {
 
 TEST(AgreeingPlaces, OneThatIsElsewhereBeginsAnew) {
   for (const SE3& elsewhere : {SE3{Quaterniond::Identity(), {0.3, 0, 0}}, SE3{so3_exp({0, 0.1, 0}), {}}}) {
-    AgreeingPlaces places(kDefaultConfig);
+    AgreeingPlaces places = agreeing_places();
     for (int k = 0; k < 40; ++k) {
       RefusedPlace place = right_place(k);
       if (k % 4 == 3) place.pose.T_world_imu = elsewhere * place.pose.T_world_imu;
@@ -72,7 +78,7 @@ TEST(AgreeingPlaces, OneThatIsElsewhereBeginsAnew) {
 }
 
 TEST(AgreeingPlaces, OfLongAgoDoNotCount) {
-  AgreeingPlaces places(kDefaultConfig);
+  AgreeingPlaces places = agreeing_places();
   for (int k = 0; k < 40; ++k) {
     places.add(right_place(20 * k));  // 0.66 s apart
     EXPECT_FALSE(places.are_enough()) << k;
@@ -84,15 +90,18 @@ TEST(AgreeingPlaces, TheGyroscopeTellsHowFarTheyAreTurned) {
   const RefusedPlace a = right_place(0);
   RefusedPlace b = right_place(1);
   b.pose.T_world_imu.rotation = b.pose.T_world_imu.rotation * so3_exp({0, 0.04, 0});
-  EXPECT_LT(squared_disagreement(a, right_place(1), kDefaultConfig), 1.0);
-  EXPECT_GT(squared_disagreement(a, b, kDefaultConfig), kDefaultConfig.loops.agreeing_chi2);
+  EXPECT_LT(squared_disagreement(a, right_place(1), kDefaultConfig.terms, kDefaultConfig.initialisation),
+            1.0);
+  EXPECT_GT(squared_disagreement(a, b, kDefaultConfig.terms, kDefaultConfig.initialisation),
+            kDefaultConfig.loops.agreeing_chi2);
   Config without = kDefaultConfig;
   without.terms.prior = config::Prior::constant_velocity;
-  EXPECT_LT(squared_disagreement(a, b, without), kDefaultConfig.loops.agreeing_chi2);
+  EXPECT_LT(squared_disagreement(a, b, without.terms, without.initialisation),
+            kDefaultConfig.loops.agreeing_chi2);
 }
 
 TEST(AgreeingPlaces, TellTheMotionThatThePredictionHasLost) {
-  AgreeingPlaces places(kDefaultConfig);
+  AgreeingPlaces places = agreeing_places();
   filter::FilterState predicted;
   predicted.T_world_imu = predicted_at(3, {0, 0.35, 0}, {3, 0, 0});
   predicted.velocity_world_mps = {3, 0, 0};

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/base/error.hpp"
+#include "core/config/config.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {
@@ -348,7 +349,8 @@ TEST(Keyframes, FeaturesAtAnEdgeOfDepthAreNotTrusted) {
     for (int x = 160; x < 320; ++x) frame.depth_m(x, y) = 0;
     for (int x = 100; x < 160; ++x) frame.depth_m(x, y) = 9;  // behind all else
   }
-  const Landmarks landmarks = landmarks_of(frame.grey, frame.depth_m, small_camera(), kDefaults);
+  const Landmarks landmarks = landmarks_of(frame.grey, frame.depth_m, small_camera(),
+                                           kDefaults.place_features, kDefaults.relocalisation);
   ASSERT_GT(landmarks.features.size(), 100U);
   ASSERT_EQ(landmarks.features.size(), landmarks.points_camera.size());
   for (std::size_t i = 0; i < landmarks.features.size(); ++i) {
@@ -368,7 +370,8 @@ TEST(Keyframes, LandmarksAreFoundWhenAPlaceIsFirstLookedFor) {
   EXPECT_FALSE(keyframes[0].landmarks);
   ASSERT_FALSE(keyframes.find(frame.grey).empty());
   ASSERT_TRUE(keyframes[0].landmarks);
-  const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera(), kDefaults);
+  const Landmarks at_once = landmarks_of(frame.grey, frame.depth_m, small_camera(), kDefaults.place_features,
+                                         kDefaults.relocalisation);
   const Landmarks& later = *keyframes[0].landmarks;
   ASSERT_EQ(later.features.size(), at_once.features.size());
   for (std::size_t i = 0; i < later.features.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
+#include "core/config/groups/relocalisation_config.hpp"
 
 namespace fusebench {
 
@@ -13,7 +14,7 @@ using namespace relocalisation;
 
 namespace {
 
-constexpr config::Config kPlainConfig{};
+constexpr config::RelocalisationConfig kPlainConfig{};
 
 FoundPlace at(double x_m, double support, double yaw_rad = 0) {
   FoundPlace place;

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "core/config/config.hpp"
 #include "core/config/config_access.hpp"
 #include "tests/support/tracked_system.hpp"
 
@@ -64,7 +65,7 @@ TEST(AllSystems, HasARowForEachMethodThatTheOptionNames) {
     config::EffectiveConfig config;
     const auto set = config.set_assignment("system.method=" + std::string(row.name));
     ASSERT_TRUE(set.has_value()) << set.error().message;
-    EXPECT_EQ(config.values.system.method, row.method);
+    EXPECT_EQ(config.values().system.method, row.method);
   }
   EXPECT_EQ(rows.size(), option_choices(config::SystemMethod{}).size());
 }

@@ -1,5 +1,7 @@
 // Against every pixel's ray, felt along in small steps.
 #include "core/tsdf/band_blocks.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 
 #include <gtest/gtest.h>
 

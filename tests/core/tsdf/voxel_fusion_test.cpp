@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "tests/support/fused_scene.hpp"
 #include "tests/support/plain_voxel_update.hpp"
 

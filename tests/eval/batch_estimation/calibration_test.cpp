@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/config/config.hpp"
 #include "eval/batch_estimation/smoothing.hpp"
 #include "tests/support/simulated_run.hpp"
 #include "tests/support/swinging_motion.hpp"

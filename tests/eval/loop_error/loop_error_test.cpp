@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/config/config.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "tests/support/textured_room.hpp"
 
@@ -65,7 +66,7 @@ class LoopErrors : public ::testing::Test {
 };
 
 TEST_F(LoopErrors, AReturnThatIsFoundIsTrueAndWhatItIsWorthIsKnown) {
-  const auto error = loop_error::loop_error(closed(), truth(), rig_.camera, config_);
+  const auto error = loop_error::loop_error(closed(), truth(), rig_.camera, config_.depth, config_.loops);
   ASSERT_TRUE(error) << error.error().message;
   EXPECT_EQ(error->places, 3U);
   EXPECT_EQ(error->sharp.count, 1U);
@@ -80,7 +81,7 @@ TEST_F(LoopErrors, AReturnThatIsFoundIsTrueAndWhatItIsWorthIsKnown) {
 }
 
 TEST_F(LoopErrors, BlurIsCountedApart) {
-  const auto error = loop_error::loop_error(closed(5), truth(), rig_.camera, config_);
+  const auto error = loop_error::loop_error(closed(5), truth(), rig_.camera, config_.depth, config_.loops);
   ASSERT_TRUE(error) << error.error().message;
   EXPECT_EQ(error->sharp.count, 0U);
   EXPECT_EQ(error->blurred.count, 1U);
@@ -90,7 +91,7 @@ TEST_F(LoopErrors, BlurIsCountedApart) {
 TEST_F(LoopErrors, ALoopToAnotherPlaceIsFalse) {
   Trajectory elsewhere = truth();
   elsewhere.back().T_world_camera.translation += Vector3d(5, 0, 0);
-  const auto error = loop_error::loop_error(closed(), elsewhere, rig_.camera, config_);
+  const auto error = loop_error::loop_error(closed(), elsewhere, rig_.camera, config_.depth, config_.loops);
   ASSERT_TRUE(error) << error.error().message;
   EXPECT_EQ(error->sharp.count, 0U) << "there is no return to be found";
   EXPECT_EQ(error->accepted, 1U);
@@ -101,7 +102,7 @@ TEST_F(LoopErrors, ALoopToAnotherPlaceIsFalse) {
 TEST_F(LoopErrors, PlacesInGapsOfTheTruthAreLeftOut) {
   Trajectory gap = truth();
   gap.pop_back();
-  const auto error = loop_error::loop_error(closed(), gap, rig_.camera, config_);
+  const auto error = loop_error::loop_error(closed(), gap, rig_.camera, config_.depth, config_.loops);
   ASSERT_TRUE(error) << error.error().message;
   EXPECT_EQ(error->places, 2U);
   EXPECT_EQ(error->verified, 0U);

@@ -1,5 +1,6 @@
 // Whole runs over the five golden frames.
 #include "eval/run/run.hpp"
+#include "core/config/config_access.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -418,7 +419,8 @@ TEST_F(RunTest, AFrameThatCannotBeReadEndsTheRunAsFailed) {
 TEST_F(RunTest, BlackFramesAreLost) {
   auto prepared = prepare_run(spec("no-imu"));
   ASSERT_TRUE(prepared.has_value());
-  prepared->spec.config.values.iekf.max_lost_frames = 1;
+  ASSERT_TRUE(
+      set_option(prepared->spec.config.values(), "iekf.max_lost_frames", std::int64_t{1}).has_value());
   prepared->recording.load_frame =
       [load = prepared->recording.load_frame](std::size_t frame) -> Result<RgbdFrame> {
     auto loaded = load(frame);
@@ -486,7 +488,7 @@ TEST_F(RunTest, ARunThatHardlyTracksIsLost) {
   ASSERT_TRUE(lost.has_value());
   EXPECT_EQ(lost->status, RunStatus::lost);
   EXPECT_EQ(lost->reason, "only 1 of 5 frames tracked (evaluation.min_tracked_share = 0.25)");
-  prepared->spec.config.values.evaluation.min_tracked_share = 0.2;
+  ASSERT_TRUE(set_option(prepared->spec.config.values(), "evaluation.min_tracked_share", 0.2).has_value());
   const auto ok = execute_run(*prepared);
   ASSERT_TRUE(ok.has_value());
   EXPECT_EQ(ok->status, RunStatus::ok) << ok->reason;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/config/groups/config_fwd.hpp"
 #include "core/ferns/fern_code.hpp"
 #include "core/systems/elasticfusion/deformation/deformation_graph.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_view.hpp"
@@ -30,7 +31,7 @@ struct FoundPlace {
 
 class FernPlaces {
  public:
-  /// workers must outlive it.
+  /// The references must outlive it.
   FernPlaces(const config::ElasticfusionConfig& config, const Workers& workers)
       : config_(config), workers_(workers) {}
 
@@ -47,7 +48,7 @@ class FernPlaces {
   void deform(const DeformationGraph& graph);
 
  private:
-  config::ElasticfusionConfig config_;
+  const config::ElasticfusionConfig& config_;
   const Workers& workers_;
   std::vector<FernPlace> places_;
 };

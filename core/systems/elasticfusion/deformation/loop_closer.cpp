@@ -62,7 +62,7 @@ void add_fixed(const std::vector<PointConstraint>& together, bool pinned,
 
 LoopCloser::LoopCloser(const config::ElasticfusionConfig& config, const PinholeCamera& camera,
                        const Workers& workers)
-    : config_(config), camera_(camera), workers_(workers), places_(config, workers) {}
+    : config_(config), camera_(camera), workers_(workers), places_(config_, workers) {}
 
 bool LoopCloser::close(const surfels::LiveFrame& live, const surfels::SurfelView& view, std::int32_t time,
                        surfels::SurfelMap& map, std::vector<TimedPose>& poses) {

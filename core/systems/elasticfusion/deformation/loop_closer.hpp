@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/elasticfusion/deformation/fern_places.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_map.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_view.hpp"

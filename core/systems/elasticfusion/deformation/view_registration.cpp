@@ -1,5 +1,7 @@
 #include "core/systems/elasticfusion/deformation/view_registration.hpp"
 
+#include "core/config/groups/systems_config.hpp"
+
 namespace fusebench::systems::elasticfusion::deformation {
 
 tracking::TrackedMotion register_view(const surfels::SurfelView& live, const surfels::SurfelView& model,

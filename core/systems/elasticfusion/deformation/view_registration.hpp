@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_view.hpp"
 #include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/elasticfusion/surfels/smooth_depth.hpp"
 #include "core/systems/image_rows.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/point_map.hpp"
 
 namespace fusebench::systems::elasticfusion::surfels {

@@ -6,7 +6,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/elasticfusion/tracking/pyramids.hpp"
 
 namespace fusebench::systems::elasticfusion::tracking {

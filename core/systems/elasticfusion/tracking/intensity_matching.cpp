@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/config/groups/systems_config.hpp"
 #include "core/simd/lane_points.hpp"
 
 namespace fusebench::systems::elasticfusion::tracking {

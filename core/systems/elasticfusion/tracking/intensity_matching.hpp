@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/elasticfusion/tracking/pyramids.hpp"
 #include "core/systems/pose_sums.hpp"
 

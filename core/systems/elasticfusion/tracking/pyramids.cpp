@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/config/groups/systems_config.hpp"
+
 namespace fusebench::systems::elasticfusion::tracking {
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
+#include "core/config/groups/config_fwd.hpp"
 #include "core/systems/elasticfusion/surfels/live_frame.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_view.hpp"
 #include "core/systems/image_gradient.hpp"

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 namespace fusebench {
@@ -14,9 +17,9 @@ using health::FrameStatus;
 namespace {
 
 /// The images of the tests are of half the size that the option's default is for.
-config::Config test_config() {
-  config::Config config;
-  config.bundlefusion.min_keypoint_scale_px = 1.5;
+config::BundlefusionConfig test_config() {
+  config::BundlefusionConfig config;
+  config.min_keypoint_scale_px = 1.5;
   return config;
 }
 
@@ -33,7 +36,7 @@ struct SystemRun {
 
 SystemRun run_system(const testing::SimulatedRun& recording, int threads) {
   const Workers workers(threads);
-  BundlefusionSystem system(test_config(), recording.rig, workers);
+  BundlefusionSystem system(test_config(), {}, {}, recording.rig, workers);
   SystemRun run;
   for (const RgbdFrame& frame : recording.frames) {
     auto outcome = system.process(frame);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.hpp"
+#include "core/config/config.hpp"
 #include "tests/support/tracked_system.hpp"
 
 namespace fusebench {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/config/config.hpp"
 #include "tests/support/tracked_system.hpp"
 
 namespace fusebench {

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
-#include "core/config/config.hpp"
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/elasticfusion/surfels/live_frame.hpp"
 #include "core/systems/elasticfusion/surfels/surfel_view.hpp"
 #include "tests/support/textured_room.hpp"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/config/config.hpp"
 #include "tests/support/analytic_scene.hpp"
 #include "tests/support/fused_scene.hpp"
 #include "tests/support/tracked_system.hpp"

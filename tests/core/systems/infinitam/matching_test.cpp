@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/solvers.hpp"
+#include "core/config/groups/frame_config.hpp"
 #include "core/systems/image_gradient.hpp"
 #include "core/systems/infinitam/color_matching.hpp"
 #include "core/systems/infinitam/depth_matching.hpp"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
 #include "tests/core/systems/elasticfusion/room_views.hpp"
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/systems_config.hpp"
 #include "tests/support/textured_room.hpp"
 
 namespace fusebench {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/config/groups/systems_config.hpp"
 #include "core/systems/elasticfusion/tracking/camera_tracker.hpp"
 #include "core/systems/elasticfusion/tracking/intensity_matching.hpp"
 #include "core/systems/elasticfusion/tracking/plane_matching.hpp"

@@ -1,7 +1,7 @@
 // Options: which system runs, and those of each system that is not the paper's.
 #pragma once
 
-#include "core/config/options.hpp"
+#include "core/config/groups/option_choices.hpp"
 
 namespace fusebench::config {
 

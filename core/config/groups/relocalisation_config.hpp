@@ -1,8 +1,6 @@
 // Options: places that are found again by a camera that is lost, and the features that they are known by.
 #pragma once
 
-#include "core/config/options.hpp"
-
 namespace fusebench::config {
 
 /// Which frames are kept to be found again by, and when a found pose is believed.

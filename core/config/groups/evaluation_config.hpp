@@ -1,8 +1,6 @@
 // Options: what of a run is measured, and how. No estimate depends on them.
 #pragma once
 
-#include "core/config/options.hpp"
-
 namespace fusebench::config {
 
 /// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures), and which intensity

@@ -1,8 +1,6 @@
 // Options: when a frame and its update are trusted.
 #pragma once
 
-#include "core/config/options.hpp"
-
 namespace fusebench::config {
 
 /// When a frame is judged unhealthy, its update not believed, or the frame kept out of the model.

@@ -1,7 +1,7 @@
 // Options: the terms of the estimator that an ablation switches.
 #pragma once
 
-#include "core/config/options.hpp"
+#include "core/config/groups/option_choices.hpp"
 
 namespace fusebench::config {
 

@@ -1,8 +1,6 @@
 // Options: the first state, and what predicts the next ones.
 #pragma once
 
-#include "core/config/options.hpp"
-
 namespace fusebench::config {
 
 /// Process noise of the priors. IMU densities come with the recording; here is what comes on top.

@@ -1,7 +1,7 @@
 // Options: what is made of places that a camera has come back to.
 #pragma once
 
-#include "core/config/options.hpp"
+#include "core/config/groups/option_choices.hpp"
 
 namespace fusebench::config {
 
