@@ -1,8 +1,9 @@
 #include "core/base/geometry.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench {
 inline namespace base {

@@ -1,5 +1,9 @@
 #include "core/base/solvers.hpp"
 
+template Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>&
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>::compute(const Eigen::EigenBase<Eigen::Matrix3d>&, int);
+template Eigen::JacobiSVD<Eigen::Matrix3d>& Eigen::JacobiSVD<Eigen::Matrix3d>::compute(const Eigen::Matrix3d&,
+                                                                                       unsigned int);
 template Eigen::SelfAdjointEigenSolver<fusebench::Matrix6d>&
 Eigen::SelfAdjointEigenSolver<fusebench::Matrix6d>::compute(const Eigen::EigenBase<fusebench::Matrix6d>&,
                                                             int);

@@ -69,4 +69,6 @@ StateMatrix chart_transport(const FilterState& state, const StateVector& delta) 
   return transport;
 }
 
+StateMatrix symmetrised(const StateMatrix& covariance) { return 0.5 * (covariance + covariance.transpose()); }
+
 }  // namespace fusebench::filter

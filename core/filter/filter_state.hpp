@@ -114,8 +114,6 @@ struct GaussianState {
 [[nodiscard]] Vector6d pose_rate(const FilterState& state);
 
 /// Makes a covariance exactly symmetric again after a product.
-[[nodiscard]] inline StateMatrix symmetrised(const StateMatrix& covariance) {
-  return 0.5 * (covariance + covariance.transpose());
-}
+[[nodiscard]] StateMatrix symmetrised(const StateMatrix& covariance);
 
 }  // namespace fusebench::filter

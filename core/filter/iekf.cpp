@@ -278,6 +278,20 @@ class Update {
 
 }  // namespace
 
+double ReadoutQuadratic::cost(const ReadoutVector& errors, const Vector6d& step) const {
+  return errors.dot(gradient + with_pose.transpose() * step + 0.5 * information * errors);
+}
+
+double MeasurementQuadratic::readout_cost(const ReadoutVector& errors, const TangentVector& steps) const {
+  const ReadoutVector left = errors - undone;
+  return readout_by_reference.cost(left, steps.head<kPoseSize>()) +
+         readout_by_model.cost(left, steps.tail<kPoseSize>());
+}
+
+double MeasurementQuadratic::cost(const ReadoutVector& errors) const {
+  return by_reference.cost + by_model.cost + readout_cost(errors, TangentVector::Zero());
+}
+
 Vector6d correction_in_imu(const IekfResult& update) {
   Vector6d correction = update.correction_by_model;
   correction.tail<3>() = update.posterior.mean.T_world_imu.rotation.conjugate() * correction.tail<3>();

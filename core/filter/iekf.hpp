@@ -54,9 +54,7 @@ struct ReadoutQuadratic {
   ReadoutVector gradient = ReadoutVector::Zero();
 
   /// What the errors add to the cost if the pose has moved on by a step.
-  [[nodiscard]] double cost(const ReadoutVector& errors, const Vector6d& step) const {
-    return errors.dot(gradient + with_pose.transpose() * step + 0.5 * information * errors);
-  }
+  [[nodiscard]] double cost(const ReadoutVector& errors, const Vector6d& step) const;
 };
 
 /// The cost of a measurement, in the tangents of the two poses of a hypothesis and in errors of the read-out.
@@ -70,14 +68,8 @@ struct MeasurementQuadratic {
   ReadoutVector undone = ReadoutVector::Zero();
 
   /// errors: counted from the prior. steps: that the poses have moved on by since the linearisation.
-  [[nodiscard]] double readout_cost(const ReadoutVector& errors, const TangentVector& steps) const {
-    const ReadoutVector left = errors - undone;
-    return readout_by_reference.cost(left, steps.head<kPoseSize>()) +
-           readout_by_model.cost(left, steps.tail<kPoseSize>());
-  }
-  [[nodiscard]] double cost(const ReadoutVector& errors = ReadoutVector::Zero()) const {
-    return by_reference.cost + by_model.cost + readout_cost(errors, TangentVector::Zero());
-  }
+  [[nodiscard]] double readout_cost(const ReadoutVector& errors, const TangentVector& steps) const;
+  [[nodiscard]] double cost(const ReadoutVector& errors = ReadoutVector::Zero()) const;
 };
 
 /// How the cost depends on the timing around a pose and a timing, in addition to a PoseQuadratic there: for

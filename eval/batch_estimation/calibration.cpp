@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/base/solvers.hpp"
 #include "core/config/config.hpp"
 #include "core/prediction/imu_preintegration.hpp"
 #include "eval/batch_estimation/measured_motion.hpp"

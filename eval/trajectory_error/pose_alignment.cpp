@@ -1,6 +1,6 @@
 #include "eval/trajectory_error/pose_alignment.hpp"
 
-#include <Eigen/SVD>
+#include "core/base/solvers.hpp"
 
 namespace fusebench::trajectory_error {
 

@@ -1,7 +1,6 @@
 #include "eval/trajectory_files/nearest_rotation.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "core/base/solvers.hpp"
 
 namespace fusebench::trajectory_files {
 

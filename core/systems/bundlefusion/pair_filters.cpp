@@ -1,8 +1,9 @@
 #include "core/systems/bundlefusion/pair_filters.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+
+#include "core/base/solvers.hpp"
 
 namespace fusebench::systems::bundlefusion {
 

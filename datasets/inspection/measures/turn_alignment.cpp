@@ -1,13 +1,12 @@
 #include "datasets/inspection/measures/turn_alignment.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/base/solvers.hpp"
 #include "datasets/inspection/measures/order_statistics.hpp"
 
 namespace fusebench::inspection::measures {

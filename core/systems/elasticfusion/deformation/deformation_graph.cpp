@@ -1,10 +1,10 @@
 #include "core/systems/elasticfusion/deformation/deformation_graph.hpp"
 
-#include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/solvers.hpp"
 #include "core/base/sparse_matrix.hpp"
 
 namespace fusebench::systems::elasticfusion::deformation {
