@@ -3,10 +3,9 @@
 
 Usage: scripts/plant_faults.py [--check | --list] [--only PATTERN] [--preset NAME]
 
-Works in a copy of the files that git tracks, build/planted_faults/tree, which is deleted at the end; the objects in
-build/planted_faults/build are kept for the next call. Builds the test programs once. Then each fault is planted, the programs are
-built and the tests run: first those of the room that has the fault, then those of the other rooms while none has failed.
-Prints one line a fault. A fault that changes no result has `accepted = "reason"` in the list.
+Works in build/planted_faults, in a copy of the work tree: the sources of the checkout are only read. The copy and its build are kept
+for the next call. Builds the test programs once. Then each fault is planted, what is needed is built and the tests run: first those
+of the room that has the fault, then those of the other rooms while none has failed. Prints one line a fault, in the order of the list. A fault that changes no result has `accepted = "reason"` in the list.
   --check        only check that the text of every fault occurs exactly once in its file (one second)
   --list         only print the faults
   --only PATTERN faults whose file or description contains this (case does not matter)
@@ -14,8 +13,8 @@ Prints one line a fault. A fault that changes no result has `accepted = "reason"
 Exit code: 0 when every fault was noticed or is accepted, 1 otherwise or when the list is wrong, 2 for wrong usage.
 """
 import argparse
+import filecmp
 import json
-import os
 import pathlib
 import re
 import shutil
@@ -30,18 +29,12 @@ LIST = "scripts/planted_faults.toml"
 SCRATCH = ROOT / "build" / "planted_faults"
 TREE = SCRATCH / "tree"
 BUILD = SCRATCH / "build"
-LAYERS = ("core", "datasets", "eval")
 UNIT_LABELS = {"fast", "unit"}  # tests of single rooms
 TEST_TIMEOUT_S = 600  # a fault may make a loop endless
 
 
 class ListError(Exception):
     """An entry of the list that cannot be used."""
-
-
-def room_of(file):
-    """The folder that has a source: its name is the label of its tests."""
-    return pathlib.PurePosixPath(file).parent.name
 
 
 def read_faults(root):
@@ -70,19 +63,20 @@ def check_faults(root, faults):
 
 
 def copy_tree(root, tree):
-    """A copy of what git tracks, with the changes of the work tree; files that did not change keep their time."""
-    tracked = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=root, check=True,
-                             capture_output=True).stdout
-    for name in filter(None, tracked.decode().split("\0")):
+    """Makes the copy equal to the work tree. Only files that differ are written: the build depends on their times."""
+    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=root, check=True,
+                            capture_output=True).stdout.decode().split("\0")
+    names = {name for name in listed if name and (root / name).exists()}
+    for path in [path for path in tree.rglob("*") if not path.is_dir() or path.is_symlink()]:
+        if path.relative_to(tree).as_posix() not in names:
+            path.unlink()
+    for name in sorted(names):
         source, target = root / name, tree / name
-        if not source.exists():  # deleted, but not yet in git
+        if target.exists() and filecmp.cmp(source, target, shallow=False):
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(source, target, follow_symlinks=False)
-
-
-def configure(preset):
-    subprocess.run(["cmake", "--preset", preset, "-S", TREE, "-B", BUILD], cwd=TREE, check=True, stdout=subprocess.DEVNULL)
+        target.unlink(missing_ok=True)
+        shutil.copy(source, target, follow_symlinks=False)
 
 
 def build(targets):
@@ -92,77 +86,68 @@ def build(targets):
     return "" if result.returncode == 0 else result.stdout
 
 
-def source_folders_of_targets():
-    """{target: folders below tests that its objects are compiled from}, from the build's own list of commands."""
-    folders = {}
-    for command in json.loads((BUILD / "compile_commands.json").read_text()):
-        target = re.search(r"CMakeFiles/(\w+)\.dir/", command.get("output", "") or command["command"])
-        if not target:
-            continue
-        text = pathlib.Path(command["file"])
-        sources = re.findall(r'#include "([^"]+)"', text.read_text()) if "/Unity/" in command["file"] else [command["file"]]
-        for source in sources:
-            path = pathlib.Path(source)
-            if path.is_relative_to(TREE / "tests"):
-                folders.setdefault(target[1], set()).add(path.relative_to(TREE / "tests").parts[:-1])
-    return folders
-
-
-def test_programs(targets):
-    """[(target, program, rooms)] of the GoogleTest programs that have tests of single rooms, in the order of ctest."""
+def tests_of_ctest():
+    """[(name, labels, command)]"""
     listed = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1"], check=True, capture_output=True, text=True)
-    programs = {}
     for test in json.loads(listed.stdout)["tests"]:
         labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
-        command = test.get("command", [])
-        if not command or not UNIT_LABELS & set(labels) or pathlib.Path(command[0]).name not in targets:
-            continue
-        programs.setdefault(command[0], set()).update(labels)
-    return [(pathlib.Path(path).name, path, labels | {folder[-1] for folder in targets[pathlib.Path(path).name] if folder})
-            for path, labels in programs.items()]
+        yield test["name"], set(labels), test.get("command", [])
 
 
-def unit_targets(folders):
-    """Targets of tests of the layers, by name: ctest knows their tests once they are built."""
-    return sorted(target for target, parts in folders.items()
-                  if target.endswith("tests") and any(part and part[0] in LAYERS for part in parts))
+def targets_of_ctest():
+    """Targets of the test programs: those that ctest knows as not built, those that a test builds, and those of unit tests."""
+    targets = set()
+    for name, labels, command in tests_of_ctest():
+        if name.endswith("_NOT_BUILT"):
+            targets.add(name.removesuffix("_NOT_BUILT"))
+        elif "--target" in command:
+            targets.update(command[command.index("--target") + 1:])
+        elif UNIT_LABELS & labels and command and BUILD in pathlib.Path(command[0]).parents:
+            targets.add(pathlib.Path(command[0]).name)
+    return sorted(targets) or ["all"]
 
 
-def run_tests(program, name_filter="*"):
-    """The names of the tests that fail, or what ended the program."""
+def unit_programs():
+    """{program: {suite: labels}} of the GoogleTest programs that have tests of single rooms, in the order of ctest."""
+    programs = {}
+    for name, labels, command in tests_of_ctest():
+        if UNIT_LABELS & labels and command and BUILD in pathlib.Path(command[0]).parents:
+            programs.setdefault(pathlib.Path(command[0]), {}).setdefault(name.partition(".")[0], set()).update(labels)
+    return programs
+
+
+def suites_of_room(suites, file):
+    """The suites of a program that have the room's name as a label, or are in its folder of tests."""
+    room = pathlib.PurePosixPath(file).parent
+    in_folder = set()
+    for path in (TREE / "tests" / room).rglob("*_test.cpp"):
+        in_folder.update(re.findall(r"^\w*TEST\w*\((\w+)", path.read_text(), re.MULTILINE))
+    return [suite for suite, labels in suites.items() if room.name in labels or in_folder & set(suite.split("/"))]
+
+
+def run_tests(program, suites=()):
+    """The names of the tests that fail, or how the program ended. Without suites: of all tests."""
+    name_filter = ":".join(f"{suite}.*" for suite in suites) or "*"
     try:
-        result = subprocess.run([program, "--gtest_brief=1", f"--gtest_filter={name_filter}"], cwd=BUILD, text=True,
+        result = subprocess.run([program, "--gtest_brief=1", f"--gtest_filter={name_filter}"], cwd=program.parent, text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=TEST_TIMEOUT_S, check=False,
                                 errors="replace")
     except subprocess.TimeoutExpired:
-        return [f"{pathlib.Path(program).name} takes more than {TEST_TIMEOUT_S} s"]
+        return [f"{program.name}, which takes more than {TEST_TIMEOUT_S} s"]
     failed = list(dict.fromkeys(re.findall(r"^\[  FAILED  \] (\w[\w/.]*)", result.stdout, re.MULTILINE)))
     if result.returncode != 0 and not failed:
-        return [f"{pathlib.Path(program).name} ends with {result.returncode}"]
+        return [f"{program.name}, which ends with {result.returncode}"]
     return failed
 
 
-def names_of_tests(folder):
-    """The GoogleTest suites of a folder below tests, as a filter; empty if it has none."""
-    suites = set()
-    for path in sorted((TREE / "tests" / folder).rglob("*_test.cpp")):
-        suites.update(re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+)", path.read_text(), re.MULTILINE))
-    return ":".join(f"{suite}.*:*/{suite}.*" for suite in sorted(suites))
-
-
 def notice(fault, programs):
-    """Tests that notice a planted fault: those of its room, else the first that do among all others."""
-    room = room_of(fault["file"])
-    own = [program for program in programs if room in program[2]]
-    own_filter = names_of_tests(pathlib.PurePosixPath(fault["file"]).parent)
-    steps = [(program, own_filter) for program in own if own_filter]
-    steps += [(program, "*") for program in own + [program for program in programs if program not in own]]
-    for (target, path, _), name_filter in steps:
-        output = build([target])
-        if output:
+    """Tests that notice a planted fault: those of its room, else those of the first program that has any."""
+    own = {program: found for program, suites in programs.items() if (found := suites_of_room(suites, fault["file"]))}
+    others = [program for program in programs if program not in own]
+    for program, suites in [*own.items(), *((program, ()) for program in [*own, *others])]:
+        if output := build([program.name]):
             raise ListError(f"{fault['file']}: `{fault['new']}` does not compile:\n{output[-3000:]}")
-        failed = run_tests(path, name_filter)
-        if failed:
+        if failed := run_tests(program, suites):
             return failed
     return []
 
@@ -178,18 +163,22 @@ def plant(fault, programs):
         path.write_text(text)
 
 
+def prepare(preset):
+    """Builds the test programs and runs them without a fault. Returns unit_programs()."""
+    copy_tree(ROOT, TREE)
+    subprocess.run(["cmake", "--preset", preset, "-S", TREE, "-B", BUILD], cwd=TREE, check=True, stdout=subprocess.DEVNULL)
+    if output := build(targets_of_ctest()):
+        sys.exit(f"{output[-3000:]}\nplant_faults: the tests do not build without a fault")
+    programs = unit_programs()
+    for program in programs:
+        if failed := run_tests(program):
+            sys.exit(f"plant_faults: without a fault these fail: {', '.join(failed)}")
+    return programs
+
+
 def run_all(faults, preset):
     """Prints a line a fault and a summary; returns the number of faults that survive without being accepted."""
-    copy_tree(ROOT, TREE)
-    configure(preset)
-    targets = source_folders_of_targets()
-    output = build(unit_targets(targets))
-    if output:
-        sys.exit(f"{output[-3000:]}\nplant_faults: the tests do not build without a fault")
-    programs = test_programs(targets)
-    for target, path, _ in programs:
-        if failed := run_tests(path):
-            sys.exit(f"plant_faults: tests of {target} fail without a fault: {', '.join(failed)}")
+    programs = prepare(preset)
     survivors, accepted = [], 0
     for number, fault in enumerate(faults, 1):
         began = time.monotonic()
@@ -235,16 +224,13 @@ def main():
             return 2
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         return 1 if run_all(faults, arguments.preset) else 0
-    except (ListError, tomllib.TOMLDecodeError) as error:
+    except (ListError, tomllib.TOMLDecodeError, subprocess.CalledProcessError) as error:
         print(f"plant_faults: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("plant_faults: interrupted", file=sys.stderr)
         return 130
-    finally:
-        shutil.rmtree(TREE, ignore_errors=True)
 
 
 if __name__ == "__main__":
-    os.umask(0o022)
     sys.exit(main())
