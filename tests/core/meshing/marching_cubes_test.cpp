@@ -12,6 +12,7 @@
 
 #include "core/meshing/marching_cubes_table.hpp"
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/plain_field.hpp"
 
 namespace fusebench {
 
@@ -310,6 +311,54 @@ TEST(MarchingCubes, LeavesOutWhatWasHardlySeen) {
   EXPECT_TRUE(none.triangles.empty());
   EXPECT_TRUE(none.vertices.empty());
   EXPECT_TRUE(extract_mesh(TsdfVolume{TsdfConfig{}}, 0.0, Workers(1)).vertices.empty());
+}
+
+TEST(MarchingCubes, TheLeastWeightIsEnough) {
+  const SE3 T_world_camera = look_at({0, 0, 0}, {0.2, -0.3, 1});
+  RgbdFrame frame;
+  frame.depth_m = DepthImage(kMarchCamera.width_px, kMarchCamera.height_px, 1.0F);
+  TsdfVolume volume{TsdfConfig{.voxel_m = 0.02, .truncation_m = 0.08}};
+  ASSERT_TRUE(volume.integrate(frame, kMarchCamera, T_world_camera, DepthConfig{}, Workers(1)));
+  // In front of the surface, and behind it up to half of the band, a measurement has its whole weight.
+  float weight = 0;
+  for (std::size_t i = 0; i < volume.block_count() * kBlockVoxels; ++i)
+    weight = std::max(weight, static_cast<float>(volume.weights()[i]));
+  EXPECT_NEAR(weight, volume.measurement_weight(1.0, DepthConfig{}), 1e-3);
+  EXPECT_GT(extract_mesh(volume, weight, Workers(1)).triangles.size(), 1000U);
+  EXPECT_TRUE(extract_mesh(volume, 1.001 * weight, Workers(1)).triangles.empty());
+}
+
+/// Each vertex lies on an edge of the lattice, where the distance changes its sign: the gradients by central
+/// differences at both ends, weighed by the distances to them.
+TEST(MarchingCubes, NormalsAreInterpolatedBetweenTheGradientsOfBothVoxels) {
+  const AnalyticScene scene{{AnalyticSphere{{0.0137, -0.0211, 0.0073}, 0.12, {180, 90, 30}}}};
+  const TsdfVolume volume = fuse(scene, kMarchCamera, poses_around({0.0137, -0.0211, 0.0073}, 0.8, 24));
+  const auto distance_m = [&](const VoxelIndex& at) {
+    return static_cast<double>(testing::find_voxel(volume, at).value_or(Voxel{}).distance_m);
+  };
+  const auto gradient = [&](const VoxelIndex& at) {
+    Vector3d sum;
+    for (int axis = 0; axis < 3; ++axis)
+      sum[axis] = distance_m(at + VoxelIndex::Unit(axis)) - distance_m(at - VoxelIndex::Unit(axis));
+    return sum;
+  };
+  const Mesh mesh = extract_mesh(volume, kMinWeight, Workers(1));
+  ASSERT_GT(mesh.vertices.size(), 1000U);
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vector3d place = mesh.vertices[i].cast<double>() / volume.voxel_m();
+    const Vector3d off = (place.array() - place.array().round()).abs();
+    int axis = 0;
+    if (off.maxCoeff(&axis) < 1e-3) continue;  // at a voxel
+    VoxelIndex low = place.array().round().matrix().cast<int>();
+    low[axis] = static_cast<int>(std::floor(place[axis]));
+    const double share = place[axis] - low[axis];
+    const Vector3d expected = (1 - share) * gradient(low) + share * gradient(low + VoxelIndex::Unit(axis));
+    if (!expected.allFinite()) continue;  // one-sided next to what was not observed
+    EXPECT_LT((mesh.normals[i].cast<double>() - expected.normalized()).norm(), 1e-3) << place.transpose();
+    ++compared;
+  }
+  EXPECT_GT(2 * compared, mesh.vertices.size());
 }
 
 TEST(MarchingCubes, IsTheSameForEveryNumberOfThreads) {

@@ -169,6 +169,14 @@ TEST(PatchDeformation, ExtendTestSeesTheOpeningGapAndTheApproach) {
   EXPECT_TRUE(is_extended(warp(patch, camera_at({0, 0, 0.4})).warped, kSize)) << "approach";
 }
 
+TEST(PatchDeformation, APixelOfGrowthIsAnExtension) {
+  // Moving right by b parts both planes by f b / 1 m - f b / 2 m: pixel centres span 9 + 120 b / m pixels.
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  EXPECT_FALSE(is_extended(warp(patch, camera_at({0.98 / 120, 0, 0})).warped, kSize));
+  EXPECT_TRUE(is_extended(warp(patch, camera_at({1.02 / 120, 0, 0})).warped, kSize));
+}
+
 TEST(PatchDeformation, MeasuredDepthHidesWhatIsBehindOrGone) {
   Patch patch = cut({160, 120}, [](int, int) { return 1.5; });
   set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);

@@ -224,6 +224,31 @@ TEST(ImuPreintegration, CovarianceOfFewStepsEqualsIndependentMonteCarlo) {
   }
 }
 
+// The rate at the end is the middle of a parabola through the samples around it (Savitzky & Golay 1964).
+TEST(ImuPreintegration, TheRateAtTheEndHasTheNoiseOfAMeanOverTheTimeThatIsGiven) {
+  const HelixMotion motion;
+  const double rate_hz = 500;
+  const double density = 0.02;
+  const auto clean = motion.samples(0, 0.4, rate_hz);
+  const PreintegratedImu mean = integrate(clean, 0.1, 0.2);
+  std::mt19937_64 generator(4);
+  std::normal_distribution<double> normal;
+  double squares = 0;
+  constexpr int kTrials = 2000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    auto noisy = clean;
+    for (ImuSample& sample : noisy) {
+      for (int k = 0; k < 3; ++k)
+        sample.angular_velocity_radps[k] += density * std::sqrt(rate_hz) * normal(generator);
+    }
+    const Vector3d error =
+        integrate(noisy, 0.1, 0.2).angular_velocity_end_radps - mean.angular_velocity_end_radps;
+    squares += error.squaredNorm() / (3 * kTrials);
+  }
+  // A sample's share in a window of 41 differs from the continuous rule by some percent.
+  EXPECT_NEAR(squares / (density * density / mean.rate_averaged_s), 1.0, 0.1);
+}
+
 TEST(ImuPreintegration, RefusesFramesThatTheImuDoesNotCover) {
   const HelixMotion motion;
   const auto samples = motion.samples(1, 2, 200);
