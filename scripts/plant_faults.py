@@ -3,14 +3,16 @@
 
 Usage: scripts/plant_faults.py [--check | --list] [--only PATTERN] [--preset NAME]
 
-Works in build/planted_faults, in a copy of the work tree: the sources of the checkout are only read. The copy and its build are kept
-for the next call. Builds the test programs once. Then each fault is planted, what is needed is built and the tests run: first those
-of the room that has the fault, then those of the other rooms while none has failed. Prints one line a fault, in the order of the list. A fault that changes no result has `accepted = "reason"` in the list.
-  --check        only check that the text of every fault occurs exactly once in its file (one second)
-  --list         only print the faults
-  --only PATTERN faults whose file or description contains this (case does not matter)
-  --preset NAME  configure preset of the build (default: ci)
-Exit code: 0 when every fault was noticed or is accepted, 1 otherwise or when the list is wrong, 2 for wrong usage.
+Works in build/planted_faults, in a copy of the work tree: the sources of the checkout are only read. The copy and its build are
+kept for the next call. Builds the test programs once. Then each fault is planted, what is needed is built and the tests run: first
+those of the room that has the fault, then those of the other rooms while none has failed. Prints one line a fault, in the order of
+the list. A fault that changes no result has `accepted = "reason"` in the list.
+  --check         only check that the text of every fault occurs exactly once in its file (a second)
+  --list          only print the faults
+  --only PATTERN  faults whose file or description contains this (case does not matter)
+  --preset NAME   configure preset of the build (default: ci)
+Exit code: 0 when every fault was noticed or is accepted, 1 otherwise or when the list is wrong, 2 for wrong usage, 130 when
+interrupted.
 """
 import argparse
 import filecmp
@@ -191,7 +193,8 @@ def run_all(faults, preset):
         else:
             verdict = "SURVIVED"
             survivors.append(fault)
-        print(f"{number:3}/{len(faults)}  {fault['file']}: {fault['what']}: {verdict} ({time.monotonic() - began:.0f} s)", flush=True)
+        took = f"({time.monotonic() - began:.0f} s)"
+        print(f"{number:3}/{len(faults)}  {fault['file']}: {fault['what']}: {verdict} {took}", flush=True)
     print(f"{len(faults)} faults: {len(faults) - len(survivors) - accepted} noticed, {accepted} accepted, "
           f"{len(survivors)} survived")
     for fault in survivors:
@@ -200,7 +203,8 @@ def run_all(faults, preset):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, usage=argparse.SUPPRESS)
+    parser = argparse.ArgumentParser(description=__doc__, usage=argparse.SUPPRESS,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--list", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--only", default="", help=argparse.SUPPRESS)
