@@ -3,10 +3,10 @@
 
 Usage: scripts/plant_faults.py [--check | --list] [--only PATTERN] [--preset NAME]
 
-Works in build/planted_faults, in a copy of the work tree: the sources of the checkout are only read. The copy and its build are
-kept for the next call. Builds the test programs once. Then each fault is planted, what is needed is built and the tests run: first
-those of the room that has the fault, then those of the other rooms while none has failed. Prints one line a fault, in the order of
-the list. A fault that changes no result has `accepted = "reason"` in the list.
+Works in build/planted_faults, in a copy of the work tree: the sources of the checkout are only read. The copy and its build
+are kept for the next call. Builds the test programs once. Then each fault is planted, what is needed is built and the tests run:
+first those of the room that has the fault, then those of the other rooms while none has failed. Prints one line a fault, in the
+order of the list. A fault that changes no result has `accepted = "reason"` in the list.
   --check         only check that the text of every fault occurs exactly once in its file (a second)
   --list          only print the faults
   --only PATTERN  faults whose file or description contains this (case does not matter)
