@@ -50,7 +50,7 @@ TEST(CornerSelection, HonoursTheLimitAndAPlainImage) {
 }
 
 TEST(CornerSelection, ASquareKeepsTwoPixelsFromTheBorder) {
-  // Bicubic interpolation of the square [c - 5, c + 5) reads one pixel more; a pixel remains for motion.
+  // The square is [c - 5, c + 5).
   const GreyImage grey(64, 48);
   for (const int other : {7, 20}) {
     EXPECT_TRUE(patch_fits(grey, {7, other}, 10));

@@ -252,12 +252,11 @@ TEST(Rpe, GroundTruthCountsWithinTwiceItsMedianInterval) {
   Trajectory truth;
   for (int i = 0; i < 200; ++i)
     truth.push_back({i * 8'000'000LL, {so3_exp({0, 0.001 * i, 0}), {0.01 * i, 0, 0}}});
-  Trajectory estimate = truth;
   // Two missing poses leave 12 ms on either side of the middle of the gap, four leave 20 ms.
   for (const auto& [missing, is_near] : {std::pair{2, true}, std::pair{4, false}}) {
     Trajectory gap = truth;
     gap.erase(gap.begin() + 100, gap.begin() + 100 + missing);
-    estimate = gap;
+    Trajectory estimate = gap;
     StampedPose between = gap[99];
     between.timestamp_ns = (gap[99].timestamp_ns + gap[100].timestamp_ns) / 2;
     estimate.insert(estimate.begin() + 100, between);
