@@ -13,7 +13,7 @@ using namespace filter;
 
 namespace {
 
-FilterState some_state() {
+FilterState moving_state() {
   FilterState x;
   x.T_world_imu = {so3_exp({0.2, -0.1, 0.3}), {0.1, -0.7, 0.4}};
   x.velocity_world_mps = {0.5, -0.2, 0.1};
@@ -28,14 +28,14 @@ StateVector some_delta(double size) {
 }
 
 TEST(FilterState, MinusUndoesPlus) {
-  const FilterState x = some_state();
+  const FilterState x = moving_state();
   const StateVector delta = some_delta(0.3);
   EXPECT_LT(testing::distance(minus(plus(x, delta), x), delta), 1e-12);
 }
 
 /// An error e before the update by delta is the error of plus(x, delta + e) against plus(x, delta) after it.
 TEST(FilterState, TransportIsTheDerivativeOfTheErrorByThatBeforeTheUpdate) {
-  const FilterState x = some_state();
+  const FilterState x = moving_state();
   for (const double size : {0.0, 0.3, 0.8}) {
     const StateVector delta = some_delta(size);
     const FilterState updated = plus(x, delta);
