@@ -21,8 +21,9 @@ void set_deformation(Patch& patch, const PinholeCamera& camera, const SE3& T_wor
 void warp_level(std::span<const PixelLanes> pixels, std::span<const WarpPointLanes> warp_points,
                 const PosedLanes& camera, std::span<WarpedLanes> warped);
 
-/// Shrink test, over all patches at once: of the pixels that land in one cell, those clearly behind the
-/// nearest (or all but the nearest: ShrinkTest) become invisible (an occluder may belong to another patch).
+/// Shrink test, over all patches at once: of the pixels that land in one cell, those that are further behind
+/// the nearest one than a limit become invisible (an occluder may belong to another patch). With z the depth
+/// of the nearest one, the limit is max(3 sigma(z), edge_jump * z); with ShrinkTest::any_collision it is 0.
 class MutualOcclusion {
  public:
   /// To the size of a level's image.
@@ -36,9 +37,9 @@ class MutualOcclusion {
   std::vector<float> nearest_m_;  ///< by cell; infinite between tests
 };
 
-/// Visibility test against the measured depth: a pixel whose depth differs from the measurement by more than
-/// tolerance_m is occluded or belongs to a surface that appeared. `scale` = 2^level maps pixels to the depth
-/// image.
+/// Visibility test against the measured depth z: a pixel whose depth differs from z by more than
+/// max(tolerance_m, 3 sigma(z)) is occluded (covered: z is in front of it) or belongs to a surface that
+/// appeared. `scale` = 2^level maps pixels to the depth image.
 void test_measured_occlusion(std::span<WarpedLanes> warped, const DepthImage& depth_m, int scale,
                              double tolerance_m, const config::DepthConfig& depth);
 

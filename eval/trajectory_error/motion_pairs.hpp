@@ -50,8 +50,9 @@ struct MotionListing {
 
 /// Motions from every pose, as evo's --all_pairs:
 ///   frames   (i, i + d)
-///   metres   of all later poses that whose path from i is nearest d; none if it is further than tolerance *
-///   d degrees, radians   every later pose whose direct angle to i is within tolerance * d of d
+///   metres   of all later poses that whose path from i is nearest d, the earliest of equally near ones; none
+///            if it is further than tolerance * d from d
+///   degrees, radians   every later pose whose direct angle to i is within tolerance * d of d
 ///   seconds  (ours) as metres
 [[nodiscard]] IndexPairs all_motions(const Trajectory& trajectory, const Delta& delta, double tolerance);
 

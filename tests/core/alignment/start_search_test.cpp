@@ -80,6 +80,25 @@ TEST(StartSearch, NothingIsSearchedWhereThePredictionIsNearEnough) {
   EXPECT_NEAR(found.landing_sigma_px, 0.01 * 240, 2.0);
 }
 
+/// A turn by phi about y moves the pixel of a ray (x, y, 1) by f (1 + x^2) phi and f x y phi.
+TEST(StartSearch, TheSpreadOfTheLandingIsThatAlongItsLongerAxis) {
+  Search search(SE3{});
+  search.rig.T_imu_camera = SE3{};
+  filter::GaussianState prior = prediction(search.rig, 0, 0);
+  constexpr double kSigma_rad = 0.01;
+  prior.covariance(filter::kRotation + 1, filter::kRotation + 1) = kSigma_rad * kSigma_rad;
+  const double f = search.rig.camera.fx_px;
+  double sum = 0;
+  const auto points = search.reference.level(search.reference.coarsest_level());
+  for (const ReferencePoint& point : points) {
+    const double x = point.point_camera.x() / point.point_camera.z();
+    const double y = point.point_camera.y() / point.point_camera.z();
+    sum += f * f * kSigma_rad * kSigma_rad * ((1 + x * x) * (1 + x * x) + x * x * y * y);
+  }
+  const double expected_px = std::sqrt(sum / static_cast<double>(points.size()));
+  EXPECT_NEAR(landing_sigma_px(prior, search.reference, search.rig), expected_px, 1e-6 * expected_px);
+}
+
 TEST(StartSearch, AQuickTurnIsFoundFromAWidePrediction) {
   // 20 pixels, twice the size of a patch.
   Search search(SE3(so3_exp({0.03, 0.08, -0.02}), {0.02, 0.0, 0.03}));

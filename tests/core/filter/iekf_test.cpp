@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/config/groups/filter_config.hpp"
@@ -420,6 +422,69 @@ TEST(Iekf, ConvergedUpdateEqualsACeresSolutionOfTheSameMapCost) {
   EXPECT_LT(distance(minus(result.posterior.mean, prior.mean), delta), 1e-7);
   EXPECT_NEAR(result.map_cost_posterior, summary.final_cost, 1e-9 * summary.final_cost);
   EXPECT_LT(result.map_cost_posterior, result.map_cost_prior);
+}
+
+/// The position by the reference, linear. Keeps the pose that it is first asked for.
+class PositionByReference final : public PoseMeasurement {
+ public:
+  explicit PositionByReference(Vector3d z) : z_(std::move(z)) {}
+  MeasurementQuadratic linearise(const PoseHypothesis& poses, int, bool) override {
+    if (!first) first = poses.T_world_imu_by_reference;
+    const Vector3d error = poses.T_world_imu_by_reference.translation - z_;
+    PoseQuadratic q;
+    q.information.bottomRightCorner<3, 3>().diagonal().setConstant(kInformation);
+    q.gradient.tail<3>() = kInformation * error;
+    q.cost = cost_at(poses.T_world_imu_by_reference);
+    return {q, {}};
+  }
+  double trial_cost(const PoseHypothesis& poses, const TangentVector&, double) override {
+    return cost_at(poses.T_world_imu_by_reference);
+  }
+  void accept() override {}
+  [[nodiscard]] double cost_at(const SE3& T_world_imu) const {
+    return 0.5 * kInformation * (T_world_imu.translation - z_).squaredNorm();
+  }
+
+  static constexpr double kInformation = 400;
+  std::optional<SE3> first;
+
+ private:
+  Vector3d z_;
+};
+
+GaussianState prior_with_reference_offset() {
+  GaussianState prior{some_state(), some_covariance(1e-4)};
+  prior.mean.T_world_imu_reference = {so3_exp({0.7, -0.4, 0.9}), {1.3, 0.2, -0.8}};
+  prior.mean.reference_offset << 2e-5, -3e-5, 1e-5, 4e-5, 1e-5, -2e-5;
+  return prior;
+}
+
+/// The images measure against the reference where it was before an earlier update moved it by its offset.
+TEST(Iekf, AnOffsetOfTheReferenceMovesThePoseThatIsMeasuredRigidly) {
+  const GaussianState prior = prior_with_reference_offset();
+  PositionByReference measurement(prior.mean.T_world_imu.translation);
+  static_cast<void>(iekf_update(prior, measurement, IekfConfig{}));
+  ASSERT_TRUE(measurement.first);
+  const SE3 displaced = pose_plus(prior.mean.T_world_imu_reference, prior.mean.reference_offset);
+  const SE3 carried = displaced * prior.mean.T_world_imu_reference.inverse() * prior.mean.T_world_imu;
+  const Vector6d expected = -pose_minus(carried, prior.mean.T_world_imu);
+  EXPECT_LT((pose_minus(*measurement.first, prior.mean.T_world_imu) - expected).norm(),
+            1e-3 * expected.norm());
+}
+
+TEST(Iekf, TheMeasurementThatIsHandedOnIsTheCostAroundThePosterior) {
+  GaussianState prior = prior_with_reference_offset();
+  prior.mean.reference_offset *= 1000;
+  PositionByReference measurement(prior.mean.T_world_imu.translation + Vector3d(0.02, -0.01, 0.03));
+  const IekfResult result = iekf_update(prior, measurement, IekfConfig{});
+  const SE3& at = result.posterior.mean.T_world_imu;
+  EXPECT_GT((at.translation - measurement.first->translation).norm(), 0.01) << "another pose is measured";
+  EXPECT_NEAR(result.measurement.cost / measurement.cost_at(at), 1.0, 1e-6);
+  Vector6d step = Vector6d::Zero();
+  step.tail<3>() = Vector3d(0.03, 0.01, -0.02);
+  const double moved = result.measurement.cost + step.dot(result.measurement.gradient) +
+                       0.5 * step.dot(result.measurement.information * step);
+  EXPECT_NEAR(moved / measurement.cost_at(pose_plus(at, step)), 1.0, 1e-6);
 }
 
 TEST(Iekf, OneIterationIsThePlainFilterAndFallsShortOfTheOptimum) {

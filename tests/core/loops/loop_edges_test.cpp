@@ -90,6 +90,51 @@ TEST(LoopEdges, ATrackerAloneSupportsNoOther) {
   EXPECT_EQ(accepted(places, {found, other}), (Accepted{true, true}));
 }
 
+/// Against the edge between the places where they are a little later.
+TEST(LoopEdges, UncertainInstantsMoveAnEdgeAlongTheMotionOfItsPlaces) {
+  std::vector<Place> places = places_along_x();
+  Place& known = places[0];
+  Place& query = places[36];
+  known.T_world_camera.rotation = so3_exp({0.3, -0.2, 0.5});
+  query.T_world_camera.rotation = so3_exp({-0.4, 0.1, 0.2});
+  known.angular_velocity_camera_radps = {0.5, -0.8, 0.3};
+  known.velocity_camera_mps = {0.2, 0.4, -0.1};
+  query.angular_velocity_camera_radps = {-0.2, 0.6, 0.9};
+  query.velocity_camera_mps = {-0.3, 0.1, 0.5};
+  const auto later = [](const Place& place, double time_s) {
+    const SE3& pose = place.T_world_camera;
+    return SE3{pose.rotation * so3_exp(time_s * place.angular_velocity_camera_radps),
+               pose.translation + time_s * (pose.rotation * place.velocity_camera_mps)};
+  };
+  const SE3 T_known_query = known.T_world_camera.inverse() * query.T_world_camera;
+  constexpr double kStep_s = 1e-6;
+  const Vector6d by_known =
+      pose_minus(later(known, kStep_s).inverse() * query.T_world_camera, T_known_query) / kStep_s;
+  const Vector6d by_query =
+      pose_minus(known.T_world_camera.inverse() * later(query, kStep_s), T_known_query) / kStep_s;
+  const LoopCandidate candidate = verified(places, 0, 36, Vector3d::Zero());
+  config::LoopsConfig exact;
+  exact.timing_sigma_s = 0;
+  config::LoopsConfig uncertain;
+  uncertain.timing_sigma_s = 0.02;
+  const Matrix6d added =
+      loop_edge(places, candidate, uncertain).covariance - loop_edge(places, candidate, exact).covariance;
+  const Matrix6d expected = 0.02 * 0.02 * (by_known * by_known.transpose() + by_query * by_query.transpose());
+  EXPECT_LT((added - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST(LoopEdges, TheDriftOfThePathIsEnlargedByTheSquareOfItsFactor) {
+  const std::vector<Place> places = places_along_x();
+  config::LoopsConfig once;
+  once.drift_factor = 1;
+  config::LoopsConfig thrice;
+  thrice.drift_factor = 3;
+  const Matrix6d floor = covariance_by_axis(once.path_rotation_sigma_rad, once.path_position_sigma_m);
+  const Matrix6d drift = path_edge(places, 0, 36, once).covariance - floor;
+  EXPECT_GT(drift.norm(), 1e-4);
+  EXPECT_LT((path_edge(places, 0, 36, thrice).covariance - floor - 9.0 * drift).norm(), 1e-9 * drift.norm());
+}
+
 TEST(LoopEdges, WhatIsNotVerifiedIsNotAccepted) {
   const std::vector<Place> places = places_along_x();
   LoopCandidate candidate = verified(places, 0, 36, Vector3d::Zero());

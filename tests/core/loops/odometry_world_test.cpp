@@ -53,5 +53,32 @@ TEST(OdometryWorld, CountsWhatDeadReckoningAddedOnce) {
   EXPECT_LT((world.lost_covariance_at(kOdometry) - lost).norm(), 1e-9);
 }
 
+/// How an error of one pose moves another one that is rigidly connected with it, by small displacements.
+Matrix6d carried_by(const SE3& from, const SE3& to) {
+  constexpr double kStep = 1e-6;
+  Matrix6d jacobian;
+  for (int k = 0; k < 6; ++k) {
+    const SE3 displaced = pose_plus(from, kStep * Vector6d::Unit(k));
+    jacobian.col(k) = pose_minus(displaced * from.inverse() * to, to) / kStep;
+  }
+  return jacobian;
+}
+
+TEST(OdometryWorld, DeadReckoningOverAWayAddsNothingOfTheErrorThatItBeganWith) {
+  OdometryWorld world;
+  const SE3 last = kOdometry;
+  const SE3 found_at = kOdometry * SE3{so3_exp({0.3, -0.1, 0.2}), {0.5, 1.0, -2.0}};
+  const Matrix6d before = covariance_by_axis(0.02, 0.01);
+  const Matrix6d added = covariance_by_axis(0.03, 0.2);
+  const Matrix6d carried = carried_by(last, found_at);
+  Relocalisation found = found_again(found_at, 0, 0.01);
+  found.predicted_covariance = carried * before * carried.transpose() + added;
+  world.relocalise(found, kFoundAt, {last, before});
+  EXPECT_LT((world.lost_covariance_at(found_at) - added).norm(), 1e-6);
+  // It is an error of the world of the odometry: seen from elsewhere, its rotation has a lever arm.
+  const Matrix6d back = carried_by(found_at, last);
+  EXPECT_LT((world.lost_covariance_at(last) - back * added * back.transpose()).norm(), 1e-5);
+}
+
 }  // namespace
 }  // namespace fusebench

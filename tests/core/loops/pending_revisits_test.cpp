@@ -85,6 +85,18 @@ TEST(PendingRevisits, FusesWhatFitsAndWhatWasSeenLately) {
   EXPECT_FALSE(wall.to_fuse(wall.at(20, kWall_m + 0.06)));
 }
 
+TEST(PendingRevisits, WaitsWhereMoreThanHalfOfTheOldSurfaceDoesNotFit) {
+  for (const auto& [share_off, waits] : {std::pair{0.35, false}, std::pair{0.65, true}}) {
+    RevisitedWall wall(testing::small_camera().width_px);
+    RgbdFrame frame = wall.at(20, kWall_m);
+    for (int y = 0; y < wall.camera.height_px; ++y) {
+      for (int x = 0; x < share_off * wall.camera.width_px; ++x)
+        frame.depth_m(x, y) = static_cast<float>(kWall_m + 0.06);
+    }
+    EXPECT_EQ(wall.to_fuse(frame).has_value(), waits) << share_off;
+  }
+}
+
 TEST(PendingRevisits, FusesWhatIsSeenForTheFirstTime) {
   const int half = testing::small_camera().width_px / 2;
   RevisitedWall wall(half);

@@ -59,6 +59,18 @@ TEST(PatchTranslation, IsFoundBack) {
   EXPECT_LT((own_translation_px(levels) + off_px).norm(), 0.02);
 }
 
+TEST(PatchTranslation, APixelOfACoarseLevelIsAsWideAsItsLevel) {
+  // Only level 4 has texture: a translation by a pixel of it is one by 16 pixels.
+  const GreyImage image = texture(true);
+  Square square(image);
+  translate(square.warped, {1.0, -0.5}, image);
+  const GreyImage flat(64, 64, 128);
+  const Square plain(flat);
+  std::vector<PlacedPatch> levels(4, PlacedPatch{plain.pixels, plain.warped, flat});
+  levels.push_back({square.pixels, square.warped, image});
+  EXPECT_LT((own_translation_px(levels) + 16.0 * Vector2d(1.0, -0.5)).norm(), 0.5);
+}
+
 TEST(PatchTranslation, AnEdgeDoesNotMoveAPatchAlongItself) {
   const GreyImage image = texture(false);
   Square square(image);

@@ -14,6 +14,7 @@
 #include "core/config/groups/tsdf_config.hpp"
 #include "core/meshing/marching_cubes_table.hpp"
 #include "tests/support/fused_scene.hpp"
+#include "tests/support/plain_field.hpp"
 
 namespace fusebench {
 
@@ -188,6 +189,62 @@ TEST(MarchingCubes, ClosesABall) {
   for (const Rgb& color : mesh.colors) ASSERT_EQ(color, (Rgb{180, 90, 30}));
 }
 
+constexpr double kWallDepth_m = 1.0037;  // not a multiple of the voxel
+
+/// A wall at this depth of a camera at the origin that looks along a direction. The depth of every pixel is
+/// the same, so that the projective distance of a voxel is its distance to the wall. Voxels are 2 cm.
+Mesh mesh_of_wall(const Vector3d& direction) {
+  RgbdFrame frame;
+  frame.depth_m = DepthImage(kMarchCamera.width_px, kMarchCamera.height_px, static_cast<float>(kWallDepth_m));
+  TsdfVolume volume{TsdfConfig{.voxel_m = 0.02, .truncation_m = 0.08}};
+  EXPECT_TRUE(
+      volume.integrate(frame, kMarchCamera, look_at({0, 0, 0}, direction), DepthConfig{}, Workers(1)));
+  return extract_mesh(volume, 0.5, Workers(1));
+}
+
+// The distance is linear along each edge of the lattice, so that its zero is found exactly. What remains is
+// the rounding of stored distances, 2^-11 of up to a voxel, and single precision.
+TEST(MarchingCubes, PutsTheVerticesOfAWallOntoIt) {
+  for (const Vector3d& direction :
+       {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0), Vector3d(0, 0, 1),
+        Vector3d(0, 0, -1), Vector3d(1, 1, 1), Vector3d(-3, 1, 2), Vector3d(0.2, -0.3, 1)}) {
+    const Vector3d normal = direction.normalized();
+    const Mesh mesh = mesh_of_wall(direction);
+    ASSERT_GT(mesh.vertices.size(), 1000U);
+    double worst_voxels = 0;
+    double least_dot = 1;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      const Vector3d vertex = mesh.vertices[i].cast<double>();
+      worst_voxels = std::max(worst_voxels, std::abs(normal.dot(vertex) - kWallDepth_m) / 0.02);
+      // The gradient is one-sided at the border of what was seen.
+      if (vertex.cross(normal).norm() < 0.3)
+        least_dot = std::min(least_dot, -normal.dot(mesh.normals[i].cast<double>()));
+    }
+    EXPECT_LT(worst_voxels, 0.002) << direction.transpose();
+    EXPECT_GT(least_dot, 0.9999) << direction.transpose();
+  }
+}
+
+// Where the surface is nearly perpendicular to the rays. Between two voxels a sphere of radius R differs from
+// its tangent plane by voxel^2 / 8 R: 0.004 voxels. Half a pixel is 0.5 mm, of which the slope makes 0.01
+// voxels.
+TEST(MarchingCubes, PutsTheVerticesOfASphereOntoIt) {
+  const PinholeCamera camera = test_camera(640, 640, 40.0);
+  for (const Vector3d& direction : {Vector3d(0, 0, 1), Vector3d(1, 0.01, 0), Vector3d(-2, 1, 3)}) {
+    const Vector3d axis = direction.normalized();
+    const Vector3d center = 1.5 * axis + Vector3d(0.0037, -0.0021, 0.0073);
+    const AnalyticScene scene{{AnalyticSphere{center, 0.6, {1, 2, 3}}}};
+    const TsdfConfig tsdf{.voxel_m = 0.02, .truncation_m = 0.08};
+    const Mesh mesh = extract_mesh(fuse(scene, camera, {look_at({0, 0, 0}, axis)}, tsdf), 0.5, Workers(1));
+    const Accuracy cap = accuracy(mesh, scene, [&](const Vector3d& vertex) {
+      return (center - vertex).normalized().dot(axis) > std::cos(0.3);
+    });
+    EXPECT_GT(cap.vertices, 250U);
+    EXPECT_LT(cap.max_m, 0.02 * tsdf.voxel_m) << direction.transpose();
+    EXPECT_LT(cap.mean_m, 0.006 * tsdf.voxel_m) << direction.transpose();
+  }
+}
+
 TEST(MarchingCubes, FollowsABoxFromOutside) {
   const AnalyticScene scene{{AnalyticBox{{-0.251, -0.183, -0.207}, {0.249, 0.211, 0.193}, false, {1, 2, 3}}}};
   const TsdfVolume volume = fuse(scene, kMarchCamera, poses_around({0, 0, 0}, 1.1, 40));
@@ -256,6 +313,54 @@ TEST(MarchingCubes, LeavesOutWhatWasHardlySeen) {
   EXPECT_TRUE(none.triangles.empty());
   EXPECT_TRUE(none.vertices.empty());
   EXPECT_TRUE(extract_mesh(TsdfVolume{TsdfConfig{}}, 0.0, Workers(1)).vertices.empty());
+}
+
+TEST(MarchingCubes, TheLeastWeightIsEnough) {
+  const SE3 T_world_camera = look_at({0, 0, 0}, {0.2, -0.3, 1});
+  RgbdFrame frame;
+  frame.depth_m = DepthImage(kMarchCamera.width_px, kMarchCamera.height_px, 1.0F);
+  TsdfVolume volume{TsdfConfig{.voxel_m = 0.02, .truncation_m = 0.08}};
+  ASSERT_TRUE(volume.integrate(frame, kMarchCamera, T_world_camera, DepthConfig{}, Workers(1)));
+  // In front of the surface, and behind it up to half of the band, a measurement has its whole weight.
+  float weight = 0;
+  for (std::size_t i = 0; i < volume.block_count() * kBlockVoxels; ++i)
+    weight = std::max(weight, static_cast<float>(volume.weights()[i]));
+  EXPECT_NEAR(weight, volume.measurement_weight(1.0, DepthConfig{}), 1e-3);
+  EXPECT_GT(extract_mesh(volume, weight, Workers(1)).triangles.size(), 1000U);
+  EXPECT_TRUE(extract_mesh(volume, 1.001 * weight, Workers(1)).triangles.empty());
+}
+
+/// Each vertex lies on an edge of the lattice, where the distance changes its sign: the gradients by central
+/// differences at both ends, weighed by the distances to them.
+TEST(MarchingCubes, NormalsAreInterpolatedBetweenTheGradientsOfBothVoxels) {
+  const AnalyticScene scene{{AnalyticSphere{{0.0137, -0.0211, 0.0073}, 0.12, {180, 90, 30}}}};
+  const TsdfVolume volume = fuse(scene, kMarchCamera, poses_around({0.0137, -0.0211, 0.0073}, 0.8, 24));
+  const auto distance_m = [&](const VoxelIndex& at) {
+    return static_cast<double>(testing::find_voxel(volume, at).value_or(Voxel{}).distance_m);
+  };
+  const auto gradient = [&](const VoxelIndex& at) {
+    Vector3d sum;
+    for (int axis = 0; axis < 3; ++axis)
+      sum[axis] = distance_m(at + VoxelIndex::Unit(axis)) - distance_m(at - VoxelIndex::Unit(axis));
+    return sum;
+  };
+  const Mesh mesh = extract_mesh(volume, kMinWeight, Workers(1));
+  ASSERT_GT(mesh.vertices.size(), 1000U);
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vector3d place = mesh.vertices[i].cast<double>() / volume.voxel_m();
+    const Vector3d off = (place.array() - place.array().round()).abs();
+    int axis = 0;
+    if (off.maxCoeff(&axis) < 1e-3) continue;  // at a voxel
+    VoxelIndex low = place.array().round().matrix().cast<int>();
+    low[axis] = static_cast<int>(std::floor(place[axis]));
+    const double share = place[axis] - low[axis];
+    const Vector3d expected = (1 - share) * gradient(low) + share * gradient(low + VoxelIndex::Unit(axis));
+    if (!expected.allFinite()) continue;  // one-sided next to what was not observed
+    EXPECT_LT((mesh.normals[i].cast<double>() - expected.normalized()).norm(), 1e-3) << place.transpose();
+    ++compared;
+  }
+  EXPECT_GT(2 * compared, mesh.vertices.size());
 }
 
 TEST(MarchingCubes, IsTheSameForEveryNumberOfThreads) {

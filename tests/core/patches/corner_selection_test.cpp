@@ -50,5 +50,20 @@ TEST(CornerSelection, HonoursTheLimitAndAPlainImage) {
   EXPECT_TRUE(select_corners(GreyImage(320, 240, 77), frame.depth_m, {}, config).empty());
 }
 
+TEST(CornerSelection, ASquareKeepsTwoPixelsFromTheBorder) {
+  // The square is [c - 5, c + 5).
+  const GreyImage grey(64, 48);
+  for (const int other : {7, 20}) {
+    EXPECT_TRUE(patch_fits(grey, {7, other}, 10));
+    EXPECT_FALSE(patch_fits(grey, {6, other}, 10));
+    EXPECT_TRUE(patch_fits(grey, {56, other}, 10));
+    EXPECT_FALSE(patch_fits(grey, {57, other}, 10));
+    EXPECT_TRUE(patch_fits(grey, {other, 7}, 10));
+    EXPECT_FALSE(patch_fits(grey, {other, 6}, 10));
+    EXPECT_TRUE(patch_fits(grey, {other, 40}, 10));
+    EXPECT_FALSE(patch_fits(grey, {other, 41}, 10));
+  }
+}
+
 }  // namespace
 }  // namespace fusebench

@@ -172,6 +172,14 @@ TEST(PatchDeformation, ExtendTestSeesTheOpeningGapAndTheApproach) {
   EXPECT_TRUE(is_extended(warp(patch, camera_at({0, 0, 0.4})).warped, kSize)) << "approach";
 }
 
+TEST(PatchDeformation, APixelOfGrowthIsAnExtension) {
+  // Moving right by b parts both planes by f b / 1 m - f b / 2 m: pixel centres span 9 + 120 b / m pixels.
+  Patch patch = cut({160, 120}, two_planes);
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  EXPECT_FALSE(is_extended(warp(patch, camera_at({0.98 / 120, 0, 0})).warped, kSize));
+  EXPECT_TRUE(is_extended(warp(patch, camera_at({1.02 / 120, 0, 0})).warped, kSize));
+}
+
 TEST(PatchDeformation, MeasuredDepthHidesWhatIsBehindOrGone) {
   Patch patch = cut({160, 120}, [](int, int) { return 1.5; });
   set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
@@ -186,6 +194,75 @@ TEST(PatchDeformation, MeasuredDepthHidesWhatIsBehindOrGone) {
   for (std::size_t i = 0; i < warped.size(); ++i) {
     EXPECT_EQ(warped[i].visible, patch.levels[0].pixels[i].reference_pixel % 320 >= 158);
   }
+}
+
+/// How many pixels of a patch behind a near one, in the same cells, are visible.
+std::size_t visible_behind(double near_m, double behind_m, const DepthConfig& depth,
+                           ShrinkTest rule = ShrinkTest::depth_jump) {
+  std::vector<Patch> patches = {cut({100, 120}, [&](int, int) { return near_m; }),
+                                cut({100, 120}, [&](int, int) { return near_m + behind_m; })};
+  for (Patch& patch : patches) set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  LevelLanes lanes = warp(patches, camera_at({0, 0, 0}));
+  MutualOcclusion occlusion;
+  occlusion.resize(320, 240);
+  occlusion.test(lanes.warped, depth, rule);
+  for (const Pixel& pixel : pixels_of(lanes, 0)) EXPECT_TRUE(pixel.visible);
+  std::size_t visible = 0;
+  for (const Pixel& pixel : pixels_of(lanes, 1)) visible += pixel.visible ? 1U : 0U;
+  return visible;
+}
+
+TEST(PatchDeformation, ShrinkTestHasItsLimitAtTheJumpOrAtThreeSigmas) {
+  constexpr std::size_t kAll = kSize * kSize;
+  DepthConfig depth;
+  depth.edge_jump = 0.04;  // wider than 3 sigma at 1.5 m, which is 0.0105 m
+  EXPECT_EQ(visible_behind(1.5, 0.98 * 0.04 * 1.5, depth), kAll);
+  EXPECT_EQ(visible_behind(1.5, 1.02 * 0.04 * 1.5, depth), 0U);
+  depth.edge_jump = 0.001;
+  const double three_sigmas_m = 3 * (0.002 + 0.003 * (4.0 - 0.5) * (4.0 - 0.5));
+  depth.noise_floor_m = 0.002;
+  depth.noise_quadratic_per_m = 0.003;
+  depth.noise_offset_m = 0.5;
+  EXPECT_EQ(visible_behind(4.0, 0.98 * three_sigmas_m, depth), kAll);
+  EXPECT_EQ(visible_behind(4.0, 1.02 * three_sigmas_m, depth), 0U);
+  EXPECT_EQ(visible_behind(4.0, 0.001, depth, ShrinkTest::any_collision), 0U);
+}
+
+TEST(PatchDeformation, MeasuredDepthHasItsLimitAtTheToleranceOrAtThreeSigmas) {
+  DepthConfig depth;
+  depth.noise_floor_m = 0.002;
+  depth.noise_quadratic_per_m = 0.003;
+  depth.noise_offset_m = 0.5;
+  Patch patch = cut({160, 120}, [](int, int) { return 3.0; });
+  set_deformation(patch, testing::small_camera(), SE3{}, Deformation::pixelwise);
+  const auto expect = [&](double measured_m, double tolerance_m, bool visible, bool covered) {
+    const DepthImage image(320, 240, static_cast<float>(measured_m));
+    LevelLanes lanes = warp(patch, camera_at({0, 0, 0}));
+    test_measured_occlusion(lanes.warped, image, 1, tolerance_m, depth);
+    for (std::size_t group = 0; group < lanes.warped.size(); ++group) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (lanes.pixels[group].present[lane] == 0) continue;
+        EXPECT_EQ(lanes.warped[group].visible[lane] != 0, visible) << measured_m << ", " << tolerance_m;
+        EXPECT_EQ(lanes.warped[group].covered[lane] != 0, covered) << measured_m << ", " << tolerance_m;
+      }
+    }
+  };
+  const double wide_m = 0.15;  // 3 sigma is about 0.06 m here
+  expect(3.0 - 0.98 * wide_m, wide_m, true, false);
+  expect(3.0 - 1.02 * wide_m, wide_m, false, true);
+  expect(3.0 + 0.98 * wide_m, wide_m, true, false);
+  expect(3.0 + 1.02 * wide_m, wide_m, false, false);
+  // Sigma is that of the measured depth z: |3 - z| is compared with 3 sigma(z).
+  const auto three_sigmas_m = [](double z_m) { return 3 * (0.002 + 0.003 * (z_m - 0.5) * (z_m - 0.5)); };
+  const auto at_share = [&](double share) {
+    double z_m = 3.0;
+    for (int step = 0; step < 50; ++step) z_m = 3.0 - share * three_sigmas_m(z_m);
+    return z_m;
+  };
+  expect(at_share(0.98), 0.01, true, false);
+  expect(at_share(1.02), 0.01, false, true);
+  expect(at_share(-0.98), 0.01, true, false);
+  expect(at_share(-1.02), 0.01, false, false);
 }
 
 TEST(PatchDeformation, AllKindsAgreeWhereTheyMustAndDifferWhereTheyMust) {

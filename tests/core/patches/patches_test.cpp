@@ -120,6 +120,26 @@ TEST(Patches, TheFramesOwnSurfaceIsWhatItMeasured) {
   EXPECT_LT(worst_depth_error_m(ReferenceSurface::frame_ungated), 1e-6);
 }
 
+TEST(Patches, ASurfaceIsUsableWithinThreeSigmasOfTheMeasurement) {
+  FusedFrame scene;
+  scene.config.patches.occlusion_distance_m = 0.001;  // less than three sigmas
+  const DepthImage model_m = scene.gated_m;
+  const auto pixels_with_depth_off_by = [&](double sigmas) {
+    for (std::size_t i = 0; i < model_m.data.size(); ++i) {
+      const auto z_m = static_cast<double>(model_m.data[i]);
+      scene.gated_m.data[i] =
+          z_m > 0 ? static_cast<float>(z_m + sigmas * depth_sigma_m(z_m, scene.config.depth)) : 0.0F;
+    }
+    std::size_t count = 0;
+    for (const Patch& patch : scene.cut({})) count += patch.levels.front().pixels.size();
+    return count;
+  };
+  const std::size_t all = pixels_with_depth_off_by(0.0);
+  EXPECT_GT(all, 2000U);
+  EXPECT_GT(pixels_with_depth_off_by(2.0), 0.8 * static_cast<double>(all));
+  EXPECT_LT(pixels_with_depth_off_by(4.0), 0.1 * static_cast<double>(all));
+}
+
 TEST(Patches, NormalsOfTheFrameAreThoseOfThePlane) {
   // A plane with a known normal, seen by a turned camera.
   const PinholeCamera camera = testing::small_camera();

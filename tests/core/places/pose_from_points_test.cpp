@@ -89,6 +89,26 @@ TEST(PoseFromPoints, TheCovarianceIsThatOfTheError) {
   EXPECT_LT(sum / kRuns, 7.0);
 }
 
+TEST(PoseFromPoints, TheCovarianceOfFewPointsAllowsForTheirEstimatedNoise) {
+  // 10 points leave n = 20 - 6 degrees of freedom to estimate the variance: the squared, whitened error is
+  // six times an F variable, of mean n / (n - 2).
+  double sum = 0;
+  int found_runs = 0;
+  for (int run = 0; run < 600; ++run) {
+    Scene scene;
+    scene.random.seed(static_cast<unsigned>(1000 + run));
+    scene.add(10, 1, 4, 0.2);
+    const auto found = pose_from_points(scene.seen, kCamera, kPoseDefaults);
+    if (!found) continue;
+    const Vector6d error = scene.error(found->T_a_camera);
+    sum += error.dot(found->covariance.ldlt().solve(error));
+    ++found_runs;
+  }
+  EXPECT_GT(found_runs, 590);
+  EXPECT_GT(sum / found_runs, 6.2);
+  EXPECT_LT(sum / found_runs, 8.2);
+}
+
 TEST(PoseFromPoints, TheGateDecidesWhatIsAnInlier) {
   Scene scene;
   scene.add(100, 1, 4, 1.0);

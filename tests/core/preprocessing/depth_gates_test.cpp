@@ -27,6 +27,24 @@ TEST(DepthGates, RangeAndEdgesBecomeHolesAndPlanesStay) {
   EXPECT_EQ(gated(13, 10), 1.5F);
 }
 
+TEST(DepthGates, AJumpToAnyOfTheEightNeighboursIsAnEdge) {
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      for (const float neighbour_m : {0.96F, 0.98F, 1.02F, 1.04F}) {
+        DepthImage depth(24, 24, 1.0F);
+        depth(10 + dx, 10 + dy) = neighbour_m;
+        const bool edge = neighbour_m < 0.97F || neighbour_m > 1.03F;
+        EXPECT_EQ(testing::gated_depth(depth, DepthConfig{.edge_jump = 0.03})(10, 10), edge ? 0.0F : 1.0F)
+            << dx << ", " << dy << ": " << neighbour_m;
+      }
+      DepthImage hole(24, 24, 1.0F);
+      hole(10 + dx, 10 + dy) = 0.0F;
+      EXPECT_EQ(testing::gated_depth(hole, DepthConfig{})(10, 10), 1.0F) << "missing depth is no edge";
+    }
+  }
+}
+
 TEST(DepthGates, OneSurfaceReachesAsFarAsNoJumpAndNoHoleIsNear) {
   constexpr double kJump = 0.03;
   DepthImage depth(40, 40, 1.0F);

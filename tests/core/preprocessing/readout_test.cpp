@@ -130,6 +130,23 @@ TEST(Readout, OfATurnDoesNotDependOnDepth) {
   for (const std::size_t i : {1U, 2U, 4U, 5U}) EXPECT_EQ(lane_bits(coefficients[i] != 0.0F), 0U) << i;
 }
 
+/// Without the grid, whose interpolation hides it: a turn of 6 rad/s about the optical axis.
+TEST(Readout, FollowsTheTurnBetweenRowsToTheSecondOrder) {
+  const CameraVelocity velocity{{0, 0, 6}, {0, 0, 0}};
+  const Readout readout(kCamera, RowTimes(kCamera.height_px, kDelay_s, kReadout_s), velocity);
+  double worst_px = 0;
+  for (const int row : {300, 400, 479}) {
+    const auto coefficients = readout.to_rows(80.0F * kLaneNumber, static_cast<float>(row));
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Vector2d pixel(80.0 * static_cast<double>(lane), row);
+      const Vector2d by(static_cast<double>(coefficients[0][lane]),
+                        static_cast<double>(coefficients[3][lane]));
+      worst_px = std::max(worst_px, (pixel + by - to_row(pixel, 1.0, velocity)).norm());
+    }
+  }
+  EXPECT_LT(worst_px, 0.02);
+}
+
 TEST(NodeGrid, IsExactForWhatIsStraightAlsoInColumnsThatFitNoCell) {
   constexpr int kWidth_px = 322;
   constexpr int kHeight_px = 241;

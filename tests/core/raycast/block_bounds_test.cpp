@@ -61,6 +61,37 @@ TEST(BlockBounds, AreCloseToTheSurface) {
   }
 }
 
+/// Of the few blocks that one pixel allocates: their neighbours do not hide a bound that is missing.
+TEST(BlockBounds, NoCornerOfABlockLiesBefore) {
+  const PinholeCamera camera = test_camera(640, 480, 90.0);
+  const DepthConfig depth;
+  int corners = 0;
+  for (int column = 5; column < 640; column += 9) {
+    RgbdFrame frame;
+    frame.depth_m = DepthImage(640, 480, 0.0F);
+    for (int y = 230; y < 234; ++y) {
+      for (int x = column; x < column + 4 && x < 640; ++x) frame.depth_m(x, y) = 0.5F;
+    }
+    TsdfVolume volume{TsdfConfig{}};
+    ASSERT_TRUE(volume.integrate(frame, camera, SE3{}, depth, Workers(1)));
+    const BlockBounds bounds(volume, camera, SE3{}, depth);
+    for (const BlockIndex& block : volume.block_indices()) {
+      for (int n = 0; n < 8; ++n) {
+        const BlockIndex corner = block + BlockIndex(n & 1, (n >> 1) & 1, n >> 2);
+        const Vector3d point = corner.cast<double>() * (kBlockSide * volume.voxel_m());
+        const Vector2d pixel = camera.project(point);
+        if (point.z() < depth.min_m || !frame.depth_m.contains(static_cast<int>(std::floor(pixel.x())),
+                                                               static_cast<int>(std::floor(pixel.y()))))
+          continue;
+        if (pixel.x() > 639 || pixel.y() > 479) continue;
+        EXPECT_LE(bound_m(bounds, pixel.x(), pixel.y()), point.z() + 1e-6) << pixel.transpose();
+        ++corners;
+      }
+    }
+  }
+  EXPECT_GT(corners, 500);
+}
+
 TEST(BlockBounds, KnowNothingOutsideOfTheImageAndNoBlocksWhereThereAreNone) {
   const AnalyticScene wall{{AnalyticPlane{{0, 0, -1}, -2.0, {10, 120, 250}}}};
   const TsdfVolume volume = fuse(wall, kBoundsCamera, {SE3{}});

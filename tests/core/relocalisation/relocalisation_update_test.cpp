@@ -80,6 +80,20 @@ TEST(RelocalisationUpdate, ContradictionIsTheInnovationInStandardDeviations) {
   EXPECT_NEAR(normalised_innovation(prediction, place), 0.09 / (0.01 + 0.0001) / 6, 1e-9);
 }
 
+TEST(RelocalisationUpdate, AnErrorOfTheKeyframeHasALeverArm) {
+  // The rotation of the keyframe about z is uncertain: 2 m along x from it, so is the position along y.
+  GaussianState prediction = lost_at({}, 0.2, 0.5);
+  RelocalisedPose place = place_at({Quaterniond::Identity(), Vector3d(2, 0, 0)}, 0.01);
+  prediction.mean.T_world_imu = place.T_world_imu;
+  place.T_world_imu_reference = SE3{};
+  place.reference_covariance.setZero();
+  place.reference_covariance(2, 2) = 0.05 * 0.05;
+  place.T_world_imu.translation.y() += 0.3;
+  const double position_variance = 0.1 * 0.1 + 0.01 * 0.01 + 2 * 2 * 0.05 * 0.05;
+  EXPECT_NEAR(normalised_position_innovation(prediction, place), 0.3 * 0.3 / position_variance / 3,
+              0.05 * 0.3 * 0.3 / position_variance / 3);
+}
+
 TEST(RelocalisationUpdate, AFilterThatWasTooSureOfItselfIsOverruled) {
   Vector6d off;
   off << 0.3, -0.2, 0.4, 2.0, -1.0, 0.5;  // tens of standard deviations

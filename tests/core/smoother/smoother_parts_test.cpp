@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -7,6 +9,7 @@
 #include "core/smoother/manifolds.hpp"
 #include "core/smoother/relative_motion.hpp"
 #include "core/smoother/selected_inverse.hpp"
+#include "core/smoother/visual_scale.hpp"
 #include "tests/support/large_matrices.hpp"
 #include "tests/support/numeric_jacobian.hpp"
 
@@ -194,6 +197,23 @@ TEST(MotionBetween, CarriesTheUncertaintyOfBothPoses) {
 
 /// A cost of pose and timing together: the best pose for each timing moves as by_timing says, and what is
 /// left is the cost of the timing.
+/// r_k = rho r_{k-1} + noise has the autocorrelation rho^k.
+TEST(CorrelationFactor, OfAnAutoregressiveProcessIsTheSumOfItsPowers) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  for (const double rho : {0.0, 0.5, 0.8}) {
+    std::vector<std::optional<Vector6d>> residuals;
+    Vector6d r = Vector6d::Zero();
+    for (int frame = 0; frame < 4000; ++frame) {
+      for (int k = 0; k < 6; ++k) r[k] = rho * r[k] + std::sqrt(1 - rho * rho) * normal(random);
+      residuals.push_back(frame % 10 == 9 ? std::nullopt : std::optional(r));  // some frames have no images
+    }
+    double expected = 1;
+    for (double power = rho; power > 0.05; power *= rho) expected += 2 * power;
+    EXPECT_NEAR(correlation_factor(residuals) / expected, 1.0, 0.12) << rho;
+  }
+}
+
 TEST(VisualTiming, IsWhatTheBestPoseLeavesOfTheCost) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;

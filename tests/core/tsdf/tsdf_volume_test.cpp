@@ -128,7 +128,9 @@ TEST(TsdfVolume, WeighsByTheDepthNoise) {
   };
   for (const double depth_m : {0.5, 1.0, 2.0, 4.0}) {
     const double sigma_m = 0.0012 + 0.0019 * (depth_m - 0.4) * (depth_m - 0.4);
-    EXPECT_NEAR(weight_at(depth_m), 1e-4 / (1e-4 + sigma_m * sigma_m), kHalfOfDigit);
+    const double expected = 1e-4 / (1e-4 + sigma_m * sigma_m);
+    EXPECT_NEAR(weight_at(depth_m), expected, kHalfOfDigit);
+    EXPECT_NEAR(TsdfVolume{TsdfConfig{}}.measurement_weight(depth_m, depth), expected, 1e-12);
   }
   EXPECT_GT(weight_at(0.5), 5 * weight_at(4.0));
 }

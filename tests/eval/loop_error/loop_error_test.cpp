@@ -80,6 +80,26 @@ TEST_F(LoopErrors, AReturnThatIsFoundIsTrueAndWhatItIsWorthIsKnown) {
   EXPECT_LT(*error->oracle_ate_m, 0.5 * kDrift_m.norm());
 }
 
+TEST_F(LoopErrors, ConsistencyIsTheNormalisedErrorByDegreeOfFreedom) {
+  Trajectory off = truth();
+  off.back().T_world_camera =
+      off.back().T_world_camera * SE3{so3_exp({0.004, -0.006, 0.002}), {0.02, 0.01, 0.03}};
+  const loops::LoopClosure closure = closed();
+  const auto error = loop_error::loop_error(closure, off, rig_.camera, config_);
+  ASSERT_TRUE(error) << error.error().message;
+  ASSERT_EQ(error->accepted, 1U);
+  for (const loops::LoopCandidate& candidate : closure.candidates()) {
+    if (!candidate.accepted) continue;
+    const SE3 T_true = off[candidate.known].T_world_camera.inverse() * off[candidate.query].T_world_camera;
+    const Matrix6d covariance = closure.covariance_of(candidate);
+    const Vector3d turn = so3_log(T_true.rotation.conjugate() * candidate.pair.T_known_query.rotation);
+    const Vector3d shift = candidate.pair.T_known_query.translation - T_true.translation;
+    const auto mean_square = [](const Vector3d& e, const Matrix3d& C) { return e.dot(C.inverse() * e) / 3; };
+    EXPECT_NEAR(error->nees_rotation / mean_square(turn, covariance.topLeftCorner<3, 3>()), 1.0, 1e-6);
+    EXPECT_NEAR(error->nees_position / mean_square(shift, covariance.bottomRightCorner<3, 3>()), 1.0, 1e-6);
+  }
+}
+
 TEST_F(LoopErrors, BlurIsCountedApart) {
   const auto error = loop_error::loop_error(closed(5), truth(), rig_.camera, config_.depth, config_.loops);
   ASSERT_TRUE(error) << error.error().message;

@@ -248,6 +248,25 @@ TEST(Rpe, PairsWithoutGroundTruthAreCounted) {
   EXPECT_LT(rpe->translation.max, 1e-12);
 }
 
+TEST(Rpe, GroundTruthCountsWithinTwiceItsMedianInterval) {
+  Trajectory truth;
+  for (int i = 0; i < 200; ++i)
+    truth.push_back({i * 8'000'000LL, {so3_exp({0, 0.001 * i, 0}), {0.01 * i, 0, 0}}});
+  // Two missing poses leave 12 ms on either side of the middle of the gap, four leave 20 ms.
+  for (const auto& [missing, is_near] : {std::pair{2, true}, std::pair{4, false}}) {
+    Trajectory gap = truth;
+    gap.erase(gap.begin() + 100, gap.begin() + 100 + missing);
+    Trajectory estimate = gap;
+    StampedPose between = gap[99];
+    between.timestamp_ns = (gap[99].timestamp_ns + gap[100].timestamp_ns) / 2;
+    estimate.insert(estimate.begin() + 100, between);
+    const auto rpe =
+        relative_pose_error(gap, estimate, {.delta = 1, .unit = DeltaUnit::frames, .skip_gaps = false});
+    ASSERT_TRUE(rpe.has_value());
+    EXPECT_EQ(rpe->possible - rpe->pairs, is_near ? 0U : 2U) << missing;
+  }
+}
+
 TEST(Rpe, DegenerateInputIsATypedError) {
   const Trajectory truth = wavy_path(60);
   EXPECT_EQ(relative_pose_error(truth, {}).error().code, ErrorCode::data_corrupt);

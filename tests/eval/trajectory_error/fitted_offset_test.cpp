@@ -64,6 +64,18 @@ TEST(FittedOffset, WithErrorsItIsWithinItsSigmas) {
   EXPECT_NEAR(fit->stats.rmse, 0.004 * std::sqrt(3.0), 0.0005);
 }
 
+TEST(FittedOffset, MorePosesInTheSameSecondsAreNoMoreCertain) {
+  const Trajectory truth = hand_held({0.5, 0.6, 0.4});
+  Trajectory estimate = seen_from(truth, kOffset, 0.004);
+  const auto all = fitted_offset(truth, estimate);
+  Trajectory third;
+  for (std::size_t i = 0; i < estimate.size(); i += 3) third.push_back(estimate[i]);
+  const auto few = fitted_offset(truth, third);
+  ASSERT_TRUE(all && few);
+  ASSERT_EQ(few->pairs, 100U);
+  EXPECT_NEAR(few->covariance_m2.trace() / all->covariance_m2.trace(), 1.0, 0.25);
+}
+
 TEST(FittedOffset, AMotionThatDoesNotTurnIsRefused) {
   const Trajectory truth = hand_held({0, 0, 0});
   const auto still = fitted_offset(truth, seen_from(truth, kOffset, 0.004));
