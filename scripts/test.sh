@@ -102,6 +102,10 @@ finish() {
     printf '\n== %s FAILED; its last lines:\n' "$name"
     tail -n 40 "$logs/$name"
   done
+  if [[ -f $logs/tests ]]; then
+    printf '\n== the longest tests [s]\n'
+    sed -n 's/^ *[0-9]*\/[0-9]* Test *#[0-9]*: \([^ ]*\) .* \([0-9.]*\) sec *$/\2 \1/p' "$logs/tests" | LC_ALL=C sort -rn | head -n 20
+  fi
   printf '\n== summary\n'
   printf '%s\n' "${summary[@]}"
   if ((failures > 0)); then
@@ -131,6 +135,7 @@ step build ./scripts/build.sh ci
 step test-packages packages_for_tests
 if [[ ${summary[-1]} == *FAILED* ]]; then finish; fi
 step tests-built ./scripts/check_tests_built.sh build/ci
+step build-cost ./scripts/check_build_cost.py
 step generated-docs ./scripts/generate_docs.sh --check build/ci/fusebench
 if $tidy; then step clang-tidy check_tidy; fi
 if $odr; then step one-definition ./scripts/check_odr.sh; fi

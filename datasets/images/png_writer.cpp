@@ -40,13 +40,13 @@ void append_chunk(std::string_view type, std::span<const std::uint8_t> content, 
 
 /// Width, height, bits of a sample, colour type; methods of compression, filter and interlace are 0.
 Bytes header_of(const PixelView& image) {
-  constexpr std::uint8_t kGrey = 0;
-  constexpr std::uint8_t kTrueColor = 2;
+  constexpr std::uint8_t kGreyType = 0;
+  constexpr std::uint8_t kColorType = 2;
   Bytes header;
   append_number(static_cast<std::uint32_t>(image.width_px), header);
   append_number(static_cast<std::uint32_t>(image.height_px), header);
   header.push_back(image.type == SampleType::uint16 ? 16 : 8);
-  header.push_back(image.channels == 3 ? kTrueColor : kGrey);
+  header.push_back(image.channels == 3 ? kColorType : kGreyType);
   header.insert(header.end(), 3, 0);
   return header;
 }

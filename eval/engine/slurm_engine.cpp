@@ -31,7 +31,7 @@ constexpr std::size_t kMostTasks = 1000;  // of an array: Slurm's default limit
 constexpr double kQueueEvery_s = 2;
 constexpr double kVanished_s = 6;  // out of the queue, and results that a network file system shows late
 constexpr double kLongestLook_s = 5;
-constexpr std::chrono::milliseconds kLookAround(200);
+constexpr std::chrono::milliseconds kQueueInterval(200);
 
 double since(Clock::time_point time) { return std::chrono::duration<double>(Clock::now() - time).count(); }
 
@@ -93,7 +93,7 @@ class SlurmEngine {
         last_queue_ = Clock::now();
       }
       tell_progress();
-      std::this_thread::sleep_for(kLookAround);
+      std::this_thread::sleep_for(kQueueInterval);
     }
     queue_.cancel_all(name_);  // what still runs was done by others
     std::error_code ignored;

@@ -43,8 +43,8 @@ endfunction()
 
 # fusebench_room(FOLDER [PROGRAM] [APART] [ALONE NAME...] [USES ROOM...] [PUBLIC LIBRARY...] [PRIVATE LIBRARY...] [SOURCES FILE...]
 #                [OPTIMIZE LEVEL] [HEADERS SET])
-# Defines the library fusebench_<last name of FOLDER> of all sources in FOLDER (PROGRAM: the program fusebench). Eight of them are
-# compiled at a time (FUSEBENCH_UNITY): most of the time goes into reading libraries and into their templates, once for each
+# Defines the library fusebench_<last name of FOLDER> of all sources in FOLDER (PROGRAM: the program fusebench). They are compiled
+# as one (FUSEBENCH_UNITY): most of the time goes into reading libraries and into their templates, once for each
 # compilation. With that off, a change of one source compiles that one alone, and a missing #include shows.
 #   APART     each source is compiled alone: most of them give the same names other meanings
 #   ALONE     sources (without .cpp) that are, since another one gives one of their names another meaning, or since they hide a class
@@ -86,7 +86,7 @@ function(fusebench_room folder)
     target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O${level}>)
   endif()
   if(FUSEBENCH_UNITY AND NOT arg_APART)
-    set_target_properties(${room} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${room} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
     foreach(source IN LISTS arg_ALONE)
       set_source_files_properties(${PROJECT_SOURCE_DIR}/${folder}/${source}.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endforeach()

@@ -42,5 +42,7 @@ void count_model_kernels(KernelCounts& counts, const testing::BenchScene& scene)
 void count_tracking_kernels(KernelCounts& counts, const testing::BenchScene& scene);
 /// Errors of trajectories and meshes.
 void count_evaluation_kernels(KernelCounts& counts);
+/// An image of each camera of a simulated recording.
+void count_simulator_kernels(KernelCounts& counts);
 
 }  // namespace fusebench::perf

@@ -31,6 +31,7 @@ void print_counted() {
   count_model_kernels(counts, scene);
   count_tracking_kernels(counts, scene);
   count_evaluation_kernels(counts);
+  count_simulator_kernels(counts);
   for (const auto& kernel : counts.counted())
     fmt::print("{},{},{}\n", kernel.name, kernel.items, kernel.item);
 }

@@ -8,6 +8,7 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "datasets/calibration/camera_model.hpp"
+#include "datasets/simulator/rays/ray_field.hpp"
 #include "datasets/simulator/render/renderer.hpp"
 #include "datasets/simulator/sensors/color_processing.hpp"
 #include "datasets/simulator/sensors/depth_errors.hpp"

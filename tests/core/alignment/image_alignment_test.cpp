@@ -68,7 +68,7 @@ TEST(ImageAlignment, TheGradientIsThatOfTheCost) {
 
 /// The same grey level everywhere moves no residual by the pose: each is the offset.
 TEST(ImageAlignment, TheCostOfAUniformOffsetIsHubersOfEachPixel) {
-  Config config;
+  AlignmentOptions config;
   config.alignment.coarsest_level = 3;
   config.photometric.gain_sigma = 0;  // fixed
   config.photometric.offset_sigma_grey = 0;
@@ -82,7 +82,7 @@ TEST(ImageAlignment, TheCostOfAUniformOffsetIsHubersOfEachPixel) {
     std::vector<GreyImage> seen(4, GreyImage(40, 30, static_cast<std::uint8_t>(100 + offset_grey)));
     ReferencePoints at;
     at.take(reference, frames.reference_frame.depth_m, frames.camera, config.alignment);
-    ImageAlignment measurement(config, frames.rig);
+    ImageAlignment measurement(config.alignment, config.photometric, frames.rig);
     measurement.observe(seen, at, SE3{}, 3);
     const SE3 T_world_imu = frames.rig.T_imu_camera.inverse();
     const double cost = measurement.linearise({T_world_imu, T_world_imu}, 0, false).by_reference.cost;
@@ -96,14 +96,14 @@ TEST(ImageAlignment, TheCostOfAUniformOffsetIsHubersOfEachPixel) {
 }
 
 TEST(ImageAlignment, TheBrightnessFollowsADimmerImage) {
-  Config config;
+  AlignmentOptions config;
   config.alignment.coarsest_level = 3;
   config.photometric.gain_sigma = 10;  // free
   config.photometric.offset_sigma_grey = 1000;
   config.photometric.huber_sigmas = 1000;
   TwoFrames frames(SE3{}, config);
   for (std::uint8_t& grey : frames.pyramid[3].data) grey = static_cast<std::uint8_t>(0.8 * grey + 10);
-  ImageAlignment measurement(config, frames.rig);
+  ImageAlignment measurement(config.alignment, config.photometric, frames.rig);
   measurement.observe(frames.pyramid, frames.reference, SE3{}, 3);
   const SE3 T_world_imu = frames.rig.T_imu_camera.inverse();
   const filter::PoseHypothesis poses{T_world_imu, T_world_imu};
@@ -115,7 +115,7 @@ TEST(ImageAlignment, TheBrightnessFollowsADimmerImage) {
 }
 
 TEST(ImageAlignment, ACoarsePointHasTheDepthOfTheNearestSurfaceUnderItsPixel) {
-  Config config;
+  AlignmentOptions config;
   config.alignment.coarsest_level = 3;
   const PinholeCamera camera = testing::small_camera();
   DepthImage depth_m(320, 240, 2.0F);

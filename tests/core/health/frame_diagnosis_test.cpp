@@ -78,29 +78,29 @@ TEST(FrameHealth, HowManyCoveredPatchesAreAnOcclusion) {
 }
 
 TEST(FrameHealth, APatchIsCoveredIfMoreThanHalfOfItsPixelsAre) {
-  const Config config;
+  const HealthConfig health;
   std::vector<PatchOutcome> outcomes(10);
   for (PatchOutcome& outcome : outcomes) {
     outcome.in_view = outcome.tracked = outcome.accepted = true;
     outcome.usable_pixels = 50;
     outcome.covered_pixels = 50;
   }
-  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::good);
+  EXPECT_EQ(Scene{}.judged(health, outcomes), FrameHealth::good);
   for (PatchOutcome& outcome : outcomes) ++outcome.covered_pixels;
-  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::occluded);
+  EXPECT_EQ(Scene{}.judged(health, outcomes), FrameHealth::occluded);
 }
 
 TEST(FrameHealth, AFrameIsInconsistentIfLessThanHalfOfTheTrackedPatchesAreAccepted) {
-  const Config config;
+  const HealthConfig health;
   std::vector<PatchOutcome> outcomes(20);
   for (std::size_t p = 0; p < outcomes.size(); ++p) {
     outcomes[p].in_view = outcomes[p].tracked = true;
     outcomes[p].usable_pixels = 100;
     outcomes[p].accepted = p < 10;
   }
-  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::good);
+  EXPECT_EQ(Scene{}.judged(health, outcomes), FrameHealth::good);
   outcomes[0].accepted = false;
-  EXPECT_EQ(Scene{}.judged(config, outcomes), FrameHealth::inconsistent);
+  EXPECT_EQ(Scene{}.judged(health, outcomes), FrameHealth::inconsistent);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <random>
 
+#include "core/config/groups/residuals_config.hpp"
+
 namespace fusebench {
 
 using namespace measurement;

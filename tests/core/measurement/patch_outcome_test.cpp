@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "core/config/groups/filter_config.hpp"
+#include "core/config/groups/terms_config.hpp"
+
 namespace fusebench {
 
 using namespace measurement;
-using config::Config;
+using config::IekfConfig;
 
 namespace {
 
@@ -21,17 +24,17 @@ TEST(PatchOutcome, GainsBetweenAHalfAndTwoFit) {
   PatchOutcome outcome = fitting();
   for (const double gain : {0.51, 1.0, 1.99}) {
     outcome.gain = gain;
-    EXPECT_TRUE(fits_color(outcome, Config{}, {})) << gain;
+    EXPECT_TRUE(fits_color(outcome, IekfConfig{}, {})) << gain;
   }
   for (const double gain : {-1.0, 0.0, 0.1, 0.49, 2.01, 10.0}) {
     outcome.gain = gain;
-    EXPECT_FALSE(fits_color(outcome, Config{}, {})) << gain;
+    EXPECT_FALSE(fits_color(outcome, IekfConfig{}, {})) << gain;
   }
 }
 
 TEST(PatchOutcome, Chi2OfEachKindIsLimitedByItsNumberOfResiduals) {
-  Config config;
-  config.iekf.max_chi2_per_measurement = 3.0;
+  IekfConfig config;
+  config.max_chi2_per_measurement = 3.0;
   PatchOutcome outcome = fitting();
   outcome.chi2_photometric = 299;
   outcome.chi2_geometric = 299;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/config/groups/frame_config.hpp"
+#include "core/config/groups/tsdf_config.hpp"
 #include "tests/support/fused_scene.hpp"
 #include "tests/support/plain_field.hpp"
 

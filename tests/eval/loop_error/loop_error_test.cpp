@@ -85,7 +85,7 @@ TEST_F(LoopErrors, ConsistencyIsTheNormalisedErrorByDegreeOfFreedom) {
   off.back().T_world_camera =
       off.back().T_world_camera * SE3{so3_exp({0.004, -0.006, 0.002}), {0.02, 0.01, 0.03}};
   const loops::LoopClosure closure = closed();
-  const auto error = loop_error::loop_error(closure, off, rig_.camera, config_);
+  const auto error = loop_error::loop_error(closure, off, rig_.camera, config_.depth, config_.loops);
   ASSERT_TRUE(error) << error.error().message;
   ASSERT_EQ(error->accepted, 1U);
   for (const loops::LoopCandidate& candidate : closure.candidates()) {

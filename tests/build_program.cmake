@@ -1,0 +1,22 @@
+# cmake -DFOLDER=BUILD -DTARGET=PROGRAM -DLISTS=FOLDER -P build_program.cmake: builds a test program before its tests run. Fails
+# where the program has other tests than ctest read when it started, which then have not run.
+file(GLOB lists ${LISTS}/${TARGET}*_tests.cmake)
+set(before "")
+foreach(list IN LISTS lists)
+  file(READ ${list} content)
+  string(APPEND before "${content}")
+endforeach()
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${FOLDER} --target ${TARGET} RESULT_VARIABLE status OUTPUT_VARIABLE output
+  ERROR_VARIABLE output)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${output}")
+endif()
+file(GLOB lists ${LISTS}/${TARGET}*_tests.cmake)
+set(after "")
+foreach(list IN LISTS lists)
+  file(READ ${list} content)
+  string(APPEND after "${content}")
+endforeach()
+if(NOT before STREQUAL after)
+  message(FATAL_ERROR "${TARGET} has been built with other tests than before: run ctest again")
+endif()
