@@ -25,11 +25,21 @@ int filter_at(int u, int v) {
   return v % 2 == 0 ? 0 : 2;
 }
 
-/// Mirrors at the border, which keeps the colour of the filter.
-int mirrored(int x, int size) {
-  if (x < 0) x = -x;
-  if (x >= size) x = 2 * size - 2 - x;
-  return std::clamp(x, 0, size - 1);
+/// The image with a pixel more on each side, as a mirror at the outer pixels shows it: that keeps the colour
+/// of the filter.
+template <class Pixel>
+Image<Pixel> with_border(const Image<Pixel>& image, const Workers& workers) {
+  const auto mirrored = [](int x, int size) {
+    return std::clamp(x < 0 ? -x : x >= size ? 2 * size - 2 - x : x, 0, size - 1);
+  };
+  Image<Pixel> result(image.width + 2, image.height + 2);
+  fill_rows(workers, result.height, [&](int v) {
+    const int from = mirrored(v - 1, image.height);
+    std::copy_n(&image(0, from), image.width, &result(1, v));
+    result(0, v) = image(mirrored(-1, image.width), from);
+    result(image.width + 1, v) = image(mirrored(image.width, image.width), from);
+  });
+  return result;
 }
 
 /// Digital numbers of the pixels, 0 to 1.
@@ -53,37 +63,34 @@ Image<float> read_out(const Image<Eigen::Vector3f>& light, const ColorProcessing
   return raw;
 }
 
-/// The colours at a pixel: its own, and means of the nearest pixels behind the other filters.
-Eigen::Vector3f interpolated(const Image<float>& raw, int u, int v) {
-  const auto at = [&](int du, int dv) {
-    return raw(mirrored(u + du, raw.width), mirrored(v + dv, raw.height));
-  };
-  const float beside = 0.5F * (at(-1, 0) + at(1, 0));
-  const float above = 0.5F * (at(0, -1) + at(0, 1));
-  const float own = raw(u, v);
-  Eigen::Vector3f color;
-  if (filter_at(u, v) == 1) {
-    const bool red_row = v % 2 == 0;
-    color = {red_row ? beside : above, own, red_row ? above : beside};
-    return color;
-  }
-  const float diagonal = 0.25F * (at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1));
-  const bool red = filter_at(u, v) == 0;
-  color = {red ? own : diagonal, 0.5F * (beside + above), red ? diagonal : own};
-  return color;
+/// The colours at a pixel: its own, and means of the nearest pixels behind the other filters. raw: with
+/// border.
+std::array<float, 3> interpolated(const Image<float>& raw, int u, int v) {
+  const float* above = &raw(u, v);
+  const float* row = &raw(u, v + 1);
+  const float* below = &raw(u, v + 2);
+  const float own = row[1];
+  const float beside = 0.5F * (row[0] + row[2]);
+  const float upright = 0.5F * (above[1] + below[1]);
+  const int filter = filter_at(u, v);
+  if (filter == 1) return v % 2 == 0 ? std::array{beside, own, upright} : std::array{upright, own, beside};
+  const float green = 0.5F * (beside + upright);
+  const float diagonal = 0.25F * (above[0] + above[2] + below[0] + below[2]);
+  return filter == 0 ? std::array{own, green, diagonal} : std::array{diagonal, green, own};
 }
 
-/// Grey levels after the tone curve.
-Image<Eigen::Vector3f> encoded(const Image<float>& raw, double contrast, const Workers& workers) {
+/// Grey levels after the tone curve; the fourth component is 0.
+Image<Eigen::Array4f> encoded(const Image<float>& raw, double contrast, const Workers& workers) {
   const SrgbEncoder& encoder = SrgbEncoder::instance();
   const auto share = static_cast<float>(contrast);
-  Image<Eigen::Vector3f> grey(raw.width, raw.height);
+  const Image<float> framed = with_border(raw, workers);
+  Image<Eigen::Array4f> grey(raw.width, raw.height, Eigen::Array4f::Zero());
   fill_rows(workers, raw.height, [&](int v) {
     for (int u = 0; u < raw.width; ++u) {
-      const Eigen::Vector3f color = interpolated(raw, u, v);
-      for (Eigen::Index c = 0; c < 3; ++c) {
+      const std::array<float, 3> color = interpolated(framed, u, v);
+      for (std::size_t c = 0; c < 3; ++c) {
         const float x = encoder(color[c]).grey / 255.0F;
-        grey(u, v)[c] = 255.0F * (x + share * (x * x * (3 - 2 * x) - x));
+        grey(u, v)[static_cast<Eigen::Index>(c)] = 255.0F * (x + share * (x * x * (3 - 2 * x) - x));
       }
     }
   });
@@ -95,17 +102,15 @@ Image<Eigen::Vector3f> encoded(const Image<float>& raw, double contrast, const W
 ColorImage processed_color(const Image<Eigen::Vector3f>& light, const ColorProcessing& processing,
                            double gain, std::uint64_t key, const Workers& workers) {
   const Image<float> raw = read_out(light, processing, gain, key, workers);
-  const Image<Eigen::Vector3f> grey = encoded(raw, processing.contrast, workers);
+  const Image<Eigen::Array4f> grey = with_border(encoded(raw, processing.contrast, workers), workers);
   ColorImage image(light.width, light.height);
   const auto share = static_cast<float>(processing.smoothing);
   fill_rows(workers, image.height, [&](int v) {
     for (int u = 0; u < image.width; ++u) {
-      Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-      for (int y = v - 1; y <= v + 1; ++y) {
-        for (int x = u - 1; x <= u + 1; ++x)
-          mean += grey(mirrored(x, grey.width), mirrored(y, grey.height)) / 9.0F;
-      }
-      const Eigen::Vector3f value = grey(u, v) + share * (mean - grey(u, v));
+      Eigen::Array4f sum = Eigen::Array4f::Zero();
+      for (int y = v; y <= v + 2; ++y) sum += grey(u, y) + grey(u + 1, y) + grey(u + 2, y);
+      const Eigen::Array4f& own = grey(u + 1, v + 1);
+      const Eigen::Array4f value = own + share * (sum / 9.0F - own);
       for (std::size_t c = 0; c < 3; ++c) {
         image(u, v)[c] =
             static_cast<std::uint8_t>(std::clamp(value[static_cast<Eigen::Index>(c)] + 0.5F, 0.0F, 255.0F));

@@ -112,9 +112,28 @@ Image<Dot> dot_pattern(int width, int height, int cell) {
   return dots;
 }
 
-/// Step 3 at one dot: its disparity, or 0 where the window does not agree.
-float measured_at(const DepthImage& disparity_px, const Lengths& lengths, const Image<Dot>& dots,
-                  const Dot& dot) {
+/// Sums over the pixels of each row within a distance: of disparities, and of measured pixels.
+struct RowSums {
+  DepthImage disparity_px;
+  Image<float> measured;
+
+  RowSums(const DepthImage& of, int distance, const Workers& workers)
+      : disparity_px(of.width, of.height), measured(of.width, of.height) {
+    for_rows(workers, of.height, [&](int v) {
+      for (int shift = -distance; shift <= distance; ++shift) {
+        for (int u = std::max(0, -shift); u < std::min(of.width, of.width - shift); ++u) {
+          disparity_px(u, v) += of(u + shift, v);
+          measured(u, v) += of(u + shift, v) > 0 ? 1.0F : 0.0F;
+        }
+      }
+    });
+  }
+};
+
+/// Step 3 at one dot: its disparity, or 0 where the window does not agree. sums: over half the window's width
+/// to either side.
+float measured_at(const DepthImage& disparity_px, const RowSums& sums, const Lengths& lengths,
+                  const Image<Dot>& dots, const Dot& dot) {
   const int half = lengths.half_window;
   if (!disparity_px.contains(dot.u - half, dot.v - half) ||
       !disparity_px.contains(dot.u + half, dot.v + half)) {
@@ -123,15 +142,12 @@ float measured_at(const DepthImage& disparity_px, const Lengths& lengths, const 
   const float centre = disparity_px(dot.u, dot.v);
   if (centre <= 0) return 0;
   float sum = 0;
-  int valid = 0;
+  float valid = 0;
   for (int v = dot.v - half; v <= dot.v + half; ++v) {
-    for (int u = dot.u - half; u <= dot.u + half; ++u) {
-      const float d = disparity_px(u, v);
-      sum += d;
-      if (d > 0) ++valid;
-    }
+    sum += sums.disparity_px(dot.u, v);
+    valid += sums.measured(dot.u, v);
   }
-  const float mean = sum / static_cast<float>(valid);
+  const float mean = sum / valid;
   int seen = 0;
   int agreeing = 0;
   for (int row = dot.v / lengths.cell - lengths.cells_around;
@@ -153,22 +169,27 @@ float measured_at(const DepthImage& disparity_px, const Lengths& lengths, const 
   return static_cast<float>(agreeing) > kAgreement * static_cast<float>(seen) ? centre : 0.0F;
 }
 
-/// Disparity of the nearest dot that was measured, 0 if there is none within reach.
-float filled_at(const DepthImage& dots_px, const Lengths& lengths, const Image<Dot>& dots, int u, int v) {
-  const float fill_radius_px = kFillRadius_px / lengths.native_px;
-  float nearest2 = fill_radius_px * fill_radius_px;
-  float found = 0;
-  for (int row = v / lengths.cell - 1; row <= v / lengths.cell + 1; ++row) {
-    for (int column = u / lengths.cell - 1; column <= u / lengths.cell + 1; ++column) {
-      if (!dots_px.contains(column, row) || dots_px(column, row) <= 0) continue;
-      const Dot& dot = dots(column, row);
-      const auto distance2 = static_cast<float>((dot.u - u) * (dot.u - u) + (dot.v - v) * (dot.v - v));
-      if (distance2 > nearest2 || (distance2 == nearest2 && found > 0)) continue;
-      nearest2 = distance2;
-      found = dots_px(column, row);
+/// By pixel the disparity of the nearest dot that was measured, of the first of several; 0 if there is none
+/// within reach.
+DepthImage filled_from(const DepthImage& dots_px, const Lengths& lengths, const Image<Dot>& dots, int width,
+                       int height) {
+  const float fill_radius2 = std::pow(kFillRadius_px / lengths.native_px, 2.0F);
+  const int reach = static_cast<int>(kFillRadius_px / lengths.native_px);
+  Image<float> nearest2(width, height, fill_radius2);
+  DepthImage filled(width, height);
+  for (std::size_t i = 0; i < dots.data.size(); ++i) {
+    if (dots_px.data[i] <= 0) continue;
+    const Dot& dot = dots.data[i];
+    for (int v = std::max(0, dot.v - reach); v <= std::min(height - 1, dot.v + reach); ++v) {
+      for (int u = std::max(0, dot.u - reach); u <= std::min(width - 1, dot.u + reach); ++u) {
+        const auto distance2 = static_cast<float>((dot.u - u) * (dot.u - u) + (dot.v - v) * (dot.v - v));
+        if (distance2 > nearest2(u, v) || (distance2 == nearest2(u, v) && filled(u, v) > 0)) continue;
+        nearest2(u, v) = distance2;
+        filled(u, v) = dots_px.data[i];
+      }
     }
   }
-  return found;
+  return filled;
 }
 
 /// Step 4.
@@ -187,18 +208,20 @@ DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfac
   const DepthImage disparity_px = quantised_disparity(surfaces, focal_baseline, kShift_px / lengths.native_px,
                                                       random::mix_key(key, kShiftNoise), workers);
   const Image<Dot> dots = dot_pattern(surfaces.width, surfaces.height, lengths.cell);
+  const RowSums sums(disparity_px, lengths.half_window, workers);
   DepthImage dots_px(dots.width, dots.height);
   for_rows(workers, dots_px.height, [&](int row) {
     for (int column = 0; column < dots_px.width; ++column) {
-      dots_px(column, row) = measured_at(disparity_px, lengths, dots, dots(column, row));
+      dots_px(column, row) = measured_at(disparity_px, sums, lengths, dots, dots(column, row));
     }
   });
+  const DepthImage filled_px = filled_from(dots_px, lengths, dots, surfaces.width, surfaces.height);
   const random::NormalTable& normal = random::NormalTable::instance();
   const std::uint64_t step_key = random::mix_key(key, kStepNoiseKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
   for_rows(workers, depth_m.height, [&](int v) {
     for (int u = 0; u < depth_m.width; ++u) {
-      const float disparity = filled_at(dots_px, lengths, dots, u, v);
+      const float disparity = filled_px(u, v);
       if (disparity <= 0) continue;
       depth_m(u, v) =
           kinect_depth_m(focal_baseline / disparity, normal(random::mix_key(step_key, depth_m.index(u, v))));
