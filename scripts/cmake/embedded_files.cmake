@@ -45,6 +45,8 @@ add_custom_command(OUTPUT ${page_assets}
   VERBATIM)
 
 set(build_info ${PROJECT_BINARY_DIR}/embedded/build_info.cpp)
+# It changes with every source of the estimator: compiled alone.
+set_source_files_properties(${build_info} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 # What was built, from what: written at every build, so that a record never names an older commit. The estimator's version is
 # that of the rooms behind ROOM, which is known once all rooms are.

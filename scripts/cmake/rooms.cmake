@@ -53,7 +53,8 @@ endfunction()
 #   SOURCES   generated files beside those of the folder
 #   OPTIMIZE  level of a release build, 3 unless given. Rooms that only read, write and print take 1: half the time to compile,
 #             and not a bit of difference in what they compute.
-#   HEADERS   precompiled headers (see above), "values" unless given; "none" for rooms whose libraries define macros
+#   HEADERS   precompiled headers (see above), "values" unless given, or "json" with OPTIMIZE; "none" for rooms whose libraries
+#             define macros
 function(fusebench_room folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;APART" "OPTIMIZE;HEADERS" "ALONE;USES;PUBLIC;PRIVATE;SOURCES")
   if(arg_UNPARSED_ARGUMENTS)
@@ -92,7 +93,9 @@ function(fusebench_room folder)
     endforeach()
   endif()
   target_link_libraries(${room} PUBLIC ${used} ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
-  if(NOT arg_HEADERS)
+  if(NOT arg_HEADERS AND arg_OPTIMIZE)
+    set(arg_HEADERS json)  # one set of headers the fewer
+  elseif(NOT arg_HEADERS)
     set(arg_HEADERS values)
   endif()
   if(NOT arg_HEADERS STREQUAL none)

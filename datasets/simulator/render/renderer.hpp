@@ -16,6 +16,7 @@
 
 namespace fusebench::simulator::render {
 
+struct LitScene;
 class Renderer;
 
 /// A moving foreground object at one instant.
@@ -78,10 +79,10 @@ class Renderer {
   void render_surfaces(const PinholeCamera& camera, const RowPoses& poses, const Workers& workers,
                        Image<Surface>& surfaces, bool material = false) const;
 
+  [[nodiscard]] const LitScene& scene() const { return *scene_; }
+
  private:
-  struct State;
-  class RowLight;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<LitScene> scene_;
 };
 
 }  // namespace fusebench::simulator::render
