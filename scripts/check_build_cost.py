@@ -95,7 +95,8 @@ def compare(before, now):
             print(f"{target:34} {old:12} {new:12} {change:>9}{'  MORE' if grown else ''}")
     old, new = sum(before.values()), sum(now.values())
     off = abs(new - old) > SUM_CHANGE * old
-    print(f"{'sum':34} {old:12} {new:12} {100 * (new - old) / max(old, 1):+8.1f} %{'  MORE' if off and new > old else '  LESS' if off else ''}")
+    change = f"{100 * (new - old) / old:+.1f} %" if old else "new"
+    print(f"{'sum':34} {old:12} {new:12} {change:>9}{'  MORE' if off and new > old else '  LESS' if off else ''}")
     return broken + off
 
 
