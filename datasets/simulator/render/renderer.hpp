@@ -28,8 +28,6 @@ struct Foreground {
 /// How long a screen shows a page.
 inline constexpr double kPage_s = 0.8;
 
-enum class Pixels { all, inside_faces, at_edges };  ///< by VisibleTriangles::face
-
 /// One sample of the pixels of a row.
 struct RowSample {
   int row = 0;
@@ -39,9 +37,7 @@ struct RowSample {
   float footprint_px = 1;
   float weight = 1;
   double time_s = 0;  ///< of screens that change what they show
-  Pixels pixels = Pixels::all;
-  /// Seen from nearby poses by the same camera; spares most of the search for triangles. May be null with
-  /// Pixels::all.
+  /// Seen from nearby poses by the same camera; spares most of the search for triangles. May be null.
   const VisibleTriangles* nearby = nullptr;
   const Foreground* foreground = nullptr;  ///< hides what is behind it; may be null
 };

@@ -17,11 +17,10 @@ using simd::kLanes;
 namespace {
 
 /// Eight pixels of a row from column `begin` on; those beyond its end are of the next row, or 0.
-template <class Lanes, class Pixel>
-Lanes load_row(const Image<Pixel>& image, int row, std::size_t begin) {
-  Lanes lanes{};
+Float8 load_row(const Image<float>& image, int row, std::size_t begin) {
+  Float8 lanes{};
   const std::size_t at = image.index(0, row) + begin;
-  std::memcpy(&lanes, &image.data[at], std::min(kLanes, image.data.size() - at) * sizeof(Pixel));
+  std::memcpy(&lanes, &image.data[at], std::min(kLanes, image.data.size() - at) * sizeof(float));
   return lanes;
 }
 
@@ -67,30 +66,18 @@ class RowLight {
     const Int8 page = simd::all_lanes(scene_.shading.page_at(sample.time_s));
     const Float8 footprint = simd::all_lanes(sample.footprint_px / static_cast<float>(field_.camera().fx_px));
     for (std::size_t begin = 0; begin < light_.size(); begin += kLanes) {
-      const unsigned wanted = wanted_lanes(sample, begin);
-      if (wanted == 0) continue;
-      unsigned found = 0;
-      if (sample.pixels != Pixels::at_edges) {
-        const RayPacket world = pose.rays(rays.packet(begin));
-        const PacketHits hits = try_nearby(sample, to_nearby, rays, middles, world, begin);
-        found = wanted & simd::lane_bits(hits.triangle >= 0);
-        const texture::Texture::Samples light = scene_.light_of(hits, world, found, footprint, page);
-        for (unsigned lanes = found; lanes != 0; lanes &= lanes - 1) {
-          const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-          light_[begin + lane] += sample.weight * light[lane];
-        }
+      const unsigned wanted = first_lanes(light_.size() - begin);
+      const RayPacket world = pose.rays(rays.packet(begin));
+      const PacketHits hits = try_nearby(sample, to_nearby, rays, middles, world, begin);
+      const unsigned found = wanted & simd::lane_bits(hits.triangle >= 0);
+      const texture::Texture::Samples light = scene_.light_of(hits, world, found, footprint, page);
+      for (unsigned lanes = found; lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        light_[begin + lane] += sample.weight * light[lane];
       }
       for (unsigned lanes = wanted & ~found; lanes != 0; lanes &= lanes - 1)
         leave(s, rays, begin + static_cast<std::size_t>(std::countr_zero(lanes)));
     }
-  }
-
-  [[nodiscard]] unsigned wanted_lanes(const RowSample& sample, std::size_t begin) const {
-    const unsigned there = first_lanes(light_.size() - begin);
-    if (sample.pixels == Pixels::all) return there;
-    const Int8 face = load_row<Int8>(sample.nearby->face, sample.row, begin);
-    const unsigned at_edge = simd::lane_bits(face == VisibleTriangles::kEdge);
-    return there & (sample.pixels == Pixels::at_edges ? at_edge : ~at_edge);
   }
 
   /// Hits of rays that land inside a face, on triangles of that face that one of the eight landed on. A
@@ -101,7 +88,7 @@ class RowLight {
     const VisibleTriangles& nearby = *sample.nearby;
     const simd::Points directions = simd::rotated(to_nearby.R, rays.packet(begin));
     const auto landing = [&](const Image<float>& inverse_depth) {
-      return pixel_of(sample, to_nearby.t, directions, load_row<Float8>(inverse_depth, sample.row, begin),
+      return pixel_of(sample, to_nearby.t, directions, load_row(inverse_depth, sample.row, begin),
                       middles.packet(begin), begin);
     };
     const Int8 at = landing(nearby.inverse_depth_per_m);

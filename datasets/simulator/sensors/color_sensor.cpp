@@ -15,7 +15,6 @@ namespace fusebench::simulator::sensors {
 namespace {
 
 constexpr std::size_t kRowsPerChunk = 8;
-constexpr double kMotionOfObject_px = 16;  // at least, of an object that is near the camera and moves
 
 // Keys of independent random streams of one seed.
 constexpr std::uint64_t kPixelNoise = 0xC0;
@@ -59,10 +58,8 @@ struct Exposure {
   }
 
   /// By the motion of the image, unless the sensor has a number of samples.
-  [[nodiscard]] std::vector<SampleSet> sample_sets(double motion_px) const {
-    if (sensor.blur_samples > 0) return {sample_set(sensor.blur_samples)};
-    // An object before the camera has a motion and edges of its own.
-    return samples_of_motion(before == nullptr ? motion_px : std::max(motion_px, kMotionOfObject_px));
+  [[nodiscard]] int samples(double motion_px) const {
+    return sensor.blur_samples > 0 ? sensor.blur_samples : samples_of_motion(motion_px);
   }
 
   /// A sample of all rows.
@@ -70,19 +67,12 @@ struct Exposure {
     double share;  ///< of the exposure
     render::RowPoses poses;
     Vector2d offset_px;
-    float footprint_px;
-    float weight;
-    render::Pixels pixels;
   };
-  [[nodiscard]] std::vector<Instant> instants(const std::vector<SampleSet>& sets) const {
+  [[nodiscard]] std::vector<Instant> instants(int count) const {
     std::vector<Instant> instants;
-    for (const SampleSet& set : sets) {
-      const auto count = static_cast<double>(set.offsets_px.size());
-      for (const Vector2d& offset_px : set.offsets_px) {
-        const double share = (static_cast<double>(&offset_px - set.offsets_px.data()) + 0.5) / count;
-        instants.push_back(
-            {share, poses(share), offset_px, set.footprint_px, static_cast<float>(1 / count), set.pixels});
-      }
+    for (const Vector2d& offset_px : sample_offsets_px(count)) {
+      const double share = (static_cast<double>(instants.size()) + 0.5) / count;
+      instants.push_back({share, poses(share), offset_px});
     }
     return instants;
   }
@@ -93,16 +83,16 @@ struct Exposure {
     std::vector<render::Foreground> things;
     std::vector<render::RowSample> samples;
     things.reserve(instants.size());
+    const float share_of_each = 1.0F / static_cast<float>(instants.size());
     for (const Instant& at : instants) {
       const std::int64_t time_ns = instant_ns(row, at.share);
       if (before != nullptr) things.push_back({before->surface, before->T_object_camera(time_ns)});
       samples.push_back({.row = row,
                          .T_world_camera = at.poses.of_row(row),
                          .offset_px = at.offset_px,
-                         .footprint_px = at.footprint_px,
-                         .weight = at.weight,
+                         .footprint_px = std::sqrt(share_of_each),
+                         .weight = share_of_each,
                          .time_s = seconds_between(0, time_ns),
-                         .pixels = at.pixels,
                          .nearby = &visible,
                          .foreground = before != nullptr ? &things.back() : nullptr});
     }
@@ -186,7 +176,7 @@ ColorImage expose_color(const render::Renderer& renderer, const ColorSensor& sen
   if (!sensor.covered) {
     visible = renderer.visible_triangles(rays, exposure.poses(0.5), workers);
     const double motion_px = exposure.motion_px(visible);
-    instants = exposure.instants(exposure.sample_sets(motion_px));
+    instants = exposure.instants(exposure.samples(motion_px));
     // From the middle of the exposure to its ends, and by half a pixel within the pixel.
     const double distance_px = std::min(0.5 * motion_px + 1, static_cast<double>(camera.width_px));
     render::find_nearest_around(static_cast<int>(std::ceil(distance_px)), visible);
