@@ -30,7 +30,7 @@ while (($# > 0)); do
 done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-if [[ $preset == tsan ]]; then targets=(core_tests eval_tests); else targets=(); fi
+if [[ $preset == tsan ]]; then targets=(values_tests estimator_tests metrics_tests runs_tests); else targets=(); fi
 ./scripts/build.sh "$preset" "${targets[@]}"
 selected=()
 if [[ -n $label ]]; then selected+=(-L "^$label\$"); fi

@@ -104,7 +104,7 @@ finish() {
   done
   if [[ -f $logs/tests ]]; then
     printf '\n== the longest tests [s]\n'
-    sed -n 's/^ *[0-9]*\/[0-9]* Test *#[0-9]*: \([^ ]*\) .* \([0-9.]*\) sec *$/\2 \1/p' "$logs/tests" | LC_ALL=C sort -rn | head -n 20
+    sed -n 's/^ *[0-9]*\/[0-9]* Test *#[0-9]*: \([^ ]*\) .* \([0-9.]*\) sec *$/\2 \1/p' "$logs/tests" | LC_ALL=C sort -rn | sed -n 1,20p
   fi
   printf '\n== summary\n'
   printf '%s\n' "${summary[@]}"

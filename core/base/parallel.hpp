@@ -28,6 +28,15 @@ class Workers {
   void for_chunks(std::size_t count, std::size_t chunk_size,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) const;
 
+  /// Calls fill(row) for the rows 0 to count - 1, in chunks of rows.
+  template <class Fill>
+  void for_rows(int count, const Fill& fill) const {
+    constexpr std::size_t kRowsPerChunk = 16;
+    for_chunks(static_cast<std::size_t>(count), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) fill(row);
+    });
+  }
+
   /// Maps each chunk to a value, in any order, and returns the values in chunk order.
   template <class Value, class Map>
   [[nodiscard]] std::vector<Value> map_chunks(std::size_t count, std::size_t chunk_size,

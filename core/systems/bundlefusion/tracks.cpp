@@ -1,36 +1,10 @@
 #include "core/systems/bundlefusion/tracks.hpp"
 
-#include <algorithm>
-#include <numeric>
+#include "core/base/disjoint_sets.hpp"
 
 namespace fusebench::systems::bundlefusion {
 
 namespace {
-
-/// Sets of keypoints, each named after its least member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-
-  std::size_t root_of(std::size_t member) {
-    while (parent_[member] != member) {
-      parent_[member] = parent_[parent_[member]];
-      member = parent_[member];
-    }
-    return member;
-  }
-
-  void join(std::size_t a, std::size_t b) {
-    const std::size_t root_a = root_of(a);
-    const std::size_t root_b = root_of(b);
-    parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 struct PointSum {
   Vector3d sum = Vector3d::Zero();
@@ -43,7 +17,7 @@ Keypoints merge_tracks(std::span<const Keypoints* const> keypoints, std::span<co
                        const Poses& T_first_camera, const PinholeCamera& camera) {
   std::vector<std::size_t> begin{0};  // of each frame, in a numbering of all keypoints
   for (const Keypoints* const of_frame : keypoints) begin.push_back(begin.back() + of_frame->size());
-  DisjointSets tracks(begin.back());
+  DisjointSets tracks(begin.back());  // of keypoints
   for (const FramePair& pair : pairs) {
     for (const KeypointMatch& match : pair.rigid.matches)
       tracks.join(begin[pair.a] + match.a, begin[pair.b] + match.b);

@@ -20,20 +20,16 @@ void interpolate_row(const Image<float>& corners, int v, float fx, float fy, std
 RayField::RayField(const calibration::CalibratedCamera& camera, const Workers& workers)
     : camera_(camera.pinhole) {
   if (camera.distortion.is_zero()) return;
-  constexpr std::size_t kRows = 16;
   corners_x_ = {camera_.width_px + 1, camera_.height_px + 1};
   corners_y_ = corners_x_;
-  workers.for_chunks(static_cast<std::size_t>(corners_x_.height), kRows,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-                         for (int x = 0; x < corners_x_.width; ++x) {
-                           const Vector2d distorted = camera_.back_project(x - 0.5, y - 0.5, 1.0).head<2>();
-                           const Vector2d ideal = camera.distortion.undistort(distorted);
-                           corners_x_(x, y) = static_cast<float>(ideal.x());
-                           corners_y_(x, y) = static_cast<float>(ideal.y());
-                         }
-                       }
-                     });
+  workers.for_rows(corners_x_.height, [&](int y) {
+    for (int x = 0; x < corners_x_.width; ++x) {
+      const Vector2d distorted = camera_.back_project(x - 0.5, y - 0.5, 1.0).head<2>();
+      const Vector2d ideal = camera.distortion.undistort(distorted);
+      corners_x_(x, y) = static_cast<float>(ideal.x());
+      corners_y_(x, y) = static_cast<float>(ideal.y());
+    }
+  });
 }
 
 void RayField::row(int v, const Vector2d& offset_px, std::span<float> x, std::span<float> y) const {

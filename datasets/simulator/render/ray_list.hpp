@@ -91,10 +91,9 @@ class RayList {
   std::array<std::vector<float>, 6> values_;  // origin, direction
 };
 
-/// Rays through a row of pixels.
-[[nodiscard]] inline RayList rays_of_row(const rays::RayField& field, int row, const Vector2d& offset_px,
-                                         const SE3& T_world_camera) {
-  const CameraRow camera(field, row, offset_px);
+/// Rays through the middles of a row of pixels.
+[[nodiscard]] inline RayList rays_of_row(const rays::RayField& field, int row, const SE3& T_world_camera) {
+  const CameraRow camera(field, row, Vector2d::Zero());
   const CameraPose pose(T_world_camera);
   RayList list(camera.x.size());
   for (std::size_t begin = 0; begin < list.size(); begin += simd::kLanes)

@@ -15,17 +15,6 @@ using simd::kLanes;
 
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 8;
-
-/// fill(row) for all rows.
-template <class Fill>
-void for_rows(const Workers& workers, int height, const Fill& fill) {
-  workers.for_chunks(static_cast<std::size_t>(height), kRowsPerChunk,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t row = begin; row < end; ++row) fill(static_cast<int>(row));
-                     });
-}
-
 void check_arguments(const PinholeCamera& camera, const RowPoses& poses) {
   check(camera.width_px > 0 && camera.height_px > 0, "a rendered camera has a size");
   check(poses.T_world_camera.size() == 1 ||
@@ -50,7 +39,7 @@ void Renderer::render_light(const PinholeCamera& camera, const RowPoses& poses, 
   check_arguments(camera, poses);
   const rays::RayField rays(camera);
   light = Image<Eigen::Vector3f>(camera.width_px, camera.height_px, Eigen::Vector3f::Zero());
-  for_rows(workers, camera.height_px, [&](int row) {
+  workers.for_rows(camera.height_px, [&](int row) {
     std::vector<Eigen::Array4f> pixels(static_cast<std::size_t>(camera.width_px), Eigen::Array4f::Zero());
     const RowSample sample{.row = row, .T_world_camera = poses.of_row(row), .offset_px = offset_px};
     add_light_of_row(rays, {&sample, 1}, pixels);
@@ -67,9 +56,8 @@ VisibleTriangles Renderer::visible_triangles(const rays::RayField& rays, RowPose
   visible.poses = std::move(poses);
   visible.triangle = Image<std::int32_t>(camera.width_px, camera.height_px);
   visible.inverse_depth_per_m = Image<float>(camera.width_px, camera.height_px);
-  for_rows(workers, camera.height_px, [&](int row) {
-    const std::vector<PacketHits> hits =
-        scene_->trace(rays_of_row(rays, row, Vector2d::Zero(), visible.poses.of_row(row)));
+  workers.for_rows(camera.height_px, [&](int row) {
+    const std::vector<PacketHits> hits = scene_->trace(rays_of_row(rays, row, visible.poses.of_row(row)));
     for (int u = 0; u < camera.width_px; ++u) {
       const PacketHits& packet = hits[static_cast<std::size_t>(u) / kLanes];
       const std::size_t lane = static_cast<std::size_t>(u) % kLanes;
@@ -87,9 +75,8 @@ void Renderer::render_surfaces(const PinholeCamera& camera, const RowPoses& pose
   const rays::RayField rays(camera);
   surfaces = Image<Surface>(camera.width_px, camera.height_px);
   const Float8 footprint = simd::all_lanes(1.0F / static_cast<float>(camera.fx_px));
-  for_rows(workers, camera.height_px, [&](int row) {
-    const std::vector<PacketHits> hits =
-        scene_->trace(rays_of_row(rays, row, Vector2d::Zero(), poses.of_row(row)));
+  workers.for_rows(camera.height_px, [&](int row) {
+    const std::vector<PacketHits> hits = scene_->trace(rays_of_row(rays, row, poses.of_row(row)));
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const std::size_t begin = i * kLanes;
       const PacketHits& packet = hits[i];

@@ -25,9 +25,6 @@ struct Foreground {
   SE3 T_object_camera;
 };
 
-/// How long a screen shows a page.
-inline constexpr double kPage_s = 0.8;
-
 /// One sample of the pixels of a row.
 struct RowSample {
   int row = 0;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/simulator/render/renderer.hpp"
-
 namespace fusebench::simulator::render {
 
 namespace {
@@ -78,7 +76,7 @@ Eigen::Array4f SurfaceShading::color_of(const PacketHits& hits, std::size_t lane
 
 std::int32_t SurfaceShading::page_at(double time_s) const {
   if (screens_.pages <= 1) return 0;
-  const auto period = static_cast<std::uint64_t>(time_s / kPage_s);
+  const auto period = static_cast<std::uint64_t>(time_s / scene::kPage_s);
   return static_cast<std::int32_t>(period % static_cast<std::uint64_t>(screens_.pages));
 }
 

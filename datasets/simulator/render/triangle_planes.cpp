@@ -1,44 +1,25 @@
 #include "datasets/simulator/render/triangle_planes.hpp"
 
 #include <Eigen/Geometry>
-#include <numeric>
+#include <map>
+#include <utility>
+
+#include "core/base/disjoint_sets.hpp"
 
 namespace fusebench::simulator::render {
 
 namespace {
 
-/// Disjoint sets of vertices (Tarjan 1975, with path halving).
-class VertexSets {
- public:
-  explicit VertexSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  std::uint32_t find(std::uint32_t vertex) {
-    while (parent_[vertex] != vertex) {
-      parent_[vertex] = parent_[parent_[vertex]];
-      vertex = parent_[vertex];
-    }
-    return vertex;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// By triangle: a number that triangles share if vertices connect them.
 std::vector<std::int32_t> connected_triangles(const Mesh& mesh) {
-  VertexSets sets(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {
     sets.join(t[0], t[1]);
     sets.join(t[0], t[2]);
   }
   std::vector<std::int32_t> faces;
   faces.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) faces.push_back(static_cast<std::int32_t>(sets.find(t[0])));
+  for (const auto& t : mesh.triangles) faces.push_back(static_cast<std::int32_t>(sets.root_of(t[0])));
   return faces;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/base/types.hpp"
@@ -68,7 +70,6 @@ class TrianglePlanes {
   /// textures: by triangle, may be empty.
   TrianglePlanes(const Mesh& mesh, const std::vector<std::int32_t>& textures);
 
-  [[nodiscard]] std::size_t size() const { return planes_.size(); }
   [[nodiscard]] const std::int32_t* faces() const { return faces_.data(); }  ///< by triangle
   [[nodiscard]] const Eigen::Vector3f& normal(std::size_t triangle) const {  ///< unit; 0 without an area
     return planes_[triangle].normal;

@@ -24,6 +24,9 @@ struct Screens {
   int pages = 1;
 };
 
+/// How long a screen shows a page.
+inline constexpr double kPage_s = 0.8;
+
 /// Triangles with materials in the scene's own world: metres, z up. Surfaces are matt unless they have gloss:
 /// their radiance does not depend on the direction, so a point keeps its brightness while the camera moves
 /// (the sensor changes it, the scene does not).

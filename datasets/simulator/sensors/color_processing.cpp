@@ -10,15 +10,6 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-constexpr std::size_t kRowsPerChunk = 16;
-
-template <class Fill>
-void fill_rows(const Workers& workers, int rows, const Fill& fill) {
-  workers.for_chunks(static_cast<std::size_t>(rows), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) fill(row);
-  });
-}
-
 /// The filter before a pixel: 0 red, 1 green, 2 blue. Rows are GRGR... and BGBG..., as in the Kinect.
 int filter_at(int u, int v) {
   if ((u + v) % 2 == 0) return 1;
@@ -33,7 +24,7 @@ Image<Pixel> with_border(const Image<Pixel>& image, const Workers& workers) {
     return std::clamp(x < 0 ? -x : x >= size ? 2 * size - 2 - x : x, 0, size - 1);
   };
   Image<Pixel> result(image.width + 2, image.height + 2);
-  fill_rows(workers, result.height, [&](int v) {
+  workers.for_rows(result.height, [&](int v) {
     const int from = mirrored(v - 1, image.height);
     std::copy_n(&image(0, from), image.width, &result(1, v));
     result(0, v) = image(mirrored(-1, image.width), from);
@@ -51,7 +42,7 @@ Image<float> read_out(const Image<Eigen::Vector3f>& light, const ColorProcessing
   std::array<float, 3> shot2{};
   for (std::size_t c = 0; c < 3; ++c)
     shot2[c] = static_cast<float>(processing.shot_noise[c] * processing.shot_noise[c] * gain);
-  fill_rows(workers, raw.height, [&](int v) {
+  workers.for_rows(raw.height, [&](int v) {
     for (int u = 0; u < raw.width; ++u) {
       const int c = filter_at(u, v);
       const float value = std::max(0.0F, light(u, v)[c]);
@@ -85,7 +76,7 @@ Image<Eigen::Array4f> encoded(const Image<float>& raw, double contrast, const Wo
   const auto share = static_cast<float>(contrast);
   const Image<float> framed = with_border(raw, workers);
   Image<Eigen::Array4f> grey(raw.width, raw.height, Eigen::Array4f::Zero());
-  fill_rows(workers, raw.height, [&](int v) {
+  workers.for_rows(raw.height, [&](int v) {
     for (int u = 0; u < raw.width; ++u) {
       const std::array<float, 3> color = interpolated(framed, u, v);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -105,7 +96,7 @@ ColorImage processed_color(const Image<Eigen::Vector3f>& light, const ColorProce
   const Image<Eigen::Array4f> grey = with_border(encoded(raw, processing.contrast, workers), workers);
   ColorImage image(light.width, light.height);
   const auto share = static_cast<float>(processing.smoothing);
-  fill_rows(workers, image.height, [&](int v) {
+  workers.for_rows(image.height, [&](int v) {
     for (int u = 0; u < image.width; ++u) {
       Eigen::Array4f sum = Eigen::Array4f::Zero();
       for (int y = v; y <= v + 2; ++y) sum += grey(u, y) + grey(u + 1, y) + grey(u + 2, y);

@@ -9,8 +9,6 @@ namespace fusebench::simulator::sensors {
 
 namespace {
 
-constexpr std::size_t kMapRowsPerChunk = 16;
-
 /// Index of the pixel of the ideal image that a pixel of the distorted one shows, -1: none.
 std::int32_t ideal_pixel(const calibration::CalibratedCamera& camera, int u, int v) {
   const PinholeCamera& p = camera.pinhole;
@@ -27,11 +25,8 @@ std::int32_t ideal_pixel(const calibration::CalibratedCamera& camera, int u, int
 
 DepthDistortion::DepthDistortion(const calibration::CalibratedCamera& camera, const Workers& workers)
     : source_(camera.pinhole.width_px, camera.pinhole.height_px) {
-  const auto rows = static_cast<std::size_t>(source_.height);
-  workers.for_chunks(rows, kMapRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < source_.width; ++u) source_(u, v) = ideal_pixel(camera, u, v);
-    }
+  workers.for_rows(source_.height, [&](int v) {
+    for (int u = 0; u < source_.width; ++u) source_(u, v) = ideal_pixel(camera, u, v);
   });
 }
 

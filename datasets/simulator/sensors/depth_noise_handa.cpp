@@ -36,7 +36,6 @@ constexpr double kKinectSteps_cm = 35130;
 constexpr double kStepNoise = 1.0 / 6.0;
 constexpr float kMinCosine = 0.1736F;  // 80 degrees
 
-constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kShiftNoise = 1;
 constexpr std::uint64_t kStepNoiseKey = 2;
 constexpr std::uint64_t kDots = 0xD075;  // the pattern is the same in all images
@@ -55,19 +54,12 @@ struct Lengths {
   int cells_around;  ///< that a window can reach
 };
 
-template <class Fill>
-void for_rows(const Workers& workers, int rows, const Fill& fill) {
-  workers.for_chunks(static_cast<std::size_t>(rows), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) fill(row);
-  });
-}
-
 /// Steps 1 and 2. A pixel that looks past an open edge or at too oblique a surface has disparity 0.
 DepthImage quantised_disparity(const Image<render::Renderer::Surface>& surfaces, float focal_baseline,
                                float shift_px, std::uint64_t key, const Workers& workers) {
   DepthImage disparity_px(surfaces.width, surfaces.height);
   const random::NormalTable& normal = random::NormalTable::instance();
-  for_rows(workers, surfaces.height, [&](int v) {
+  workers.for_rows(surfaces.height, [&](int v) {
     for (int u = 0; u < surfaces.width; ++u) {
       const std::array<float, 3> shift = normal.triple(random::mix_key(key, surfaces.index(u, v)));
       const float x = std::clamp(static_cast<float>(u) + shift_px * shift[0], 0.0F,
@@ -119,7 +111,7 @@ struct RowSums {
 
   RowSums(const DepthImage& of, int distance, const Workers& workers)
       : disparity_px(of.width, of.height), measured(of.width, of.height) {
-    for_rows(workers, of.height, [&](int v) {
+    workers.for_rows(of.height, [&](int v) {
       for (int shift = -distance; shift <= distance; ++shift) {
         for (int u = std::max(0, -shift); u < std::min(of.width, of.width - shift); ++u) {
           disparity_px(u, v) += of(u + shift, v);
@@ -210,7 +202,7 @@ DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfac
   const Image<Dot> dots = dot_pattern(surfaces.width, surfaces.height, lengths.cell);
   const RowSums sums(disparity_px, lengths.half_window, workers);
   DepthImage dots_px(dots.width, dots.height);
-  for_rows(workers, dots_px.height, [&](int row) {
+  workers.for_rows(dots_px.height, [&](int row) {
     for (int column = 0; column < dots_px.width; ++column) {
       dots_px(column, row) = measured_at(disparity_px, sums, lengths, dots, dots(column, row));
     }
@@ -219,7 +211,7 @@ DepthImage structured_light_depth(const Image<render::Renderer::Surface>& surfac
   const random::NormalTable& normal = random::NormalTable::instance();
   const std::uint64_t step_key = random::mix_key(key, kStepNoiseKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
-  for_rows(workers, depth_m.height, [&](int v) {
+  workers.for_rows(depth_m.height, [&](int v) {
     for (int u = 0; u < depth_m.width; ++u) {
       const float disparity = filled_px(u, v);
       if (disparity <= 0) continue;

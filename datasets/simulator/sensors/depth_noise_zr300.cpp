@@ -46,17 +46,8 @@ constexpr float kJump_px = 1.5F;
 constexpr float kOcclusion_px = 1;
 constexpr float kMinCosine = 0.1736F;  // 80 degrees
 
-constexpr std::size_t kRowsPerChunk = 16;
 constexpr std::uint64_t kFieldKey = 3;
 constexpr std::uint64_t kFadeKey = 4;
-
-/// fill(row) for all rows.
-template <class Fill>
-void for_rows(const Workers& workers, int rows, const Fill& fill) {
-  workers.for_chunks(static_cast<std::size_t>(rows), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); ++row) fill(row);
-  });
-}
 
 /// Occlusion in the right image: 1 where a nearer surface hides the point of a pixel of the left image row,
 /// or the point is outside the right image. native_px: of the sensor, for one of the image.
@@ -85,7 +76,7 @@ template <class Best>
 void reduce_windows(const DepthImage& of, int half_window, bool along_rows, const Best& best,
                     const Workers& workers, DepthImage& result) {
   result = of;
-  for_rows(workers, of.height, [&](int v) {
+  workers.for_rows(of.height, [&](int v) {
     float* out = &result(0, v);
     for (int shift = -half_window; shift <= half_window; ++shift) {
       const int row = along_rows ? v : v + shift;
@@ -129,7 +120,7 @@ DepthImage stereo_depth(const StereoSensor& sensor, const Image<render::Renderer
   const random::SmoothNoise noise(random::mix_key(key, kFieldKey), native.in_image(kNoiseSpacing_px));
   const std::uint64_t fade_key = random::mix_key(key, kFadeKey);
   DepthImage depth_m(surfaces.width, surfaces.height);
-  for_rows(workers, surfaces.height, [&](int v) {
+  workers.for_rows(surfaces.height, [&](int v) {
     const auto width = static_cast<std::size_t>(surfaces.width);
     const std::vector<std::uint8_t> occluded =
         occluded_in_right(std::span(&disparity_px(0, v), width), native_px);

@@ -13,8 +13,7 @@ namespace fusebench::simulator::sensors {
 [[nodiscard]] std::vector<Vector2d> sample_offsets_px(int samples);
 
 /// For an image that moves by so many pixels during the exposure: a sample for each two pixels, 8 to 64.
-/// (Fewer than 8 alias: an image at rest is off by 1.1 grey levels with 8, root mean square, by 1.6 with
-/// 4, 4.2 with one.)
+/// Fewer than 8 alias, which raises the intensity error of tracked patches.
 [[nodiscard]] int samples_of_motion(double motion_px);
 
 }  // namespace fusebench::simulator::sensors

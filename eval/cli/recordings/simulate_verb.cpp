@@ -153,9 +153,8 @@ void add_sensor_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--exposure", options.request.exposure_s,
                   "Exposure time, which blurs motion; default 0.008, with --realistic automatic")
       ->type_name("S");
-  verb.add_option(
-          "--blur-samples", options.request.blur_samples,
-          "Renderings that an exposure averages; 0: one for each 2 px that the image moves, 8 to 64, 8 to 64")
+  verb.add_option("--blur-samples", options.request.blur_samples,
+                  "Renderings that an exposure averages; 0: one for each 2 px that the image moves, 8 to 64")
       ->type_name("N")
       ->capture_default_str();
   verb.add_option("--rolling-shutter", options.request.rolling_shutter_s,
