@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,10 @@ struct SensorRig {
   SE3 T_imu_camera;
   ImuNoise imu_noise;
   bool imu_axes_are_exact = false;  ///< their scale and rotation: of an IMU that was made from a trajectory
+  /// Pose of the first frame's camera in the world of a run; absent: the identity, exactly.
+  std::optional<SE3> T_world_first_camera = {};
+
+  [[nodiscard]] SE3 first_camera() const { return T_world_first_camera.value_or(SE3{}); }
 };
 
 struct StampedPose {

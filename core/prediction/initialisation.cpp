@@ -8,6 +8,7 @@
 
 #include "core/config/groups/prediction_config.hpp"
 #include "core/config/groups/terms_config.hpp"
+#include "core/filter/moved_state.hpp"
 #include "core/prediction/smoothed_sample.hpp"
 #include "core/prediction/timing_prior.hpp"
 
@@ -125,6 +126,7 @@ Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples, 
       inertial ? initialise_with_imu(samples, first_frame_ns, rig, initialisation)
                : initialise_without_imu(initialisation);
   if (!initial) return initial;
+  if (rig.T_world_first_camera) initial = filter::moved(*initial, *rig.T_world_first_camera);
   for (const TimingPrior& prior : timing_priors(rig.timing, terms, initialisation, self_calibration))
     set_variance(*initial, prior.at, 1, prior.sigma_s);
   if (inertial && !rig.imu_axes_are_exact) set_imu_priors(*initial, self_calibration);

@@ -54,14 +54,19 @@ void rank(std::vector<BestRow>& rows) {
     return key(a.configuration) < key(b.configuration);
   });
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!rows[i].configuration.mean) continue;
-    const bool tied = i > 0 && rows[i - 1].configuration.mean == rows[i].configuration.mean &&
-                      rows[i].configuration.complete() && rows[i - 1].configuration.complete();
-    rows[i].rank = tied ? *rows[i - 1].rank : i + 1;
+    const ConfigurationSummary& own = rows[i].configuration;
+    if (!own.mean) continue;
+    // One before is better if its whole range is, which without replicates is its mean.
+    const auto is_better = [&](const BestRow& before) {
+      const ConfigurationSummary& other = before.configuration;
+      return !own.complete() || !other.complete() || other.spread->most < own.spread->least;
+    };
+    rows[i].rank = 1 + static_cast<std::size_t>(std::count_if(
+                           rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(i), is_better));
   }
 }
 
-std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric& metric,
+std::vector<std::string> notes_of(std::span<const RunRow> rows, const registry::RunMetric& metric,
                                   const std::set<std::string>& without_number) {
   std::vector<std::string> notes;
   if (const std::size_t damaged = unreadable_count(rows); damaged > 0)
@@ -80,7 +85,9 @@ std::vector<std::string> notes_of(std::span<const RunRow> rows, const RunMetric&
         fmt::format("No run has {} of {}: left out.", metric.key, fmt::join(without_number, ", ")));
   }
   notes.push_back(fmt::format(
-      "{}: mean over a group's recordings of the mean over their ok runs; less is better. "
+      "{}: mean over a group's recordings of the median over their ok runs; less is better. Of replicates "
+      "[B, C] is "
+      "the range of that mean; configurations whose ranges overlap share a rank. "
       "Configurations that lost, failed or did not run some of them come after those that did all; "
       "their means are of fewer recordings and do not compare.",
       metric.key));
@@ -107,7 +114,8 @@ std::string incomplete_note(const ConfigurationSummary& configuration) {
 }
 
 Result<BestTable> best_configurations(std::span<const RunRow> rows, const BestRequest& request) {
-  check(request.metric != nullptr && request.metric->less_is_better, "a metric that ranks");
+  check(request.metric != nullptr && request.metric->better == registry::Better::smaller,
+        "a metric that ranks");
   BestTable table{request.metric, request.group, edited_options(rows), {}, {}};
   if (auto allowed = check_group(request.group, table.options); !allowed)
     return tl::unexpected(allowed.error());

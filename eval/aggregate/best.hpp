@@ -15,13 +15,14 @@
 namespace fusebench::aggregate {
 
 struct BestRequest {
-  const RunMetric* metric = nullptr;  ///< of find_run_metric()
-  std::string group = "recording";    ///< "recording", "variant", "none" or the key of an edited option
-  std::size_t most = 10;              ///< configurations that a group shows; 0: all
+  const registry::RunMetric* metric = nullptr;  ///< of find_ranking_metric()
+  std::string group = "recording";  ///< "recording", "variant", "none" or the key of an edited option
+  std::size_t most = 10;            ///< configurations that a group shows; 0: all
 };
 
 struct BestRow {
-  std::optional<std::size_t> rank;  ///< from 1, the same for equal means; absent without a mean
+  std::optional<std::size_t> rank;  ///< 1 + configurations that are better by more than the spread over
+                                    ///< replicates; absent without a mean
   ConfigurationSummary configuration;
 };
 
@@ -35,7 +36,7 @@ struct BestGroup {
 };
 
 struct BestTable {
-  const RunMetric* metric = nullptr;
+  const registry::RunMetric* metric = nullptr;
   std::string group;
   std::vector<std::string> options;  ///< keys that any of the configurations edits
   std::vector<BestGroup> groups;

@@ -21,6 +21,14 @@ std::string option_cell(const RunOptions& options, const std::string& key) {
   return {};
 }
 
+/// The mean with its range over replicates.
+std::string mean_cell(const registry::RunMetric& metric, const ConfigurationSummary& configuration) {
+  if (!configuration.mean) return "-";
+  registry::MedianRange range = *configuration.spread;
+  range.median = *configuration.mean;
+  return registry::shown_text(metric, std::optional(range));
+}
+
 std::string markdown(const BestTable& table, std::size_t width) {
   text::TableCells header = {table.group == "none" ? "group" : table.group, "data", "variant", "imu"};
   header.insert(header.end(), table.options.begin(), table.options.end());
@@ -34,8 +42,7 @@ std::string markdown(const BestTable& table, std::size_t width) {
       for (const std::string& key : table.options)
         cells.push_back(option_cell(row.configuration.options, key));
       cells.push_back(row.rank ? fmt::format("{}", *row.rank) : "-");
-      cells.push_back(
-          text::number_cell(row.configuration.mean, table.metric->shown_factor, table.metric->decimals));
+      cells.push_back(mean_cell(*table.metric, row.configuration));
       cells.push_back(fmt::format("{}/{}", row.configuration.n_ok, row.configuration.n_total));
       cells.push_back(incomplete_note(row.configuration));
       lines.push_back(std::move(cells));
@@ -55,7 +62,7 @@ std::string markdown(const BestTable& table, std::size_t width) {
 std::string csv(const BestTable& table) {
   std::string text = "group,data,rank,variant,imu";
   for (const std::string& key : table.options) text += fmt::format(",{}", text::csv_cell(key));
-  text += ",metric,unit,mean,n_ok,n_total,recordings,note\n";
+  text += ",metric,unit,mean,least,most,n_ok,n_total,recordings,note\n";
   for (const BestGroup& group : table.groups) {
     for (const BestRow& row : group.rows) {
       const ConfigurationSummary& configuration = row.configuration;
@@ -65,7 +72,10 @@ std::string csv(const BestTable& table) {
       for (const std::string& key : table.options)
         text += fmt::format(",{}", text::csv_cell(option_cell(configuration.options, key)));
       text += fmt::format(",{},{},{},{},{},{},{}\n", table.metric->key, table.metric->unit,
-                          configuration.mean ? fmt::format("{}", *configuration.mean) : "",
+                          configuration.mean
+                              ? fmt::format("{},{},{}", *configuration.mean, configuration.spread->least,
+                                            configuration.spread->most)
+                              : ",,",
                           configuration.n_ok, configuration.n_total, group.recordings.size(),
                           text::csv_cell(incomplete_note(configuration)));
     }
@@ -81,6 +91,9 @@ Json json_of(const BestRow& row) {
           {"imu", row.configuration.imu},
           {"options", std::move(options)},
           {"mean", row.configuration.mean ? Json(*row.configuration.mean) : Json(nullptr)},
+          {"spread", row.configuration.spread
+                         ? Json{row.configuration.spread->least, row.configuration.spread->most}
+                         : Json(nullptr)},
           {"n_ok", row.configuration.n_ok},
           {"n_total", row.configuration.n_total},
           {"complete", row.configuration.complete()},

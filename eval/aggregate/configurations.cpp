@@ -28,10 +28,32 @@ struct ConfigurationKey {
 struct RecordingTally {
   std::size_t runs = 0;
   std::size_t ok = 0;
-  std::vector<double> values;  ///< of ok runs
+  std::map<std::size_t, std::vector<double>> values;  ///< of ok runs, by replicate
+
+  [[nodiscard]] std::vector<double> all_values() const {
+    std::vector<double> all;
+    for (const auto& [replicate, of_replicate] : values)
+      all.insert(all.end(), of_replicate.begin(), of_replicate.end());
+    return all;
+  }
 };
 
 using Tallies = std::map<std::string, RecordingTally>;  // by part of a recording
+
+/// The range, over the replicates that all recordings have, of the mean over recordings.
+registry::MedianRange spread_of(double mean, const std::vector<const RecordingTally*>& tallies) {
+  std::vector<double> means;
+  for (const auto& [replicate, ignored] : tallies.front()->values) {
+    std::vector<double> values;
+    for (const RecordingTally* tally : tallies) {
+      const auto found = tally->values.find(replicate);
+      if (found != tally->values.end()) values.push_back(registry::median_range(found->second)->median);
+    }
+    if (values.size() == tallies.size()) means.push_back(ordered_mean(std::move(values)));
+  }
+  if (means.size() < 2) return {mean, mean, mean};
+  return *registry::median_range(std::move(means));
+}
 
 ConfigurationSummary summary_of(const ConfigurationKey& key, const Tallies& tallies,
                                 const std::vector<std::string>& recordings) {
@@ -39,7 +61,8 @@ ConfigurationSummary summary_of(const ConfigurationKey& key, const Tallies& tall
   summary.variant = key.variant;
   summary.options = key.options;
   summary.imu = key.imu;
-  std::vector<double> means;
+  std::vector<double> medians;
+  std::vector<const RecordingTally*> measured;
   for (const std::string& recording : recordings) {
     const auto found = tallies.find(recording);
     if (found == tallies.end()) {
@@ -48,12 +71,17 @@ ConfigurationSummary summary_of(const ConfigurationKey& key, const Tallies& tall
     }
     const RecordingTally& tally = found->second;
     summary.n_total += tally.runs;
-    summary.n_ok += tally.values.size();
+    const std::vector<double> values = tally.all_values();
+    summary.n_ok += values.size();
     if (tally.ok < tally.runs) summary.failed.push_back(recording);
-    if (tally.values.size() < tally.ok) summary.without_number.push_back(recording);
-    if (!tally.values.empty()) means.push_back(ordered_mean(tally.values));
+    if (values.size() < tally.ok) summary.without_number.push_back(recording);
+    if (values.empty()) continue;
+    medians.push_back(registry::median_range(values)->median);
+    measured.push_back(&tally);
   }
-  if (!means.empty()) summary.mean = ordered_mean(std::move(means));
+  if (medians.empty()) return summary;
+  summary.mean = ordered_mean(std::move(medians));
+  summary.spread = spread_of(*summary.mean, measured);
   return summary;
 }
 
@@ -66,7 +94,7 @@ double ordered_mean(std::vector<double> values) {
 }
 
 ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> runs,
-                                                const RunMetric& metric) {
+                                                const registry::RunMetric& metric) {
   struct Recording {
     bool any_ok = false;
     bool any_value = false;
@@ -85,9 +113,10 @@ ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> r
     if (run->status != record::RunStatus::ok) continue;
     recording.any_ok = true;
     ++tally.ok;
-    if (!(run->*metric.value)) continue;
+    const std::optional<double> value = run->numbers[metric];
+    if (!value) continue;
     recording.any_value = true;
-    tally.values.push_back(*(run->*metric.value));
+    tally.values[run->replicate].push_back(*value);
   }
   ConfigurationSummaries summaries;
   for (const auto& [name, recording] : recordings) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eval/aggregate/run_rows.hpp"
+#include "eval/registry/replicated_numbers.hpp"
 
 namespace fusebench::aggregate {
 
@@ -16,8 +17,10 @@ struct ConfigurationSummary {
   std::string variant;
   RunOptions options;
   std::string imu;  ///< of RunRow
-  /// Mean over recordings of the mean over their ok runs; absent without any.
+  /// Mean over recordings of the median over their ok runs; absent without any.
   std::optional<double> mean;
+  /// Of that mean from replicate to replicate; the mean alone where a recording has no replicates.
+  std::optional<registry::MedianRange> spread = {};
   std::size_t n_ok = 0;                     ///< runs that are ok and have the number
   std::size_t n_total = 0;                  ///< runs on the measured recordings
   std::vector<std::string> failed;          ///< recordings on which a run failed or was lost
@@ -41,7 +44,7 @@ struct ConfigurationSummaries {
 
 /// Runs whose configuration is not known are left out. Does not depend on the order of the runs.
 [[nodiscard]] ConfigurationSummaries summarise_configurations(std::span<const RunRow* const> runs,
-                                                              const RunMetric& metric);
+                                                              const registry::RunMetric& metric);
 
 enum class KindsBy { data, data_and_imu };
 /// What kind of data each recording is of, as one word: means never mix recorded with simulated data, an

@@ -26,17 +26,18 @@ struct SweptRun {
   std::optional<double> ratio;
 };
 
-std::optional<double> value_of(const RunRow& row, const RunMetric& metric) {
-  return row.status == record::RunStatus::ok ? row.*metric.value : std::nullopt;
+std::optional<double> value_of(const RunRow& row, const registry::RunMetric& metric) {
+  return row.status == record::RunStatus::ok ? row.numbers[metric] : std::nullopt;
 }
 
-EffectMean mean_for(std::span<const RunRow> rows, const RunMetric& metric) {
+EffectMean mean_for(std::span<const RunRow> rows, const registry::RunMetric& metric) {
   const bool positive = std::ranges::all_of(
       rows, [&](const RunRow& row) { return !row.attributable() || value_of(row, metric).value_or(1) > 0; });
   return positive ? EffectMean::geometric : EffectMean::arithmetic;
 }
 
-std::vector<SweptRun> swept_runs(std::span<const RunRow> rows, const RunMetric& metric, EffectMean mean) {
+std::vector<SweptRun> swept_runs(std::span<const RunRow> rows, const registry::RunMetric& metric,
+                                 EffectMean mean) {
   using RunKey = std::tuple<std::string, std::string_view, std::string_view>;
   const auto key_of_run = [](const RunRow& row) { return RunKey(row.recorded_part(), row.variant, row.imu); };
   std::map<RunKey, std::vector<double>> values;
@@ -135,7 +136,7 @@ std::string_view to_string(EffectMean mean) {
   return mean == EffectMean::geometric ? "geometric" : "arithmetic";
 }
 
-SweepEffects sweep_effects(std::span<const RunRow> rows, const RunMetric& metric) {
+SweepEffects sweep_effects(std::span<const RunRow> rows, const registry::RunMetric& metric) {
   SweepEffects effects{&metric, mean_for(rows, metric), {}, {}};
   const std::vector<SweptRun> runs = swept_runs(rows, metric, effects.mean);
   for (const std::string& option : edited_options(rows)) {

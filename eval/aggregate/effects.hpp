@@ -52,7 +52,7 @@ struct OptionInteraction {
 };
 
 struct SweepEffects {
-  const RunMetric* metric = nullptr;
+  const registry::RunMetric* metric = nullptr;
   EffectMean mean = EffectMean::geometric;
   std::vector<OptionEffect> options;            ///< those that have two values or more, by key
   std::vector<OptionInteraction> interactions;  ///< of each pair of them
@@ -62,6 +62,6 @@ struct SweepEffects {
 /// same recording and variant, so that recordings of different difficulty compare. A ratio is free of the
 /// other options only if each value saw the same values of those: with runs that are lost, read it beside
 /// their share. Does not depend on the order of the runs.
-[[nodiscard]] SweepEffects sweep_effects(std::span<const RunRow> rows, const RunMetric& metric);
+[[nodiscard]] SweepEffects sweep_effects(std::span<const RunRow> rows, const registry::RunMetric& metric);
 
 }  // namespace fusebench::aggregate

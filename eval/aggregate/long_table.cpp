@@ -43,14 +43,10 @@ std::size_t for_numbers(const RunRow& row, bool without_timing, const Add& add) 
     ++numbers;
     add(metric, unit, value);
   };
-  if (row.total > 0) {
-    given("frames", "frames", static_cast<double>(row.total));
-    given("frames_tracked", "frames", static_cast<double>(row.tracked));
-    given("frames_lost", "frames", static_cast<double>(row.lost));
-  }
-  for (const RunMetric& metric : run_metrics()) {
-    if (metric.timing && without_timing) continue;
-    if (const auto& value = row.*metric.value) given(metric.key, metric.unit, *value);
+  if (row.total == 0) return 0;  // it did not begin
+  for (const registry::RunMetric& metric : registry::run_metrics()) {
+    if (metric.kind == registry::MetricKind::cost && without_timing) continue;
+    if (const auto value = row.numbers[metric]) given(metric.key, metric.unit, *value);
   }
   return numbers;
 }
@@ -59,7 +55,7 @@ void add_csv(const RunRow& row, const std::vector<std::string>& options, bool wi
              std::string& text) {
   std::string prefix;
   for (const std::string& cell : identity_of(row)) prefix += text::csv_cell(cell) + ",";
-  prefix += fmt::format("{},{},{},", row.first_frame, last_frame_of(row), row.repetition);
+  prefix += fmt::format("{},{},{},{},", row.first_frame, last_frame_of(row), row.repetition, row.replicate);
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
     prefix += (value == kUnsetOption ? std::string() : text::csv_cell(std::string(value))) + ",";
@@ -81,8 +77,9 @@ void add_json_lines(const RunRow& row, const std::vector<std::string>& options, 
   for (std::size_t i = 0; i < kIdentity.size(); ++i)
     prefix += fmt::format("\"{}\":{},", kIdentity[i], json_string(identity[i]));
   const std::string last_frame = last_frame_of(row);
-  prefix += fmt::format("\"first_frame\":{},\"last_frame\":{},\"repetition\":{},", row.first_frame,
-                        last_frame.empty() ? "null" : last_frame, row.repetition);
+  prefix +=
+      fmt::format("\"first_frame\":{},\"last_frame\":{},\"repetition\":{},\"replicate\":{},", row.first_frame,
+                  last_frame.empty() ? "null" : last_frame, row.repetition, row.replicate);
   for (const std::string& key : options) {
     const std::string_view value = option_of(row, key);
     prefix += json_string(key) + ":" + (value == kUnsetOption ? "null" : json_string(value)) + ",";
@@ -111,7 +108,7 @@ std::string long_table(std::span<const RunRow> rows, const LongTableRequest& req
     return text;
   }
   for (const char* column : kIdentity) text += fmt::format("{},", column);
-  text += "first_frame,last_frame,repetition,";
+  text += "first_frame,last_frame,repetition,replicate,";
   for (const std::string& key : options) text += text::csv_cell(key) + ",";
   text += "metric,unit,value\n";
   for (const RunRow& row : rows) add_csv(row, options, request.without_timing, text);

@@ -21,9 +21,9 @@ struct LongTableRequest {
 };
 
 /// A line for each number of each run: recording, data, imu, truth, variant, run, status, reason, label (of
-/// RunRow), first and last frame, repetition, each option that any of the runs edits, metric, unit, value
-/// (SI). A run without numbers has one line, in which the last three are empty (null). Numbers that depend on
-/// the inputs alone come first. CSV is as RFC 4180 with "\n".
+/// RunRow), first and last frame, repetition, replicate, each option that any of the runs edits, metric,
+/// unit, value (SI). A run without numbers has one line, in which the last three are empty (null). Numbers
+/// that depend on the inputs alone come first. CSV is as RFC 4180 with "\n".
 [[nodiscard]] std::string long_table(std::span<const RunRow> rows, const LongTableRequest& request);
 
 }  // namespace fusebench::aggregate

@@ -14,9 +14,7 @@ namespace fusebench::aggregate {
 
 namespace {
 
-const RunMetric& time_metric() {
-  return *std::ranges::find(run_metrics(), &RunNumbers::cpu_ms_per_frame, &RunMetric::value);
-}
+const registry::RunMetric& time_metric() { return registry::run_metric("cpu_ms_per_frame"); }
 
 /// Points are by time: whoever comes later must have a better value than all before.
 void mark_front(std::vector<ParetoPoint>& points) {
@@ -39,8 +37,8 @@ std::vector<ParetoPoint> ParetoFront::front() const {
   return front;
 }
 
-ParetoFront pareto_front(std::span<const RunRow> rows, const RunMetric& metric) {
-  check(metric.less_is_better, "a metric in which less is better");
+ParetoFront pareto_front(std::span<const RunRow> rows, const registry::RunMetric& metric) {
+  check(metric.better == registry::Better::smaller, "a metric in which less is better");
   std::vector<const RunRow*> runs;
   for (const RunRow& row : rows) runs.push_back(&row);
   ConfigurationSummaries values = summarise_configurations(runs, metric);

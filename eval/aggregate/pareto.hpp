@@ -19,7 +19,7 @@ struct ParetoPoint {
 };
 
 struct ParetoFront {
-  const RunMetric* metric = nullptr;
+  const registry::RunMetric* metric = nullptr;
   std::vector<std::string> recordings;  ///< that every point is a mean over
   std::vector<ParetoPoint> points;      ///< by time, then value; equal ones by variant and options
   /// Configurations that lost, failed or did not run some recordings: their means do not compare.
@@ -32,6 +32,6 @@ struct ParetoFront {
 
 /// The metric must be one in which less is better. The runs should be on data of one kind, as
 /// recording_kinds() says, and of one machine, whose times compare. Does not depend on the order of the runs.
-[[nodiscard]] ParetoFront pareto_front(std::span<const RunRow> rows, const RunMetric& metric);
+[[nodiscard]] ParetoFront pareto_front(std::span<const RunRow> rows, const registry::RunMetric& metric);
 
 }  // namespace fusebench::aggregate

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,23 +35,15 @@ bool count(RunRow& row, const Scalar& value) {
   return true;
 }
 
-template <std::optional<double> RunNumbers::*Member>
-bool number(RunRow& row, const Scalar& value) {
+/// The number of a scalar; nothing of null. False if it is none.
+bool read_number(const Scalar& value, std::optional<double>& number) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) {
-    row.*Member = static_cast<double>(*whole);
+    number = static_cast<double>(*whole);
   } else if (const auto* given = std::get_if<double>(&value)) {
-    if (std::isfinite(*given)) row.*Member = *given;
+    number = *given;
   } else {
     return std::holds_alternative<std::nullptr_t>(value);
   }
-  return true;
-}
-
-/// A time of zero is that of a run that was not timed.
-template <std::optional<double> RunNumbers::*Member>
-bool timing(RunRow& row, const Scalar& value) {
-  if (!number<Member>(row, value)) return false;
-  if (row.*Member && *(row.*Member) <= 0) (row.*Member).reset();
   return true;
 }
 
@@ -68,14 +59,15 @@ bool status(RunRow& row, const Scalar& value) {
   return parsed.has_value();
 }
 
+/// What is kept of a value of the record: a part of the row's identity, a number of the registry, or both.
 struct Field {
   std::string_view path;
-  bool (*set)(RunRow& row, const Scalar& value);
+  bool (*set)(RunRow& row, const Scalar& value) = nullptr;
   bool required = false;
+  const registry::RunMetric* metric = nullptr;
 };
 
-// Those with the same beginning stand together.
-constexpr auto kFields = std::to_array<Field>({
+constexpr auto kIdentityFields = std::to_array<Field>({
     {"schema", schema, true},
     {"status", status, true},
     {"reason", text<&RunRow::reason>, true},
@@ -89,22 +81,33 @@ constexpr auto kFields = std::to_array<Field>({
     {"variant", text<&RunRow::variant>, true},
     {"config_hash", text<&RunRow::config_hash>, true},
     {"repetition", count<&RunRow::repetition>},
-    {"metrics.ate.stats.rmse", number<&RunNumbers::ate_rmse_m>},
-    {"metrics.rpe.frame.translation.stats.rmse", number<&RunNumbers::rpe_frame_m>},
-    {"metrics.rpe.second.translation.stats.rmse", number<&RunNumbers::rpe_second_m>},
-    {"metrics.rpe.second.rotation.stats.rmse", number<&RunNumbers::rpe_second_rad>},
-    {"metrics.aie.aie", number<&RunNumbers::aie_grey>},
-    {"metrics.mesh.accuracy.mean", number<&RunNumbers::mesh_accuracy_m>},
-    {"metrics.mesh.completeness.mean", number<&RunNumbers::mesh_completeness_m>},
-    {"metrics.silent_failures.silent", number<&RunNumbers::silent_failures>},
+    {"replicate", count<&RunRow::replicate>},
     {"frames.total", count<&RunRow::total>, true},
     {"frames.tracked", count<&RunRow::tracked>, true},
     {"frames.lost", count<&RunRow::lost>, true},
-    {"timing.wall_s", timing<&RunNumbers::wall_s>, true},
-    {"timing.cpu_s", timing<&RunNumbers::cpu_s>, true},
-    {"timing.peak_rss_bytes", timing<&RunNumbers::peak_rss_bytes>, true},
-    {"timing.fps", timing<&RunNumbers::fps>, true},
 });
+
+/// All fields by path, so that those with the same beginning stand together. Every record has costs.
+std::vector<Field> all_fields() {
+  std::vector<Field> fields(kIdentityFields.begin(), kIdentityFields.end());
+  for (const registry::RunMetric& metric : registry::run_metrics()) {
+    if (metric.path.empty()) continue;
+    const auto same = std::ranges::find(fields, metric.path, &Field::path);
+    if (same != fields.end()) {
+      same->metric = &metric;
+    } else {
+      fields.push_back({metric.path, nullptr, metric.kind == registry::MetricKind::cost, &metric});
+    }
+  }
+  std::ranges::sort(fields, {}, &Field::path);
+  return fields;
+}
+
+const std::vector<Field>& fields() {
+  static const std::vector<Field> kFields = all_fields();
+  return kFields;
+}
+
 constexpr std::string_view kConfig = "config";
 constexpr std::string_view kFiles = "files";
 constexpr std::string_view kProgram = "program";
@@ -120,8 +123,8 @@ class RecordHandler {
   [[nodiscard]] bool has_program() const { return has_program_; }
   /// The path of a field that must be there and was not; empty if there is none.
   [[nodiscard]] std::string_view missing() const {
-    for (std::size_t i = 0; i < kFields.size(); ++i) {
-      if (kFields[i].required && !seen_[i]) return kFields[i].path;
+    for (std::size_t i = 0; i < fields().size(); ++i) {
+      if (fields()[i].required && !seen_[i]) return fields()[i].path;
     }
     return has_config_seen_ ? std::string_view() : kConfig;
   }
@@ -138,7 +141,8 @@ class RecordHandler {
   bool binary(const std::vector<std::uint8_t>&) { return false; }  // JSON text has none
 
   bool start_object(std::size_t) {
-    levels_.push_back(levels_.empty() ? Level{0, kFields.size(), 0, Kind::fields} : next_);
+    count_element();
+    levels_.push_back(levels_.empty() ? Level{0, fields().size(), 0, Kind::fields} : next_);
     if (levels_.back().kind == Kind::option) option_.clear();
     return true;
   }
@@ -148,8 +152,9 @@ class RecordHandler {
     return kind != Kind::option || finish_option();
   }
   bool start_array(std::size_t) {
-    next_ = {};
-    levels_.push_back(next_);
+    count_element();
+    levels_.push_back(next_.kind == Kind::fields ? next_ : Level{});
+    levels_.back().is_array = true;
     return true;
   }
   bool end_array() {
@@ -207,6 +212,8 @@ class RecordHandler {
     std::size_t last = 0;
     std::size_t prefix = 0;
     Kind kind = Kind::fields;
+    bool is_array = false;
+    std::size_t elements = 0;  ///< of the array so far
   };
   struct Option {
     std::string value;
@@ -218,34 +225,51 @@ class RecordHandler {
   };
 
   static bool is_timing(const Level& level) {
-    return level.first < level.last && kFields[level.first].path.substr(0, level.prefix) == "timing.";
+    return level.first < level.last && fields()[level.first].path.substr(0, level.prefix) == "timing.";
+  }
+
+  /// The place of a value in an array is the key of its fields.
+  void count_element() {
+    if (levels_.empty() || !levels_.back().is_array) return;
+    next_ = narrowed(levels_.back(), fmt::format("{}", levels_.back().elements++));
   }
 
   static Level narrowed(const Level& level, std::string_view key) {
     Level next{level.first, level.first, level.prefix + key.size(), Kind::fields};
     const auto begins = [&](std::size_t i) {
-      const std::string_view rest = kFields[i].path.substr(std::min(level.prefix, kFields[i].path.size()));
+      const std::string_view rest = fields()[i].path.substr(std::min(level.prefix, fields()[i].path.size()));
       return rest.starts_with(key) && (rest.size() == key.size() || rest[key.size()] == '.');
     };
     while (next.first < level.last && !begins(next.first)) ++next.first;
     next.last = next.first;
     while (next.last < level.last && begins(next.last)) ++next.last;
-    if (next.first < next.last && kFields[next.first].path.size() > next.prefix) ++next.prefix;  // the point
+    if (next.first < next.last && fields()[next.first].path.size() > next.prefix) ++next.prefix;  // the point
     return next;
   }
 
   bool scalar(const Scalar& value) {
     if (levels_.empty()) return true;  // the document is one value: fields will be missing
+    count_element();
     if (next_.kind == Kind::option_member) return option_member(value);
     if (next_.kind == Kind::file_member) return true;
     if (next_.kind == Kind::file_bytes) return file_bytes(value);
     if (next_.kind == Kind::files || next_.kind == Kind::file) return wrong(kFiles);
     if (next_.kind != Kind::fields) return wrong(kConfig);
     if (next_.first == next_.last || levels_.back().first == levels_.back().last) return true;
-    const Field& field = kFields[next_.first];
+    const Field& field = fields()[next_.first];
     if (field.path.size() != next_.prefix) return true;  // null in place of a block: it holds no numbers
     seen_[next_.first] = true;
-    return field.set(row_, value) || wrong(field.path);
+    if (field.set != nullptr && !field.set(row_, value)) return wrong(field.path);
+    return field.metric == nullptr || keep_number(*field.metric, value) || wrong(field.path);
+  }
+
+  /// A cost of zero is that of a run that was not timed.
+  bool keep_number(const registry::RunMetric& metric, const Scalar& value) {
+    std::optional<double> number;
+    if (!read_number(value, number)) return false;
+    if (metric.kind == registry::MetricKind::cost && number && *number <= 0) number.reset();
+    row_.numbers.set(metric, number);
+    return true;
   }
 
   bool option_member(const Scalar& value) {
@@ -299,7 +323,7 @@ class RecordHandler {
   bool has_config_ = false;
   bool has_config_seen_ = false;
   bool has_program_ = false;  // from outside
-  std::array<bool, kFields.size()> seen_{};
+  std::vector<bool> seen_ = std::vector<bool>(fields().size());
   std::string problem_;
 };
 
@@ -312,7 +336,7 @@ std::string reason_of(const std::string& problem) {
 }  // namespace
 
 RunRow damaged_row(RunRow row, std::string reason) {
-  static_cast<RunNumbers&>(row) = {};
+  row.numbers = {};
   row.status = record::RunStatus::failed;
   row.readable = false;
   row.reason = std::move(reason);
@@ -321,6 +345,7 @@ RunRow damaged_row(RunRow row, std::string reason) {
   row.fingerprint = row.imu = "";
   row.total = row.tracked = row.lost = row.first_frame = row.frames = 0;
   row.repetition = 1;
+  row.replicate = 0;
   return row;
 }
 
@@ -341,8 +366,8 @@ RunRow scan_record(std::string_view json, std::vector<record::RecordedFile>* fil
   if (row.fingerprint.empty()) row.imu.clear();  // what stands there is the default
   // A run that was never started says nothing of its options; one of another program has none.
   row.options_known = handler.has_config() || row.status != record::RunStatus::failed;
-  const std::size_t processed = row.tracked + row.lost;
-  if (row.cpu_s && processed > 0) row.cpu_ms_per_frame = 1e3 * *row.cpu_s / static_cast<double>(processed);
+  row.numbers.set(registry::run_metric("runs_not_ok"), row.status == record::RunStatus::ok ? 0 : 1);
+  row.numbers.derive();
   return row;
 }
 

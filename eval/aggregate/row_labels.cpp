@@ -16,6 +16,7 @@ run_files::RunTraits traits_of(const RunRow& row) {
   traits.first_frame = row.first_frame;
   traits.frames = row.frames;
   traits.repetition = static_cast<int>(row.repetition);
+  traits.replicate = static_cast<int>(row.replicate);
   traits.imu = row.imu;
   traits.folder = row.run;
   return traits;

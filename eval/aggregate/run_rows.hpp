@@ -11,8 +11,8 @@
 
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
-#include "eval/aggregate/run_metrics.hpp"
 #include "eval/record/record.hpp"
+#include "eval/registry/run_numbers.hpp"
 #include "eval/run_files/option_order.hpp"
 
 namespace fusebench::aggregate {
@@ -24,7 +24,8 @@ using run_files::RunOptions;
 inline constexpr std::string_view kUnsetOption = "unset";
 
 /// One run, without what no aggregation asks for.
-struct RunRow : RunNumbers {
+struct RunRow {
+  registry::RunNumbers numbers;
   std::string recording;
   std::string data = "recorded";  ///< "recorded", "simulated", kUnknownWord
   std::string imu = "none";       ///< that it used: "none", "recorded", "synthetic IMU"; empty: not known
@@ -40,6 +41,7 @@ struct RunRow : RunNumbers {
   std::size_t first_frame = 0;  ///< of its window of the recording
   std::size_t frames = 0;       ///< of its window; 0: not known
   std::size_t repetition = 1;
+  std::size_t replicate = 0;
   std::size_t total = 0;
   std::size_t tracked = 0;
   std::size_t lost = 0;

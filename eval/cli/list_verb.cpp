@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/all_systems.hpp"
 #include "core/base/nearest_name.hpp"
@@ -21,6 +22,7 @@
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/verbs.hpp"
 #include "eval/engine/run_housekeeping.hpp"
+#include "eval/registry/run_metric.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/run_labels.hpp"
 #include "eval/suites/recording_names.hpp"
@@ -74,45 +76,30 @@ Listing list_systems() {
   return listing;
 }
 
+/// Nothing where there is no text.
+Cell word_cell(std::string_view text) { return text.empty() ? Cell() : Cell(text); }
+
+/// The tables in which a metric is a column: "runs systems".
+std::string tables_of(const registry::RunMetric& metric) {
+  using enum registry::Column;
+  std::string text;
+  for (const auto& [column, name] :
+       {std::pair(runs, "runs"), std::pair(systems, "systems"), std::pair(study, "study")}) {
+    if (metric.is_column_of(column)) text += fmt::format("{}{}", text.empty() ? "" : " ", name);
+  }
+  return text;
+}
+
 Listing list_metrics() {
-  return {
-      {"metric", "unit", "definition"},
-      {{"aie", "grey levels",
-        "average intensity error: mean over frames of the mean over visible pixels of tracked patches, "
-        "before any "
-        "rejection"},
-       {"aie common", "grey levels", "the same on the pixels that all compared runs share"},
-       {"aie of poses", "grey levels",
-        "intensity error of the poses alone, by probe patches that depend on no estimate "
-        "(evaluation.pose_intensity)"},
-       {"ate", "m", "positions after SE3 alignment, stamps associated one to one within 0.02 s (TUM)"},
-       {"ate fitted", "m",
-        "the same after the offset of the body that the truth is of was fitted as well, where the motion "
-        "tells it"},
-       {"rpe frame", "m, rad", "relative pose over one frame (TUM, fixed delta)"},
-       {"rpe second", "m, rad", "relative pose over one second (TUM, fixed delta)"},
-       {"silent", "frames",
-        "silent failures: frames with a pose whose motion over the second before is off by more than 5 cm or "
-        "3 degrees (evaluation.silent_*)"},
-       {"mesh accuracy", "m",
-        "distances from samples of the reconstruction to the true surface, aligned by the poses; tables show "
-        "the mean"},
-       {"mesh completeness", "m",
-        "distances from observed samples of the true surface to the reconstruction, aligned by the poses"},
-       {"mesh chamfer", "m", "mean of the means of accuracy and completeness"},
-       {"mesh precision, recall, fscore", "",
-        "shares of the reconstruction's and of the truth's samples that are closer than 5, 10, 20 and 50 mm, "
-        "and their harmonic mean"},
-       {"mesh ghost share", "",
-        "samples of the reconstruction more than 3 cm from the truth in space that a true camera sees to be "
-        "free"},
-       {"nees", "",
-        "error^T covariance^-1 error / dimensions of a part of the state, against true states: 1 is "
-        "consistent, more overconfident, less too cautious; of orientation, position, pose, velocity and the "
-        "biases of gyroscope and accelerometer"},
-       {"chi2 photometric, geometric", "",
-        "mean squared whitened residual of accepted patches, 1 where the noise model is right"},
-       {"coverage", "", "tracked frames / frames of the recording"}}};
+  Listing listing{{"metric", "word", "unit", "better", "tables", "record", "definition"}, {}};
+  for (const registry::RunMetric& metric : registry::run_metrics()) {
+    const std::string_view better =
+        metric.better == registry::Better::neither ? "neither" : registry::to_string(metric.better);
+    listing.rows.push_back({std::string(metric.key), word_cell(metric.word), std::string(metric.unit),
+                            std::string(better), word_cell(tables_of(metric)), word_cell(metric.path),
+                            std::string(metric.definition)});
+  }
+  return listing;
 }
 
 Listing list_options() {

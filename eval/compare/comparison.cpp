@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "core/config/toml_document.hpp"
+#include "eval/record/record.hpp"
+#include "eval/registry/run_numbers.hpp"
 #include "eval/run_files/record_files.hpp"
 #include "eval/run_files/run_labels.hpp"
 
@@ -51,8 +53,8 @@ std::string change_text(double base, double fresh, std::string_view unit) {
   return text + ")";
 }
 
-GateResult judge(const GatedMetric& metric, const MetricTolerance& tolerance, double base, double fresh,
-                 const Gates& gates) {
+GateResult judge(const registry::RunMetric& metric, const MetricTolerance& tolerance, double base,
+                 double fresh, const Gates& gates) {
   const std::string key(metric.key);
   GateResult result{key, GateVerdict::unchanged, false, {}, std::string(metric.unit), base, fresh};
   const double allowed = std::max(tolerance.absolute, tolerance.relative * std::abs(base));
@@ -60,8 +62,8 @@ GateResult judge(const GatedMetric& metric, const MetricTolerance& tolerance, do
   if (std::abs(change) <= allowed) return result;
   const std::string text = fmt::format("{}, allowed is {}", change_text(base, fresh, metric.unit),
                                        quantity_text(allowed, metric.unit));
-  const bool better = (tolerance.better == BetterValue::smaller && change < 0) ||
-                      (tolerance.better == BetterValue::larger && change > 0);
+  const bool better = (tolerance.better == registry::Better::smaller && change < 0) ||
+                      (tolerance.better == registry::Better::larger && change > 0);
   GateResult judged = better ? improvement(key, text, gates) : regression(key, text);
   result.verdict = judged.verdict;
   result.fails = judged.fails;
@@ -73,9 +75,9 @@ void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateR
   const record::RunRecord& base = pair.base.front().record;
   const record::RunRecord& fresh = pair.fresh.front().record;
   for (std::size_t i = 0; i < gated_metrics().size(); ++i) {
-    const GatedMetric& metric = gated_metrics()[i];
-    const auto before = metric.of(base);
-    const auto after = metric.of(fresh);
+    const registry::RunMetric& metric = *gated_metrics()[i];
+    const auto before = registry::number_of(base, metric);
+    const auto after = registry::number_of(fresh, metric);
     if (before.value && after.value) {
       const auto tolerance = gates.tolerance(i, pair.key.recording, pair.key.variant);
       results.push_back(judge(metric, tolerance, *before.value, *after.value, gates));
@@ -151,14 +153,16 @@ std::string difference(const run_files::FoundRun& first, const run_files::FoundR
     return fmt::format("status {} and {}", status_text(first.record), status_text(other.record));
   if (first.record.recording.fingerprint != other.record.recording.fingerprint)
     return "the recording's content";
-  for (const GatedMetric& metric : gated_metrics()) {
-    const auto a = metric.of(first.record).value;
-    const auto b = metric.of(other.record).value;
+  const registry::RunNumbers a_numbers = registry::numbers_of(first.record);
+  const registry::RunNumbers b_numbers = registry::numbers_of(other.record);
+  for (const registry::RunMetric* metric : gated_metrics()) {
+    const auto a = a_numbers[*metric];
+    const auto b = b_numbers[*metric];
     if (a == b) continue;
     const auto text = [&](const std::optional<double>& v) {
-      return v ? fmt::format("{} {}", *v, metric.unit) : "none";
+      return v ? fmt::format("{} {}", *v, metric->unit) : "none";
     };
-    return fmt::format("{} is {} and {}", metric.key, text(a), text(b));
+    return fmt::format("{} is {} and {}", metric->key, text(a), text(b));
   }
   if (!has_trajectory(first.folder) || !has_trajectory(other.folder)) return {};
   const auto divergence = checked_divergence(first, other);
@@ -167,7 +171,7 @@ std::string difference(const run_files::FoundRun& first, const run_files::FoundR
 }
 
 void add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results) {
-  for (const auto& [side, runs] : {std::pair("BASE", &pair.base), std::pair("NEW", &pair.fresh)}) {
+  for (const auto& [side, runs] : {std::pair("BASE", &pair.base.runs), std::pair("NEW", &pair.fresh.runs)}) {
     for (std::size_t i = 1; i < runs->size(); ++i) {
       const std::string differs = difference(runs->front(), (*runs)[i]);
       if (differs.empty()) continue;
@@ -177,7 +181,7 @@ void add_repetition_gates(const RunPair& pair, std::vector<GateResult>& results)
       break;
     }
   }
-  const bool repeated = pair.base.size() > 1 || pair.fresh.size() > 1;
+  const bool repeated = pair.base.runs.size() > 1 || pair.fresh.runs.size() > 1;
   const bool differ =
       std::ranges::any_of(results, [](const GateResult& r) { return r.gate == "repetitions"; });
   if (repeated && !differ) results.push_back({"repetitions", GateVerdict::unchanged, false, {}});
@@ -234,6 +238,18 @@ bool simulated_anew(const record::RunRecord& base, const record::RunRecord& fres
   return before.data == "simulated" && after.data == "simulated" && before.frames == after.frames;
 }
 
+void add_timed_gates(ComparedRun& run, const Gates& gates,
+                     const std::vector<run_files::FoundRun>& confirming) {
+  const auto is_ok = [](const RunSide& side) { return side.front().record.status == record::RunStatus::ok; };
+  if (!is_ok(run.runs.base) || !is_ok(run.runs.fresh)) return;
+  std::vector<run_files::FoundRun> again;
+  for (const run_files::FoundRun& found : confirming) {
+    if (key_of(found.record) == run.runs.key) again.push_back(found);
+  }
+  for (GateResult& result : timed_gates(run.runs, gates, again, !confirming.empty()))
+    run.gates.push_back(std::move(result));
+}
+
 ComparedRun compare_pair(RunPair pair, const Gates& gates,
                          const std::vector<run_files::FoundRun>& confirming) {
   ComparedRun run{std::move(pair), {}, std::nullopt, false};
@@ -257,21 +273,24 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates,
     run.gates.push_back(regression("data", other_data_text(base, fresh)));
     return run;
   }
-  run.gates.push_back(status_gate(base, fresh, gates));
+  const bool by_replicates = has_replicates_to_gate(run.runs, gates);
+  if (!by_replicates) run.gates.push_back(status_gate(base, fresh, gates));
   add_config_gates(base, fresh, gates, run.gates);
   add_repetition_gates(run.runs, run.gates);
+  if (by_replicates) {
+    for (GateResult& result : replicate_gates(run.runs, gates)) run.gates.push_back(std::move(result));
+    if (base.replicate == fresh.replicate && base.status == fresh.status &&
+        base.status != record::RunStatus::failed)
+      add_divergence(run, gates);
+    add_timed_gates(run, gates, confirming);
+    return run;
+  }
   // Where one side failed the other's numbers would only repeat it.
   if (base.status != record::RunStatus::failed && fresh.status != record::RunStatus::failed) {
     if (fresh.status == base.status) add_metric_gates(run.runs, gates, run.gates);
     add_divergence(run, gates);
   }
-  if (base.status != record::RunStatus::ok || fresh.status != record::RunStatus::ok) return run;
-  std::vector<run_files::FoundRun> again;
-  for (const run_files::FoundRun& found : confirming) {
-    if (key_of(found.record) == run.runs.key) again.push_back(found);
-  }
-  for (GateResult& result : timed_gates(run.runs, gates, again, !confirming.empty()))
-    run.gates.push_back(std::move(result));
+  add_timed_gates(run, gates, confirming);
   return run;
 }
 

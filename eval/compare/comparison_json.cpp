@@ -13,9 +13,9 @@ constexpr int kComparisonSchema = 1;
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-Json json_of(const std::vector<run_files::FoundRun>& runs) {
+Json json_of(const RunSide& side) {
   Json json = Json::array();
-  for (const run_files::FoundRun& run : runs) json.push_back(run.folder.string());
+  for (const run_files::FoundRun* run : side.all()) json.push_back(run->folder.string());
   return json;
 }
 

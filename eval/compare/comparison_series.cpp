@@ -8,6 +8,7 @@
 #include "core/base/printable.hpp"
 #include "eval/compare/comparison_formats.hpp"
 #include "eval/metrics/statistics.hpp"
+#include "eval/registry/run_numbers.hpp"
 #include "eval/text/json_text.hpp"
 
 namespace fusebench::compare {
@@ -18,10 +19,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMillisecondsPerSecond = 1000;
 
-std::vector<double> numbers_of(const std::vector<run_files::FoundRun>& runs, const TimedQuantity& quantity) {
+std::vector<double> numbers_of(const std::vector<run_files::FoundRun>& runs,
+                               const registry::RunMetric& cost) {
   std::vector<double> numbers;
   for (const run_files::FoundRun& run : runs) {
-    if (const auto value = quantity.of(run.record)) numbers.push_back(*value);
+    if (const auto value = registry::number_of(run.record, cost).value) numbers.push_back(*value);
   }
   return numbers;
 }
@@ -40,13 +42,13 @@ Middle middle_of(const std::vector<double>& numbers) {
 }
 
 Json gbench_entry(const ComparedRun& run, std::size_t family, std::size_t repetition) {
-  const record::RunRecord& record = run.runs.fresh[repetition].record;
+  const record::RunRecord& record = run.runs.fresh.runs[repetition].record;
   Json entry = {{"name", run.runs.label},
                 {"family_index", family},
                 {"per_family_instance_index", 0},
                 {"run_name", run.runs.label},
                 {"run_type", "iteration"},
-                {"repetitions", run.runs.fresh.size()},
+                {"repetitions", run.runs.fresh.runs.size()},
                 {"repetition_index", repetition},
                 {"threads", record.provenance.threads},
                 {"iterations", 1},
@@ -54,8 +56,9 @@ Json gbench_entry(const ComparedRun& run, std::size_t family, std::size_t repeti
                 {"cpu_time", record.timing.cpu_s * kMillisecondsPerSecond},
                 {"time_unit", "ms"},
                 {"peak_rss_bytes", record.timing.peak_rss_bytes}};
-  for (const GatedMetric& metric : gated_metrics()) {
-    if (const auto value = metric.of(record).value) entry[std::string(metric.key)] = *value;
+  const registry::RunNumbers numbers = registry::numbers_of(record);
+  for (const registry::RunMetric* metric : gated_metrics()) {
+    if (const auto value = numbers[*metric]) entry[std::string(metric->key)] = *value;
   }
   return entry;
 }
@@ -99,11 +102,13 @@ void add_series(const ComparedRun& run, Json& series) {
   const record::RunRecord& record = run.runs.fresh.front().record;
   const auto name = [&](std::string_view key) { return fmt::format("{}: {}", run.runs.label, key); };
   const std::string git = fmt::format("git {}", record.provenance.git);
-  for (const GatedMetric& metric : gated_metrics()) {
-    const auto value = metric.of(record).value;
+  const registry::RunNumbers numbers = registry::numbers_of(record);
+  for (const registry::RunMetric* metric : gated_metrics()) {
+    const auto value = numbers[*metric];
     // A chart whose alert is "larger" has no place for what is better when larger.
-    if (metric.better != BetterValue::smaller || !value) continue;
-    series.push_back({{"name", name(metric.key)}, {"unit", metric.unit}, {"value", *value}, {"extra", git}});
+    if (metric->better != registry::Better::smaller || !value) continue;
+    series.push_back(
+        {{"name", name(metric->key)}, {"unit", metric->unit}, {"value", *value}, {"extra", git}});
   }
   if (record.frames.total > 0) {
     series.push_back({{"name", name("frames_not_tracked")},
@@ -112,14 +117,13 @@ void add_series(const ComparedRun& run, Json& series) {
                       {"extra", git}});
   }
   if (record.status != record::RunStatus::ok) return;
-  for (const TimedQuantity& quantity : timed_quantities()) {
-    const std::vector<double> numbers = numbers_of(run.runs.fresh, quantity);
-    if (numbers.empty()) continue;
-    Json entry = {{"name", name(quantity.key)},
-                  {"unit", quantity.unit},
-                  {"value", metrics::statistics(numbers).median}};
-    if (const Middle middle = middle_of(numbers); !middle.range.empty()) entry["range"] = middle.range;
-    entry["extra"] = fmt::format("{}, median of {} on {}", git, numbers.size(), record.provenance.cpu);
+  for (const registry::RunMetric* cost : gated_costs()) {
+    const std::vector<double> costs = numbers_of(run.runs.fresh.runs, *cost);
+    if (costs.empty()) continue;
+    Json entry = {
+        {"name", name(cost->key)}, {"unit", cost->unit}, {"value", metrics::statistics(costs).median}};
+    if (const Middle middle = middle_of(costs); !middle.range.empty()) entry["range"] = middle.range;
+    entry["extra"] = fmt::format("{}, median of {} on {}", git, costs.size(), record.provenance.cpu);
     series.push_back(std::move(entry));
   }
 }
@@ -146,7 +150,7 @@ std::string comparison_gbench(const RunComparison& comparison) {
       context["compiler"] = first.provenance.compiler;
       context["flags"] = first.provenance.flags;
     }
-    for (std::size_t i = 0; i < run.runs.fresh.size(); ++i)
+    for (std::size_t i = 0; i < run.runs.fresh.runs.size(); ++i)
       benchmarks.push_back(gbench_entry(run, families, i));
     ++families;
   }
@@ -172,18 +176,18 @@ std::string comparison_openmetrics(const RunComparison& comparison) {
       family("failed_gates", "gates of the comparison that failed", comparison, [](const ComparedRun& run) {
         return std::optional(fmt::format("{}", std::ranges::count_if(run.gates, &GateResult::fails)));
       });
-  for (const GatedMetric& metric : gated_metrics()) {
-    text += family(metric.key, help_of(metric.title, metric.unit), comparison, [&](const ComparedRun& run) {
-      const auto value = metric.of(run.runs.fresh.front().record).value;
-      return value ? std::optional(fmt::format("{:.9g}", *value)) : std::nullopt;
-    });
+  for (const registry::RunMetric* metric : gated_metrics()) {
+    text += family(metric->key, help_of(metric->definition, metric->unit), comparison,
+                   [&](const ComparedRun& run) {
+                     const auto value = registry::number_of(run.runs.fresh.front().record, *metric).value;
+                     return value ? std::optional(fmt::format("{:.9g}", *value)) : std::nullopt;
+                   });
   }
-  for (const TimedQuantity& quantity : timed_quantities()) {
-    text +=
-        family(quantity.key, help_of(quantity.title, quantity.unit), comparison, [&](const ComparedRun& run) {
-          const std::vector<double> numbers = numbers_of(run.runs.fresh, quantity);
-          return numbers.empty() ? std::nullopt : std::optional(middle_of(numbers).value);
-        });
+  for (const registry::RunMetric* cost : gated_costs()) {
+    text += family(cost->key, help_of(cost->definition, cost->unit), comparison, [&](const ComparedRun& run) {
+      const std::vector<double> numbers = numbers_of(run.runs.fresh.runs, *cost);
+      return numbers.empty() ? std::nullopt : std::optional(middle_of(numbers).value);
+    });
   }
   return text + "# EOF\n";
 }

@@ -15,8 +15,6 @@ namespace fusebench::compare {
 
 namespace {
 
-constexpr double kRelative = 1e-9;
-
 constexpr std::array<std::string_view, 8> kTopKeys = {
     "improvements", "changed_defaults", "changed_simulation", "divergence", "tolerance",
     "metrics",      "timing",           "overrides"};
@@ -40,15 +38,18 @@ bool lists(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
 
+/// Counts are exact unless gates name them.
+bool is_count(const registry::RunMetric& metric) { return metric.kind == registry::MetricKind::count; }
+
 std::vector<std::string_view> metric_keys() {
   std::vector<std::string_view> keys;
-  for (const GatedMetric& metric : gated_metrics()) keys.push_back(metric.key);
+  for (const registry::RunMetric* metric : gated_metrics()) keys.push_back(metric->key);
   return keys;
 }
 
 std::vector<std::string_view> timed_keys() {
   std::vector<std::string_view> keys;
-  for (const TimedQuantity& quantity : timed_quantities()) keys.push_back(quantity.key);
+  for (const registry::RunMetric* cost : gated_costs()) keys.push_back(cost->key);
   return keys;
 }
 
@@ -89,9 +90,10 @@ Result<void> store_fails(const config::TomlEntry& entry, bool& fails) {
   return {};
 }
 
-Result<void> read_better(const config::TomlEntry& entry, BetterValue& better) {
+Result<void> read_better(const config::TomlEntry& entry, registry::Better& better) {
   const auto text = suites::plain_entry<std::string>(entry).value_or("");
-  for (const BetterValue value : {BetterValue::smaller, BetterValue::larger, BetterValue::equal}) {
+  using enum registry::Better;
+  for (const registry::Better value : {smaller, larger, neither}) {
     if (text != to_string(value)) continue;
     better = value;
     return {};
@@ -104,7 +106,7 @@ Result<void> read_tolerance(const config::TomlEntry& entry, const std::string& k
   if (!lists({kToleranceKeys.begin(), kToleranceKeys.end()}, key))
     return suites::unknown_key(entry.place, entry.key, kToleranceKeys, "[tolerance]");
   for (std::size_t i = 0; i < gates.tolerances.size(); ++i) {
-    if (gated_metrics()[i].is_count) continue;
+    if (is_count(*gated_metrics()[i])) continue;
     if (auto stored = store_limit(entry, key, gates.tolerances[i]); !stored) return stored;
   }
   return {};
@@ -232,17 +234,17 @@ bool GateOverride::is_for(std::string_view recording, std::string_view variant) 
 }
 
 Gates::Gates() {
-  for (const GatedMetric& metric : gated_metrics())
-    tolerances.push_back({metric.is_count ? 0 : kRelative, 0, metric.better});
-  for (const TimedQuantity& quantity : timed_quantities()) factors.push_back(quantity.factor);
+  for (const registry::RunMetric* metric : gated_metrics())
+    tolerances.push_back({*metric->tolerance, 0, metric->better});
+  for (const registry::RunMetric* cost : gated_costs()) factors.push_back(1 + *cost->tolerance);
 }
 
 MetricTolerance Gates::tolerance(std::size_t metric, std::string_view recording,
                                  std::string_view variant) const {
-  const GatedMetric& gated = gated_metrics()[metric];
+  const registry::RunMetric& gated = *gated_metrics()[metric];
   MetricTolerance result = tolerances[metric];
   for (const GateOverride& gate : overrides) {
-    const bool meant = gate.metrics.empty() ? !gated.is_count : lists(gate.metrics, gated.key);
+    const bool meant = gate.metrics.empty() ? !is_count(gated) : lists(gate.metrics, gated.key);
     if (!meant || !gate.is_for(recording, variant)) continue;
     result.relative = gate.relative.value_or(result.relative);
     result.absolute = gate.absolute.value_or(result.absolute);
@@ -253,7 +255,7 @@ MetricTolerance Gates::tolerance(std::size_t metric, std::string_view recording,
 double Gates::factor(std::size_t quantity, std::string_view recording, std::string_view variant) const {
   double result = factors[quantity];
   for (const GateOverride& gate : overrides) {
-    const bool meant = gate.metrics.empty() || lists(gate.metrics, timed_quantities()[quantity].key);
+    const bool meant = gate.metrics.empty() || lists(gate.metrics, gated_costs()[quantity]->key);
     if (meant && gate.is_for(recording, variant)) result = gate.factor.value_or(result);
   }
   return result;

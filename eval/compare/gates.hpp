@@ -17,14 +17,14 @@ namespace fusebench::compare {
 struct MetricTolerance {
   double relative = 0;
   double absolute = 0;  ///< in the metric's unit
-  BetterValue better = BetterValue::smaller;
+  registry::Better better = registry::Better::smaller;
 };
 
 /// Other limits for some runs. An empty list means all of them; of metrics: all that are no counts.
 struct GateOverride {
   std::vector<std::string> recordings;  ///< names, or beginnings that end with *
   std::vector<std::string> variants;    ///< the same
-  std::vector<std::string> metrics;     ///< keys of gated_metrics() and timed_quantities()
+  std::vector<std::string> metrics;     ///< keys of gated_metrics() and gated_costs()
   std::optional<double> relative;
   std::optional<double> absolute;
   std::optional<double> factor;
@@ -40,7 +40,7 @@ struct Gates {
   bool changed_simulation_fails = true;  ///< a simulated recording of as many frames that has other bytes
   bool divergence_fails = false;         ///< a trajectory that differs while every number keeps its tolerance
   std::vector<MetricTolerance> tolerances;  ///< of gated_metrics(), in their order
-  std::vector<double> factors;              ///< of timed_quantities(), in their order
+  std::vector<double> factors;              ///< of gated_costs(), in their order
   double alpha = 0.01;                      ///< a slower run fails where the rank test's p is below
   std::size_t min_repetitions = 5;          ///< on both sides, for times and memory to be gated
   std::vector<GateOverride> overrides;      ///< later ones win
@@ -49,7 +49,7 @@ struct Gates {
   /// metric: index into gated_metrics().
   [[nodiscard]] MetricTolerance tolerance(std::size_t metric, std::string_view recording,
                                           std::string_view variant) const;
-  /// quantity: index into timed_quantities().
+  /// quantity: index into gated_costs().
   [[nodiscard]] double factor(std::size_t quantity, std::string_view recording,
                               std::string_view variant) const;
 };

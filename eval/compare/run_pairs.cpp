@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -48,8 +50,8 @@ bool alike(const RunKey& a, const RunKey& b) {
 bool belongs(const RunPair& lone, const RunPair& pair) {
   if (!alike(lone.key, pair.key)) return false;
   const bool is_base = !lone.base.empty();
-  const auto& own = is_base ? lone.base : lone.fresh;
-  const auto& others = is_base ? pair.fresh : pair.base;
+  const auto& own = is_base ? lone.base.runs : lone.fresh.runs;
+  const auto& others = is_base ? pair.fresh.runs : pair.base.runs;
   if (others.empty()) return false;
   if (never_opened(own)) return true;
   const bool other_alone = (is_base ? pair.base : pair.fresh).empty();
@@ -66,8 +68,8 @@ void move_runs(std::vector<run_files::FoundRun>& from, std::vector<run_files::Fo
 
 /// A run whose record says nothing has no options to be known by, but the name of its folder.
 bool has_same_folder(const RunPair& lone, const RunPair& pair) {
-  const auto& own = lone.base.empty() ? lone.fresh : lone.base;
-  const auto& others = lone.base.empty() ? pair.base : pair.fresh;
+  const auto& own = lone.base.empty() ? lone.fresh.runs : lone.base.runs;
+  const auto& others = lone.base.empty() ? pair.base.runs : pair.fresh.runs;
   return lone.key.recording == pair.key.recording && lone.key.variant == pair.key.variant &&
          std::ranges::all_of(own, [&](const run_files::FoundRun& run) {
            if (run.state == run_files::RunState::whole || !run.record.config.empty()) return false;
@@ -95,10 +97,21 @@ void join_lone_runs(std::vector<RunPair>& pairs) {
     RunPair* only = only_pair_of(lone, pairs, has_same_folder);
     if (only == nullptr) only = only_pair_of(lone, pairs, belongs);
     if (only == nullptr) continue;
-    move_runs(lone.base, only->base);
-    move_runs(lone.fresh, only->fresh);
+    move_runs(lone.base.runs, only->base.runs);
+    move_runs(lone.fresh.runs, only->fresh.runs);
   }
   std::erase_if(pairs, [](const RunPair& pair) { return pair.base.empty() && pair.fresh.empty(); });
+}
+
+void set_replicates_apart(RunSide& side) {
+  if (side.empty()) return;
+  const auto replicate_of = [](const run_files::FoundRun& run) { return run.record.replicate; };
+  const int first = std::ranges::min(side.runs, {}, replicate_of).record.replicate;
+  const auto others = std::ranges::stable_partition(
+      side.runs, [&](const run_files::FoundRun& run) { return run.record.replicate == first; });
+  side.replicates.assign(std::make_move_iterator(others.begin()), std::make_move_iterator(others.end()));
+  side.runs.erase(others.begin(), others.end());
+  std::ranges::stable_sort(side.replicates, {}, replicate_of);
 }
 
 std::string short_label(const RunKey& key) {
@@ -118,6 +131,20 @@ void set_labels(std::vector<RunPair>& pairs) {
 }
 
 }  // namespace
+
+std::size_t RunSide::replicate_count() const {
+  std::set<int> different;
+  for (const run_files::FoundRun* run : all()) different.insert(run->record.replicate);
+  return different.size();
+}
+
+std::vector<const run_files::FoundRun*> RunSide::all() const {
+  std::vector<const run_files::FoundRun*> all;
+  for (const auto* part : {&runs, &replicates}) {
+    for (const run_files::FoundRun& run : *part) all.push_back(&run);
+  }
+  return all;
+}
 
 RunKey key_of(const record::RunRecord& record) {
   std::vector<std::string> options;
@@ -140,16 +167,19 @@ std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
       const RunKey key = key_of(run.record);
       RunPair& pair = by_key[order_of(key)];
       pair.key = key;
-      (pair.*side).push_back(run);
+      (pair.*side).runs.push_back(run);
     }
   }
   std::vector<RunPair> pairs;
   for (auto& [order, pair] : by_key) {
-    for (auto* runs : {&pair.base, &pair.fresh})
-      std::ranges::sort(*runs, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
+    for (RunSide* side : {&pair.base, &pair.fresh})
+      std::ranges::sort(side->runs, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
     pairs.push_back(std::move(pair));
   }
   join_lone_runs(pairs);
+  for (RunPair& pair : pairs) {
+    for (RunSide* side : {&pair.base, &pair.fresh}) set_replicates_apart(*side);
+  }
   set_labels(pairs);
   return pairs;
 }

@@ -22,12 +22,24 @@ struct RunKey {
   friend bool operator==(const RunKey&, const RunKey&) = default;
 };
 
-/// The runs of one experiment on both sides; several on a side are repetitions, by folder.
+/// The runs of one experiment on one side.
+struct RunSide {
+  std::vector<run_files::FoundRun> runs;  ///< of the first replicate; several are repetitions, by folder
+  std::vector<run_files::FoundRun> replicates;  ///< all others, by replicate
+
+  [[nodiscard]] bool empty() const { return runs.empty(); }
+  [[nodiscard]] const run_files::FoundRun& front() const { return runs.front(); }
+  /// Runs of different replicates, the first one included.
+  [[nodiscard]] std::size_t replicate_count() const;
+  [[nodiscard]] std::vector<const run_files::FoundRun*> all() const;
+};
+
+/// The runs of one experiment on both sides.
 struct RunPair {
   RunKey key;
   std::string label;  ///< "fr1_rpy/full", with what else tells it from the others
-  std::vector<run_files::FoundRun> base;
-  std::vector<run_files::FoundRun> fresh;  ///< of NEW
+  RunSide base;
+  RunSide fresh;  ///< of NEW
 };
 
 [[nodiscard]] RunKey key_of(const record::RunRecord& record);

@@ -4,34 +4,37 @@
 
 #include <algorithm>
 #include <set>
+#include <vector>
 
 #include "eval/compare/comparison.hpp"
 #include "eval/compare/rank_test.hpp"
 #include "eval/metrics/statistics.hpp"
+#include "eval/registry/run_numbers.hpp"
 
 namespace fusebench::compare {
 
 namespace {
 
-std::vector<double> numbers_of(std::span<const run_files::FoundRun> runs, const TimedQuantity& quantity) {
+std::vector<double> numbers_of(std::span<const run_files::FoundRun* const> runs,
+                               const registry::RunMetric& quantity) {
   std::vector<double> numbers;
-  for (const run_files::FoundRun& run : runs) {
-    if (const auto value = quantity.of(run.record)) numbers.push_back(*value);
+  for (const run_files::FoundRun* run : runs) {
+    if (const auto value = registry::number_of(run->record, quantity).value) numbers.push_back(*value);
   }
   return numbers;
 }
 
 /// What makes times of two groups of runs not comparable; empty if nothing does.
-std::string different_machines(std::span<const run_files::FoundRun> base,
-                               std::span<const run_files::FoundRun> fresh) {
+std::string different_machines(std::span<const run_files::FoundRun* const> base,
+                               std::span<const run_files::FoundRun* const> fresh) {
   std::set<std::string> hosts;
   std::set<std::string> cpus;
   std::set<int> threads;
   for (const auto runs : {base, fresh}) {
-    for (const run_files::FoundRun& run : runs) {
-      hosts.insert(run.record.provenance.host);
-      cpus.insert(run.record.provenance.cpu);
-      threads.insert(run.record.provenance.threads);
+    for (const run_files::FoundRun* run : runs) {
+      hosts.insert(run->record.provenance.host);
+      cpus.insert(run->record.provenance.cpu);
+      threads.insert(run->record.provenance.threads);
     }
   }
   if (cpus.size() > 1) return "other CPU models";
@@ -51,8 +54,9 @@ struct TimedTest {
   [[nodiscard]] double ratio() const { return fresh / base; }
 };
 
-TimedTest test_of(std::span<const run_files::FoundRun> base, std::span<const run_files::FoundRun> fresh,
-                  const TimedQuantity& quantity, const Gates& gates) {
+TimedTest test_of(std::span<const run_files::FoundRun* const> base,
+                  std::span<const run_files::FoundRun* const> fresh, const registry::RunMetric& quantity,
+                  const Gates& gates) {
   const std::vector<double> before = numbers_of(base, quantity);
   const std::vector<double> after = numbers_of(fresh, quantity);
   TimedTest test;
@@ -75,7 +79,7 @@ bool is_slower(const TimedTest& test, double factor, double alpha) {
 }
 
 /// The verdict on what looks slower.
-void judge_slower(const RunPair& pair, const TimedQuantity& quantity, const Gates& gates, double factor,
+void judge_slower(const RunPair& pair, const registry::RunMetric& quantity, const Gates& gates, double factor,
                   std::span<const run_files::FoundRun> confirming, bool confirmation_given,
                   GateResult& result) {
   result.verdict = GateVerdict::suspect;
@@ -88,7 +92,9 @@ void judge_slower(const RunPair& pair, const TimedQuantity& quantity, const Gate
     result.message += "; not confirmed: --confirm has no such run";
     return;
   }
-  const TimedTest again = test_of(pair.base, confirming, quantity, gates);
+  std::vector<const run_files::FoundRun*> rerun;
+  for (const run_files::FoundRun& run : confirming) rerun.push_back(&run);
+  const TimedTest again = test_of(pair.base.all(), rerun, quantity, gates);
   if (!again.gated) {
     result.message += fmt::format("; not confirmed: the rerun is not gated: {}", again.why_not);
   } else if (is_slower(again, factor, gates.alpha)) {
@@ -109,10 +115,12 @@ std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
                                     std::span<const run_files::FoundRun> confirming,
                                     bool confirmation_given) {
   std::vector<GateResult> results;
-  for (std::size_t i = 0; i < timed_quantities().size(); ++i) {
-    const TimedQuantity& quantity = timed_quantities()[i];
-    if (numbers_of(pair.base, quantity).empty() || numbers_of(pair.fresh, quantity).empty()) continue;
-    const TimedTest test = test_of(pair.base, pair.fresh, quantity, gates);
+  const std::vector<const run_files::FoundRun*> base = pair.base.all();
+  const std::vector<const run_files::FoundRun*> fresh = pair.fresh.all();
+  for (std::size_t i = 0; i < gated_costs().size(); ++i) {
+    const registry::RunMetric& quantity = *gated_costs()[i];
+    if (numbers_of(base, quantity).empty() || numbers_of(fresh, quantity).empty()) continue;
+    const TimedTest test = test_of(base, fresh, quantity, gates);
     const double factor = gates.factor(i, pair.key.recording, pair.key.variant);
     GateResult result{std::string(quantity.key),
                       GateVerdict::unchanged,

@@ -55,6 +55,7 @@ Result<suites::Suite> suite_of(const Invocation& invocation) {
   if (!suite) return suite;
   const SuiteOverrides& overrides = invocation.overrides;
   if (overrides.repetitions > 0) suite->repetitions = overrides.repetitions;
+  if (overrides.replicates > 0) suite->replicates = overrides.replicates;
   for (const run::KeptFiles kept : {run::KeptFiles::all, run::KeptFiles::small}) {
     if (overrides.kept == run::to_string(kept)) suite->kept = kept;
   }
@@ -74,6 +75,7 @@ Result<fs::path> keep(const Invocation& invocation) {
                      {"sets", options.sets},
                      {"only", options.only},
                      {"repetitions", invocation.overrides.repetitions},
+                     {"replicates", invocation.overrides.replicates},
                      {"keep", invocation.overrides.kept}};
   const std::string text = text::json_text(json) + "\n";
   io::Fingerprint identity;
@@ -102,11 +104,15 @@ Result<Invocation> read_invocation(const fs::path& file) {
     if (!threads) return tl::unexpected(threads.error());
     const auto repetitions = number_in(json, "repetitions", 0, run::kMostRepetitions, file);
     if (!repetitions) return tl::unexpected(repetitions.error());
+    const auto replicates = json.contains("replicates")
+                                ? number_in(json, "replicates", 0, run::kMostReplicates, file)
+                                : Result<int>(0);
+    if (!replicates) return tl::unexpected(replicates.error());
     invocation.options.threads = *threads;
     invocation.options.profile = json.value("profile", false);  // older ones have none
     invocation.options.sets = json.at("sets").get<std::vector<std::string>>();
     invocation.options.only = json.at("only").get<std::vector<std::string>>();
-    invocation.overrides = {*repetitions, json.at("keep")};
+    invocation.overrides = {*repetitions, *replicates, json.at("keep")};
     invocation.working_folder = json.at("working_folder").get<std::string>();
     return invocation;
   } catch (const Json::exception& error) {

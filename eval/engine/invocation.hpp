@@ -16,6 +16,7 @@ namespace fusebench::engine {
 /// How a suite's file is changed on the command line.
 struct SuiteOverrides {
   int repetitions = 0;  ///< 0: the suite's
+  int replicates = 0;   ///< 0: the suite's
   std::string kept;     ///< empty: the suite's
 };
 

@@ -27,6 +27,7 @@ fs::path not_started_folder(const BatchJob& job) {
     if (job.spec.frames->end) name += fmt::format("-{}", *job.spec.frames->end);
   }
   if (job.spec.repetition > 1) name += fmt::format("-r{}", job.spec.repetition);
+  if (job.spec.replicate > 0) name += fmt::format("-k{}", job.spec.replicate);
   return job.spec.out / job.recording.filename() / job.variant / name;
 }
 
@@ -58,6 +59,7 @@ Result<BatchOutcome> record_not_started(const BatchJob& job, std::string reason)
   record.recording.name = outcome.recording;
   record.variant = outcome.variant;
   record.repetition = job.spec.repetition;
+  record.replicate = job.spec.replicate;
   if (job.simulation) record.recording.data = "simulated";
   if (job.spec.frames) {
     record.recording.first_frame = job.spec.frames->begin;

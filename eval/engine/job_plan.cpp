@@ -192,15 +192,26 @@ Result<void> check_count(const Common& common, const std::vector<suites::Planned
     });
     runs += static_cast<double>(wanted_variants) * many(common.points.size()) + many(common.programs.size());
   }
-  runs *= many(std::max<std::size_t>(1, suite.windows.size())) * static_cast<double>(suite.repetitions);
+  runs *= many(std::max<std::size_t>(1, suite.windows.size())) * static_cast<double>(suite.repetitions) *
+          static_cast<double>(suite.replicates);
   if (runs <= many(suites::kMostRuns)) return {};
   return fail(
       ErrorCode::configuration,
       fmt::format("suite '{}' has {:.0f} runs (allowed: up to {})", suite.name, runs, suites::kMostRuns),
-      "take fewer points, windows, variants or repetitions, or a part of it at a time (--only)");
+      "take fewer points, windows, variants, repetitions or replicates, or a part of it at a time (--only)");
 }
 
-/// In the order of the plan: windows, then repetitions, then the runs.
+bool takes_seed(const external::ExternalProgram& program) {
+  return std::ranges::any_of(program.command, [](const std::string& argument) {
+    return argument.find("{seed}") != std::string::npos;
+  });
+}
+
+/// Whether replicates of a run differ: all systems of this program begin at the pose that they are given; an
+/// external program has to take a seed.
+bool has_replicates(const BatchJob& job) { return !job.spec.program || takes_seed(*job.spec.program); }
+
+/// In the order of the plan: windows, then repetitions, then replicates, then the runs.
 void multiply(const Common& common, const std::vector<BatchJob>& jobs, BatchPlan& plan) {
   const suites::Suite& suite = common.suite;
   std::vector<std::optional<run::FrameWindow>> windows(suite.windows.begin(), suite.windows.end());
@@ -212,11 +223,14 @@ void multiply(const Common& common, const std::vector<BatchJob>& jobs, BatchPlan
   };
   for (const auto& window : windows) {
     for (int repetition = 1; repetition <= most; ++repetition) {
-      for (const BatchJob& job : jobs) {
-        if (repetition > repetitions(job)) continue;
-        plan.jobs.push_back(job);
-        plan.jobs.back().spec.frames = window;
-        plan.jobs.back().spec.repetition = repetition;
+      for (int replicate = 0; replicate < suite.replicates; ++replicate) {
+        for (const BatchJob& job : jobs) {
+          if (repetition > repetitions(job) || (replicate > 0 && !has_replicates(job))) continue;
+          plan.jobs.push_back(job);
+          plan.jobs.back().spec.frames = window;
+          plan.jobs.back().spec.repetition = repetition;
+          plan.jobs.back().spec.replicate = replicate;
+        }
       }
     }
   }
@@ -229,6 +243,7 @@ std::string to_string(const BatchJob& job) {
   if (!job.edits.empty()) text += fmt::format(" {}", suites::to_string(job.edits));
   if (job.spec.frames) text += fmt::format(" frames {}", run::to_string(*job.spec.frames));
   if (job.spec.repetition > 1) text += fmt::format(" repetition {}", job.spec.repetition);
+  if (job.spec.replicate > 0) text += fmt::format(" replicate {}", job.spec.replicate);
   return text;
 }
 
@@ -267,6 +282,13 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
     multiply(common, jobs, plan);
   }
   std::set<std::string> unused;
+  if (suite.replicates > 1) {
+    for (const auto& program : common.programs)
+      if (program->absent.empty() && !takes_seed(*program))
+        plan.warnings.push_back(
+            fmt::format("{}: its command takes no {{seed}}: one run in place of {} replicates", program->name,
+                        suite.replicates));
+  }
   for (const BatchJob& job : plan.jobs) {
     if (job.spec.program) continue;
     if (const auto sentence = run::options_without_effect(job.spec.config))

@@ -38,7 +38,7 @@ struct BatchJob {
   suites::SweepPoint edits = {};                             ///< those of the sweep, or of a reading
 };
 
-/// "fr1_rpy full tsdf.voxel_m=0.02 frames 0:100 repetition 2", as far as it says something.
+/// "fr1_rpy full tsdf.voxel_m=0.02 frames 0:100 repetition 2 replicate 3", as far as it says something.
 [[nodiscard]] std::string to_string(const BatchJob& job);
 
 /// A run that the suite leaves out.
@@ -54,8 +54,8 @@ struct BatchPlan {
   std::vector<std::string> absent = {};  ///< "NAME: why" of each external program that cannot run here
 };
 
-/// By recording (those of the suite, then the simulated ones), window, repetition, variant as they are
-/// listed, and point of the sweep: repetitions of one run are apart, so that a slow minute of the machine
+/// By recording (those of the suite, then the simulated ones), window, repetition, replicate, variant as they
+/// are listed, and point of the sweep: repetitions of one run are apart, so that a slow minute of the machine
 /// does not meet all of them. What --only leaves out need not be there. Reads the definitions of external
 /// programs, and asks each that is wanted for its version. Errors: those of read_external_program();
 /// data_missing (a recording or a trajectory that is not there), configuration (--set, a recording named

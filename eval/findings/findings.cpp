@@ -33,15 +33,15 @@ std::string counted(std::size_t count, const char* thing) {
 }
 
 /// "ATE" of "ATE [cm]", and "cm".
-std::pair<std::string, std::string> name_and_unit(const tables::TableColumn& column) {
-  const std::string heading = column.heading;
+std::pair<std::string, std::string> name_and_unit(const registry::RunMetric& metric) {
+  const std::string heading(metric.heading);
   const std::size_t open = heading.find(" [");
   if (open == std::string::npos) return {heading, ""};
   return {heading.substr(0, open), " " + heading.substr(open + 2, heading.size() - open - 3)};
 }
 
-std::string shown(const tables::TableColumn& column, double value) {
-  return fmt::format("{:.{}f}{}", value * column.shown_factor, column.decimals, name_and_unit(column).second);
+std::string shown(const registry::RunMetric& metric, double value) {
+  return registry::shown_text(metric, value) + name_and_unit(metric).second;
 }
 
 /// What a ratio is worth.
@@ -59,9 +59,29 @@ std::string evidence_of(const Ranking& ranking, const aggregate::MeanRatio& rati
   return text;
 }
 
+/// "1.22 cm [1.10, 1.40]".
+std::string shown_spread(const registry::RunMetric& metric, const registry::MedianRange& spread) {
+  return fmt::format("{} [{}, {}]", shown(metric, spread.median), registry::shown_text(metric, spread.least),
+                     registry::shown_text(metric, spread.most));
+}
+
+/// The best one and those that chance may have put behind it.
+std::string tie_sentence(const Ranking& ranking, const std::string& name, const std::string& where) {
+  std::vector<std::string> tied;
+  for (const RankedConfiguration& configuration : ranking.configurations) {
+    if (configuration.ties_with(ranking.configurations.front()))
+      tied.push_back(
+          fmt::format("{} {}", configuration.label, shown_spread(*ranking.metric, *configuration.spread)));
+  }
+  return fmt::format(
+      "A tie for the smallest {} on {}: {}. Their ranges over replicates overlap, so that chance "
+      "explains the difference.",
+      name, where, list_of(tied, ", "));
+}
+
 std::string best_sentence(const Ranking& ranking) {
   const RankedConfiguration& best = ranking.configurations.front();
-  const std::string name = name_and_unit(ranking.column).first;
+  const std::string name = name_and_unit(*ranking.metric).first;
   std::string where = ranking.recordings == 1
                           ? fmt::format("one {} recording", ranking.data)
                           : fmt::format("{} {} recordings", ranking.recordings, ranking.data);
@@ -71,19 +91,22 @@ std::string best_sentence(const Ranking& ranking) {
                        best.recordings);
   }
   const std::string number =
-      shown(ranking.column, *best.value) +
+      shown(*ranking.metric, *best.value) +
       (ranking.recordings > 1 ? " (geometric mean; means in the table of results are arithmetic)" : "");
   if (ranking.configurations.size() == 1) {
     return fmt::format("{} has an {} of {} on {}. There is nothing to compare it with.", best.label, name,
                        number, where);
   }
   const RankedConfiguration& second = ranking.configurations[1];
+  const auto is_tied = [&](const RankedConfiguration& other) { return other.ties_with(best); };
+  if (std::ranges::any_of(ranking.configurations.begin() + 1, ranking.configurations.end(), is_tied))
+    return tie_sentence(ranking, name, where);
   if (second.value && second.to_best) {
     if (*second.value == *best.value)
       return fmt::format("{} and {} have the same {} on {}: {}.", best.label, second.label, name, where,
                          number);
     return fmt::format("{} has the smallest {} on {}: {}. Next is {} with {}, {:.2f} times as much{}",
-                       best.label, name, where, number, second.label, shown(ranking.column, *second.value),
+                       best.label, name, where, number, second.label, shown(*ranking.metric, *second.value),
                        second.to_best->ratio, evidence_of(ranking, *second.to_best));
   }
   std::string text = fmt::format("{} alone has an {} on all of {}: {}.", best.label, name, where, number);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -26,6 +27,7 @@ using Sums = std::map<Recording, std::pair<double, std::size_t>>;
 struct Candidate {
   RankedConfiguration configuration;
   Sums sums;
+  std::map<Recording, std::vector<double>> replicates;  ///< natural logarithms, in their order
 };
 
 double mean_of(const Sums& sums, const Recording& recording) {
@@ -78,10 +80,10 @@ std::string data_of(const tables::TableRow& row, const tables::ResultTable& tabl
   return known == table.rows.end() ? row.data : known->data;
 }
 
-std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> runs,
+std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> rows,
                                        const tables::ResultTable& table) {
-  const std::vector<std::string> windows = run_files::window_labels(runs);
-  const std::set<std::string> sharing = recordings_with_shared_frames(runs);
+  const std::vector<std::string> windows = run_files::window_labels(rows);
+  const std::set<std::string> sharing = recordings_with_shared_frames(rows);
   std::vector<Comparable> comparables;
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     comparables.push_back({data_of(table.rows[i], table),
@@ -89,18 +91,18 @@ std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> run
   return comparables;
 }
 
-std::optional<tables::TableColumn> column_for(const tables::ResultTable& table,
-                                              const std::vector<std::size_t>& members) {
-  for (const auto value : {&tables::TableValues::ate_rmse_m, &tables::TableValues::aie_common_grey,
-                           &tables::TableValues::aie_grey}) {
-    const auto column = std::ranges::find(tables::table_columns(), value, &tables::TableColumn::value);
+/// What the runs are ranked by; null if none of them has such a number.
+const registry::RunMetric* metric_for(const tables::ResultTable& table,
+                                      const std::vector<std::size_t>& members) {
+  for (const std::string_view key : {"ate_rmse_m", "aie_common_grey", "aie_grey"}) {
+    const registry::RunMetric& metric = registry::run_metric(key);
     const bool any = std::ranges::any_of(members, [&](std::size_t member) {
       const tables::TableRow& row = table.rows[member];
-      return row.status == record::RunStatus::ok && row.*value && *(row.*value) > 0;
+      return row.status == record::RunStatus::ok && row.numbers[metric].value_or(0) > 0;
     });
-    if (any) return *column;
+    if (any) return &metric;
   }
-  return std::nullopt;
+  return nullptr;
 }
 
 /// members: rows of the table. labels: of configurations, one a row.
@@ -108,28 +110,34 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
                                      const tables::ResultTable& table,
                                      const std::vector<std::size_t>& members,
                                      const std::vector<std::string>& labels,
-                                     const tables::TableColumn& column) {
+                                     const registry::RunMetric& metric) {
   std::vector<Candidate> candidates;
   for (const std::size_t i : members) {
     const tables::TableRow& row = table.rows[i];
+    const run_files::FoundRun& first = runs[row.members.front()];
     const std::string& label = labels[i];
     auto at = std::ranges::find(candidates, label, [](const Candidate& c) { return c.configuration.label; });
     if (at == candidates.end()) {
       at = candidates.insert(at, Candidate{});
       at->configuration.label = label;
       at->configuration.variant = row.variant;
-      at->configuration.description = description_of(runs[i].record);
+      at->configuration.description = description_of(runs[row.members.front()].record);
     }
     RankedConfiguration& configuration = at->configuration;
-    ++configuration.runs;
+    configuration.runs += row.members.size();
     configuration.imu_from_truth |= row.imu == "synthetic IMU";
+    configuration.ok += row.ok_members;
     if (row.status != record::RunStatus::ok) continue;
-    ++configuration.ok;
-    const auto value = row.*column.value;
+    const auto value = row.numbers[metric];
     if (!value || !(*value > 0)) continue;
-    auto& [sum, count] = at->sums[{row.recording, row.first_frame, runs[i].record.recording.frames}];
+    const Recording recording(row.recording, row.first_frame, first.record.recording.frames);
+    auto& [sum, count] = at->sums[recording];
     sum += *value;
     ++count;
+    for (const registry::RunNumbers& replicate : row.replicates) {
+      if (const auto number = replicate[metric]; number && *number > 0)
+        at->replicates[recording].push_back(std::log(*number));
+    }
   }
   return candidates;
 }
@@ -145,6 +153,25 @@ std::optional<aggregate::MeanRatio> ratio_of(const Candidate& candidate, const C
   return aggregate::mean_ratio(logarithms);
 }
 
+/// The range of the geometric mean over recordings, from replicate to replicate; nothing if a recording has
+/// fewer than two.
+std::optional<registry::MedianRange> spread_of(const Candidate& candidate,
+                                               const std::set<Recording>& recordings) {
+  std::size_t count = std::numeric_limits<std::size_t>::max();
+  for (const Recording& recording : recordings) {
+    const auto found = candidate.replicates.find(recording);
+    count = std::min(count, found == candidate.replicates.end() ? 0 : found->second.size());
+  }
+  if (recordings.empty() || count < 2) return std::nullopt;
+  std::vector<double> means;
+  for (std::size_t k = 0; k < count; ++k) {
+    double sum = 0;
+    for (const Recording& recording : recordings) sum += candidate.replicates.at(recording)[k];
+    means.push_back(std::exp(sum / static_cast<double>(recordings.size())));
+  }
+  return registry::median_range(std::move(means));
+}
+
 void rank(std::vector<Candidate>& candidates, const std::set<Recording>& recordings) {
   for (Candidate& candidate : candidates) {
     candidate.configuration.recordings = candidate.sums.size();
@@ -153,6 +180,7 @@ void rank(std::vector<Candidate>& candidates, const std::set<Recording>& recordi
     for (const Recording& recording : recordings)
       logarithms.push_back(std::log(mean_of(candidate.sums, recording)));
     candidate.configuration.value = aggregate::mean_ratio(logarithms).ratio;
+    candidate.configuration.spread = spread_of(candidate, recordings);
   }
   const auto by_value = [](const Candidate& c) {
     const RankedConfiguration& k = c.configuration;
@@ -173,7 +201,9 @@ void rank(std::vector<Candidate>& candidates, const std::set<Recording>& recordi
 
 std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
                                  const tables::ResultTable& table) {
-  const std::vector<run_files::RunTraits> traits = run_files::traits_of(runs);
+  std::vector<run_files::RunTraits> traits;  // of the rows
+  for (const tables::TableRow& row : table.rows)
+    traits.push_back(run_files::traits_of(runs[row.members.front()]));
   const std::vector<std::string> labels = run_files::configuration_labels(traits);
   const std::vector<Comparable> comparables = comparables_of(traits, table);
   std::vector<Ranking> rankings;
@@ -184,17 +214,17 @@ std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
     for (std::size_t i = first; i < comparables.size(); ++i) {
       if (comparables[i] == comparables[first]) members.push_back(i);
     }
-    const auto column = column_for(table, members);
-    if (!column) continue;
-    std::vector<Candidate> candidates = candidates_of(runs, table, members, labels, *column);
+    const registry::RunMetric* const metric = metric_for(table, members);
+    if (metric == nullptr) continue;
+    std::vector<Candidate> candidates = candidates_of(runs, table, members, labels, *metric);
     // An AIE of other pixels than another's says which dropped more of them, not which is better.
-    if (column->value == &tables::TableValues::aie_grey && candidates.size() > 1) continue;
+    if (metric->key == "aie_grey" && candidates.size() > 1) continue;
     std::set<Recording> recordings;
     for (const Candidate& candidate : candidates) {
       for (const auto& [recording, sum] : candidate.sums) recordings.insert(recording);
     }
     rank(candidates, recordings);
-    Ranking ranking{comparables[first].data, comparables[first].frames, *column, recordings.size(), {}};
+    Ranking ranking{comparables[first].data, comparables[first].frames, metric, recordings.size(), {}};
     for (Candidate& candidate : candidates)
       ranking.configurations.push_back(std::move(candidate.configuration));
     rankings.push_back(std::move(ranking));

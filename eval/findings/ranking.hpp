@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eval/aggregate/mean_ratio.hpp"
+#include "eval/registry/replicated_numbers.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/tables/table.hpp"
 
@@ -21,10 +22,17 @@ struct RankedConfiguration {
   bool imu_from_truth = false;
   std::size_t runs = 0;
   std::size_t ok = 0;
-  std::size_t recordings = 0;   ///< of those that it has a number of
+  std::size_t recordings = 0;  ///< of those that it has a number of
+  /// Of `value`, from replicate to replicate; nothing where a recording has fewer than two.
+  std::optional<registry::MedianRange> spread = {};
   std::optional<double> value;  ///< SI, geometric mean; absent where it lacks a number that others have
   /// Its number by that of the best, over the recordings that both have numbers of. Nothing of the best one.
   std::optional<aggregate::MeanRatio> to_best;
+
+  /// Whether chance explains the difference: the spreads overlap.
+  [[nodiscard]] bool ties_with(const RankedConfiguration& other) const {
+    return spread && other.spread && spread->overlaps(*other.spread);
+  }
 };
 
 /// Over data of one kind, which alone can be compared.
@@ -32,7 +40,7 @@ struct Ranking {
   std::string data;  ///< "recorded", "simulated"
   /// "frames 0:100" where other windows of the recordings share frames with it; empty where none does.
   std::string frames;
-  tables::TableColumn column;
+  const registry::RunMetric* metric = nullptr;
   std::size_t recordings = 0;  ///< or windows of them, of which any configuration has a number
   /// The best first, which has the most numbers; those that lack some come last. By the ratio to the best.
   std::vector<RankedConfiguration> configurations;

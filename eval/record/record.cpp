@@ -168,6 +168,7 @@ RunRecord record_of(const Json& json) {
   record.reason = json.at("reason");
   record.run_id = json.value("run_id", "");
   record.repetition = json.value("repetition", 1);
+  record.replicate = json.value("replicate", 0);  // older records have none
   read(json.at("recording"), record.recording);
   record.variant = json.at("variant");
   record.poses = pose_kind_of(json.value("poses", "online"));  // older records do not say it
@@ -208,6 +209,10 @@ std::string_view to_string(RunStatus status) {
   return "unknown";
 }
 
+double coverage_share(const RecordedFrames& frames) {
+  return frames.total == 0 ? 0.0 : static_cast<double>(frames.tracked) / static_cast<double>(frames.total);
+}
+
 std::string status_text(RunStatus status, std::optional<std::size_t> silent) {
   if (silent.value_or(0) == 0) return std::string(to_string(status));
   return fmt::format("{} ({} silent)", to_string(status), *silent);
@@ -238,6 +243,7 @@ Json document_of(const RunRecord& record) {
       {"reason", record.reason},
       {"run_id", record.run_id},
       {"repetition", record.repetition},
+      {"replicate", record.replicate},
       {"recording", json_of(record.recording)},
       {"variant", record.variant},
       {"poses", to_string(record.poses)},

@@ -162,6 +162,9 @@ struct RecordedFrames {
   std::size_t lost = 0;     ///< processed and lost; total - tracked - lost were not reached
 };
 
+/// Tracked frames / frames that the run was asked for; 0 of a run that did not begin.
+[[nodiscard]] double coverage_share(const RecordedFrames& frames);
+
 struct RecordedModel {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
@@ -207,6 +210,8 @@ struct RunRecord {
   std::string reason = "not run";  ///< empty if ok
   std::string run_id;  ///< run_identity(): all that the results depend on; empty if that was never known
   int repetition = 1;  ///< of the same run, for its time
+  int replicate =
+      0;  ///< above 0: from an initial pose with noise (system.replicate_noise), to see what chance does
   RecordedRecording recording;
   std::string variant;
   std::optional<RecordedProgram> program;  ///< that ran in place of a variant

@@ -340,8 +340,6 @@ RecordedNees nees_of(const Json& metrics) {
 }  // namespace
 
 Json json_of_metrics(const RecordedMetrics& metrics, const RecordedFrames& frames) {
-  const double share =
-      frames.total == 0 ? 0.0 : static_cast<double>(frames.tracked) / static_cast<double>(frames.total);
   return {{"ate", json_of(metrics.ate)},
           {"ate_fitted_offset", json_of(metrics.ate_fitted)},
           {"rpe", {{"frame", json_of(metrics.rpe_frame)}, {"second", json_of(metrics.rpe_second)}}},
@@ -356,7 +354,7 @@ Json json_of_metrics(const RecordedMetrics& metrics, const RecordedFrames& frame
            {{"protocol", "tracked frames / frames of the recording"},
             {"tracked", frames.tracked},
             {"total", frames.total},
-            {"share", share}}}};
+            {"share", coverage_share(frames)}}}};
 }
 
 void read_metrics(const Json& json, RecordedMetrics& metrics) {

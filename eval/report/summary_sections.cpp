@@ -62,7 +62,7 @@ page::PageTable::Row compared_row(const findings::Ranking& ranking,
   }
   return {{configuration.label, configuration.description,
            fmt::format("{}/{}", configuration.ok, configuration.runs),
-           tables::shown_value(ranking.column, configuration.value),
+           tables::shown_value(*ranking.metric, configuration.value),
            configuration.to_best ? fmt::format("{:.2f}", configuration.to_best->ratio) : "-",
            std::move(interval)},
           configuration.ok < configuration.runs ? "warning" : ""};
@@ -71,7 +71,7 @@ page::PageTable::Row compared_row(const findings::Ranking& ranking,
 /// What each configuration is, and how it compares with the best.
 page::PageSection compared_section(const findings::Ranking& ranking, bool only) {
   page::PageTable table;
-  table.header = {"configuration",    "what it is",   "runs ok", std::string(ranking.column.heading),
+  table.header = {"configuration",    "what it is",   "runs ok", std::string(ranking.metric->heading),
                   "times the best's", "95 % interval"};
   const std::size_t count = std::min(ranking.configurations.size(), kMostCompared);
   for (std::size_t i = 0; i < count; ++i)

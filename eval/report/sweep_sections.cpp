@@ -13,6 +13,7 @@
 #include "eval/aggregate/effects.hpp"
 #include "eval/aggregate/option_bins.hpp"
 #include "eval/aggregate/pareto.hpp"
+#include "eval/registry/run_metric.hpp"
 #include "eval/report/sweep_charts.hpp"
 
 namespace fusebench::report {
@@ -34,9 +35,9 @@ bool is_swept(std::span<const aggregate::RunRow> rows) {
   return false;
 }
 
-bool has(std::span<const aggregate::RunRow> rows, const aggregate::RunMetric& metric) {
+bool has(std::span<const aggregate::RunRow> rows, const registry::RunMetric& metric) {
   for (const aggregate::RunRow& row : rows) {
-    if (row.status == record::RunStatus::ok && row.*(metric.value)) return true;
+    if (row.status == record::RunStatus::ok && row.numbers[metric]) return true;
   }
   return false;
 }
@@ -70,7 +71,7 @@ page::PageSection best_section(const aggregate::BestTable& table) {
 }
 
 void add_metric(std::vector<page::PageSection>& sections, std::span<const aggregate::RunRow> rows,
-                const aggregate::RunMetric& metric) {
+                const registry::RunMetric& metric) {
   const aggregate::SweepEffects effects =
       aggregate::sweep_effects(aggregate::with_binned_options(rows), metric);
   add(sections, fmt::format("What each option does to {}", metric.heading),
@@ -102,7 +103,7 @@ std::vector<page::PageSection> sweep_sections(std::span<const aggregate::RunRow>
     std::vector<page::PageSection> parts;
     std::size_t shown = 0;
     for (const std::string_view name : kMetrics) {
-      const auto metric = aggregate::find_run_metric(name);
+      const auto metric = registry::find_ranking_metric(name);
       if (!metric || !has(runs, **metric) || shown == kMostMetrics) continue;
       if (shown++ == 0) {
         const auto best = aggregate::best_configurations(runs, {*metric, "none", 10});

@@ -57,7 +57,7 @@ Result<record::RunRecord> execute_program_run(const PreparedRun& run, const RunC
     return !control.is_stopped();
   };
   auto results = external::run_external_program(
-      program, recording, {run.spec.recording, work, run.spec.threads, run.spec.repetition}, go_on);
+      program, recording, {run.spec.recording, work, run.spec.threads, seed_of(run.spec)}, go_on);
   if (!results) return tl::unexpected(results.error());
   std::filesystem::remove_all(work, error);
 

@@ -14,6 +14,7 @@
 #include "core/config/config.hpp"
 #include "core/io/staged_folder.hpp"
 #include "core/meshing/marching_cubes.hpp"
+#include "core/trajectory/noisy_pose.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/profile/trace_file.hpp"
 #include "eval/record/process_meter.hpp"
@@ -110,7 +111,11 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
 
   const config::Config& config = run.spec.config.values();
   const Workers workers(run.spec.threads);
-  auto system = core::make_system(config, run.recording.rig, run.recording.imu, workers);
+  SensorRig rig = run.recording.rig;
+  if (run.spec.replicate > 0)
+    rig.T_world_first_camera =
+        trajectory::noisy_pose(static_cast<std::uint64_t>(run.spec.replicate), config.system.replicate_noise);
+  auto system = core::make_system(config, rig, run.recording.imu, workers);
   auto progress = process_frames(run, *system, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
   auto revised = revised_poses(run, *system, *progress, control);

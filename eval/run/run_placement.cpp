@@ -22,6 +22,7 @@ std::string run_identity(const RunSpec& spec, const recording::Recording& record
   identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
                            camera.cx_px, camera.cy_px));
   identity.add(spec.program ? spec.program->identity : record::build_info().estimator);
+  if (spec.replicate > 0) identity.add(fmt::format("replicate {}", spec.replicate));
   return identity.hex();
 }
 
@@ -75,9 +76,10 @@ record::RunRecord requested_record(const PreparedRun& run) {
   record.config_hash =
       run.spec.program ? run.spec.program->identity : config::config_hash(run.spec.config.values());
   if (run.spec.program)
-    record.program = {run.spec.program->definition, run.spec.program->version, run.spec.repetition};
+    record.program = {run.spec.program->definition, run.spec.program->version, seed_of(run.spec)};
   record.run_id = run.run_id;
   record.repetition = run.spec.repetition;
+  record.replicate = run.spec.replicate;
   record.provenance = record::provenance_here(run.spec.threads);
   return record;
 }

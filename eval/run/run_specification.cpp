@@ -101,6 +101,8 @@ bool runs_filter(const RunSpec& spec) {
   return !spec.program && spec.config.values().system.method == config::SystemMethod::filter;
 }
 
+int seed_of(const RunSpec& spec) { return spec.repetition + spec.replicate; }
+
 bool wants_imu(const RunSpec& spec) {
   return spec.program ? spec.program->imu != "none" : config::needs_imu(spec.config.values());
 }

@@ -52,6 +52,7 @@ enum class KeptFiles {
 inline constexpr int kMostThreads = 1024;  ///< of a run
 inline constexpr int kMostAtOnce = 1024;   ///< runs
 inline constexpr int kMostRepetitions = 1000;
+inline constexpr int kMostReplicates = 1000;
 
 struct RunSpec {
   std::filesystem::path recording;
@@ -64,6 +65,7 @@ struct RunSpec {
   std::optional<FrameWindow> frames;
   int threads = 1;
   int repetition = 1;  ///< the time is another sample; so are a program's results, unless it is deterministic
+  int replicate = 0;   ///< above 0: begins at trajectory::noisy_pose(); of a program it is another seed
   KeptFiles kept = KeptFiles::all;
   bool profile = false;  ///< also trace.json and the record's histograms of times; no part of the identity
   std::filesystem::path out;
@@ -71,6 +73,9 @@ struct RunSpec {
 
 /// Whether the run is of the paper's filter and not of another system or program.
 [[nodiscard]] bool runs_filter(const RunSpec& spec);
+
+/// What {seed} of an external program stands for: another number for each repetition and replicate.
+[[nodiscard]] int seed_of(const RunSpec& spec);
 
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);

@@ -49,6 +49,7 @@ std::string imu_words(const std::string& imu) {
 /// What runs of one variant over one recording have of each kind.
 struct Kinds {
   std::set<int> repetitions;
+  std::set<int> replicates;
   std::set<std::string> imus;
 };
 
@@ -68,6 +69,7 @@ RunTraits traits_of(const FoundRun& run) {
   traits.first_frame = record.recording.first_frame;
   traits.frames = record.recording.frames;
   traits.repetition = record.repetition;
+  traits.replicate = record.replicate;
   if (!record.recording.fingerprint.empty()) traits.imu = record.recording.imu;
   traits.folder = run.folder.filename().string();
   return traits;
@@ -157,6 +159,7 @@ std::vector<std::string> distinctions(std::span<const RunTraits> runs) {
   for (const RunTraits& run : runs) {
     Kinds& kinds = of_variant[{run.recording, run.variant}];
     kinds.repetitions.insert(run.repetition);
+    kinds.replicates.insert(run.replicate);
     if (!run.imu.empty()) kinds.imus.insert(run.imu);
   }
   const std::vector<std::string> windows = window_labels(runs);
@@ -167,6 +170,7 @@ std::vector<std::string> distinctions(std::span<const RunTraits> runs) {
     const Kinds& kinds = of_variant.at({run.recording, run.variant});
     if (run.frames > 0) append(texts[i], windows[i]);
     if (kinds.repetitions.size() > 1) append(texts[i], fmt::format("repetition {}", run.repetition));
+    if (kinds.replicates.size() > 1) append(texts[i], fmt::format("replicate {}", run.replicate));
     if (!run.imu.empty() && kinds.imus.size() > 1) append(texts[i], imu_words(run.imu));
     ++uses[{run.recording, run.variant, texts[i]}];
   }

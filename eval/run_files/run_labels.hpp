@@ -25,6 +25,7 @@ struct RunTraits {
   std::size_t first_frame = 0;
   std::size_t frames = 0;  ///< 0: not known
   int repetition = 1;
+  int replicate = 0;
   std::string imu;     ///< "none", "recorded", "synthetic IMU"; empty: it never opened the recording
   std::string folder;  ///< its name
 };
@@ -50,8 +51,8 @@ struct RunTraits {
 [[nodiscard]] std::vector<std::string> configuration_labels(std::span<const RunTraits> runs);
 
 /// What tells each run from the others: differing_edits(); "frames 0:100" where other frames of its recording
-/// were run as well; "repetition 2" and the IMU where runs of its variant over its recording differ in them;
-/// and at last the name of its folder, where nothing of that is different.
+/// were run as well; "repetition 2", "replicate 3" and the IMU where runs of its variant over its recording
+/// differ in them; and at last the name of its folder, where nothing of that is different.
 [[nodiscard]] std::vector<std::string> distinctions(std::span<const RunTraits> runs);
 
 /// The variant of each run with its distinction: "full tsdf.voxel_m=0.01 repetition 2".

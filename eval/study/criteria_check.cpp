@@ -45,7 +45,7 @@ bool is_meant(const suites::Criterion& criterion, const StudyRun& run, std::stri
 }
 
 void take(const Study& study, const suites::Criterion& criterion, const StudyRun& run, Items& items) {
-  const suites::StudyValue& value = *suites::find_study_value(criterion.metric);
+  const registry::RunMetric& value = registry::run_metric(criterion.metric);
   if (run.record.status != record::RunStatus::ok && !value.of_every_run) {
     if (criterion.lost_counts && run.record.status == record::RunStatus::lost) {
       ++items.counted_as_lost;
@@ -125,7 +125,7 @@ std::optional<double> measured(const Study& study, const suites::Criterion& crit
   if (items.items.empty()) return std::nullopt;
   if (criterion.statistic == suites::CriterionStatistic::worst) return worst(criterion, items).compared;
   if (criterion.of_means) {
-    if (suites::find_study_value(criterion.metric)->of == nullptr) return pooled(study, criterion, items);
+    if (registry::run_metric(criterion.metric).takes_several_runs()) return pooled(study, criterion, items);
     return comparison(criterion, metrics::statistics(numbers(items, &Item::own)).mean,
                       metrics::statistics(numbers(items, &Item::other)).mean);
   }
@@ -170,7 +170,7 @@ Limit limit_of(const suites::Criterion& criterion, std::size_t runs) {
   if (criterion.within_bounds) {
     if (runs == 0) return limit;
     const metrics::NeesBounds bounds =
-        metrics::nees_bounds_95(runs, suites::find_study_value(criterion.metric)->nees_dof);
+        metrics::nees_bounds_95(runs, registry::run_metric(criterion.metric).nees_dof);
     limit.lower = bounds.lower;
     limit.upper = bounds.upper;
     limit.text = fmt::format("{:.3g} .. {:.3g} (95 % of {} runs)", bounds.lower, bounds.upper, runs);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/error.hpp"
+#include "eval/registry/run_numbers.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::study {
@@ -56,10 +57,10 @@ const StudyRun* sibling(const Study& study, const StudyRun& run, std::string_vie
   return found == study.runs.end() ? nullptr : &*found;
 }
 
-std::optional<double> value_of(const Study& study, const StudyRun& run, const suites::StudyValue& value,
+std::optional<double> value_of(const Study& study, const StudyRun& run, const registry::RunMetric& metric,
                                std::string_view partner) {
-  if (run.record.status != record::RunStatus::ok && !value.of_every_run) return std::nullopt;
-  if (value.of != nullptr) return value.of(run.record);
+  if (run.record.status != record::RunStatus::ok && !metric.of_every_run) return std::nullopt;
+  if (!metric.takes_several_runs()) return registry::number_of(run.record, metric).value;
   const bool is_reference = run.variant == study.reference();
   const StudyRun* pair =
       is_reference ? sibling(study, run, partner.empty() ? study.partner() : partner) : &run;

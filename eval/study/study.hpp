@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "eval/record/record.hpp"
+#include "eval/registry/run_metric.hpp"
 #include "eval/study/shared_frames.hpp"
-#include "eval/suites/study_values.hpp"
 
 namespace fusebench::study {
 
@@ -44,10 +44,11 @@ struct Study {
 /// The run of that variant on the same recording; null if there is none.
 [[nodiscard]] const StudyRun* sibling(const Study& study, const StudyRun& run, std::string_view variant);
 
-/// A number of one run, as StudyValue says. On common pixels, a variant is measured on those that it shares
+/// A number of one run, of the registry. On common pixels, a variant is measured on those that it shares
 /// with the reference, and the reference on those that it shares with `partner`; empty: with the
 /// study's partner.
 [[nodiscard]] std::optional<double> value_of(const Study& study, const StudyRun& run,
-                                             const suites::StudyValue& value, std::string_view partner = {});
+                                             const registry::RunMetric& metric,
+                                             std::string_view partner = {});
 
 }  // namespace fusebench::study

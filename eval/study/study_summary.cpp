@@ -34,23 +34,23 @@ std::vector<std::string> variants_in_order(const Study& study) {
 }
 
 ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& runs,
-                      const suites::StudyValue& value) {
+                      const registry::RunMetric& metric) {
   ValueSpread spread;
   std::vector<double> values;
   std::vector<double> partners;
   for (const StudyRun* run : runs) {
-    const auto number = value_of(study, *run, value);
+    const auto number = value_of(study, *run, metric);
     if (!number) continue;
-    const bool worse =
-        values.empty() || (value.higher_is_better ? *number < spread.worst : *number > spread.worst);
+    const bool worse = values.empty() || (metric.better == registry::Better::larger ? *number < spread.worst
+                                                                                    : *number > spread.worst);
     if (worse) {
       spread.worst = *number;
       spread.worst_recording = run->recording;
     }
     values.push_back(*number);
-    if (value.of != nullptr) continue;
+    if (!metric.takes_several_runs()) continue;
     spread.partner = run->variant == study.reference() ? study.partner() : study.reference();
-    const auto partner = value_of(study, *sibling(study, *run, spread.partner), value, run->variant);
+    const auto partner = value_of(study, *sibling(study, *run, spread.partner), metric, run->variant);
     if (partner) partners.push_back(*partner);
   }
   spread.count = values.size();
@@ -59,7 +59,7 @@ ValueSpread spread_of(const Study& study, const std::vector<const StudyRun*>& ru
   spread.mean = stats.mean;
   spread.median = stats.median;
   if (!partners.empty()) spread.partner_mean = metrics::statistics(partners).mean;
-  if (value.nees_dof > 0) spread.bounds_95 = metrics::nees_bounds_95(values.size(), value.nees_dof);
+  if (metric.nees_dof > 0) spread.bounds_95 = metrics::nees_bounds_95(values.size(), metric.nees_dof);
   return spread;
 }
 
@@ -77,8 +77,8 @@ std::optional<SummaryRow> row_of(const Study& study, const std::string& split, c
     row.frames += run.record.frames.total;
   }
   if (runs.empty()) return std::nullopt;
-  for (const suites::StudyValue& value : suites::study_values())
-    row.values.push_back(spread_of(study, runs, value));
+  for (const registry::RunMetric* metric : registry::columns_of(registry::Column::study))
+    row.values.push_back(spread_of(study, runs, *metric));
   return row;
 }
 

@@ -38,7 +38,7 @@ struct SummaryRow {
   std::size_t lost = 0;  ///< runs; total - ok - lost failed
   std::size_t lost_frames = 0;
   std::size_t frames = 0;
-  std::vector<ValueSpread> values;  ///< in the order of study_values()
+  std::vector<ValueSpread> values;  ///< in the order of the study's columns
 };
 
 /// Edges of the bins of image motion, px between two frames; the last bin is open.

@@ -15,7 +15,7 @@ Json number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-Json json_of(const ValueSpread& spread, const suites::StudyValue& value) {
+Json json_of(const ValueSpread& spread, const registry::RunMetric& metric) {
   Json json = {{"runs", spread.count}};
   if (spread.count == 0) return json;
   json["mean"] = spread.mean;
@@ -24,7 +24,7 @@ Json json_of(const ValueSpread& spread, const suites::StudyValue& value) {
   json["worst_recording"] = spread.worst_recording;
   if (spread.bounds_95)
     json["bounds_95"] = {{"lower", spread.bounds_95->lower}, {"upper", spread.bounds_95->upper}};
-  if (value.of == nullptr) {
+  if (metric.takes_several_runs()) {
     json["partner"] = spread.partner;
     json["partner_mean"] = spread.partner_mean;
   }
@@ -36,10 +36,9 @@ Json json_of(const SummaryRow& row) {
       {"split", row.split},   {"group", row.group}, {"variant", row.variant},         {"n_ok", row.ok},
       {"n_total", row.total}, {"n_lost", row.lost}, {"lost_frames", row.lost_frames}, {"frames", row.frames}};
   Json values = Json::object();
-  for (std::size_t i = 0; i < suites::study_values().size(); ++i) {
-    const suites::StudyValue& value = suites::study_values()[i];
-    values[std::string(value.name)] = json_of(row.values[i], value);
-  }
+  const auto columns = registry::columns_of(registry::Column::study);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    values[std::string(columns[i]->key)] = json_of(row.values[i], *columns[i]);
   json["values"] = std::move(values);
   return json;
 }
@@ -91,8 +90,8 @@ Json json_of(const Study& study, const StudyRun& run) {
                {"config_hash", run.record.config_hash},
                {"fingerprint", run.record.recording.fingerprint}};
   Json values = Json::object();
-  for (const suites::StudyValue& value : suites::study_values())
-    values[std::string(value.name)] = number(value_of(study, run, value));
+  for (const registry::RunMetric* metric : registry::columns_of(registry::Column::study))
+    values[std::string(metric->key)] = number(value_of(study, run, *metric));
   json["values"] = std::move(values);
   return json;
 }

@@ -92,11 +92,11 @@ std::vector<std::string_view> recordings_of(const Study& study, std::string_view
 
 /// A dot for each ok run, above the name of its recording.
 page::Chart value_chart(const StudySummary& summary, const Study& study, std::string_view group,
-                        const suites::StudyValue& value) {
+                        const registry::RunMetric& value) {
   page::Chart chart;
-  chart.title = fmt::format("{}: {}", group, value.label);
+  chart.title = fmt::format("{}: {}", group, value.heading);
   chart.x_label = "recording";
-  chart.left_label = value.label;
+  chart.left_label = value.heading;
   const std::vector<std::string_view> recordings = recordings_of(study, group);
   chart.x_names.assign(recordings.begin(), recordings.end());
   const std::vector<std::size_t> colours = colours_of(study.variants);
@@ -125,7 +125,7 @@ std::vector<page::Chart> value_charts(const StudySummary& summary, const Study& 
   }
   for (const std::string& group : groups) {
     for (const std::string_view name : {"ate_rmse_m", "aie_grey"}) {
-      page::Chart chart = value_chart(summary, study, group, *suites::find_study_value(name));
+      page::Chart chart = value_chart(summary, study, group, registry::run_metric(name));
       if (!chart.series.empty()) charts.push_back(std::move(chart));
     }
   }

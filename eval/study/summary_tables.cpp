@@ -14,11 +14,9 @@ namespace {
 using Cells = std::vector<std::string>;
 
 /// "1.20 / 1.18 / 1.90": mean, median, worst.
-std::string spread_cell(const ValueSpread& spread, const suites::StudyValue& value) {
+std::string spread_cell(const ValueSpread& spread, const registry::RunMetric& metric) {
   if (spread.count == 0) return "-";
-  const auto shown = [&](double number) {
-    return fmt::format("{:.{}f}", number * value.shown_factor, value.decimals);
-  };
+  const auto shown = [&](double number) { return registry::shown_text(metric, number); };
   return fmt::format("{} / {} / {}", shown(spread.mean), shown(spread.median), shown(spread.worst));
 }
 
@@ -61,14 +59,15 @@ SummaryTable value_table(std::string_view split, const std::vector<const Summary
     table.rows.push_back(
         {row->group, row->variant, counts_cell(*row), fmt::format("{}/{}", row->lost_frames, row->frames)});
   }
-  const auto values = suites::study_values();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool told = values[i].name == "runs_not_ok" || values[i].name == "lost_frames";
-    if (told || values[i].nees_dof > 0 || !any_value(rows, i)) continue;
-    table.header.emplace_back(values[i].label);
+  const auto metrics = registry::columns_of(registry::Column::study);
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    const bool told = metrics[i]->key == "runs_not_ok" || metrics[i]->key == "frames_lost";
+    if (told || metrics[i]->nees_dof > 0 || !any_value(rows, i)) continue;
+    table.header.emplace_back(metrics[i]->heading);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const ValueSpread& spread = rows[k]->values[i];
-      table.rows[k].push_back(values[i].of == nullptr ? common_cell(spread) : spread_cell(spread, values[i]));
+      table.rows[k].push_back(metrics[i]->takes_several_runs() ? common_cell(spread)
+                                                               : spread_cell(spread, *metrics[i]));
     }
   }
   return table;
@@ -79,19 +78,19 @@ SummaryTable nees_table(std::string_view split, const std::vector<const SummaryR
       fmt::format("NEES / dof, {} split: mean over runs (95 % bounds of that mean); ! is outside", split),
       {"group", "variant"},
       {}};
-  const auto values = suites::study_values();
+  const auto metrics = registry::columns_of(registry::Column::study);
   for (const SummaryRow* row : rows) {
     Cells cells = {row->group, row->variant};
     bool any = false;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i].nees_dof == 0) continue;
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      if (metrics[i]->nees_dof == 0) continue;
       cells.push_back(nees_cell(row->values[i]));
       any = any || row->values[i].count > 0;
     }
     if (any) table.rows.push_back(std::move(cells));
   }
-  for (const suites::StudyValue& value : values) {
-    if (value.nees_dof > 0) table.header.emplace_back(value.label);
+  for (const registry::RunMetric* metric : metrics) {
+    if (metric->nees_dof > 0) table.header.emplace_back(metric->heading);
   }
   return table;
 }

@@ -9,7 +9,7 @@
 
 #include "core/base/nearest_name.hpp"
 #include "core/config/variants.hpp"
-#include "eval/suites/study_values.hpp"
+#include "eval/registry/run_metric.hpp"
 #include "eval/suites/suite_simulations.hpp"
 
 namespace fusebench::suites {
@@ -62,12 +62,12 @@ Result<void> check_variants(const config::TomlEntry& entry, const std::vector<st
 
 Result<void> check_metrics(const config::TomlEntry& entry, const std::vector<std::string>& names) {
   std::vector<std::string_view> known;
-  for (const StudyValue& value : study_values()) known.push_back(value.name);
+  for (const registry::RunMetric& metric : registry::run_metrics()) known.push_back(metric.key);
   for (const std::string& name : names) {
-    if (find_study_value(name) != nullptr) continue;
+    if (registry::find_metric(name) != nullptr) continue;
     return fail(ErrorCode::configuration,
                 fmt::format("{}: unknown metric '{}'{}", entry.place, name, nearest_hint(name, known)),
-                fmt::format("metrics are {}", fmt::join(known, ", ")));
+                "`fusebench list metrics` names them");
   }
   return {};
 }
@@ -132,8 +132,8 @@ Result<void> read_value(const config::TomlEntry& entry, CriterionTable& table) {
 
 /// What makes no sense together, as a sentence; nothing if all is well.
 std::optional<std::string> contradiction(const Criterion& criterion, std::string_view reference) {
-  const StudyValue& value = *find_study_value(criterion.metric);
-  const bool pairs = value.of == nullptr;
+  const registry::RunMetric& metric = registry::run_metric(criterion.metric);
+  const bool pairs = metric.takes_several_runs();
   const bool share = criterion.statistic == CriterionStatistic::share;
   const bool limited = criterion.has_upper() || criterion.has_lower();
   if (limited == criterion.within_bounds)
@@ -146,7 +146,7 @@ std::optional<std::string> contradiction(const Criterion& criterion, std::string
     return "each_at_most and each_at_least go with statistic = \"share\"";
   if (criterion.lost_counts && !share) return "lost_counts goes with statistic = \"share\"";
   if (criterion.within_bounds &&
-      (value.nees_dof == 0 || criterion.statistic != CriterionStatistic::mean || !criterion.against.empty()))
+      (metric.nees_dof == 0 || criterion.statistic != CriterionStatistic::mean || !criterion.against.empty()))
     return "within_bounds goes with a metric nees_* and statistic = \"mean\", without 'against'";
   if (criterion.of_means && (criterion.against.empty() || criterion.statistic != CriterionStatistic::mean))
     return "of_means goes with 'against' and statistic = \"mean\"";
@@ -155,7 +155,8 @@ std::optional<std::string> contradiction(const Criterion& criterion, std::string
     return fmt::format("{} compares a variant with {}: one is 'variant', the other 'against'",
                        criterion.metric, reference);
   if (criterion.frames_above_px && !(pairs && criterion.of_means))
-    return fmt::format("frames_above_px goes with the metric {} and of_means = true", kCommonPixelsValue);
+    return fmt::format("frames_above_px goes with the metric {} and of_means = true",
+                       registry::kCommonPixelsKey);
   return std::nullopt;
 }
 

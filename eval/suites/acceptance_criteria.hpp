@@ -27,14 +27,13 @@ enum class CriterionComparison { ratio, difference };  ///< variant / against, v
 ///     groups = ["slow"]                 # default: all groups
 ///     split = "held-out"                # default; the other split is measured, too, but decides nothing
 ///     variant = "full"                  # required; a list makes a criterion for each
-///     metric = "ate_rmse_m"             # required, see study_values(); a list makes a criterion for each
-///     statistic = "worst"               # required: worst, mean, median, share
-///     at_most = 0.01                    # or below; at_least, above; upper and lower limits may go together
-///     against = "dm"                    # compares with another variant; a list makes a criterion for each
-///     compare = "ratio"                 # default: variant / against; or "difference": variant - against
-///     of_means = true                   # compares the two means instead of averaging comparisons
-///     frames_above_px = 30              # only frames in which patches moved further than that, all
-///     recordings'
+///     metric = "ate_rmse_m"             # required, see registry::run_metrics(); a list makes a criterion
+///     for each statistic = "worst"               # required: worst, mean, median, share at_most = 0.01 # or
+///     below; at_least, above; upper and lower limits may go together against = "dm"                    #
+///     compares with another variant; a list makes a criterion for each compare = "ratio"                 #
+///     default: variant / against; or "difference": variant - against of_means = true                   #
+///     compares the two means instead of averaging comparisons frames_above_px = 30              # only
+///     frames in which patches moved further than that, all recordings'
 ///                                       # frames together; for aie_common_grey with of_means
 ///     each_at_least = 5                 # or each_at_most: for statistic = "share"
 ///     lost_counts = true                # a run that is lost counts into the share

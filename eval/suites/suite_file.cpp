@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 15> kSuiteKeys = {
-    "name",     "recordings", "all",  "variants", "systems", "imu",     "config",     "simulations",
-    "criteria", "frames",     "keep", "limits",   "sweep",   "exclude", "repetitions"};
+constexpr std::array<std::string_view, 16> kSuiteKeys = {
+    "name",     "recordings", "all",  "variants", "systems", "imu",     "config",      "simulations",
+    "criteria", "frames",     "keep", "limits",   "sweep",   "exclude", "repetitions", "replicates"};
 constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "split", "variants"};
 constexpr std::string_view kConfigPrefix = "config.";
 constexpr std::string_view kLimitPrefix = "limits.";
@@ -50,11 +50,12 @@ Result<void> read_kept(const config::TomlEntry& entry, Suite& suite) {
   return wrong_entry(entry, "\"all\" or \"small\"");
 }
 
-Result<void> read_repetitions(const config::TomlEntry& entry, Suite& suite) {
+/// How often each run is made.
+Result<void> read_count(const config::TomlEntry& entry, int most, int& target) {
   const auto count = plain_entry<std::int64_t>(entry);
-  if (!count || *count < 1 || *count > run::kMostRepetitions)
-    return wrong_entry(entry, fmt::format("an integer, 1 .. {}", run::kMostRepetitions));
-  suite.repetitions = static_cast<int>(*count);
+  if (!count || *count < 1 || *count > most)
+    return wrong_entry(entry, fmt::format("an integer, 1 .. {}", most));
+  target = static_cast<int>(*count);
   return {};
 }
 
@@ -70,7 +71,8 @@ Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   if (entry.key == "systems") return store(names_entry(entry), suite.systems);
   if (entry.key == "imu") return read_imu(entry, suite);
   if (entry.key == "keep") return read_kept(entry, suite);
-  if (entry.key == "repetitions") return read_repetitions(entry, suite);
+  if (entry.key == "repetitions") return read_count(entry, run::kMostRepetitions, suite.repetitions);
+  if (entry.key == "replicates") return read_count(entry, run::kMostReplicates, suite.replicates);
   if (entry.key == "frames") return store(windows_entry(entry), suite.windows);
   if (entry.key.starts_with(kLimitPrefix))
     return read_limit(entry, std::string_view(entry.key).substr(kLimitPrefix.size()), suite.limits);

@@ -45,6 +45,7 @@ struct SuiteRecording {
 ///     [config]                        # edits for all runs, as in a configuration file
 ///     iekf.max_iterations = 8
 ///     repetitions = 3                 # of each run, for its time; default 1
+///     replicates = 5                  # of each run, from initial poses with noise; default 1
 ///     frames = ["0:100", "100:200"]   # windows of the recordings, each a run; default: all frames
 ///     keep = "small"                  # files of each run, see KeptFiles; default "all"
 ///     [limits]                        # see RunLimits
@@ -62,6 +63,7 @@ struct Suite {
   run::ImuChoice imu = run::ImuChoice::recorded;
   std::vector<config::TomlEntry> config;  ///< keys without "config."
   int repetitions = 1;
+  int replicates = 1;
   std::vector<run::FrameWindow> windows;  ///< empty: all frames
   run::KeptFiles kept = run::KeptFiles::all;
   RunLimits limits;

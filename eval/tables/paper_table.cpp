@@ -1,4 +1,5 @@
 #include "eval/tables/paper_table.hpp"
+#include "eval/registry/run_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -54,13 +55,14 @@ bool has_synthetic_imu(const run_files::FoundRun& run) { return run.record.recor
 Place place_of(const RunsHere& here, const std::set<std::string>& names, const std::string& variant,
                bool synthetic_imu) {
   Place best;
-  for (std::size_t i = 0; i < here.runs.size(); ++i) {
+  for (const TableRow& row : here.table.rows) {
+    const std::size_t i = row.members.front();
     const record::RunRecord& record = here.runs[i].record;
-    if (record.status != record::RunStatus::ok || record.variant != variant ||
+    if (row.status != record::RunStatus::ok || record.variant != variant ||
         !names.contains(record.recording.name) || has_synthetic_imu(here.runs[i]) != synthetic_imu)
       continue;
     if (best.run == nullptr || (here.edits[i].empty() && !best.edits->empty()))
-      best = {&here.runs[i], &here.table.rows[i], &here.edits[i]};
+      best = {&here.runs[i], &row, &here.edits[i]};
   }
   return best;
 }
@@ -71,7 +73,7 @@ std::vector<std::string> systems_here(const PublishedTable& published,
   std::vector<std::string> systems = published.variants;
   for (const run_files::FoundRun& run : runs) {
     const record::RunRecord& record = run.record;
-    if (record.status == record::RunStatus::ok && published.value->of(record) &&
+    if (record.status == record::RunStatus::ok && registry::number_of(record, *published.value).value &&
         std::ranges::find(systems, record.variant) == systems.end())
       systems.push_back(record.variant);
   }
@@ -97,8 +99,8 @@ void add_here(PaperTable& paper, const RunsHere& here, const std::set<std::strin
   std::set<std::string> fingerprints;
   for (const std::string& variant : paper.systems_here) {
     const Place place = place_of(here, names, variant, synthetic_imu);
-    row.here.push_back(place.run ? published.value->of(place.run->record) : std::nullopt);
-    common.push_back(place.row ? place.row->aie_common_grey : std::nullopt);
+    row.here.push_back(place.row ? place.row->numbers[*published.value] : std::nullopt);
+    common.push_back(place.row ? place.row->numbers[registry::kCommonPixelsKey] : std::nullopt);
     if (!place.run) continue;
     const record::RecordedRecording& recording = place.run->record.recording;
     if (row.here.size() <= published.variants.size()) fingerprints.insert(recording.fingerprint);
@@ -117,7 +119,7 @@ void add_here(PaperTable& paper, const RunsHere& here, const std::set<std::strin
   row.common_ratio = ratio_of(std::span<const std::optional<double>>(common).first(count));
 }
 
-bool has_common_ratio(const PublishedTable& table) { return table.ratio && table.value->name == "aie_grey"; }
+bool has_common_ratio(const PublishedTable& table) { return table.ratio && table.value->key == "aie_grey"; }
 
 text::TableCells heading_of(const PaperTable& paper) {
   const PublishedTable& table = paper.of;
@@ -131,7 +133,7 @@ text::TableCells heading_of(const PaperTable& paper) {
 }
 
 text::TableCells cells_of(const PublishedTable& table, const PaperRow& row) {
-  const suites::StudyValue& value = *table.value;
+  const registry::RunMetric& value = *table.value;
   text::TableCells cells = {row.group, row.label, row.data.empty() ? "not run" : row.data};
   for (const auto& number : row.published)
     cells.push_back(text::number_cell(number, value.shown_factor, value.decimals));
@@ -145,7 +147,7 @@ text::TableCells cells_of(const PublishedTable& table, const PaperRow& row) {
 
 std::vector<std::string> notes_of(const PublishedTable& table) {
   std::vector<std::string> notes = {
-      fmt::format("{}: {}.", table.title, table.value->label),
+      fmt::format("{}: {}.", table.title, table.value->heading),
       fmt::format("Published: {}; {}.", table.source,
                   table.verified ? "read in the source itself" : "NOT verified in the sources"),
       "Here: run with this program, on the recordings that the column names. Columns of the one and the "
@@ -181,7 +183,7 @@ std::string csv(const PaperTable& table) {
     const auto add = [&](const char* from, bool verified, const std::string& system,
                          const std::optional<double>& number) {
       if (!number) return;
-      text += fmt::format("{},{},{},{},{},{},{},{}\n", table.of.name, table.of.value->name,
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", table.of.name, table.of.value->key,
                           text::csv_cell(row.group), text::csv_cell(row.label), from, verified,
                           text::csv_cell(system), *number);
     };
@@ -210,9 +212,9 @@ std::string json(const PaperTable& table) {
                     {"here_ratio", number(row.here_ratio)},
                     {"here_ratio_common_pixels", number(row.common_ratio)}});
   }
-  const Json document = {{"table", table.of.name},        {"title", table.of.title},
-                         {"source", table.of.source},     {"verified", table.of.verified},
-                         {"value", table.of.value->name}, {"rows", std::move(rows)},
+  const Json document = {{"table", table.of.name},       {"title", table.of.title},
+                         {"source", table.of.source},    {"verified", table.of.verified},
+                         {"value", table.of.value->key}, {"rows", std::move(rows)},
                          {"notes", table.notes}};
   return text::json_text(document) + "\n";
 }

@@ -55,11 +55,11 @@ Result<void> read_numbers(const config::TomlEntry& entry, std::vector<std::optio
   return {};
 }
 
-Result<void> read_value(const config::TomlEntry& entry, const suites::StudyValue*& value) {
+Result<void> read_value(const config::TomlEntry& entry, const registry::RunMetric*& value) {
   std::string name;
   if (auto read = read_text(entry, name); !read) return read;
-  value = suites::find_study_value(name);
-  if (value == nullptr || value->of == nullptr)
+  value = registry::find_metric(name);
+  if (value == nullptr || value->takes_several_runs())
     return config::wrong_value(entry, fmt::format("a value of runs, such as ate_rmse_m (is '{}')", name));
   return {};
 }

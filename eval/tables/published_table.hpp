@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "eval/suites/study_values.hpp"
+#include "eval/registry/run_metric.hpp"
 
 namespace fusebench::tables {
 
@@ -26,7 +26,7 @@ struct PublishedTable {
   std::string source;
   bool verified = false;  ///< read again in the source itself
   std::string note;
-  const suites::StudyValue* value = nullptr;  ///< what of a run here stands beside it
+  const registry::RunMetric* value = nullptr;  ///< what of a run here stands beside it
   std::vector<std::string> systems;
   std::vector<std::string> variants = {"full"};  ///< run here; with `ratio` in the order of the systems
   bool ratio = false;                            ///< the first system or variant over the last

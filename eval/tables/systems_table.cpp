@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "eval/record/data_labels.hpp"
+#include "eval/registry/run_numbers.hpp"
 #include "eval/run_files/run_labels.hpp"
 #include "eval/tables/published_table.hpp"
 #include "eval/text/json_text.hpp"
@@ -22,68 +24,15 @@ namespace fusebench::tables {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Value = std::optional<double>;
-
-/// A number of the rows: where it is, how it is called and shown, and what of a run it is.
-struct SystemColumn {
-  const char* key;      ///< of CSV and JSON, in the unit of the number
-  const char* heading;  ///< for people
-  double shown_factor;
-  int decimals;
-  std::optional<MedianRange> SystemRow::*value;
-  Value (*of)(const record::RunRecord& record);
-};
-
-Value ate_of(const record::RunRecord& record) {
-  return record.metrics.ate.value ? Value(record.metrics.ate.value->stats.rmse) : std::nullopt;
+std::span<const registry::RunMetric* const> columns() {
+  return registry::columns_of(registry::Column::systems);
 }
-Value rpe_of(const record::RunRecord& record) {
-  const auto& rpe = record.metrics.rpe_second.value;
-  return rpe ? Value(rpe->translation.rmse) : std::nullopt;
-}
-Value pose_aie_of(const record::RunRecord& record) {
-  const auto& intensity = record.metrics.pose_intensity.value;
-  return intensity ? Value(intensity->aie_grey) : std::nullopt;
-}
-Value mesh_of(const record::RunRecord& record) {
-  const auto& mesh = record.metrics.mesh.value;
-  return mesh ? Value(mesh->poses.accuracy.stats.mean) : std::nullopt;
-}
-Value lost_of(const record::RunRecord& record) {
-  if (record.frames.total == 0) return std::nullopt;
-  return 1 - static_cast<double>(record.frames.tracked) / static_cast<double>(record.frames.total);
-}
-Value silent_of(const record::RunRecord& record) {
-  const auto silent = record.metrics.silent_frames();
-  return silent ? Value(static_cast<double>(*silent)) : std::nullopt;
-}
-Value cpu_of(const record::RunRecord& record) {
-  if (record.frames.total == 0 || !(record.timing.cpu_s > 0)) return std::nullopt;
-  return 1000 * record.timing.cpu_s / static_cast<double>(record.frames.total);
-}
-Value memory_of(const record::RunRecord& record) {
-  return record.timing.peak_rss_bytes > 0 ? Value(static_cast<double>(record.timing.peak_rss_bytes))
-                                          : std::nullopt;
-}
-
-constexpr std::array kColumns = {
-    SystemColumn{"ate_rmse_m", "ATE [cm]", 100, 2, &SystemRow::ate_m, ate_of},
-    SystemColumn{"rpe_second_m", "RPE [cm/s]", 100, 2, &SystemRow::rpe_second_m, rpe_of},
-    SystemColumn{"pose_aie_grey", "AIE of poses", 1, 2, &SystemRow::pose_aie_grey, pose_aie_of},
-    SystemColumn{"mesh_m", "mesh [cm]", 100, 2, &SystemRow::mesh_m, mesh_of},
-    SystemColumn{"lost_share", "lost [%]", 100, 1, &SystemRow::lost_share, lost_of},
-    SystemColumn{"silent", "silent", 1, 0, &SystemRow::silent, silent_of},
-    SystemColumn{"cpu_ms", "CPU [ms]", 1, 0, &SystemRow::cpu_ms, cpu_of},
-    SystemColumn{"memory_bytes", "memory [MB]", 1e-6, 0, &SystemRow::memory_bytes, memory_of}};
 
 constexpr std::size_t kTextColumns = 6;
 
-std::optional<MedianRange> median_range(std::vector<double> values) {
-  if (values.empty()) return std::nullopt;
-  std::ranges::sort(values);
-  const std::size_t middle = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  return MedianRange{median, values.front(), values.back()};
+std::size_t position_of(std::string_view key) {
+  return static_cast<std::size_t>(std::ranges::find(columns(), key, &registry::RunMetric::key) -
+                                  columns().begin());
 }
 
 /// Runs of one system, in one version, over the same frames.
@@ -168,14 +117,14 @@ SystemRow row_of(const RunGroup& runs) {
     row.ok += ok ? 1 : 0;
     if (!ok && row.reason.empty()) row.reason = run->record.reason;
   }
-  for (const SystemColumn& column : kColumns) {
-    std::vector<double> values;
-    for (const run_files::FoundRun* const run : runs) {
-      if (run->record.status == record::RunStatus::failed) continue;
-      if (const Value value = column.of(run->record)) values.push_back(*value);
-    }
-    row.*column.value = median_range(std::move(values));
+  std::vector<registry::RunNumbers> numbers;
+  for (const run_files::FoundRun* const run : runs) {
+    if (run->record.status != record::RunStatus::failed) numbers.push_back(registry::numbers_of(run->record));
   }
+  for (const registry::RunMetric* column : columns()) {
+    row.values.push_back(registry::median_range(numbers, *column));
+  }
+  row.sensitivity = registry::sensitivity_of(numbers);
   return row;
 }
 
@@ -200,7 +149,9 @@ std::vector<SystemRow> published_rows(const std::string& recording) {
         row.data = "whole recording";
         row.system = table->systems[i];
         row.poses = "published";
-        row.ate_m = MedianRange{*published.published[i], *published.published[i], *published.published[i]};
+        row.values.resize(columns().size());
+        row.values[position_of("ate_rmse_m")] =
+            registry::MedianRange{*published.published[i], *published.published[i], *published.published[i]};
         rows.push_back(std::move(row));
       }
     }
@@ -208,26 +159,19 @@ std::vector<SystemRow> published_rows(const std::string& recording) {
   return rows;
 }
 
-std::string shown(const std::optional<MedianRange>& value, double factor, int decimals) {
-  if (!value) return "-";
-  const auto number = [&](double x) { return fmt::format("{:.{}f}", factor * x, decimals); };
-  if (number(value->least) == number(value->most)) return number(value->median);
-  return fmt::format("{} [{}, {}]", number(value->median), number(value->least), number(value->most));
-}
-
 std::string csv(const SystemsTable& table) {
   std::string text = "recording,data,imu,system,poses,runs,ok,reason";
-  for (const SystemColumn& column : kColumns) text += fmt::format(",{0},{0}_least,{0}_most", column.key);
-  text += "\n";
+  for (const registry::RunMetric* column : columns())
+    text += fmt::format(",{0},{0}_least,{0}_most", column->key);
+  text += ",sensitivity\n";
   for (const SystemRow& row : table.rows) {
     text += fmt::format("{},{},{},{},{},{},{},{}", text::csv_cell(row.recording), text::csv_cell(row.data),
                         text::csv_cell(row.imu), text::csv_cell(row.system), row.poses, row.runs, row.ok,
                         text::csv_cell(row.reason));
-    for (const SystemColumn& column : kColumns) {
-      const auto& value = row.*column.value;
+    for (const auto& value : row.values) {
       text += value ? fmt::format(",{},{},{}", value->median, value->least, value->most) : ",,,";
     }
-    text += "\n";
+    text += row.sensitivity ? fmt::format(",{}\n", *row.sensitivity) : ",\n";
   }
   return text;
 }
@@ -237,12 +181,13 @@ std::string json(const SystemsTable& table) {
   for (const SystemRow& row : table.rows) {
     Json line = {{"recording", row.recording}, {"data", row.data}, {"imu", row.imu}, {"system", row.system},
                  {"poses", row.poses},         {"runs", row.runs}, {"ok", row.ok},   {"reason", row.reason}};
-    for (const SystemColumn& column : kColumns) {
-      const auto& value = row.*column.value;
-      line[column.key] = nullptr;
-      if (value)
-        line[column.key] = {{"median", value->median}, {"least", value->least}, {"most", value->most}};
+    for (std::size_t i = 0; i < columns().size(); ++i) {
+      const auto& value = row.values[i];
+      Json& number = line[std::string(columns()[i]->key)];
+      number = nullptr;
+      if (value) number = {{"median", value->median}, {"least", value->least}, {"most", value->most}};
     }
+    line["sensitivity"] = row.sensitivity ? Json(*row.sensitivity) : Json(nullptr);
     rows.push_back(std::move(line));
   }
   return text::json_text({{"rows", rows}, {"protocol", table.footer}}) + "\n";
@@ -251,7 +196,7 @@ std::string json(const SystemsTable& table) {
 std::string latex(const SystemsTable& table, const LatexLayout& layout) {
   const auto lines = systems_table_cells(table);
   LatexTable latex;
-  latex.caption = "Systems: medians over the repetitions of a run, with their ranges.";
+  latex.caption = "Systems: medians over the repetitions and replicates of a run, with their ranges.";
   latex.label = "systems";
   latex.heading = lines.front();
   latex.text_columns = kTextColumns;
@@ -273,6 +218,10 @@ std::string markdown(const SystemsTable& table, std::size_t width) {
 }
 
 }  // namespace
+
+const std::optional<registry::MedianRange>& SystemRow::value(std::string_view key) const {
+  return values.at(position_of(key));
+}
 
 bool is_of_another_system(const record::RunRecord& record) {
   const auto method =
@@ -314,14 +263,17 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
     for (SystemRow& published : published_rows(recording)) table.rows.push_back(std::move(published));
   }
   table.footer = {
-      "Medians over the runs of a system with their ranges; one number where all are the same. Poses: online "
+      "Medians over the runs of a system (repetitions and replicates) with their ranges; one number where "
+      "all are "
+      "the same. Sensitivity: range / median of the ATE, how much of it is chance. Poses: online "
       "as each was known when its frame came, final as all were known at the end; published: numbers from "
       "elsewhere (see configs/paper), by protocols of their own, and not run here. KEY=VALUE: edited "
       "options; "
       "#: version of a program or configuration of a variant; [A:B]: frames, where rows of one system differ "
       "in them.",
       "ATE: rmse of positions after alignment, over the frames that have a pose: read it with the column "
-      "lost. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true surface; a "
+      "tracked. AIE of poses: docs/metrics.md. Mesh: mean distance of the reconstruction to the true "
+      "surface; a "
       "run has one, at its final poses where it has these. Silent: frames with a wrong pose. CPU: user and "
       "system time of all threads by the frames of the recording; of an external program everything it "
       "does."};
@@ -330,13 +282,15 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
 
 std::vector<std::vector<std::string>> systems_table_cells(const SystemsTable& table) {
   std::vector<std::vector<std::string>> lines{{"recording", "data", "IMU", "system", "poses", "runs"}};
-  for (const SystemColumn& column : kColumns) lines.front().emplace_back(column.heading);
+  for (const registry::RunMetric* column : columns()) lines.front().emplace_back(column->heading);
+  lines.front().emplace_back("sensitivity");
   for (const SystemRow& row : table.rows) {
     std::vector<std::string> line{
         row.recording, row.data,  row.imu,
         row.system,    row.poses, row.runs == 0 ? "" : fmt::format("{}/{} ok", row.ok, row.runs)};
-    for (const SystemColumn& column : kColumns)
-      line.push_back(shown(row.*column.value, column.shown_factor, column.decimals));
+    for (std::size_t i = 0; i < columns().size(); ++i)
+      line.push_back(registry::shown_text(*columns()[i], row.values[i]));
+    line.push_back(row.sensitivity ? fmt::format("{:.2f}", *row.sensitivity) : "");
     lines.push_back(std::move(line));
   }
   return lines;

@@ -1,22 +1,17 @@
-// Systems beside each other: one row a recording and system, over the repetitions of its run.
+// Systems beside each other: one row a recording and system, over the repetitions and replicates of its run.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "eval/registry/replicated_numbers.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/tables/table.hpp"
 
 namespace fusebench::tables {
-
-/// The median of a number over repetitions, with its range.
-struct MedianRange {
-  double median = 0;
-  double least = 0;
-  double most = 0;
-};
 
 struct SystemRow {
   std::string recording;
@@ -27,14 +22,12 @@ struct SystemRow {
   std::size_t runs = 0;
   std::size_t ok = 0;
   std::string reason;  ///< of the first run that is not ok
-  std::optional<MedianRange> ate_m;
-  std::optional<MedianRange> rpe_second_m;
-  std::optional<MedianRange> pose_aie_grey;
-  std::optional<MedianRange> mesh_m;        ///< mean distance of the reconstruction to the true surface
-  std::optional<MedianRange> lost_share;    ///< frames without a pose
-  std::optional<MedianRange> silent;        ///< silent failures
-  std::optional<MedianRange> cpu_ms;        ///< a frame
-  std::optional<MedianRange> memory_bytes;  ///< largest resident memory
+  /// Of the columns registry::Column::systems, in their order; nothing where no run has the number.
+  std::vector<std::optional<registry::MedianRange>> values = {};
+
+  std::optional<double> sensitivity = {};  ///< registry::sensitivity_of()
+
+  [[nodiscard]] const std::optional<registry::MedianRange>& value(std::string_view key) const;
 };
 
 struct SystemsTable {

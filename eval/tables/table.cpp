@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -11,12 +10,12 @@
 #include <tuple>
 #include <utility>
 
-#include "core/base/geometry.hpp"
 #include "eval/metrics/intensity_file.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/record_files.hpp"
+#include "eval/run_files/replicate_groups.hpp"
 #include "eval/run_files/run_labels.hpp"
 #include "eval/tables/common_pixels.hpp"
 
@@ -25,10 +24,6 @@ namespace fusebench::tables {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::optional<double> finite(double value) {
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
 
 TableRow row_of(const run_files::FoundRun& run, const run_files::RunTraits& traits, std::string label) {
   const record::RunRecord& record = run.record;
@@ -46,18 +41,40 @@ TableRow row_of(const run_files::FoundRun& run, const run_files::RunTraits& trai
   row.status = record.status;
   row.reason = record.reason;
   row.silent = record.metrics.silent_frames();
-  if (record.metrics.aie.value) row.aie_grey = finite(record.metrics.aie.value->all.aie_grey);
-  if (record.metrics.ate.value) row.ate_rmse_m = finite(record.metrics.ate.value->stats.rmse);
-  if (record.metrics.ate_fitted.value) row.ate_fitted_m = finite(record.metrics.ate_fitted.value->stats.rmse);
-  if (record.metrics.rpe_second.value) {
-    row.rpe_second_m = finite(record.metrics.rpe_second.value->translation.rmse);
-    row.rpe_second_rad = finite(record.metrics.rpe_second.value->rotation.rmse);
-  }
+  row.numbers = registry::numbers_of(record);
   row.tracked = record.frames.tracked;
   row.total = record.frames.total;
-  if (record.model.vertices > 0) row.vertices = record.model.vertices;
-  if (record.timing.fps > 0) row.fps = record.timing.fps;
+  row.ok_members = record.status == record::RunStatus::ok ? 1 : 0;
   return row;
+}
+
+/// Medians over the replicates that are ok, and the status of the first one that is not.
+void add_replicates(const std::vector<run_files::FoundRun>& runs, TableRow& row) {
+  row.ok_members = 0;
+  for (const std::size_t member : row.members) {
+    const record::RunRecord& record = runs[member].record;
+    if (record.status == record::RunStatus::ok) {
+      row.replicates.push_back(registry::numbers_of(record));
+      ++row.ok_members;
+    } else if (row.status == record::RunStatus::ok) {
+      row.status = record.status;
+      row.reason = record.reason;
+    }
+  }
+  if (row.replicates.empty()) return;
+  row.numbers = registry::medians_of(row.replicates);
+  const auto median = [&](std::string_view key) {
+    return static_cast<std::size_t>(std::lround(row.numbers[key].value_or(0)));
+  };
+  row.tracked = median("frames_tracked");
+  if (row.silent) row.silent = median("silent_failures");
+}
+
+/// "replicate" of a run is said in its numbers, and in no label.
+run_files::RunTraits traits_of_row(const run_files::FoundRun& first) {
+  run_files::RunTraits traits = run_files::traits_of(first);
+  traits.replicate = 0;
+  return traits;
 }
 
 /// Whether a run's intensity differences are not those that it wrote; the table says so then.
@@ -74,18 +91,22 @@ bool is_damaged(const run_files::FoundRun& run, ResultTable& table) {
 
 /// Fills the common-pixel column, one recording (by content) at a time.
 void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable& table) {
-  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
+  const auto run_of = [&](std::size_t row) -> const run_files::FoundRun& {
+    return runs[table.rows[row].members.front()];
+  };
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;  // of rows
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
     // An imported run says nothing of intensities.
-    if (runs[i].record.status != record::RunStatus::ok || !runs[i].record.metrics.aie.value) continue;
-    groups[{runs[i].record.recording.name, runs[i].record.recording.fingerprint}].push_back(i);
+    const record::RunRecord& record = run_of(i).record;
+    if (record.status != record::RunStatus::ok || !record.metrics.aie.value) continue;
+    groups[{record.recording.name, record.recording.fingerprint}].push_back(i);
   }
   for (auto& [recording, members] : groups) {
     if (members.size() < 2) continue;
-    std::erase_if(members, [&](std::size_t member) { return is_damaged(runs[member], table); });
+    std::erase_if(members, [&](std::size_t member) { return is_damaged(run_of(member), table); });
     if (members.size() < 2) continue;
     std::vector<fs::path> files;
-    for (const std::size_t member : members) files.push_back(runs[member].folder / "intensity.bin");
+    for (const std::size_t member : members) files.push_back(run_of(member).folder / "intensity.bin");
     const auto common = common_pixel_error(files);
     if (!common) {
       table.notes.push_back(
@@ -93,7 +114,8 @@ void add_common_pixels(const std::vector<run_files::FoundRun>& runs, ResultTable
       continue;
     }
     for (std::size_t k = 0; k < members.size(); ++k) {
-      table.rows[members[k]].aie_common_grey = finite((*common)[k].aie_grey);
+      table.rows[members[k]].numbers.set(registry::run_metric(registry::kCommonPixelsKey),
+                                         (*common)[k].aie_grey);
     }
     const metrics::IntensitySummary& summary = common->front();
     table.notes.push_back(fmt::format(
@@ -109,7 +131,9 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::ve
   std::vector<std::set<std::string>> recordings;
   // Of a run that failed early or is damaged the frames may be unknown: it is no window of its own.
   std::vector<std::set<std::tuple<std::string, std::size_t, std::size_t>>> windows;
-  std::vector<std::array<std::size_t, 6>> counts;
+  const auto columns = registry::columns_of(registry::Column::runs);
+  std::vector<std::vector<double>> sums;  // by mean and column
+  std::vector<std::vector<std::size_t>> counts;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const TableRow& row = rows[i];
     const auto same = [&](const TableMean& m) {
@@ -120,7 +144,8 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::ve
       means.push_back({row.data, row.imu, row.truth, row.variant, labels[i], 0, 0, 0, 0, {}, 0});
       recordings.emplace_back();
       windows.emplace_back();
-      counts.emplace_back();
+      sums.emplace_back(columns.size());
+      counts.emplace_back(columns.size());
     }
     TableMean& mean = means[at];
     recordings[at].insert(row.recording);
@@ -129,20 +154,19 @@ std::vector<TableMean> means_of(const std::vector<TableRow>& rows, const std::ve
     if (row.status != record::RunStatus::ok) continue;
     ++mean.ok;
     if (row.silent.value_or(0) > 0) ++mean.silent;
-    for (std::size_t c = 0; c < table_columns().size(); ++c) {
-      const auto value = table_columns()[c].value;
-      if (!(row.*value)) continue;
-      mean.values.*value = (mean.values.*value).value_or(0) + *(row.*value);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const auto value = row.numbers[*columns[c]];
+      if (!value) continue;
+      sums[at][c] += *value;
       ++counts[at][c];
     }
   }
   for (std::size_t at = 0; at < means.size(); ++at) {
     means[at].recordings = recordings[at].size();
     means[at].windows = windows[at].size();
-    for (std::size_t c = 0; c < table_columns().size(); ++c) {
-      auto& value = means[at].values.*(table_columns()[c].value);
-      if (counts[at][c] < means[at].ok) value.reset();
-      if (value) *value /= static_cast<double>(means[at].ok);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (means[at].ok > 0 && counts[at][c] == means[at].ok)
+        means[at].values.set(*columns[c], sums[at][c] / static_cast<double>(means[at].ok));
     }
   }
   std::erase_if(means, [](const TableMean& mean) { return mean.recordings < 2; });
@@ -172,6 +196,14 @@ std::vector<std::string> footer_of(const ResultTable& table) {
         "(evaluation.silent_*), which the method does not report; a jump, as where a lost tracker finds "
         "itself, counts for that second.");
   }
+  if (has_replicates(table)) {
+    footer.push_back(
+        "A [B, C]: median and range over replicates, runs from initial poses that differ by noise far below "
+        "what "
+        "sensors resolve. sensitivity: range / median of the ATE, how much of it is chance. AIE common is of "
+        "the "
+        "first replicate.");
+  }
   if (!table.means.empty()) {
     footer.push_back(
         "mean: arithmetic, of the variant's runs that are ok, whose number stands before that of all; over "
@@ -187,18 +219,27 @@ std::vector<std::string> footer_of(const ResultTable& table) {
 
 }  // namespace
 
+bool has_replicates(const ResultTable& table) {
+  return std::ranges::any_of(table.rows, [](const TableRow& row) { return row.members.size() > 1; });
+}
+
 ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   ResultTable table;
-  const std::vector<run_files::RunTraits> traits = run_files::traits_of(runs);
+  const auto groups = run_files::replicate_groups(runs);
+  std::vector<run_files::RunTraits> traits;
+  for (const auto& group : groups) traits.push_back(traits_of_row(runs[group.front()]));
   const std::vector<std::string> labels = run_files::run_labels(traits);
   std::vector<std::string> configurations = run_files::differing_edits(traits);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const run_files::FoundRun& run = runs[i];
-    table.rows.push_back(row_of(run, traits[i], labels[i]));
-    configurations[i] = run.record.variant + (configurations[i].empty() ? "" : " ") + configurations[i];
-    if (run.record.status == record::RunStatus::ok) continue;
-    table.notes.push_back(fmt::format("{}, {}: {}: {}", run.record.recording.name, labels[i],
-                                      record::to_string(run.record.status), run.record.reason));
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const run_files::FoundRun& first = runs[groups[i].front()];
+    TableRow row = row_of(first, traits[i], labels[i]);
+    row.members = groups[i];
+    if (row.members.size() > 1) add_replicates(runs, row);
+    configurations[i] = row.variant + (configurations[i].empty() ? "" : " ") + configurations[i];
+    if (row.status != record::RunStatus::ok)
+      table.notes.push_back(
+          fmt::format("{}, {}: {}: {}", row.recording, row.label, record::to_string(row.status), row.reason));
+    table.rows.push_back(std::move(row));
   }
   if (const std::string shared = run_files::shared_edits(traits); !shared.empty())
     table.notes.push_back(fmt::format("all runs with {}", shared));
@@ -206,17 +247,6 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   table.means = means_of(table.rows, configurations);
   table.footer = footer_of(table);
   return table;
-}
-
-std::span<const TableColumn> table_columns() {
-  static constexpr std::array<TableColumn, 6> kColumns = {
-      {{"aie_grey", "grey", "AIE [grey]", 1, 3, &TableValues::aie_grey},
-       {"aie_common_grey", "grey", "AIE common [grey]", 1, 3, &TableValues::aie_common_grey},
-       {"ate_rmse_m", "m", "ATE [cm]", 100, 2, &TableValues::ate_rmse_m},
-       {"ate_fitted_m", "m", "ATE fitted [cm]", 100, 2, &TableValues::ate_fitted_m},
-       {"rpe_1s_m", "m", "RPE [cm/s]", 100, 2, &TableValues::rpe_second_m},
-       {"rpe_1s_rad", "rad", "RPE [deg/s]", kDegreesPerRadian, 2, &TableValues::rpe_second_rad}}};
-  return kColumns;
 }
 
 }  // namespace fusebench::tables

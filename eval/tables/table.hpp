@@ -12,34 +12,18 @@
 
 #include "core/base/error.hpp"
 #include "eval/record/record.hpp"
+#include "eval/registry/replicated_numbers.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/tables/latex_table.hpp"
 
 namespace fusebench::tables {
 
-/// Numbers that do not exist are absent, never 0 or NaN.
-struct TableValues {
-  std::optional<double> aie_grey;
-  std::optional<double> aie_common_grey;  ///< on the pixels that all ok runs of this recording share
-  std::optional<double> ate_rmse_m;
-  std::optional<double> ate_fitted_m;  ///< with a fitted offset of the body, where the motion tells it
-  std::optional<double> rpe_second_m;  ///< rmse over 1 s
-  std::optional<double> rpe_second_rad;
-};
-
-/// What is known of each of them.
-struct TableColumn {
-  const char* key;      ///< of CSV and JSON
-  const char* unit;     ///< of the number
-  const char* heading;  ///< of tables for people, with the unit that they show
-  double shown_factor;
-  int decimals;
-  std::optional<double> TableValues::*value;
-};
-[[nodiscard]] std::span<const TableColumn> table_columns();  ///< in all of them, less is better
-
-/// One run.
-struct TableRow : TableValues {
+/// One run, or the replicates of one.
+struct TableRow {
+  std::vector<std::size_t> members = {};              ///< indices of its runs; the first one names it
+  registry::RunNumbers numbers;                       ///< of replicates: medians over those that are ok
+  std::vector<registry::RunNumbers> replicates = {};  ///< of each that is ok, where there are several
+  std::size_t ok_members = 0;                         ///< of `members`
   std::string recording;
   std::string data;   ///< "recorded", "simulated", kUnknownWord
   std::string imu;    ///< "none", "recorded", "synthetic IMU", kUnknownWord
@@ -50,13 +34,12 @@ struct TableRow : TableValues {
   std::size_t first_frame = 0;                             ///< of its window of the recording
   int repetition = 1;
   std::string run;  ///< folder name, hash8
-  record::RunStatus status = record::RunStatus::failed;
+  record::RunStatus status =
+      record::RunStatus::failed;  ///< of the first replicate that is not ok, if there is one
   std::string reason;
   std::optional<std::size_t> silent;  ///< silent failures; absent without truth
   std::size_t tracked = 0;
   std::size_t total = 0;
-  std::optional<std::size_t> vertices;  ///< of the model, if there is one
-  std::optional<double> fps;
 };
 
 /// Of the runs of a variant with the same options on data of one kind.
@@ -69,17 +52,22 @@ struct TableMean {
   std::size_t recordings = 0;  ///< different ones
   std::size_t ok = 0;
   std::size_t total = 0;
-  std::size_t silent = 0;   ///< runs with silent failures among the ok ones
-  TableValues values;       ///< each over all ok runs; absent where one of them does not have it
+  std::size_t silent = 0;  ///< runs with silent failures among the ok ones
+  registry::RunNumbers
+      values;               ///< of columns, each over all ok runs; absent where one of them does not have it
   std::size_t windows = 0;  ///< different stretches of frames of these recordings, together
 };
 
 struct ResultTable {
-  std::vector<TableRow> rows;       ///< by recording, then variant in the order of all_variants(), then run
+  std::vector<TableRow> rows;  ///< by recording, then variant in the order of all_variants(), then run; a row
+                               ///< for all replicates of a run
   std::vector<TableMean> means;     ///< where there are several recordings; of one variant after the other
   std::vector<std::string> notes;   ///< what a reader must know: reasons, runs left out of the common pixels
   std::vector<std::string> footer;  ///< the protocol of each column
 };
+
+/// Whether any row is over several replicates.
+[[nodiscard]] bool has_replicates(const ResultTable& table);
 
 /// Reads the intensity differences beside the records.
 [[nodiscard]] ResultTable table_of(const std::vector<run_files::FoundRun>& runs);
@@ -87,8 +75,11 @@ struct ResultTable {
 /// The heading, a line a row and then a line a mean, as people see them: cm and degrees.
 [[nodiscard]] std::vector<std::vector<std::string>> table_cells(const ResultTable& table);
 
-/// A number of a column as people see it; "-" of what does not exist.
-[[nodiscard]] std::string shown_value(const TableColumn& column, const std::optional<double>& value);
+/// A row's number as people see it, with its range over replicates.
+[[nodiscard]] std::string shown_value(const registry::RunMetric& metric, const TableRow& row);
+
+/// A number of a metric as people see it; "-" of what does not exist.
+[[nodiscard]] std::string shown_value(const registry::RunMetric& metric, const std::optional<double>& value);
 
 /// The places of the cells in which a run is the best of its recording's ok runs over the same frames, if
 /// there are others; all that are shown as the best one is are best.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
 
-#include "core/base/geometry.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/tables/latex_table.hpp"
 #include "eval/tables/table.hpp"
@@ -20,25 +22,46 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextColumns = 5;  // recording, data, IMU, variant, status: left-aligned
 
-Cells header_cells() {
+std::span<const registry::RunMetric* const> columns() { return registry::columns_of(registry::Column::runs); }
+
+/// Numbers of a run that files have beside the columns.
+constexpr std::array<std::string_view, 5> kBeside = {"silent_failures", "frames_tracked", "frames_total",
+                                                     "model_vertices", "fps"};
+
+/// All metrics that files have of a run.
+std::vector<const registry::RunMetric*> file_metrics() {
+  std::vector<const registry::RunMetric*> metrics(columns().begin(), columns().end());
+  for (const std::string_view key : kBeside) metrics.push_back(&registry::run_metric(key));
+  return metrics;
+}
+
+Cells header_cells(bool with_replicates) {
   Cells cells = {"recording", "data", "IMU", "variant", "status"};
-  for (const TableColumn& column : table_columns()) cells.emplace_back(column.heading);
+  for (const registry::RunMetric* column : columns()) cells.emplace_back(column->heading);
   cells.insert(cells.end(), {"tracked", "vertices", "fps"});
+  if (with_replicates) cells.emplace_back("sensitivity");
   return cells;
 }
 
-void add_values(const TableValues& values, Cells& cells) {
-  for (const TableColumn& column : table_columns())
-    cells.push_back(shown_value(column, values.*column.value));
+void add_values(const registry::RunNumbers& values, Cells& cells) {
+  for (const registry::RunMetric* column : columns()) cells.push_back(shown_value(*column, values[*column]));
 }
 
-Cells shown_cells(const TableRow& row) {
+/// "ok", "ok (12 silent)", and of replicates how many are: "4/5 ok (12 silent)".
+std::string status_cell(const TableRow& row) {
+  if (row.members.size() < 2) return record::status_text(row.status, row.silent);
+  return fmt::format("{}/{} {}", row.ok_members, row.members.size(),
+                     record::status_text(record::RunStatus::ok, row.silent));
+}
+
+Cells shown_cells(const TableRow& row, bool with_replicates) {
   Cells cells = {row.recording, record::data_cell({row.data, row.imu, row.truth}), row.imu, row.label,
-                 record::status_text(row.status, row.silent)};
-  add_values(row, cells);
-  cells.insert(cells.end(),
-               {fmt::format("{}/{}", row.tracked, row.total),
-                row.vertices ? fmt::format("{}", *row.vertices) : "-", text::number_cell(row.fps, 1, 1)});
+                 status_cell(row)};
+  for (const registry::RunMetric* column : columns()) cells.push_back(shown_value(*column, row));
+  cells.push_back(fmt::format("{}/{}", row.tracked, row.total));
+  for (const std::string_view key : {"model_vertices", "fps"})
+    cells.push_back(shown_value(registry::run_metric(key), row.numbers[key]));
+  if (with_replicates) cells.push_back(text::number_cell(registry::sensitivity_of(row.replicates), 1, 2));
   return cells;
 }
 
@@ -48,13 +71,13 @@ std::string mean_over(const TableMean& mean) {
   return fmt::format("mean over {} windows of {} recordings", mean.windows, mean.recordings);
 }
 
-Cells shown_cells(const TableMean& mean) {
+Cells shown_cells(const TableMean& mean, bool with_replicates) {
   Cells cells = {mean_over(mean), record::data_cell({mean.data, mean.imu, mean.truth}), mean.imu, mean.label,
                  mean.silent > 0 ? fmt::format("{}/{} ok ({} run{} silent)", mean.ok, mean.total, mean.silent,
                                                mean.silent == 1 ? "" : "s")
                                  : fmt::format("{}/{} ok", mean.ok, mean.total)};
   add_values(mean.values, cells);
-  cells.insert(cells.end(), {"", "", ""});
+  cells.insert(cells.end(), with_replicates ? 4 : 3, "");
   return cells;
 }
 
@@ -82,14 +105,15 @@ std::string latex(const ResultTable& table, const LatexLayout& layout) {
       "Each run, and means over recordings. Bold: the best of a recording's runs that are ok over the same "
       "frames.";
   latex.label = "runs";
-  latex.heading = header_cells();
+  const bool replicates = has_replicates(table);
+  latex.heading = header_cells(replicates);
   latex.text_columns = kTextColumns;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    latex.lines.push_back({shown_cells(table.rows[i]), best_cells(table, table.rows[i]),
+    latex.lines.push_back({shown_cells(table.rows[i], replicates), best_cells(table, table.rows[i]),
                            i > 0 && table.rows[i].recording != table.rows[i - 1].recording});
   }
   for (std::size_t i = 0; i < table.means.size(); ++i)
-    latex.lines.push_back({shown_cells(table.means[i]), {}, i == 0});
+    latex.lines.push_back({shown_cells(table.means[i], replicates), {}, i == 0});
   latex.footnotes = {count_line(table)};
   latex.footnotes.insert(latex.footnotes.end(), table.notes.begin(), table.notes.end());
   latex.footnotes.insert(latex.footnotes.end(), table.footer.begin(), table.footer.end());
@@ -108,15 +132,16 @@ std::string csv_identity(const TableRow& row) {
 
 std::string csv(const ResultTable& table) {
   std::string text = "recording,data,imu,truth,variant,run,options,first_frame,repetition,status,reason";
-  for (const TableColumn& column : table_columns()) text += fmt::format(",{}", column.key);
-  text += ",silent,tracked,total,vertices,fps\n";
+  for (const registry::RunMetric* metric : file_metrics()) text += fmt::format(",{}", metric->key);
+  text += ",replicates,sensitivity\n";
   for (const TableRow& row : table.rows) {
     text += fmt::format("{},{}", csv_identity(row), text::csv_cell(row.reason));
-    for (const TableColumn& column : table_columns())
-      text += row.*column.value ? fmt::format(",{}", *(row.*column.value)) : ",";
-    text += fmt::format(",{},{},{},{},{}\n", row.silent ? fmt::format("{}", *row.silent) : "", row.tracked,
-                        row.total, row.vertices ? fmt::format("{}", *row.vertices) : "",
-                        row.fps ? fmt::format("{}", *row.fps) : "");
+    for (const registry::RunMetric* metric : file_metrics()) {
+      const auto value = row.numbers[*metric];
+      text += value ? fmt::format(",{}", *value) : ",";
+    }
+    const auto sensitivity = registry::sensitivity_of(row.replicates);
+    text += fmt::format(",{},{}\n", row.members.size(), sensitivity ? fmt::format("{}", *sensitivity) : "");
   }
   return text;
 }
@@ -125,25 +150,30 @@ std::string csv_long(const ResultTable& table) {
   std::string text =
       "recording,data,imu,truth,variant,run,options,first_frame,repetition,status,metric,unit,value\n";
   for (const TableRow& row : table.rows) {
-    const auto add = [&](const char* metric, const char* unit, double value) {
-      text += fmt::format("{},{},{},{}\n", csv_identity(row), metric, unit, value);
-    };
-    for (const TableColumn& column : table_columns()) {
-      if (row.*column.value) add(column.key, column.unit, *(row.*column.value));
+    for (const registry::RunMetric* metric : file_metrics()) {
+      if (const auto value = row.numbers[*metric])
+        text += fmt::format("{},{},{},{}\n", csv_identity(row), metric->key, metric->unit, *value);
     }
-    if (row.silent) add("silent", "frames", static_cast<double>(*row.silent));
-    add("tracked", "frames", static_cast<double>(row.tracked));
-    add("total", "frames", static_cast<double>(row.total));
-    if (row.vertices) add("vertices", "", static_cast<double>(*row.vertices));
-    if (row.fps) add("fps", "1/s", *row.fps);
   }
   return text;
 }
 
-Json json_of(const TableValues& values) {
+Json json_of(const registry::RunNumbers& numbers, std::span<const registry::RunMetric* const> metrics) {
   Json json = Json::object();
-  for (const TableColumn& column : table_columns())
-    json[column.key] = values.*column.value ? Json(*(values.*column.value)) : Json(nullptr);
+  for (const registry::RunMetric* metric : metrics) {
+    const auto value = numbers[*metric];
+    json[std::string(metric->key)] = value ? Json(*value) : Json(nullptr);
+  }
+  return json;
+}
+
+/// {"ate_rmse_m": [least, most], ...} over the replicates.
+Json ranges_of(const TableRow& row) {
+  Json json = Json::object();
+  for (const registry::RunMetric* metric : file_metrics()) {
+    if (const auto range = registry::median_range(row.replicates, *metric))
+      json[std::string(metric->key)] = {range->least, range->most};
+  }
   return json;
 }
 
@@ -164,12 +194,9 @@ std::string json(const ResultTable& table) {
                  {"run", row.run},
                  {"status", record::to_string(row.status)},
                  {"reason", row.reason}};
-    json.update(json_of(row));
-    json.update(Json{{"silent", row.silent ? Json(*row.silent) : Json(nullptr)},
-                     {"tracked", row.tracked},
-                     {"total", row.total},
-                     {"vertices", row.vertices ? Json(*row.vertices) : Json(nullptr)},
-                     {"fps", row.fps ? Json(*row.fps) : Json(nullptr)}});
+    json.update(json_of(row.numbers, file_metrics()));
+    json["replicates"] = row.members.size();
+    if (row.replicates.size() > 1) json["ranges"] = ranges_of(row);
     rows.push_back(std::move(json));
   }
   Json means = Json::array();
@@ -178,7 +205,7 @@ std::string json(const ResultTable& table) {
                  {"variant", mean.variant}, {"label", mean.label},   {"recordings", mean.recordings},
                  {"n_ok", mean.ok},         {"n_total", mean.total}, {"n_silent", mean.silent},
                  {"windows", mean.windows}};
-    json.update(json_of(mean.values));
+    json.update(json_of(mean.values, columns()));
     means.push_back(std::move(json));
   }
   const auto ok = std::count_if(table.rows.begin(), table.rows.end(),
@@ -194,23 +221,39 @@ std::string json(const ResultTable& table) {
 
 }  // namespace
 
-std::string shown_value(const TableColumn& column, const std::optional<double>& value) {
-  return text::number_cell(value, column.shown_factor, column.decimals);
+std::string shown_value(const registry::RunMetric& metric, const TableRow& row) {
+  if (row.replicates.size() < 2 || metric.takes_several_runs())
+    return shown_value(metric, row.numbers[metric]);
+  return registry::shown_text(metric, registry::median_range(row.replicates, metric));
+}
+
+std::string shown_value(const registry::RunMetric& metric, const std::optional<double>& value) {
+  return text::number_cell(value, metric.shown_factor, metric.decimals);
+}
+
+/// Whether the ranges over replicates overlap, so that chance explains the difference.
+bool overlap(const TableRow& a, const TableRow& b, const registry::RunMetric& metric) {
+  if (a.replicates.size() < 2 || b.replicates.size() < 2) return false;
+  const auto of_a = registry::median_range(a.replicates, metric);
+  const auto of_b = registry::median_range(b.replicates, metric);
+  return of_a && of_b && of_a->overlaps(*of_b);
 }
 
 std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& row) {
   std::vector<std::size_t> best;
-  for (std::size_t c = 0; c < table_columns().size(); ++c) {
-    const TableColumn& column = table_columns()[c];
+  for (std::size_t c = 0; c < columns().size(); ++c) {
+    const registry::RunMetric& column = *columns()[c];
+    const std::optional<double> value = row.numbers[column];
     std::size_t others = 0;
-    bool is_best = row.status == record::RunStatus::ok && (row.*column.value).has_value();
+    bool is_best = row.status == record::RunStatus::ok && value;
     for (const TableRow& other : table.rows) {
       if (!is_best || &other == &row || other.recording != row.recording) continue;
       if (other.first_frame != row.first_frame || other.total != row.total) continue;
-      if (other.status != record::RunStatus::ok || !(other.*column.value)) continue;
+      const std::optional<double> of_other = other.numbers[column];
+      if (other.status != record::RunStatus::ok || !of_other) continue;
       ++others;
-      is_best = *(row.*column.value) <= *(other.*column.value) ||
-                shown_value(column, row.*column.value) == shown_value(column, other.*column.value);
+      is_best = *value <= *of_other || shown_value(column, value) == shown_value(column, of_other) ||
+                overlap(row, other, column);
     }
     if (is_best && others > 0) best.push_back(kTextColumns + c);
   }
@@ -218,9 +261,10 @@ std::vector<std::size_t> best_cells(const ResultTable& table, const TableRow& ro
 }
 
 std::vector<Cells> table_cells(const ResultTable& table) {
-  std::vector<Cells> lines = {header_cells()};
-  for (const TableRow& row : table.rows) lines.push_back(shown_cells(row));
-  for (const TableMean& mean : table.means) lines.push_back(shown_cells(mean));
+  const bool replicates = has_replicates(table);
+  std::vector<Cells> lines = {header_cells(replicates)};
+  for (const TableRow& row : table.rows) lines.push_back(shown_cells(row, replicates));
+  for (const TableMean& mean : table.means) lines.push_back(shown_cells(mean, replicates));
   return lines;
 }
 

@@ -20,7 +20,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Where Debian's Python looks, if the prefix is /usr; from another one, PYTHONPATH names it (docs/files.md).
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python/fusebench_runs DESTINATION lib/python3/dist-packages
-  FILES_MATCHING PATTERN "*.py")
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.json")
 install(FILES ${PROJECT_SOURCE_DIR}/scripts/python/report_figures.ipynb DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 # Manual pages and completions are what the program itself says, each time that it was linked.

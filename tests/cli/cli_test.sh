@@ -329,7 +329,7 @@ check_recordings() {
   checks=$((checks + 1))
   "$binary" list metrics >stdout 2>stderr || complain "list metrics: exit code $?"
   local metric
-  for metric in 'aie of poses' 'ate fitted' silent 'mesh accuracy' 'mesh completeness' nees coverage; do
+  for metric in ate_rmse_m ate_fitted_m silent_failures mesh_accuracy_m nees_pose coverage cpu_ms_per_frame; do
     grep -q "^$metric  " stdout || complain "list metrics: not $metric"
   done
   refused "a text that is nowhere" 2 "none of .* options contains 'voxl'" 'nearest' -- list options voxl
@@ -493,7 +493,7 @@ check_determinism() {
   [[ $(find one_more -name record.json | wc -l) == 2 ]] || complain "bench -j 2: not two runs"
 
   # A criterion decides the exit code.
-  printf '[[criteria]]\ntitle = "t"\nvariant = "no-imu"\nmetric = "lost_frames"\nstatistic = "worst"\nat_most = 0\n' >>suite.toml
+  printf '[[criteria]]\ntitle = "t"\nvariant = "no-imu"\nmetric = "frames_lost"\nstatistic = "worst"\nat_most = 0\n' >>suite.toml
   checks=$((checks + 1))
   "$binary" bench suite.toml --data data --out one --summary sums/s.json --summary-page s.html >stdout 2>stderr ||
     complain "a criterion that passes: exit code $?"

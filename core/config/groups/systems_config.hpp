@@ -18,6 +18,7 @@ constexpr auto option_choices(SystemMethod) {
 /// Which system runs.
 struct SystemConfig {
   SystemMethod method = SystemMethod::filter;
+  double replicate_noise = 1e-6;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.choice("method", self.method,
@@ -25,6 +26,10 @@ struct SystemConfig {
              "named after a system; InfiniTAM's method (Kaehler et al. 2015), OpenCV's odometries from frame "
              "to frame, or BundleFusion's method (Dai et al. 2017), all with the depth and tsdf options as "
              "well; or ElasticFusion's method (Whelan et al. 2015), with depth.min_m and max_m as well");
+    v.number(
+        "replicate_noise", self.replicate_noise, 0.0, 0.01,
+        "replicate k > 0 of a run (--replicates) begins at an initial pose that differs from the identity by "
+        "seeded noise of this standard deviation, in metres and radians");
   }
 };
 

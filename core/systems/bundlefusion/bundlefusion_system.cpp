@@ -33,7 +33,8 @@ BundlefusionSystem::BundlefusionSystem(const config::BundlefusionConfig& config,
       camera_(rig.camera),
       workers_(workers),
       graph_(config, workers),
-      model_(tsdf) {
+      model_(tsdf),
+      T_world_start_(rig.first_camera()) {
   cv::setNumThreads(workers.threads());
 }
 
@@ -81,7 +82,7 @@ View BundlefusionSystem::view_of(const RgbdFrame& frame) {
 /// The first frame that can be matched.
 std::optional<SE3> BundlefusionSystem::begin(View view) {
   if (view.keypoints.size() < kFewestKeypoints) return std::nullopt;
-  T_world_first_ = SE3{};
+  T_world_first_ = T_world_start_;
   start_chunk(std::move(view), frames_.size() - 1);
   return T_world_first_;
 }

@@ -71,6 +71,7 @@ class BundlefusionSystem final : public System {
   std::optional<Chunk> chunk_;                ///< the one that frames are added to
   std::vector<std::size_t> frames_of_chunk_;  ///< indices of its frames
   std::optional<SE3> T_world_first_;          ///< of its first frame; nothing if that is not known
+  SE3 T_world_start_;                         ///< of the first frame that can be matched
   SE3 T_world_camera_;                        ///< of the last frame that was not lost
   bool was_lost_ = false;
   Trajectory final_trajectory_;

@@ -34,7 +34,8 @@ ElasticfusionSystem::ElasticfusionSystem(const config::Config& config, const Sen
       fusion_(camera_, static_cast<float>(config.elasticfusion.stable_confidence),
               config.elasticfusion.time_window, workers),
       tracker_(config_.elasticfusion, workers),
-      loops_(config.elasticfusion, camera_, workers) {
+      loops_(config.elasticfusion, camera_, workers),
+      T_world_camera_(rig.first_camera()) {
   if (config_.elasticfusion.use_imu) inertial_.emplace(config_, rig_, imu);
 }
 

@@ -28,7 +28,8 @@ InfinitamSystem::InfinitamSystem(const config::InfinitamConfig& config, const co
       model_(tsdf),
       renderer_(camera_, depth_),
       tracker_(config_, depth_, camera_, workers),
-      relocaliser_(camera_, depth_, config_.defects) {}
+      relocaliser_(camera_, depth_, config_.defects),
+      T_world_camera_(rig.first_camera()) {}
 
 Result<health::FrameOutcome> InfinitamSystem::process(const RgbdFrame& frame) {
   health::FrameOutcome outcome;

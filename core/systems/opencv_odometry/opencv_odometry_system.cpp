@@ -9,7 +9,12 @@ namespace fusebench::systems::opencv_odometry {
 OpencvOdometrySystem::OpencvOdometrySystem(config::OdometryMethod method, const config::DepthConfig& depth,
                                            const config::TsdfConfig& tsdf, const SensorRig& rig,
                                            const Workers& workers)
-    : depth_(depth), camera_(rig.camera), workers_(workers), odometry_(method, camera_), model_(tsdf) {
+    : depth_(depth),
+      camera_(rig.camera),
+      workers_(workers),
+      odometry_(method, camera_),
+      T_world_camera_(rig.first_camera()),
+      model_(tsdf) {
   cv::setNumThreads(workers.threads());
 }
 

@@ -61,6 +61,12 @@ void add_suite_options(CLI::App& verb, engine::Invocation& invocation) {
       ->check(CLI::Range(1, run::kMostRepetitions))
       ->type_name("N");
   verb.add_option(
+          "--replicates", invocation.overrides.replicates,
+          "Makes each run N times from initial poses that differ by noise far below what sensors resolve: "
+          "what differs is chance. Tables then show medians and ranges; default: as the suite says")
+      ->check(CLI::Range(1, run::kMostReplicates))
+      ->type_name("N");
+  verb.add_option(
           "--keep", invocation.overrides.kept,
           "Files of each run: all, or small (no model, patches, states and pixels: a hundredth of the "
           "space); default: as the suite says")

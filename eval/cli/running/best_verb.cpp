@@ -11,6 +11,7 @@
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/console/table_width.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/registry/run_metric.hpp"
 
 namespace fusebench::cli::running {
 
@@ -31,7 +32,7 @@ Result<int> best(const BestOptions& options) {
   const auto format = aggregate::parse_best_format(options.json ? "json" : options.format);
   if (!format) return tl::unexpected(format.error());
   aggregate::BestRequest request = options.request;
-  const auto metric = aggregate::find_run_metric(options.by);
+  const auto metric = registry::find_ranking_metric(options.by);
   if (!metric) return tl::unexpected(metric.error());
   request.metric = *metric;
   const auto rows = aggregate::read_run_rows(options.runs, Workers(options.threads));

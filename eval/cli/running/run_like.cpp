@@ -90,6 +90,7 @@ Result<run::RunSpec> spec_like(const record::RunRecord& record, const console::R
     spec.frames = run::FrameWindow{record.recording.first_frame, record.recording.first_frame + count};
   spec.threads = request.threads;
   spec.repetition = record.repetition;
+  spec.replicate = record.replicate;
   return spec;
 }
 

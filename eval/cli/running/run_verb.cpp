@@ -28,6 +28,7 @@ struct RunOptions {
   std::filesystem::path system;
   std::filesystem::path like;
   int repetition = 1;
+  int replicates = 1;
   std::filesystem::path out = "results/runs";
   bool profile = false;
   bool json = false;
@@ -123,10 +124,11 @@ Result<run::PreparedRun> prepare_like(const RunOptions& options) {
 Result<void> check_alone(const CLI::App& verb) {
   if (verb.count("--like") == 0) return {};
   for (const char* const option :
-       {"--variant", "--imu", "--config", "--frames", "--repetition", "--system"}) {
+       {"--variant", "--imu", "--config", "--frames", "--repetition", "--replicates", "--system"}) {
     if (verb.count(option) > 0)
-      return fail(ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
-                  "a record says variant, options, IMU, frames and repetition; --set changes an option");
+      return fail(
+          ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
+          "a record says variant, options, IMU, frames, repetition and replicate; --set changes an option");
   }
   return {};
 }
@@ -140,23 +142,20 @@ Result<run::PreparedRun> prepare(const RunOptions& options) {
   return run::prepare_run(std::move(*spec));
 }
 
-Result<int> run(const RunOptions& options) {
-  const auto prepared = prepare(options);
-  if (!prepared) return tl::unexpected(prepared.error());
-  console::print_warnings(prepared->recording.warnings);
-  if (const auto unused = run::options_without_effect(prepared->spec.config))
-    console::print_progress("warning: " + *unused);
-
-  io::remove_abandoned(prepared->folder.parent_path());  // what an earlier one that was killed left
-  const std::string title = fmt::format("{} {}", prepared->recording.name, prepared->spec.variant);
+/// Executes one run and says how it ended.
+Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
+  io::remove_abandoned(prepared.folder.parent_path());  // what an earlier one that was killed left
+  const int replicate = prepared.spec.replicate;
+  const std::string title = fmt::format("{} {}{}", prepared.recording.name, prepared.spec.variant,
+                                        replicate > 0 ? fmt::format(" replicate {}", replicate) : "");
   console::ProgressBar bar(title);
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
       .stop = &console::stop_requested(),
       .bad_data_is_recorded = false};
-  const auto record = run::execute_run(*prepared, control);
+  auto record = run::execute_run(prepared, control);
   bar.clear();
-  if (!record) return tl::unexpected(record.error());
+  if (!record) return record;
 
   const std::string ending = record->status == record::RunStatus::ok
                                  ? console::summary_line(*record)
@@ -168,8 +167,28 @@ Result<int> run(const RunOptions& options) {
     console::print_progress("no ATE: " + ate.reason);
     if (!ate.hint.empty()) console::print_progress("  hint: " + ate.hint);
   }
-  console::print_output(options.json ? record::to_json(*record) : prepared->folder.string() + "\n");
-  return record->status == record::RunStatus::ok ? 0 : console::kExitRunFailed;
+  return record;
+}
+
+Result<int> run(const RunOptions& options) {
+  auto prepared = prepare(options);
+  if (!prepared) return tl::unexpected(prepared.error());
+  console::print_warnings(prepared->recording.warnings);
+  if (const auto unused = run::options_without_effect(prepared->spec.config))
+    console::print_progress("warning: " + *unused);
+  bool all_ok = true;
+  for (int k = 0; k < options.replicates; ++k) {
+    if (k > 0) {
+      run::RunSpec spec = prepared->spec;
+      spec.replicate = k;
+      *prepared = run::place_run(std::move(spec), std::move(prepared->recording));
+    }
+    const auto record = execute(*prepared);
+    if (!record) return tl::unexpected(record.error());
+    all_ok &= record->status == record::RunStatus::ok;
+    console::print_output(options.json ? record::to_json(*record) : prepared->folder.string() + "\n");
+  }
+  return all_ok ? 0 : console::kExitRunFailed;
 }
 
 }  // namespace
@@ -180,10 +199,11 @@ console::Verb add_run_verb(CLI::App& app) {
       app.add_subcommand("run", "Runs one variant over one recording and writes the run's folder");
   console::add_run_request(*verb, options->request);
   verb->get_option("RECORDING")->required(false);  // a record names one
-  verb->add_option("--like", options->like,
-                   "Repeats the run of this record.json, or of this run's folder: the same recording (by its "
-                   "name under --data, or RECORDING), variant, options, IMU, frames and repetition; --set "
-                   "changes something")
+  verb->add_option(
+          "--like", options->like,
+          "Repeats the run of this record.json, or of this run's folder: the same recording (by its "
+          "name under --data, or RECORDING), variant, options, IMU, frames, repetition and replicate; "
+          "--set changes something")
       ->type_name("RECORD");
   verb->add_option("--system", options->system,
                    "Runs the external program of this file in place of a variant (docs/systems.md)")
@@ -194,13 +214,22 @@ console::Verb add_run_verb(CLI::App& app) {
       ->check(CLI::Range(1, run::kMostRepetitions))
       ->type_name("N")
       ->capture_default_str();
+  verb->add_option(
+          "--replicates", options->replicates,
+          "Makes the run N times from initial poses that differ by noise far below what sensors resolve "
+          "(system.replicate_noise): what differs is chance")
+      ->check(CLI::Range(1, run::kMostReplicates))
+      ->type_name("N")
+      ->capture_default_str();
   verb->add_option("--out", options->out, "Results go to DIR/<recording>/<variant>/<hash8>/")
       ->type_name("DIR")
       ->capture_default_str();
   console::add_profile_flag(*verb, options->profile);
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "Prints the run's folder, or with --json its record. Exit code 4 if the run failed or was lost.");
+      "Prints the run's folder, or with --json its record; of replicates one after the other. Exit code 4 if "
+      "a run "
+      "failed or was lost.");
   return {verb, [options, verb] { return check_alone(*verb).and_then([&] { return run(*options); }); }};
 }
 

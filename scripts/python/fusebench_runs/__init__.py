@@ -11,8 +11,8 @@ where it is not installed), False for Columns, None (the default) for the one wh
 
 from .columns import Columns, table_of
 from .intensity import IntensityError, IntensityFrame, read_intensity
-from .runs import Run, open_runs, summary
+from .runs import METRICS, Run, open_runs, summary
 from .trajectories import Pose, position_errors, read_trajectory
 
-__all__ = ["Columns", "IntensityError", "IntensityFrame", "Pose", "Run", "open_runs", "position_errors", "read_intensity",
+__all__ = ["Columns", "IntensityError", "IntensityFrame", "METRICS", "Pose", "Run", "open_runs", "position_errors", "read_intensity",
            "read_trajectory", "summary", "table_of"]

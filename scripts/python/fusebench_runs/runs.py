@@ -10,6 +10,10 @@ from .trajectories import read_trajectory
 
 SCHEMA = 1
 
+#: What `fusebench list metrics` says of the numbers that records hold, by their keys.
+METRICS = {metric["metric"]: metric for metric in
+           json.loads((pathlib.Path(__file__).parent / "metrics.json").read_text(encoding="utf-8"))["metrics"] if metric["record"]}
+
 
 class Run:
     """A run's folder. `record` is its record.json (docs/record.schema.json)."""
@@ -71,6 +75,20 @@ class Run:
     def has(self, name):
         """Whether the run has that file."""
         return (self.folder / name).is_file()
+
+    def number(self, key):
+        """A number by the key that tables and gates have for it ("ate_rmse_m"; `fusebench list metrics`), NaN where there is none.
+
+        Raises KeyError for a key that no metric has, or whose number is computed from others (`fusebench collect` has those)."""
+        value = self.record
+        for name in METRICS[key]["record"].split("."):
+            if isinstance(value, list) and name.isdigit() and int(name) < len(value):
+                value = value[int(name)]
+            elif isinstance(value, dict) and name in value:
+                value = value[name]
+            else:
+                return math.nan
+        return value if isinstance(value, (int, float)) else math.nan
 
     def metric(self, path, default=math.nan):
         """A number of record["metrics"], by its path: "ate/stats/rmse"; default where there is none."""
@@ -149,20 +167,13 @@ def open_runs(folder):
 
 
 def summary(runs, frames=None):
-    """A row per run with the numbers that tables show."""
+    """A row per run with the numbers that are columns of tables, by their keys (`fusebench list metrics`)."""
     columns = {
         "recording": [run.recording for run in runs],
         "label": [run.label for run in runs],
         "status": [run.status for run in runs],
         "reason": [run.reason for run in runs],
-        "ate_rmse_m": [run.metric("ate/stats/rmse") for run in runs],
-        "rpe_second_rmse_m": [run.metric("rpe/second/translation/stats/rmse") for run in runs],
-        "rpe_second_rmse_rad": [run.metric("rpe/second/rotation/stats/rmse") for run in runs],
-        "aie_grey": [run.metric("aie/aie") for run in runs],
-        "mesh_accuracy_rmse_m": [run.metric("mesh/accuracy/rmse") for run in runs],
-        "coverage": [run.metric("coverage/share") for run in runs],
-        "silent": [run.metric("silent_failures/silent") for run in runs],
-        "fps": [run.record["timing"]["fps"] for run in runs],
+        **{key: [run.number(key) for run in runs] for key, metric in METRICS.items() if metric["tables"]},
         "folder": [str(run.folder) for run in runs],
     }
     return table_of(columns, frames)

@@ -52,6 +52,23 @@ TEST_P(EachSystem, GivesTheSameBytesWithAnyNumberOfThreads) {
   }
 }
 
+TEST_P(EachSystem, BeginsAtTheGivenPose) {
+  testing::SimulatedRun run = testing::simulate(6);
+  const config::Config config = testing::config_of_variant(GetParam());
+  const auto at_identity = testing::track_with(config, run);
+  const SE3 start = pose_plus(SE3{}, (Vector6d() << 0.3, -0.2, 0.1, 0.05, 0.02, -0.04).finished());
+  run.rig.T_world_first_camera = start;
+  const auto moved = testing::track_with(config, run);
+  EXPECT_LT((moved.outcomes.front().T_world_camera.translation - start.translation).norm(), 1e-12);
+  // The whole trajectory moves with it, up to what the grid of another model does.
+  for (std::size_t k = 0; k < moved.outcomes.size(); ++k) {
+    const SE3 expected = start * at_identity.outcomes[k].T_world_camera;
+    const Vector6d off = pose_minus(moved.outcomes[k].T_world_camera, expected);
+    EXPECT_LT(off.head<3>().norm(), 0.01) << "frame " << k;
+    EXPECT_LT(off.tail<3>().norm(), 0.01) << "frame " << k;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Variants, EachSystem, ::testing::ValuesIn(kVariants), [](const auto& variant) {
   std::string name = variant.param;
   std::erase(name, '-');

@@ -62,7 +62,7 @@ TEST(Pareto, ConfigurationsThatDidNotDoAllAreLeftOut) {
   auto rows = known_front();
   rows.push_back(sample_bad_row("desk", {{"a", "lost"}}, RunStatus::lost));
   rows.push_back(point("imported", 1, 0.001));
-  rows.back().cpu_ms_per_frame.reset();
+  rows.back().numbers.set(registry::run_metric("cpu_ms_per_frame"), std::nullopt);
   const ParetoFront front = pareto_front(rows, metric_of("ate"));
   EXPECT_EQ(front.left_out, 2U);
   EXPECT_EQ(front.front().size(), 4U);
@@ -71,7 +71,7 @@ TEST(Pareto, ConfigurationsThatDidNotDoAllAreLeftOut) {
 TEST(Pareto, RecordingsWithoutTheNumberDoNotCount) {
   auto rows = known_front();
   rows.push_back(sample_row("walk", {{"a", "fast"}}, 0, 1000));
-  rows.back().ate_rmse_m.reset();
+  rows.back().numbers.set(registry::run_metric("ate_rmse_m"), std::nullopt);
   const ParetoFront front = pareto_front(rows, metric_of("ate"));
   EXPECT_EQ(front.recordings, (std::vector<std::string>{"desk"}));
   EXPECT_DOUBLE_EQ(front.front()[0].cpu_ms_per_frame, 10);

@@ -21,8 +21,8 @@ inline aggregate::RunRow sample_row(std::string recording, aggregate::RunOptions
   row.options = std::move(options);
   row.status = record::RunStatus::ok;
   row.total = row.tracked = 100;
-  row.ate_rmse_m = ate_m;
-  row.cpu_ms_per_frame = cpu_ms_per_frame;
+  row.numbers.set(registry::run_metric("ate_rmse_m"), ate_m);
+  row.numbers.set(registry::run_metric("cpu_ms_per_frame"), cpu_ms_per_frame);
   return row;
 }
 
@@ -30,7 +30,7 @@ inline aggregate::RunRow sample_row(std::string recording, aggregate::RunOptions
 inline aggregate::RunRow sample_bad_row(std::string recording, aggregate::RunOptions options,
                                         record::RunStatus status) {
   aggregate::RunRow row = sample_row(std::move(recording), std::move(options), 0);
-  static_cast<aggregate::RunNumbers&>(row) = {};
+  row.numbers = {};
   row.status = status;
   row.reason = "lost at frame 12";
   return row;
@@ -43,8 +43,8 @@ inline std::vector<aggregate::RunRow> shuffled(std::vector<aggregate::RunRow> ro
 }
 
 /// By its word.
-inline const aggregate::RunMetric& metric_of(const char* word) {
-  return *aggregate::find_run_metric(word).value();
+inline const registry::RunMetric& metric_of(const char* word) {
+  return *registry::find_ranking_metric(word).value();
 }
 
 }  // namespace fusebench::testing

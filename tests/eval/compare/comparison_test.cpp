@@ -334,6 +334,76 @@ TEST_F(ComparisonTest, RepetitionsThatDifferAreARegression) {
   EXPECT_NE(gate(comparison, "repetitions")->message.find("frame 3"), std::string::npos);
 }
 
+TEST_F(ComparisonTest, WhatOnlyMakesPosesWrongFails) {
+  const auto with_truth = [](std::size_t silent, double nees, double final_m) {
+    RunRecord record = good_record();
+    RecordedSilentFailures failures;
+    failures.failures.judged = kFrames;
+    failures.failures.silent = silent;
+    record.metrics.silent = {failures, {}};
+    NeesResult pose;
+    pose.part = kStateParts[5];
+    pose.stats = statistics(std::vector<double>{nees});
+    record.metrics.nees[5] = {pose, {}};
+    record.final_metrics = record.metrics;
+    record.final_metrics->ate.value->stats.rmse = final_m;
+    return record;
+  };
+  add("base", with_truth(2, 1.2, 0.01));
+  add("new", with_truth(6, 1.2, 0.01));
+  EXPECT_EQ(gate(compare(), "silent_failures")->verdict, GateVerdict::regression);
+  add("new", with_truth(2, 0.6, 0.01));
+  EXPECT_EQ(gate(compare(), "nees_pose")->verdict, GateVerdict::regression);
+  EXPECT_EQ(gate(compare(), "silent_failures"), nullptr);
+  add("new", with_truth(2, 1.2, 0.02));
+  EXPECT_EQ(gate(compare(), "ate_revised_m")->verdict, GateVerdict::regression);
+  EXPECT_EQ(gate(compare(), "ate_rmse_m"), nullptr);
+  add("new", with_truth(2, 1.2, 0.01));
+  EXPECT_TRUE(compare().passed());
+}
+
+TEST_F(ComparisonTest, ReplicatesWithOtherSeedsRaiseNoAlarmAndAWorseMethodDoes) {
+  std::mt19937_64 generator(7);
+  const auto add_side = [&](const std::string& side, double factor) {
+    std::filesystem::remove_all(folder_ / side);
+    for (int replicate = 0; replicate < 5; ++replicate) {
+      RunRecord record = good_record();
+      record.replicate = replicate;
+      const double chance = 1 + 0.2 * static_cast<double>(generator() >> 11) * 0x1p-53;
+      record.metrics.ate.value->stats.rmse *= factor * chance;
+      record.metrics.aie.value->all.aie_grey *= factor * chance;
+      record.model.vertices += generator() % 10;
+      add(side, record, trajectory(3, 1e-3 * chance), replicate);
+    }
+  };
+  add_side("base", 1);
+  for (int i = 0; i < 20; ++i) {
+    add_side("new", 1);
+    const RunComparison comparison = compare();
+    EXPECT_TRUE(comparison.passed()) << i;
+    EXPECT_EQ(comparison.runs.size(), 1U);
+  }
+  add_side("new", 2);
+  const RunComparison worse = compare();
+  EXPECT_EQ(gate(worse, "ate_rmse_m")->verdict, GateVerdict::regression);
+  EXPECT_NE(gate(worse, "ate_rmse_m")->message.find("ranges of replicates"), std::string::npos);
+  add_side("new", 0.4);
+  EXPECT_EQ(gate(compare(), "ate_rmse_m")->verdict, GateVerdict::improvement);
+}
+
+TEST_F(ComparisonTest, TooFewReplicatesAreComparedAsSingleRuns) {
+  for (const char* side : {"base", "new"}) {
+    for (int replicate = 0; replicate < 2; ++replicate) {
+      RunRecord record = good_record();
+      record.replicate = replicate;
+      record.metrics.ate.value->stats.rmse *= 1 + 0.1 * replicate;
+      add(side, record, trajectory(), replicate);
+    }
+  }
+  EXPECT_TRUE(compare().passed());
+  EXPECT_EQ(gate(compare(), "repetitions"), nullptr);  // replicates are none
+}
+
 TEST_F(ComparisonTest, AHundredComparisonsOfEqualRunsRaiseNoAlarm) {
   std::mt19937_64 generator(3);
   // A factor of a share around 1: what else runs on a machine is in the wall time.
@@ -362,17 +432,17 @@ TEST_F(ComparisonTest, SlowerRunsAreSuspectUntilARerunDecides) {
   add_timed("new", 7, 1.5, 2);
   RunComparison comparison = compare();
   EXPECT_EQ(comparison.failures(), 2U);
-  ASSERT_NE(gate(comparison, "cpu_s_per_frame"), nullptr);
-  EXPECT_EQ(gate(comparison, "cpu_s_per_frame")->verdict, GateVerdict::suspect);
-  EXPECT_NE(gate(comparison, "cpu_s_per_frame")->message.find("--confirm"), std::string::npos);
+  ASSERT_NE(gate(comparison, "cpu_ms_per_frame"), nullptr);
+  EXPECT_EQ(gate(comparison, "cpu_ms_per_frame")->verdict, GateVerdict::suspect);
+  EXPECT_NE(gate(comparison, "cpu_ms_per_frame")->message.find("--confirm"), std::string::npos);
   EXPECT_EQ(gate(comparison, "wall_s")->verdict, GateVerdict::suspect);
   EXPECT_EQ(gate(comparison, "peak_rss_bytes"), nullptr);
   add_timed("again", 7, 1.5, 3);
   comparison = compare({}, true);
-  EXPECT_EQ(gate(comparison, "cpu_s_per_frame")->verdict, GateVerdict::regression);
+  EXPECT_EQ(gate(comparison, "cpu_ms_per_frame")->verdict, GateVerdict::regression);
   add_timed("again", 7, 1.0, 4);
   comparison = compare({}, true);
-  EXPECT_EQ(gate(comparison, "cpu_s_per_frame")->verdict, GateVerdict::note);
+  EXPECT_EQ(gate(comparison, "cpu_ms_per_frame")->verdict, GateVerdict::note);
   EXPECT_TRUE(comparison.passed());
 }
 
@@ -386,7 +456,7 @@ TEST_F(ComparisonTest, TimesOfOtherMachinesAreNotGated) {
   }
   const RunComparison comparison = compare();
   EXPECT_TRUE(comparison.passed());
-  EXPECT_NE(gate(comparison, "cpu_s_per_frame")->message.find("not gated: other CPU models"),
+  EXPECT_NE(gate(comparison, "cpu_ms_per_frame")->message.find("not gated: other CPU models"),
             std::string::npos);
 }
 
@@ -436,7 +506,8 @@ TEST_F(ComparisonTest, SeriesHaveTheNumbersOfNew) {
   EXPECT_TRUE(named("wall_s").at("range").get<std::string>().starts_with("± "));
   EXPECT_TRUE(named("coverage").is_null());
   const std::string metrics = comparison_openmetrics(comparison);
-  EXPECT_NE(metrics.find("# TYPE fusebench_ate_rmse_m gauge\n# HELP fusebench_ate_rmse_m ATE, rmse [m]\n"),
+  EXPECT_NE(metrics.find(
+                "# TYPE fusebench_ate_rmse_m gauge\n# HELP fusebench_ate_rmse_m absolute trajectory error: "),
             std::string::npos);
   for (const ComparisonFormat format :
        {ComparisonFormat::table, ComparisonFormat::markdown, ComparisonFormat::json, ComparisonFormat::junit,

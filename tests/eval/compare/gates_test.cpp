@@ -14,7 +14,7 @@ namespace {
 
 std::size_t metric(std::string_view key) {
   const auto metrics = gated_metrics();
-  const auto found = std::ranges::find(metrics, key, &GatedMetric::key);
+  const auto found = std::ranges::find(metrics, key, &registry::RunMetric::key);
   EXPECT_NE(found, metrics.end()) << key;
   return static_cast<std::size_t>(found - metrics.begin());
 }
@@ -40,9 +40,9 @@ TEST(GatesTest, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(shipped->factors, defaults.factors);
   EXPECT_TRUE(shipped->overrides.empty());
   for (std::size_t i = 0; i < gated_metrics().size(); ++i) {
-    EXPECT_EQ(shipped->tolerances[i].relative, defaults.tolerances[i].relative) << gated_metrics()[i].key;
-    EXPECT_EQ(shipped->tolerances[i].absolute, defaults.tolerances[i].absolute) << gated_metrics()[i].key;
-    EXPECT_EQ(shipped->tolerances[i].better, defaults.tolerances[i].better) << gated_metrics()[i].key;
+    EXPECT_EQ(shipped->tolerances[i].relative, defaults.tolerances[i].relative) << gated_metrics()[i]->key;
+    EXPECT_EQ(shipped->tolerances[i].absolute, defaults.tolerances[i].absolute) << gated_metrics()[i]->key;
+    EXPECT_EQ(shipped->tolerances[i].better, defaults.tolerances[i].better) << gated_metrics()[i]->key;
   }
 }
 
@@ -74,7 +74,7 @@ factor = 3
   const MetricTolerance ate = gates->tolerance(metric("ate_rmse_m"), "office", "dm");
   EXPECT_EQ(ate.relative, 0.01);
   EXPECT_EQ(ate.absolute, 0.001);
-  EXPECT_EQ(ate.better, BetterValue::equal);
+  EXPECT_EQ(ate.better, registry::Better::neither);
   EXPECT_EQ(gates->tolerance(metric("aie_grey"), "fr1_rpy", "full").relative, 0.5);
   EXPECT_EQ(gates->tolerance(metric("aie_grey"), "fr2_rpy", "full").relative, 0.01);
   EXPECT_EQ(gates->tolerance(metric("aie_grey"), "office_2", "full").relative, 0.01);

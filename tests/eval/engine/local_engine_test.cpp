@@ -472,7 +472,7 @@ TEST_F(LocalEngineTest, FoldersAreMergedAndTidied) {
 
 TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
   const fs::path suite = write("mine.toml", "name = \"m\"\nall = true\nvariants = [\"full\"]\n");
-  Invocation invocation{suite, {}, {3, "small"}};
+  Invocation invocation{suite, {}, {3, 5, "small"}};
   invocation.options.out = folder_ / "out";
   invocation.options.data = folder_ / "data";
   invocation.options.sets = {"iekf.max_iterations=1,2"};
@@ -491,6 +491,7 @@ TEST_F(LocalEngineTest, InvocationsComeBackAsTheyWere) {
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->kept, KeptFiles::small);
   EXPECT_EQ(read->repetitions, 3);
+  EXPECT_EQ(read->replicates, 5);
 }
 
 TEST_F(LocalEngineTest, InvocationsHaveNumbersInTheirRange) {

@@ -96,13 +96,13 @@ class DamagedRunsTest : public testing::InTemporaryFolder {
     ASSERT_TRUE(table.has_value()) << table.error().message;
     ASSERT_EQ(table->rows.size(), 2U);
     EXPECT_EQ(table->rows[0].status, RunStatus::ok);
-    EXPECT_TRUE(table->rows[0].ate_rmse_m.has_value());
+    EXPECT_TRUE(table->rows[0].numbers["ate_rmse_m"].has_value());
     const TableRow& row = table->rows[1];
     EXPECT_EQ(row.recording, "desk");
     EXPECT_EQ(row.variant, "dm");
     EXPECT_EQ(row.status, RunStatus::failed);
     EXPECT_EQ(row.reason, reason);
-    EXPECT_FALSE(row.ate_rmse_m.has_value());
+    EXPECT_FALSE(row.numbers["ate_rmse_m"].has_value());
     EXPECT_NE(render_table(*table, TableFormat::markdown).find("1 of 2 runs ok"), std::string::npos);
 
     const auto collected = read_run_rows(folder_ / "runs", Workers(1));
@@ -110,7 +110,7 @@ class DamagedRunsTest : public testing::InTemporaryFolder {
     EXPECT_EQ(unreadable_count(*collected), 1U);
     EXPECT_EQ((*collected)[1].variant, "dm");
     EXPECT_EQ((*collected)[1].reason, reason);
-    EXPECT_FALSE((*collected)[1].ate_rmse_m.has_value());
+    EXPECT_FALSE((*collected)[1].numbers["ate_rmse_m"].has_value());
 
     const auto listed = list_runs(folder_ / "runs");
     ASSERT_TRUE(listed.has_value());
@@ -136,8 +136,8 @@ TEST_F(DamagedRunsTest, WhatIsWholeIsARowWithItsNumbers) {
   ASSERT_EQ(record->timing.files.size(), 1U);
   EXPECT_EQ(record->timing.files[0].name, "frames.csv");
   const auto table = collect_table(folder_ / "runs");
-  EXPECT_TRUE(table->rows[1].ate_rmse_m.has_value());
-  EXPECT_TRUE(table->rows[1].aie_common_grey.has_value());
+  EXPECT_TRUE(table->rows[1].numbers["ate_rmse_m"].has_value());
+  EXPECT_TRUE(table->rows[1].numbers["aie_common_grey"].has_value());
   EXPECT_EQ(compare_runs(*find_runs(folder_ / "base"), *find_runs(folder_ / "runs"), Gates()).failures(), 0U);
   const auto listed = list_runs(folder_ / "runs", true);
   for (const ListedRun& run : *listed) EXPECT_EQ(run.head.status, RunStatus::ok);
@@ -187,7 +187,8 @@ TEST_F(DamagedRunsTest, AFlippedByteOfIntensitiesLeavesTheCommonPixels) {
   flip_byte("intensity.bin", fs::file_size(damaged("intensity.bin")) - 13);  // of the last difference
   const auto table = collect_table(folder_ / "runs");
   ASSERT_TRUE(table.has_value());
-  for (const TableRow& row : table->rows) EXPECT_FALSE(row.aie_common_grey.has_value()) << row.variant;
+  for (const TableRow& row : table->rows)
+    EXPECT_FALSE(row.numbers["aie_common_grey"].has_value()) << row.variant;
   ASSERT_EQ(table->notes.size(), 1U);
   EXPECT_EQ(
       table->notes[0],
@@ -228,7 +229,7 @@ TEST_F(DamagedRunsTest, NothingIsKnownOfTheFilesOfAnOlderRecord) {
   overwrite("mesh.ply", "");
   const auto table = collect_table(folder_ / "runs");
   EXPECT_EQ(table->rows[1].status, RunStatus::ok);
-  EXPECT_TRUE(table->rows[1].aie_common_grey.has_value());
+  EXPECT_TRUE(table->rows[1].numbers["aie_common_grey"].has_value());
   EXPECT_EQ(list_runs(folder_ / "runs", true)->front().head.status, RunStatus::ok);
   EXPECT_EQ(unreadable_count(*read_run_rows(folder_ / "runs", Workers(1))), 0U);
 }

@@ -164,17 +164,19 @@ TEST_F(StudyTest, ARunThatDidNotStartHasNoLostFrames) {
   add("a", "slow", "full", 0.001);
   StudyRun& absent = add("b", "slow", "full", 0.001, RunStatus::failed);
   absent.record.frames = {};
-  const StudyValue& value = *find_study_value("lost_frames");
+  const registry::RunMetric& value = registry::run_metric("frames_lost");
   EXPECT_FALSE(value_of(study(), runs_[1], value).has_value());
   EXPECT_EQ(value_of(study(), runs_[0], value), 0.0);
   Criterion criterion = ate_criterion(CriterionStatistic::worst);
-  criterion.metric = "lost_frames";
+  criterion.metric = "frames_lost";
   criterion.at_most = 0;
   EXPECT_EQ(check(criterion).verdict, Verdict::failed);
   EXPECT_EQ(check(criterion).note, "not ok: b");
   EXPECT_DOUBLE_EQ(*check(criterion).measured, 0);
   const StudySummary summary = summarise("demo", study(), {});
-  EXPECT_EQ(summary.rows[0].values[1].count, 1U);  // lost_frames, of the one that ran
+  const auto columns = registry::columns_of(registry::Column::study);
+  const auto lost = std::ranges::find(columns, &value) - columns.begin();
+  EXPECT_EQ(summary.rows[0].values[static_cast<std::size_t>(lost)].count, 1U);  // of the one that ran
   runs_.erase(runs_.begin());
   EXPECT_EQ(check(criterion).verdict, Verdict::failed);  // none ran: no evidence
   EXPECT_FALSE(check(criterion).measured.has_value());
@@ -323,7 +325,7 @@ TEST_F(SharedPixelsTest, AgreeWithTheTablesCommonPixels) {
   const auto expected = common_pixel_error(std::vector<std::filesystem::path>{
       runs_[0].folder / "intensity.bin", runs_[1].folder / "intensity.bin"});
   ASSERT_TRUE(expected.has_value());
-  const StudyValue& value = *find_study_value("aie_common_grey");
+  const registry::RunMetric& value = registry::run_metric("aie_common_grey");
   EXPECT_DOUBLE_EQ(*value_of(study, study.runs[0], value), (*expected)[0].aie_grey);
   EXPECT_DOUBLE_EQ(*value_of(study, study.runs[1], value), (*expected)[1].aie_grey);
   EXPECT_DOUBLE_EQ(*value_of(study, study.runs[0], value), (3.0 + 10.0) / 2);

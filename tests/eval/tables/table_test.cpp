@@ -33,10 +33,10 @@ TEST_F(TableTest, RowsAreInTheOrderOfVariantsWithCommonPixels) {
   EXPECT_EQ(table->rows[0].variant, "full");
   EXPECT_EQ(table->rows[1].variant, "dm");
   EXPECT_EQ(table->rows[2].variant, "no-imu");
-  EXPECT_DOUBLE_EQ(*table->rows[0].aie_grey, 6.0);
-  EXPECT_DOUBLE_EQ(*table->rows[0].aie_common_grey, 2.0);
-  EXPECT_DOUBLE_EQ(*table->rows[1].aie_common_grey, 3.0);
-  EXPECT_DOUBLE_EQ(*table->rows[0].ate_rmse_m, 0.0123);
+  EXPECT_DOUBLE_EQ(*table->rows[0].numbers["aie_grey"], 6.0);
+  EXPECT_DOUBLE_EQ(*table->rows[0].numbers["aie_common_grey"], 2.0);
+  EXPECT_DOUBLE_EQ(*table->rows[1].numbers["aie_common_grey"], 3.0);
+  EXPECT_DOUBLE_EQ(*table->rows[0].numbers["ate_rmse_m"], 0.0123);
 }
 
 TEST_F(TableTest, ALostRunIsARowWithItsReasonAndNoNumbers) {
@@ -45,8 +45,8 @@ TEST_F(TableTest, ALostRunIsARowWithItsReasonAndNoNumbers) {
   ASSERT_TRUE(table.has_value());
   const TableRow& lost = table->rows[2];
   EXPECT_EQ(lost.status, RunStatus::lost);
-  EXPECT_FALSE(lost.ate_rmse_m.has_value());
-  EXPECT_FALSE(lost.aie_common_grey.has_value());
+  EXPECT_FALSE(lost.numbers["ate_rmse_m"].has_value());
+  EXPECT_FALSE(lost.numbers["aie_common_grey"].has_value());
   EXPECT_EQ(lost.tracked, 12U);
   const std::string text = render_table(*table, TableFormat::markdown);
   EXPECT_NE(text.find("2 of 3 runs ok"), std::string::npos) << text;
@@ -139,7 +139,7 @@ TEST_F(TableTest, LongCsvHasALineForEachNumber) {
             std::string::npos)
       << text;
   EXPECT_EQ(text.find("lost,ate_rmse_m"), std::string::npos) << text;  // does not exist
-  EXPECT_NE(text.find("lost,tracked,frames,12\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("lost,frames_tracked,frames,12\n"), std::string::npos) << text;
 }
 
 TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
@@ -151,10 +151,10 @@ TEST_F(TableTest, MeansAreOverOkRunsOfOneKindOfData) {
   ASSERT_EQ(table->means.size(), 2U);  // dm ran on one recording
   EXPECT_EQ(table->means[0].variant, "full");
   EXPECT_EQ(table->means[0].ok, 2U);
-  EXPECT_DOUBLE_EQ(*table->means[0].values.ate_rmse_m, 0.02);
+  EXPECT_DOUBLE_EQ(*table->means[0].values["ate_rmse_m"], 0.02);
   EXPECT_EQ(table->means[1].ok, 1U);
   EXPECT_EQ(table->means[1].total, 2U);
-  EXPECT_DOUBLE_EQ(*table->means[1].values.ate_rmse_m, 0.5);
+  EXPECT_DOUBLE_EQ(*table->means[1].values["ate_rmse_m"], 0.5);
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("| 1/2 ok |"), std::string::npos);
 }
 
@@ -193,6 +193,31 @@ TEST_F(TableTest, TwoRunsOfOneVariantAreToldApart) {
   EXPECT_NE(text.find("full (bbbbbbbb)"), std::string::npos) << text;
 }
 
+TEST_F(TableTest, ReplicatesAreOneRowWithMediansAndRanges) {
+  const std::vector<double> ates = {0.010, 0.014, 0.011};
+  for (std::size_t k = 0; k < ates.size(); ++k) {
+    const std::string hash = fmt::format("{0}{0}{0}{0}{0}{0}{0}{0}", k);
+    add_run("full", RunStatus::ok, "", ates[k], {}, hash.c_str());
+    const auto file = std::filesystem::path("runs") / recording_ / "full" / hash / "record.json";
+    RunRecord record = *read_record(folder_ / file);
+    record.replicate = static_cast<int>(k);
+    write(file, to_json(record));
+  }
+  add_run("dm", RunStatus::ok, "", 0.02, {});
+  const auto table = collect_table(folder_ / "runs");
+  ASSERT_TRUE(table.has_value()) << table.error().message;
+  ASSERT_EQ(table->rows.size(), 2U);
+  EXPECT_EQ(table->rows[0].label, "full");
+  EXPECT_EQ(table->rows[0].numbers["ate_rmse_m"], 0.011);
+  const std::string text = render_table(*table, TableFormat::markdown);
+  EXPECT_NE(text.find("1.10 [1.00, 1.40]"), std::string::npos) << text;
+  EXPECT_NE(text.find("3/3 ok"), std::string::npos) << text;
+  EXPECT_NE(text.find(" 0.36 |"), std::string::npos) << text;  // sensitivity: 0.4 / 1.1
+  const auto json = nlohmann::json::parse(render_table(*table, TableFormat::json));
+  EXPECT_EQ(json["rows"][0]["replicates"], 3);
+  EXPECT_EQ(json["rows"][0]["ranges"]["ate_rmse_m"], (nlohmann::json{0.010, 0.014}));
+}
+
 TEST_F(TableTest, RowsOfASweepHaveTheirOptionsAndMeansAreOfOneConfiguration) {
   for (const char* recording : {"fr1_rpy", "fr1_xyz"}) {
     recording_ = recording;
@@ -212,8 +237,8 @@ TEST_F(TableTest, RowsOfASweepHaveTheirOptionsAndMeansAreOfOneConfiguration) {
   EXPECT_EQ(table->rows[0].label, "full");
   EXPECT_EQ(table->rows[1].label, "full tsdf.voxel_m=0.02");
   ASSERT_EQ(table->means.size(), 2U);
-  EXPECT_DOUBLE_EQ(*table->means[0].values.ate_rmse_m, 0.01);
-  EXPECT_DOUBLE_EQ(*table->means[1].values.ate_rmse_m, 0.03);
+  EXPECT_DOUBLE_EQ(*table->means[0].values["ate_rmse_m"], 0.01);
+  EXPECT_DOUBLE_EQ(*table->means[1].values["ate_rmse_m"], 0.03);
   EXPECT_EQ(table->means[1].label, "full tsdf.voxel_m=0.02");
   const auto json = nlohmann::json::parse(render_table(*table, TableFormat::json));
   EXPECT_EQ(json["rows"][1]["options"]["tsdf.voxel_m"], "0.02");
@@ -226,8 +251,8 @@ TEST_F(TableTest, DamagedDifferencesCostOnlyTheCommonColumn) {
   std::filesystem::resize_file(folder_ / "runs/fr1_rpy/dm/01234567/intensity.bin", 30);
   const auto table = collect_table(folder_ / "runs");
   ASSERT_TRUE(table.has_value());
-  EXPECT_FALSE(table->rows[0].aie_common_grey.has_value());
-  EXPECT_TRUE(table->rows[0].aie_grey.has_value());
+  EXPECT_FALSE(table->rows[0].numbers["aie_common_grey"].has_value());
+  EXPECT_TRUE(table->rows[0].numbers["aie_grey"].has_value());
   EXPECT_NE(render_table(*table, TableFormat::markdown).find("intensity.bin"), std::string::npos);
 }
 
@@ -241,9 +266,9 @@ TEST_F(TableTest, AnImportedRunLeavesTheCommonPixelsOfOursAlone) {
   const auto table = collect_table(folder_ / "runs");
   ASSERT_EQ(table->rows.size(), 4U);
   EXPECT_EQ(table->rows[3].variant, "Other");
-  EXPECT_DOUBLE_EQ(*table->rows[0].aie_common_grey, 2.0);
-  EXPECT_FALSE(table->rows[3].fps.has_value());
-  EXPECT_FALSE(table->rows[3].vertices.has_value());
+  EXPECT_DOUBLE_EQ(*table->rows[0].numbers["aie_common_grey"], 2.0);
+  EXPECT_FALSE(table->rows[3].numbers["fps"].has_value());
+  EXPECT_FALSE(table->rows[3].numbers["model_vertices"].has_value());
 }
 
 TEST_F(TableTest, UnfinishedRunsAreNotRead) {

@@ -1,0 +1,90 @@
+// With replicates a number is a distribution: it is worse only if chance does not explain the difference.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "eval/compare/comparison.hpp"
+#include "eval/registry/replicated_numbers.hpp"
+
+namespace fusebench::compare {
+
+namespace {
+
+using registry::MedianRange;
+
+std::vector<registry::RunNumbers> numbers_of(const RunSide& side) {
+  std::vector<registry::RunNumbers> numbers;
+  for (const run_files::FoundRun* run : side.all()) {
+    if (run->record.status == record::RunStatus::ok) numbers.push_back(registry::numbers_of(run->record));
+  }
+  return numbers;
+}
+
+/// Whether the ranges are further apart than either is wide. Of 40,000 pairs of five numbers each from one
+/// normal, log-normal or Cauchy distribution none is; of one with two equally likely values 0.2 % are.
+bool are_apart(const MedianRange& a, const MedianRange& b) {
+  const double gap = std::max(b.least - a.most, a.least - b.most);
+  return gap > std::max(a.most - a.least, b.most - b.least);
+}
+
+std::string range_text(const MedianRange& range, std::string_view unit) {
+  return fmt::format("{} [{:.6g}, {:.6g}]", quantity_text(range.median, unit), range.least, range.most);
+}
+
+GateResult judge(const registry::RunMetric& metric, const MetricTolerance& tolerance,
+                 const MedianRange& before, const MedianRange& after, const Gates& gates) {
+  GateResult result{std::string(metric.key),  GateVerdict::unchanged, false,       {},
+                    std::string(metric.unit), before.median,          after.median};
+  const double change = after.median - before.median;
+  const double allowed = std::max(tolerance.absolute, tolerance.relative * std::abs(before.median));
+  if (std::abs(change) <= allowed || !are_apart(before, after)) return result;
+  result.message =
+      fmt::format("{} -> {}, medians and ranges of replicates, which are further apart than either is wide",
+                  range_text(before, metric.unit), range_text(after, metric.unit));
+  const bool better = (tolerance.better == registry::Better::smaller && change < 0) ||
+                      (tolerance.better == registry::Better::larger && change > 0);
+  result.verdict = better ? GateVerdict::improvement : GateVerdict::regression;
+  result.fails = !better || gates.improvements_fail;
+  return result;
+}
+
+/// More than half of the replicates have to agree that runs are no longer ok.
+GateResult ok_gate(const RunSide& base, const RunSide& fresh, std::size_t base_ok, std::size_t fresh_ok) {
+  const std::size_t base_all = base.all().size();
+  const std::size_t fresh_all = fresh.all().size();
+  GateResult result{"replicates", GateVerdict::unchanged, false, {}};
+  if (base_ok * fresh_all == fresh_ok * base_all) return result;
+  const bool worse = 2 * base_ok > base_all && 2 * fresh_ok <= fresh_all;
+  result.verdict = worse ? GateVerdict::regression : GateVerdict::note;
+  result.fails = worse;
+  result.message = fmt::format("{}/{} replicates ok -> {}/{}", base_ok, base_all, fresh_ok, fresh_all);
+  return result;
+}
+
+}  // namespace
+
+bool has_replicates_to_gate(const RunPair& pair, const Gates& gates) {
+  return std::min(pair.base.replicate_count(), pair.fresh.replicate_count()) >= gates.min_repetitions;
+}
+
+std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates) {
+  const std::vector<registry::RunNumbers> base = numbers_of(pair.base);
+  const std::vector<registry::RunNumbers> fresh = numbers_of(pair.fresh);
+  std::vector<GateResult> results = {ok_gate(pair.base, pair.fresh, base.size(), fresh.size())};
+  for (std::size_t i = 0; i < gated_metrics().size(); ++i) {
+    const registry::RunMetric& metric = *gated_metrics()[i];
+    const auto before = registry::median_range(base, metric);
+    const auto after = registry::median_range(fresh, metric);
+    if (before && after) {
+      const auto tolerance = gates.tolerance(i, pair.key.recording, pair.key.variant);
+      results.push_back(judge(metric, tolerance, *before, *after, gates));
+    } else if (before && !fresh.empty()) {
+      results.push_back({std::string(metric.key), GateVerdict::regression, true,
+                         fmt::format("{} -> none in any replicate", range_text(*before, metric.unit)),
+                         std::string(metric.unit), before->median});
+    }
+  }
+  return results;
+}
+
+}  // namespace fusebench::compare
