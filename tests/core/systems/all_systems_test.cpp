@@ -56,7 +56,7 @@ TEST_P(EachSystem, BeginsAtTheGivenPose) {
   testing::SimulatedRun run = testing::simulate(6);
   const config::Config config = testing::config_of_variant(GetParam());
   const auto at_identity = testing::track_with(config, run);
-  const SE3 start = pose_plus(SE3{}, (Vector6d() << 0.3, -0.2, 0.1, 0.05, 0.02, -0.04).finished());
+  const SE3 start = pose_plus(SE3{}, 1e-3 * (Vector6d() << 3, -2, 1, 5, 2, -4).finished());
   run.rig.T_world_first_camera = start;
   const auto moved = testing::track_with(config, run);
   EXPECT_LT((moved.outcomes.front().T_world_camera.translation - start.translation).norm(), 1e-12);
