@@ -55,6 +55,20 @@ TEST(DenseAlignment, DepthAloneFindsThePose) {
   EXPECT_LT(largest_sigma(found->covariance.bottomRightCorner<3, 3>()), 0.02);
 }
 
+/// The axes of the two cameras differ, so that a normal in the axes of the wrong one leads away.
+TEST(DenseAlignment, DepthAloneFindsThePoseOfARolledCamera) {
+  const config::Config config;
+  const SE3 rolled{so3_exp({0, 0, 1.4}), {0.05, -0.03, 0.04}};
+  const Vector6d off = (Vector6d() << 0.03, -0.04, 0.03, 0.04, 0.03, -0.04).finished();
+  const RelativePose start{pose_plus(rolled, off), Matrix6d::Identity()};
+  const auto found =
+      aligned_by_depth(appearance_at(kCorner, config).small, appearance_at(kCorner * rolled, config).small,
+                       {start, false, 0}, small_camera(), config.depth, config.loops);
+  ASSERT_TRUE(found);
+  EXPECT_LT(rotation_angle_rad(found->T_known_query.rotation, rolled.rotation), radians(0.3));
+  EXPECT_LT((found->T_known_query.translation - rolled.translation).norm(), 0.006);
+}
+
 /// As after a second without images: 30 cm and 7 degrees off.
 TEST(DenseAlignment, AWideReachFindsThePoseFromFarAway) {
   const config::Config config;
