@@ -20,7 +20,7 @@ import sys
 LAYERS = ("core", "datasets", "eval")
 MOST_UNITS = 15
 # What judges an estimator knows trajectories, meshes and pixels from anywhere, and nothing of how they were made.
-METRICS = {"metrics", "trajectory_files", "trajectory_error", "mesh_error"}
+METRICS = {"metrics", "trajectory_files", "trajectory_error", "reference_clock", "mesh_error"}
 ESTIMATOR = {"prediction", "preprocessing", "patches", "measurement", "relocalisation", "health", "core"}
 # Rooms that put recordings into the pipeline; the command line lists the systems as well.
 RUNNERS = {"run", "batch_estimation", "cli"}

@@ -1,0 +1,211 @@
+#include "eval/reference_clock/offset_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "eval/reference_clock/correlated_variance.hpp"
+
+namespace fusebench::reference_clock {
+
+namespace {
+
+constexpr int kIterations = 20;
+constexpr int kTransformSteps = 2;
+constexpr double kConverged_s = 1e-7;
+constexpr double kLargestStep_s = 0.02;
+constexpr double kLargestMove_s = 0.1;
+/// Norms of three axes beyond this many standard deviations lose weight; 97 % are below.
+constexpr double kHuberSigmas = 3;
+/// Files of trajectories have four decimals: metres and radians.
+constexpr double kDecimals = 1e-4;
+
+/// A motion of both bodies at an offset.
+struct Observation {
+  const EstimatedMotion* estimated = nullptr;
+  ReferenceMotion reference;
+};
+
+/// An observation at a transform of the bodies.
+struct Residual {
+  Vector6d value;       ///< reference minus estimate, in the tangent of pose_minus()
+  Vector6d weight;      ///< of each component: Huber's weight / variance
+  Vector6d instrument;  ///< rate of the estimated motion: that of the reference without its noise
+  BodyJacobian jacobian;
+};
+
+std::vector<Observation> observed(double offset_s, const Trajectory& reference,
+                                  std::span<const EstimatedMotion> motions) {
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * offset_s));
+  std::vector<Observation> observations;
+  observations.reserve(motions.size());
+  for (const EstimatedMotion& each : motions) {
+    const auto known =
+        reference_motion_with_rate(reference, each.begin_ns + offset_ns, each.end_ns + offset_ns);
+    if (known) observations.push_back({&each, *known});
+  }
+  return observations;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Standard deviation of an axis from norms of three: their median is 1.538 standard deviations.
+double sigma_of(std::vector<double> norms) {
+  constexpr double kMedianOfChi3 = 1.538;
+  return std::max(kDecimals, median_of(std::move(norms)) / kMedianOfChi3);
+}
+
+MotionSigmas sigmas_of(std::span<const Residual> residuals) {
+  std::vector<double> rotations;
+  std::vector<double> translations;
+  for (const Residual& each : residuals) {
+    rotations.push_back(each.value.head<3>().norm());
+    translations.push_back(each.value.tail<3>().norm());
+  }
+  return {sigma_of(std::move(rotations)), sigma_of(std::move(translations))};
+}
+
+Vector3d weights_of(const Vector3d& residual, double sigma) {
+  const double norm = residual.norm();
+  const double huber = norm <= kHuberSigmas * sigma ? 1.0 : kHuberSigmas * sigma / norm;
+  return Vector3d::Constant(huber / (sigma * sigma));
+}
+
+double whitened_norm(const Vector6d& rate, const Vector6d& weight) {
+  return std::sqrt(rate.dot(weight.cwiseProduct(rate)));
+}
+
+/// Shortens instruments that are longer than three times the reference's rate, and than the median of these:
+/// the rates across a jump of the estimate.
+void bound_instruments(std::span<const Observation> observations, std::vector<Residual>& residuals) {
+  constexpr double kLargest = 3;
+  std::vector<double> references;
+  for (std::size_t k = 0; k < residuals.size(); ++k)
+    references.push_back(whitened_norm(observations[k].reference.rate, residuals[k].weight));
+  const double median = median_of(references);
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const double limit = kLargest * std::max(median, references[k]);
+    const double norm = whitened_norm(residuals[k].instrument, residuals[k].weight);
+    if (norm > limit) residuals[k].instrument *= limit / norm;
+  }
+}
+
+std::vector<Residual> residuals_of(std::span<const Observation> observations, const BodyTransform& transform,
+                                   MotionSigmas& sigmas) {
+  std::vector<Residual> residuals;
+  residuals.reserve(observations.size());
+  for (const Observation& each : observations) {
+    const EstimatedMotion& estimated = *each.estimated;
+    residuals.push_back(
+        {pose_minus(each.reference.motion, transform(estimated.motion)), Vector6d::Zero(),
+         pose_minus(transform(estimated.after), transform(estimated.before)) / estimated.span_s,
+         transform.jacobian(estimated.motion)});
+  }
+  sigmas = sigmas_of(residuals);
+  for (Residual& each : residuals) {
+    each.weight << weights_of(each.value.head<3>(), sigmas.rotation_rad),
+        weights_of(each.value.tail<3>(), sigmas.translation_m);
+  }
+  bound_instruments(observations, residuals);
+  return residuals;
+}
+
+void step_transform(std::span<const Residual> residuals, BodyTransform& transform) {
+  Matrix7d information = prior_information();
+  Vector7d right = -prior_gradient(transform);
+  for (const Residual& each : residuals) {
+    const BodyJacobian weighted = each.weight.asDiagonal() * each.jacobian;
+    information += each.jacobian.transpose() * weighted;
+    right += weighted.transpose() * each.value;
+  }
+  transform.step(information.ldlt().solve(right));
+}
+
+/// The equation of the offset with the transform marginalised.
+struct Equation {
+  double score = 0;        ///< sum z^T W r
+  double information = 0;  ///< its derivative, sum z^T W dA/dd
+  double variance = 0;     ///< of the score
+  double independent = 0;
+};
+
+/// By how much of the transform's columns the instruments are explained (the marginalisation).
+Vector7d explained(std::span<const Residual> residuals) {
+  Matrix7d information = prior_information();
+  Vector7d coupling = Vector7d::Zero();
+  for (const Residual& each : residuals) {
+    const BodyJacobian weighted = each.weight.asDiagonal() * each.jacobian;
+    information += each.jacobian.transpose() * weighted;
+    coupling += weighted.transpose() * each.instrument;
+  }
+  return information.ldlt().solve(coupling);
+}
+
+Equation equation_of(std::span<const Observation> observations, std::span<const Residual> residuals) {
+  // A motion is of two poses, and a rate the difference of two motions. Of two files with the same decimals
+  // the rounded parts of the rates agree, without any motion.
+  constexpr double kMotionVariance = 2 * kDecimals * kDecimals;
+  constexpr double kSpan_s = 2e-9 * static_cast<double>(kRateStep_ns);
+  constexpr double kRateVariance = 2 * kMotionVariance / (kSpan_s * kSpan_s);
+  const Vector7d by_transform = explained(residuals);
+  Equation equation;
+  std::vector<StampedTerm> terms;
+  double rounding = 0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const Residual& each = residuals[k];
+    const Vector6d instrument = each.weight.cwiseProduct(each.instrument - each.jacobian * by_transform);
+    const double score = instrument.dot(each.value);
+    const double rate = instrument.dot(each.instrument - each.jacobian * by_transform);
+    terms.push_back({observations[k].estimated->begin_ns, score, rate});
+    equation.score += score;
+    equation.information +=
+        instrument.dot(observations[k].reference.rate) - kRateVariance * each.weight.sum();
+    rounding += kMotionVariance * instrument.squaredNorm();
+  }
+  equation.variance = correlated_variance(terms) + rounding;
+  equation.independent = independent_terms(terms);
+  return equation;
+}
+
+/// The equation at the fit's offset, with the transform that fits best there.
+Equation equation_at(OffsetFit& fit, const Trajectory& reference, std::span<const EstimatedMotion> motions) {
+  const std::vector<Observation> observations = observed(fit.offset_s, reference, motions);
+  fit.motions = observations.size();
+  if (observations.empty()) return {};
+  std::vector<Residual> residuals = residuals_of(observations, fit.transform, fit.sigmas);
+  for (int step = 0; step < kTransformSteps; ++step) {
+    step_transform(residuals, fit.transform);
+    residuals = residuals_of(observations, fit.transform, fit.sigmas);
+  }
+  return equation_of(observations, residuals);
+}
+
+}  // namespace
+
+OffsetFit fitted_from(const OffsetCandidate& start, const Trajectory& reference,
+                      std::span<const EstimatedMotion> motions) {
+  OffsetFit fit;
+  fit.offset_s = start.offset_s;
+  fit.transform = start.transform;
+  fit.sigma_s = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Equation equation = equation_at(fit, reference, motions);
+    fit.independent = equation.independent;
+    if (!(equation.information > 0)) return fit;
+    const double step_s = std::clamp(-equation.score / equation.information, -kLargestStep_s, kLargestStep_s);
+    fit.offset_s += step_s;
+    if (std::abs(fit.offset_s - start.offset_s) > kLargestMove_s) return fit;
+    if (std::abs(step_s) > kConverged_s) continue;
+    fit.sigma_s = std::sqrt(equation.variance) / equation.information;
+    return fit;
+  }
+  return fit;
+}
+
+}  // namespace fusebench::reference_clock
