@@ -22,6 +22,7 @@
 #include "eval/metrics/nees_metrics.hpp"
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/record/duration_histogram.hpp"
+#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
 #include "eval/trajectory_error/fitted_offset.hpp"
 #include "eval/trajectory_error/silent_failures.hpp"
@@ -149,6 +150,7 @@ struct RecordedMetrics {
   Outcome<metrics::ResidualSummary> residuals;
   Outcome<RecordedSilentFailures> silent;
   Outcome<RecordedPoseIntensity> pose_intensity;
+  Outcome<reference_clock::ReferenceClock> reference_clock;
 
   /// Number of silent failures, where there is truth to tell them by.
   [[nodiscard]] std::optional<std::size_t> silent_frames() const {

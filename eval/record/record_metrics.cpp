@@ -6,6 +6,7 @@
 
 #include "eval/mesh_error/mesh_json.hpp"
 #include "eval/metrics/statistics_json.hpp"
+#include "eval/reference_clock/clock_json.hpp"
 #include "eval/trajectory_error/alignment_json.hpp"
 
 namespace fusebench::record {
@@ -225,6 +226,23 @@ void read(const Json& json, RecordedPoseIntensity& intensity) {
                json.at("visibility_by_truth")};
 }
 
+void read(const Json& json, reference_clock::ClockedErrors& errors) {
+  const auto number = [&](const char* key, auto& value) {
+    if (const Json& at = json.at(key); !at.is_null()) value = at;
+  };
+  number("ate_rmse_m", errors.ate_rmse_m);
+  number("rpe_second_m", errors.rpe_second_m);
+  number("rpe_second_rad", errors.rpe_second_rad);
+  number("silent", errors.silent);
+}
+
+void read(const Json& json, reference_clock::ReferenceClock& clock) {
+  clock.offset = {number_at(json, "offset_s"), number_at(json, "sigma_s"), json.at("motions")};
+  clock.applied = json.at("applied") == "fitted";
+  read(json.at("as_read"), clock.as_read);
+  read(json.at("fitted"), clock.fitted);
+}
+
 mesh_error::MeshDistances distances_of(const Json& json) {
   if (json.is_null()) return {};
   return {statistics_of(json), number_at(json, "p90"), number_at(json, "p95")};
@@ -350,6 +368,7 @@ Json json_of_metrics(const RecordedMetrics& metrics, const RecordedFrames& frame
           {"residuals", json_of(metrics.residuals)},
           {"silent_failures", json_of(metrics.silent)},
           {"pose_intensity", json_of(metrics.pose_intensity)},
+          {"reference_clock", json_of(metrics.reference_clock)},
           {"coverage",
            {{"protocol", "tracked frames / frames of the recording"},
             {"tracked", frames.tracked},
@@ -369,6 +388,7 @@ void read_metrics(const Json& json, RecordedMetrics& metrics) {
   metrics.residuals = newer_outcome_of<metrics::ResidualSummary>(json, "residuals");
   metrics.silent = newer_outcome_of<RecordedSilentFailures>(json, "silent_failures");
   metrics.pose_intensity = newer_outcome_of<RecordedPoseIntensity>(json, "pose_intensity");
+  metrics.reference_clock = newer_outcome_of<reference_clock::ReferenceClock>(json, "reference_clock");
 }
 
 }  // namespace fusebench::record

@@ -2,10 +2,10 @@
 
 #include <optional>
 
+#include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/record/build_info.hpp"
 #include "eval/record/process_meter.hpp"
-#include "eval/record/true_camera.hpp"
 
 namespace fusebench::record {
 
@@ -91,9 +91,13 @@ std::vector<StampAndInstant> frame_stamps(const recording::Recording& recording)
 }
 
 Trajectory true_trajectory(const recording::Recording& recording, std::span<const StampAndInstant> stamps) {
+  return true_trajectory(recording.ground_truth, stamps);
+}
+
+Trajectory true_trajectory(const Trajectory& ground_truth, std::span<const StampAndInstant> stamps) {
   Trajectory truth;
   for (const auto& [stamp_ns, instant_ns] : stamps) {
-    const auto pose = true_camera(recording, instant_ns);
+    const auto pose = trajectory::interpolate_pose(ground_truth, instant_ns, trajectory::kMaxTruthGap_ns);
     if (pose) truth.push_back({stamp_ns, *pose});
   }
   return truth;

@@ -42,5 +42,8 @@ using StampAndInstant = std::pair<std::int64_t, std::int64_t>;
 /// The true colour camera at each instant at which it is known (in gaps of at most 0.1 s), by the stamps.
 [[nodiscard]] Trajectory true_trajectory(const recording::Recording& recording,
                                          std::span<const StampAndInstant> stamps);
+/// The same from a ground truth that is not the recording's own, such as one on another clock.
+[[nodiscard]] Trajectory true_trajectory(const Trajectory& ground_truth,
+                                         std::span<const StampAndInstant> stamps);
 
 }  // namespace fusebench::record

@@ -17,6 +17,7 @@
 #include "core/trajectory/noisy_pose.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/profile/trace_file.hpp"
+#include "eval/record/clock_note.hpp"
 #include "eval/record/process_meter.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/loop_results.hpp"
@@ -149,6 +150,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   }
   progress->log += loops.log;
   log_silent_failures(record, *progress);
+  if (const auto note = record::clock_note(record)) progress->log += *note + "\n";
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "core/mesh/ply_file.hpp"
+#include "core/trajectory/trajectory.hpp"
 #include "eval/mesh_error/surfel_discs.hpp"
 #include "eval/pose_intensity/pose_intensity.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/record/true_camera.hpp"
+#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/run/recording_views.hpp"
 #include "eval/trajectory_error/fitted_offset.hpp"
 #include "eval/trajectory_error/pose_alignment.hpp"
@@ -20,37 +23,32 @@ namespace fusebench::run {
 
 namespace {
 
+/// Errors of the trajectory against a ground truth: the recording's own, or that on another clock.
 void add_trajectory_metrics(record::RecordedMetrics& metrics, const RunOutput& output,
-                            const recording::Recording& recording) {
-  if (recording.ground_truth.empty()) {
-    metrics.ate.reason = metrics.ate_fitted.reason = metrics.rpe_frame.reason = metrics.rpe_second.reason =
-        "the recording has no ground truth";
-    return;
-  }
+                            const recording::Recording& recording, const Trajectory& ground_truth) {
   std::vector<std::int64_t> expected;
   for (const recording::FrameEntry& frame : recording.frames) expected.push_back(frame.timestamp_ns);
   trajectory_error::AteOptions ate;
   ate.expected_ns = expected;
   metrics.ate = record::Outcome<trajectory_error::AteResult>::from(
-      trajectory_error::absolute_trajectory_error(recording.ground_truth, output.trajectory, ate));
+      trajectory_error::absolute_trajectory_error(ground_truth, output.trajectory, ate));
   metrics.ate_fitted = record::Outcome<trajectory_error::FittedOffset>::from(
-      trajectory_error::fitted_offset(recording.ground_truth, output.trajectory, ate));
-  metrics.rpe_frame = record::Outcome<trajectory_error::RpeResult>::from(
-      trajectory_error::relative_pose_error(recording.ground_truth, output.trajectory,
-                                            {.delta = 1, .unit = trajectory_error::DeltaUnit::frames}));
-  metrics.rpe_second = record::Outcome<trajectory_error::RpeResult>::from(
-      trajectory_error::relative_pose_error(recording.ground_truth, output.trajectory,
-                                            {.delta = 1, .unit = trajectory_error::DeltaUnit::seconds}));
+      trajectory_error::fitted_offset(ground_truth, output.trajectory, ate));
+  metrics.rpe_frame =
+      record::Outcome<trajectory_error::RpeResult>::from(trajectory_error::relative_pose_error(
+          ground_truth, output.trajectory, {.delta = 1, .unit = trajectory_error::DeltaUnit::frames}));
+  metrics.rpe_second =
+      record::Outcome<trajectory_error::RpeResult>::from(trajectory_error::relative_pose_error(
+          ground_truth, output.trajectory, {.delta = 1, .unit = trajectory_error::DeltaUnit::seconds}));
 }
 
 Result<record::RecordedSilentFailures> silent_failures_of(const RunOutput& output,
                                                           const recording::Recording& recording,
+                                                          const Trajectory& ground_truth,
                                                           const config::EvaluationConfig& config) {
-  if (recording.ground_truth.empty())
-    return fail(ErrorCode::data_missing, "the recording has no ground truth");
   // At the instants that the poses are of, which are not always those of the stamps.
   const Trajectory truth =
-      trajectory::of_point(record::true_trajectory(recording, record::frame_stamps(recording)),
+      trajectory::of_point(record::true_trajectory(ground_truth, record::frame_stamps(recording)),
                            recording::ground_truth_offset_m(recording));
   const auto failures = trajectory_error::silent_failures(
       truth, output.trajectory,
@@ -65,6 +63,62 @@ Result<record::RecordedSilentFailures> silent_failures_of(const RunOutput& outpu
       silent.first_frame = static_cast<std::size_t>(first - recording.frames.begin());
   }
   return silent;
+}
+
+/// The metrics that compare the trajectory with a ground truth.
+record::RecordedMetrics compared_with(const Trajectory& ground_truth, const RunOutput& output,
+                                      const recording::Recording& recording,
+                                      const config::EvaluationConfig& config) {
+  record::RecordedMetrics metrics;
+  add_trajectory_metrics(metrics, output, recording, ground_truth);
+  metrics.silent = record::Outcome<record::RecordedSilentFailures>::from(
+      silent_failures_of(output, recording, ground_truth, config));
+  return metrics;
+}
+
+/// The trajectory at the instants that its poses are of.
+Trajectory at_instants(const RunOutput& output) {
+  Trajectory trajectory = output.trajectory;
+  for (std::size_t i = 0; i < trajectory.size(); ++i)
+    trajectory[i].timestamp_ns = output.states[i].timestamp_ns;
+  return trajectory;
+}
+
+reference_clock::ClockedErrors clocked_errors(const record::RecordedMetrics& metrics) {
+  reference_clock::ClockedErrors errors;
+  if (metrics.ate.value) errors.ate_rmse_m = metrics.ate.value->stats.rmse;
+  if (const auto& rpe = metrics.rpe_second.value) {
+    errors.rpe_second_m = rpe->translation.rmse;
+    errors.rpe_second_rad = rpe->rotation.rmse;
+  }
+  errors.silent = metrics.silent_frames();
+  return errors;
+}
+
+/// Metrics of the trajectory, with the ground truth as it is read or on the fitted clock as the options say.
+record::RecordedMetrics trajectory_metrics(const RunOutput& output, const recording::Recording& recording,
+                                           const config::EvaluationConfig& config) {
+  if (recording.ground_truth.empty()) {
+    record::RecordedMetrics none;
+    none.ate.reason = none.ate_fitted.reason = none.rpe_frame.reason = none.rpe_second.reason =
+        none.silent.reason = none.reference_clock.reason = "the recording has no ground truth";
+    return none;
+  }
+  record::RecordedMetrics as_read = compared_with(recording.ground_truth, output, recording, config);
+  const auto offset = reference_clock::fitted_time_offset(recording.ground_truth, at_instants(output));
+  if (!offset) {
+    as_read.reference_clock.reason = offset.error().message;
+    return as_read;
+  }
+  record::RecordedMetrics fitted =
+      compared_with(reference_clock::on_estimate_clock(recording.ground_truth, offset->offset_s), output,
+                    recording, config);
+  const bool applied = config.reference_time_offset == config::ReferenceTimeOffset::fitted;
+  const reference_clock::ReferenceClock clock{*offset, applied, clocked_errors(as_read),
+                                              clocked_errors(fitted)};
+  record::RecordedMetrics metrics = applied ? std::move(fitted) : std::move(as_read);
+  metrics.reference_clock = {clock, {}};
+  return metrics;
 }
 
 record::RecordedNees nees_of(const RunOutput& output, const recording::Recording& recording,
@@ -185,7 +239,7 @@ Result<record::RecordedPoseIntensity> pose_intensity_of(const RunOutput& output,
 
 record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Recording& recording,
                                    const config::Config& config, const Workers& workers) {
-  record::RecordedMetrics metrics;
+  record::RecordedMetrics metrics = trajectory_metrics(output, recording, config.evaluation);
   metrics.aie = {output.intensity.result(), {}};
   const std::string no_patches = "the system has no patches";
   if (metrics.aie.value->all.frames == 0)
@@ -197,9 +251,6 @@ record::RecordedMetrics metrics_of(const RunOutput& output, const recording::Rec
   metrics.residuals = {output.residuals.result(), {}};
   if (metrics.residuals.value->frames == 0)
     metrics.residuals = {std::nullopt, output.has_filter ? "no frame was tracked" : no_patches};
-  add_trajectory_metrics(metrics, output, recording);
-  metrics.silent = record::Outcome<record::RecordedSilentFailures>::from(
-      silent_failures_of(output, recording, config.evaluation));
   metrics.pose_intensity =
       record::Outcome<record::RecordedPoseIntensity>::from(pose_intensity_of(output, recording, config));
   metrics.nees = nees_of(output, recording, config);

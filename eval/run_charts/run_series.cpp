@@ -7,6 +7,7 @@
 
 #include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/run_files/record_files.hpp"
 
 namespace fusebench::run_charts {
@@ -45,6 +46,13 @@ std::vector<Row> rows_of(const run_files::FoundRun& run, const char* name,
   return {};
 }
 
+/// The truth by the clock that the metrics are of.
+Trajectory on_clock_of(const record::RecordedMetrics& metrics, Trajectory truth) {
+  const auto& clock = metrics.reference_clock.value;
+  if (!clock || !clock->applied) return truth;
+  return reference_clock::on_estimate_clock(std::move(truth), clock->offset.offset_s);
+}
+
 /// ate: of this estimate; its alignment is that of the poses.
 std::vector<ComparedPose> compared(const Trajectory& estimate, const Trajectory& all_truth,
                                    const record::Outcome<trajectory_error::AteResult>& ate) {
@@ -79,7 +87,9 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
     series.warnings.push_back(frames.error().message);
   }
   // Without truth there is no file, or one with a heading alone in older runs.
-  if (run.record.recording.truth != "none") series.truth = trajectory_of(run, "truth.tum", series.warnings);
+  const Trajectory truth =
+      run.record.recording.truth == "none" ? Trajectory{} : trajectory_of(run, "truth.tum", series.warnings);
+  series.truth = on_clock_of(run.record.metrics, truth);
   const Trajectory estimate = trajectory_of(run, "trajectory.tum", series.warnings);
   if (!estimate.empty()) series.T_first_world = estimate.front().T_world_camera.inverse();
   if (!series.frames.empty()) {
@@ -94,7 +104,8 @@ RunSeries series_of(const run_files::FoundRun& run, std::string label) {
   if (run.record.final_metrics) {
     const Trajectory revised = trajectory_of(run, "final.tum", series.warnings);
     if (!revised.empty()) series.T_first_world = revised.front().T_world_camera.inverse();
-    series.final_poses = compared(revised, series.truth, run.record.final_metrics->ate);
+    series.final_poses =
+        compared(revised, on_clock_of(*run.record.final_metrics, truth), run.record.final_metrics->ate);
   }
   return series;
 }

@@ -12,6 +12,7 @@
 
 #include "eval/metrics/intensity_file.hpp"
 #include "eval/metrics/intensity_metrics.hpp"
+#include "eval/record/clock_note.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/record_files.hpp"
@@ -236,6 +237,8 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
     row.members = groups[i];
     if (row.members.size() > 1) add_replicates(runs, row);
     configurations[i] = row.variant + (configurations[i].empty() ? "" : " ") + configurations[i];
+    if (const auto note = record::clock_note(first.record))
+      table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
     if (row.status != record::RunStatus::ok)
       table.notes.push_back(
           fmt::format("{}, {}: {}: {}", row.recording, row.label, record::to_string(row.status), row.reason));

@@ -1,7 +1,16 @@
 // Options: what of a run is measured, and how. No estimate depends on them.
 #pragma once
 
+#include "core/config/groups/option_choices.hpp"
+
 namespace fusebench::config {
+
+/// By which clock the reference's stamps are read.
+enum class ReferenceTimeOffset { none, fitted };
+constexpr auto option_choices(ReferenceTimeOffset) {
+  return choices<ReferenceTimeOffset>(
+      {{"none", ReferenceTimeOffset::none}, {"fitted", ReferenceTimeOffset::fitted}});
+}
 
 /// When a pose that the estimator claims is wrong (docs/metrics.md, silent failures), and which intensity
 /// errors are recorded; and when a run that went to its end has nothing to say.
@@ -12,6 +21,7 @@ struct EvaluationConfig {
   bool intensity_readings = false;
   bool pose_intensity = false;
   double min_tracked_share = 0.25;
+  ReferenceTimeOffset reference_time_offset = ReferenceTimeOffset::none;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("silent_interval_s", self.silent_interval_s, 0.01, 1000.0,
@@ -28,6 +38,11 @@ struct EvaluationConfig {
     v.number("min_tracked_share", self.min_tracked_share, 0.0, 1.0,
              "a run that tracks a smaller share of its frames is lost, also where iekf.max_lost_frames never "
              "ended it");
+    v.choice(
+        "reference_time_offset", self.reference_time_offset,
+        "whether ATE, RPE and silent failures are computed with the ground truth's stamps as they are, or "
+        "shifted by the fitted offset of its clock, where the motion makes it observable "
+        "(docs/metrics.md, reference clock); records hold both");
   }
 };
 

@@ -9,6 +9,7 @@
 #include "eval/cli/console/reading_options.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/running/run_verbs.hpp"
+#include "eval/record/clock_note.hpp"
 #include "eval/run/imported_run.hpp"
 #include "eval/suites/recording_names.hpp"
 
@@ -69,6 +70,8 @@ Result<int> import(const ImportOptions& options) {
   if (!run) return tl::unexpected(run.error());
   console::print_warnings(run->warnings);
   console::print_progress(fmt::format("{}: {}", run->record.variant, console::summary_line(run->record)));
+  if (const auto note = record::clock_note(run->record))
+    console::print_progress(fmt::format("{}: {}", run->record.variant, *note));
   console::print_output(run->folder.string() + "\n");
   return 0;
 }

@@ -15,6 +15,7 @@
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/external/external_program.hpp"
 #include "eval/external/system_name.hpp"
+#include "eval/record/clock_note.hpp"
 #include "eval/run/run.hpp"
 #include "eval/run/run_specification.hpp"
 #include "eval/suites/suite_names.hpp"
@@ -167,6 +168,8 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
     console::print_progress("no ATE: " + ate.reason);
     if (!ate.hint.empty()) console::print_progress("  hint: " + ate.hint);
   }
+  if (const auto note = record::clock_note(*record))
+    console::print_progress(fmt::format("{}: {}", title, *note));
   return record;
 }
 

@@ -234,6 +234,33 @@ TEST(Record, FilesStandWithTheirSizesAndHashes) {
   EXPECT_TRUE(parse_record(older.dump(), "record.json")->files.empty());
 }
 
+TEST(Record, TheReferenceClockSurvives) {
+  RunRecord record = sample_record();
+  const reference_clock::ReferenceClock clock = {
+      {0.1 / 3, 0.002, 1234}, true, {0.052, 0.03, 0.04, 540}, {0.041, 0.02, std::nullopt, 12}};
+  record.metrics.reference_clock = {clock, {}};
+  const std::string text = to_json(record);
+  const json written = json::parse(text).at("metrics").at("reference_clock");
+  EXPECT_EQ(written.at("applied"), "fitted");
+  EXPECT_EQ(written.at("significant"), true);
+  EXPECT_TRUE(written.at("fitted").at("rpe_second_rad").is_null());
+  const auto back = parse_record(text, "record.json");
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  const auto& read = back->metrics.reference_clock.value;
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->offset.offset_s, clock.offset.offset_s);
+  EXPECT_EQ(read->offset.sigma_s, clock.offset.sigma_s);
+  EXPECT_EQ(read->offset.motions, clock.offset.motions);
+  EXPECT_TRUE(read->applied);
+  EXPECT_EQ(read->as_read.ate_rmse_m, clock.as_read.ate_rmse_m);
+  EXPECT_EQ(read->as_read.silent, clock.as_read.silent);
+  EXPECT_FALSE(read->fitted.rpe_second_rad);
+  EXPECT_EQ(read->fitted.rpe_second_m, clock.fitted.rpe_second_m);
+  json older = json::parse(text);
+  older["metrics"].erase("reference_clock");
+  EXPECT_FALSE(parse_record(older.dump(), "record.json")->metrics.reference_clock.value);
+}
+
 testing::JsonSchema record_schema() {
   std::ifstream file(testing::repository_root() / "docs" / "record.schema.json");
   return testing::JsonSchema(json::parse(file));

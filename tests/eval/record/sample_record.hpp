@@ -116,6 +116,7 @@ inline record::RunRecord complete_record() {
   record.metrics.mesh.value->positions = record.metrics.mesh.value->first_camera;
   record.metrics.silent = {RecordedSilentFailures{}, {}};
   record.metrics.pose_intensity = {RecordedPoseIntensity{}, {}};
+  record.metrics.reference_clock = {reference_clock::ReferenceClock{}, {}};
   for (Outcome<NeesResult>& nees : record.metrics.nees) nees = record.metrics.nees[1];
   record.final_metrics = record.metrics;
   record.recording.camera = {calibration::CalibratedCamera{}, 5000};

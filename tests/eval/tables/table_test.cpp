@@ -114,6 +114,28 @@ TEST_F(TableTest, MarkdownLinesAreAligned) {
   EXPECT_EQ(rows, 5);
 }
 
+TEST_F(TableTest, ASignificantOffsetOfTheReferenceClockIsANote) {
+  add_three_runs();
+  auto runs = find_runs(folder_ / "runs");
+  ASSERT_TRUE(runs.has_value()) << runs.error().message;
+  for (FoundRun& run : *runs) {
+    run.record.recording.truth = "given";
+    if (run.record.variant != "dm") continue;
+    run.record.metrics.reference_clock = {
+        reference_clock::ReferenceClock{{0.066, 0.002, 100}, false, {0.052, {}, {}, {}}, {0.041, {}, {}, {}}},
+        {}};
+  }
+  const std::vector<std::string> notes = table_of(*runs).notes;
+  EXPECT_EQ(
+      std::ranges::count(notes,
+                         "fr1_rpy, dm: the reference clock is 66 +- 2 ms off; ATE 4.10 instead of 5.20 cm "
+                         "with --set evaluation.reference_time_offset=fitted"),
+      1);
+  EXPECT_EQ(std::ranges::count_if(
+                notes, [](const std::string& note) { return note.find("clock") != std::string::npos; }),
+            1);
+}
+
 TEST_F(TableTest, CsvAndJsonCarryTheSameNumbers) {
   add_three_runs();
   const auto table = collect_table(folder_ / "runs");
