@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/metric_reports/clock_report.hpp"
 #include "eval/metrics/statistics.hpp"
+#include "eval/reference_clock/clock_json.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 #include "eval/trajectory_error/motion_pairs.hpp"
@@ -130,6 +132,7 @@ std::string to_text(const std::vector<ListedTrajectory>& trajectories, ListingDe
     text += fmt::format("{:-<80}\nname:\t{}\n", "", trajectory.name);
     text += detail == ListingDetail::line ? line_of(trajectory) : infos_block(trajectory);
     if (detail == ListingDetail::checks) text += checks_block(trajectory);
+    if (trajectory.clock) text += clock_text(*trajectory.clock);
   }
   return text;
 }
@@ -178,6 +181,7 @@ std::string to_json(const std::vector<ListedTrajectory>& trajectories) {
       row["start_ns"] = poses.front().timestamp_ns;
       row["end_ns"] = poses.back().timestamp_ns;
     }
+    if (trajectory.clock) row["reference_clock"] = reference_clock::json_of(*trajectory.clock);
     rows.push_back(std::move(row));
   }
   return text::json_text(rows) + "\n";

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/base/geometry.hpp"
+#include "eval/metric_reports/clock_report.hpp"
 #include "eval/metrics/statistics_json.hpp"
+#include "eval/reference_clock/clock_json.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/text_layout.hpp"
 #include "eval/trajectory_error/alignment_json.hpp"
@@ -193,18 +195,20 @@ Json motions_json(const trajectory_error::TrajectoryRequest& request) {
 
 }  // namespace
 
-std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation, const ComparedFiles& files) {
+std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation, const ComparedFiles& files,
+                    const std::optional<reference_clock::ReferenceClock>& clock) {
   std::string text = evaluation.request.metric == trajectory_error::TrajectoryMetric::ate
                          ? "absolute trajectory error\n\n"
                          : "relative pose error\n\n";
   text += text::aligned_columns(heading(evaluation, files));
   text += '\n';
   if (!evaluation.segments.empty()) text += segments_text(evaluation) + "\nall segments:\n";
-  return text + statistics_text(evaluation);
+  text += statistics_text(evaluation);
+  return clock ? text + "\n" + clock_text(*clock) : text;
 }
 
 std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, const ComparedFiles& files,
-                    EachError each) {
+                    EachError each, const std::optional<reference_clock::ReferenceClock>& clock) {
   const trajectory_error::TrajectoryRequest& request = evaluation.request;
   const trajectory_error::ErrorSeries& first = evaluation.series.front();
   Json json = {{"metric", trajectory_error::to_string(request.metric)},
@@ -231,6 +235,7 @@ std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation, co
                        {"scale", evaluation.alignment.scale},
                        {"matrix", json_of(evaluation.alignment)}};
   if (evaluation.fitted_offset) json["fitted_offset"] = trajectory_error::json_of(*evaluation.fitted_offset);
+  if (clock) json["reference_clock"] = reference_clock::json_of(*clock);
   json["plane"] = trajectory_error::to_string(request.plane);
   if (request.metric == trajectory_error::TrajectoryMetric::rpe) json["motions"] = motions_json(request);
   json.update(json_of(first, each));

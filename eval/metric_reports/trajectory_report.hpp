@@ -1,8 +1,10 @@
 // The evaluation of a trajectory, for people and for programs.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/trajectory_error/trajectory_evaluation.hpp"
 #include "eval/trajectory_files/trajectory_formats.hpp"
 
@@ -16,17 +18,20 @@ struct ComparedFiles {
   trajectory_files::TrajectoryFormat estimate_format = trajectory_files::TrajectoryFormat::tum;
 };
 
-/// The protocol and all that the numbers depend on, then the statistics; segments as a table.
+/// The protocol and all that the numbers depend on, then the statistics; segments as a table. Ends with the
+/// clock of the reference where it was fitted.
 [[nodiscard]] std::string to_text(const trajectory_error::TrajectoryEvaluation& evaluation,
-                                  const ComparedFiles& files);
+                                  const ComparedFiles& files,
+                                  const std::optional<reference_clock::ReferenceClock>& clock = std::nullopt);
 
 enum class EachError { left_out, listed };
 
 /// {"metric", "protocol", "relation", "unit", "pairs", "possible", "coverage", "association", "alignment":
 /// {"mode", "first", "scale", "matrix"}, "stats"} of the first series, the other series as "also", segments
 /// as "segments", and of motions "motions". Listed, each error of a series is in "errors", and its stamp,
-/// integer nanoseconds, in "timestamps_ns". Ends with a newline.
+/// integer nanoseconds, in "timestamps_ns"; "reference_clock" where it was fitted. Ends with a newline.
 [[nodiscard]] std::string to_json(const trajectory_error::TrajectoryEvaluation& evaluation,
-                                  const ComparedFiles& files, EachError each);
+                                  const ComparedFiles& files, EachError each,
+                                  const std::optional<reference_clock::ReferenceClock>& clock = std::nullopt);
 
 }  // namespace fusebench::metric_reports

@@ -53,14 +53,14 @@ def trajectory_command(rng):
     more = rng.choice([[], ["--json"], ["--align", rng.choice(ALIGN)], ["-as"], ["--interpolate"], ["--protocol", rng.choice(PROTOCOLS)]])
     if verb == "ate":
         return ["eval", "ate", truth, estimate, *more] + rng.choice(
-            [[], ["--errors", "out.csv"], ["--save_results", "out.zip"], ["--fit_offset"], ["--plot", "out.svg"],
+            [[], ["--errors", "out.csv"], ["--save_results", "out.zip"], ["--fit_offset"], ["--fit-time-offset"], ["--plot", "out.svg"],
              ["--protocol", "eth3d", "--images", "rgb.txt"]])
     if verb == "rpe":
         return ["eval", "rpe", truth, estimate, *more] + rng.choice(
-            [[], ["--all_pairs"], ["-d", "1", "-u", rng.choice("fmdrs")], ["--errors", "out.csv"]])
+            [[], ["--all_pairs"], ["--fit-time-offset"], ["-d", "1", "-u", rng.choice("fmdrs")], ["--errors", "out.csv"]])
     if verb == "traj":
         return ["eval", "traj", estimate, "--ref", truth] + rng.choice(
-            [[], ["-f"], ["--save_as_tum"], ["--save_as_kitti"], ["--save_table", "out.csv"], ["--json"], ["--sync", "-a"]])
+            [[], ["-f"], ["--save_as_tum"], ["--save_as_kitti"], ["--save_table", "out.csv"], ["--json"], ["--sync", "-a"], ["--fit-time-offset"]])
     if verb == "nees":
         return ["eval", "nees", "gt.txt", "openvins.txt"] + rng.choice([[], ["--json"], ["--errors", "out.csv"], ["--align", "yaw"]])
     if verb == "silent":

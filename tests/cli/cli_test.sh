@@ -590,6 +590,18 @@ tumble() {
   }'
 }
 
+# swing OFFSET RATE: 12 s of a hand-held camera at RATE Hz on a clock that is OFFSET behind, in TUM's format.
+swing() {
+  awk -v offset="$1" -v rate="$2" 'BEGIN {
+    for (i = 0; i < 12 * rate; i++) {
+      t = i / rate
+      a = 0.15 * sin(2.1 * t) + 0.1 * sin(5.3 * t + 1)
+      printf "%.6f %.6f %.6f %.6f %.9f 0 0 %.9f\n", 1305031100 + t - offset, 0.3 * sin(1.7 * t) + 0.05 * sin(4.1 * t), 0.2 * cos(1.3 * t),
+             0.1 * sin(2.9 * t), sin(a), cos(a)
+    }
+  }'
+}
+
 # prints PATTERN NAME ARGUMENT...: the program succeeds, says nothing on standard error, and prints the pattern.
 prints() {
   local pattern=$1 name=$2
@@ -615,6 +627,18 @@ check_evaluation() {
   tumble >tumble.txt
   prints 'fitted offset +\(.*the camera in the reference' "a fitted offset" eval ate tumble.txt tumble.txt --fit_offset
   prints 'trans_part_offset_fitted \[mm\]' "a fitted offset in mm" eval ate tumble.txt tumble.txt --fit_offset --change_unit mm
+  swing 0 100 >swing.txt
+  swing 0.066 30 >late.txt
+  prints 'reference clock: t_reference = t_estimate \+ 0.066[0-9]+ s, standard deviation 0.000' "the reference's clock" \
+    eval ate swing.txt late.txt -a --t_max_diff 0.02 --fit-time-offset
+  prints 'silent failures +[0-9]+ +0$' "silent failures without an offset" eval ape swing.txt late.txt --t_max_diff 0.02 --fit_time_offset
+  prints 'trans_part_clock_fitted \[mm\]' "errors with the fitted clock" \
+    eval ape swing.txt late.txt -a --t_max_diff 0.02 --fit-time-offset --change_unit mm
+  prints 'angle_deg_clock_fitted \[deg\]' "relative errors with the fitted clock" eval rpe swing.txt late.txt --protocol tum --fit-time-offset
+  prints '"offset_s": 0.066' "the clock as JSON" eval rpe swing.txt late.txt --protocol tum --fit-time-offset --json
+  prints 't_estimate - 0.034[0-9]+ s' "the clock after an offset" eval ate swing.txt late.txt --t_max_diff 0.02 --t_offset 0.1 --fit-time-offset
+  prints 'reference clock: t_reference = t_estimate \+ 0.066' "clocks of trajectories" eval traj late.txt --ref swing.txt --fit-time-offset
+  prints '"applied": "fitted"' "clocks of trajectories as JSON" eval traj late.txt --ref swing.txt --fit-time-offset --json
   prints 'trans_part \[cm\]' "change_unit" eval ate gt.txt est.txt --change_unit cm
   prints 'angle_deg \[deg\]' "relation" eval ate gt.txt est.txt --pose_relation angle_deg
   prints 'data.csv \(euroc\): 60 poses' "euroc" eval ate data.csv est.txt -a
@@ -682,6 +706,10 @@ check_evaluation() {
   refused "deltas of segments" 2 'lengths' -- eval rpe gt.txt est.txt --protocol rpg -d 1
   refused "an offset of a motion about one axis" 3 'does not tell' -- eval ate gt.txt est.txt -a --fit_offset
   refused "a fitted offset of relative errors" 2 'fit_offset' -- eval rpe gt.txt est.txt --fit_offset
+  refused "the clock of a steady motion" 3 'clock offset is not observable' -- eval ate gt.txt est.txt --fit-time-offset
+  refused "the clocks of steady motions" 3 'est.txt: the clock offset is not observable' -- eval traj est.txt --ref gt.txt --fit-time-offset
+  refused "a clock without stamps" 2 'fit-time-offset: the trajectories have no stamps' -- eval ate kitti.txt kitti.txt --fit-time-offset
+  refused "a clock without a reference" 2 'fit-time-offset needs a reference' 'hint:--ref' -- eval traj late.txt --fit-time-offset
   refused "kitti's absolute error" 2 'no absolute error' -- eval ate gt.txt est.txt --protocol kitti
   refused "two alignments" 2 'exclude each other' -- eval ate gt.txt est.txt -a --align sim3
   refused "stamps on one side" 2 'no stamps' -- eval ate gt.txt kitti.txt

@@ -10,8 +10,10 @@
 #include "core/trajectory/trajectory.hpp"
 #include "core/trajectory/trajectory_file.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
+#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/text/text_file.hpp"
 #include "eval/trajectory_error/trajectory_error.hpp"
+#include "eval/trajectory_files/stamps.hpp"
 
 namespace fusebench::cli::trajectories {
 
@@ -81,6 +83,10 @@ Result<void> check_reference(const BundleOptions& options, const Bundle& bundle)
     return fail(ErrorCode::usage,
                 fmt::format("{} needs a reference", options.sync ? "--sync" : "an alignment"),
                 "--ref FILE names it");
+  if (options.fit_time_offset && !bundle.has_reference)
+    return fail(ErrorCode::usage, "--fit-time-offset needs a reference", "--ref FILE names it");
+  if (options.fit_time_offset && !bundle.has_stamps)
+    return fail(ErrorCode::usage, "--fit-time-offset: the trajectories have no stamps (kitti)");
   if (options.t_offset != 0 && !bundle.has_stamps)
     return fail(ErrorCode::usage, "--t_offset of trajectories without stamps (kitti)");
   return {};
@@ -100,6 +106,17 @@ Result<Trajectory> brought_to(const Trajectory& reference, const Trajectory& pos
       *pair, {trajectory_error::PoseRelation::translation, *alignment, named(kPlanes, options.plane), true});
   if (!compared) return tl::unexpected(compared.error());
   return std::move(compared->compared.estimate);
+}
+
+/// Moves the stamps of a trajectory to the reference's clock by the fitted offset, and keeps that.
+Result<void> move_to_clock(const Trajectory& reference, metric_reports::ListedTrajectory& listed) {
+  auto clock = reference_clock::fitted_reference_clock(reference, listed.poses);
+  if (!clock) return tl::unexpected(clock.error());
+  clock->applied = true;
+  listed.poses = trajectory::with_clock_offset(std::move(listed.poses),
+                                               trajectory_files::nanoseconds(clock->offset.offset_s));
+  listed.clock = *clock;
+  return {};
 }
 
 /// Against itself, pose by pose: projected and nothing else.
@@ -124,14 +141,18 @@ Result<Bundle> bundle_of(const BundleOptions& options, Transcript& transcript) {
   for (std::size_t i = 0; i < bundle->trajectories.size(); ++i) {
     NamedFile& entry = bundle->trajectories[i];
     Trajectory& poses = entry.trajectory.poses;
+    const auto in_file = [&](const Error& error) {
+      return fail(error.code, fmt::format("{}: {}", entry.file, error.message), error.hint);
+    };
     if (i < others && options.t_offset != 0)
       poses = trajectory::with_clock_offset(std::move(poses), std::llround(1e9 * options.t_offset));
     const Trajectory& reference = bundle->trajectories.back().trajectory.poses;
+    if (i < others && options.fit_time_offset) {
+      if (auto moved = move_to_clock(reference, entry.trajectory); !moved) return in_file(moved.error());
+    }
     auto brought = i < others && associated ? brought_to(reference, poses, options, bundle->has_stamps)
                                             : projected(std::move(poses), options);
-    if (!brought)
-      return fail(brought.error().code, fmt::format("{}: {}", entry.file, brought.error().message),
-                  brought.error().hint);
+    if (!brought) return in_file(brought.error());
     poses = std::move(*brought);
   }
   return bundle;

@@ -23,6 +23,7 @@ struct BundleOptions {
   AlignmentOptions alignment;
   bool sync = false;
   double t_offset = 0;
+  bool fit_time_offset = false;
   double t_max_diff = 0.01;
   std::size_t downsample = 0;
   std::vector<double> motion_filter;
@@ -51,9 +52,10 @@ struct Bundle {
   bool has_stamps = true;
 };
 
-/// Reads the files, downsamples, filters, moves stamps, associates each with the reference (--sync, or to be
-/// aligned), aligns and projects. Errors: usage for options that do not go together, and files with and
-/// without stamps; those of load_trajectory(), pair_up() and align().
+/// Reads the files, downsamples, filters, moves stamps (by the fitted offset of the reference's clock as
+/// well, where it is requested), associates each with the reference (--sync, or to be aligned), aligns and
+/// projects. Errors: usage for options that do not go together, and files with and without stamps; those of
+/// load_trajectory(), fitted_time_offset(), pair_up() and align().
 [[nodiscard]] Result<Bundle> bundle_of(const BundleOptions& options, Transcript& transcript);
 
 /// Writes NAME.tum or NAME.kitti of each into the current folder, as evo_traj --save_as_tum and

@@ -5,6 +5,7 @@
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
 #include "eval/cli/trajectories/bundle_request.hpp"
+#include "eval/cli/trajectories/clock_request.hpp"
 #include "eval/cli/trajectories/evo_spelling.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
@@ -80,6 +81,10 @@ void add_bundle_options(CLI::App& verb, BundleOptions& options) {
   verb.add_option("--t_offset", options.t_offset, "Added to all stamps but the reference's")
       ->check(console::stamp_range())
       ->type_name("S");
+  add_clock_option(
+      verb, options.fit_time_offset,
+      "Moves the stamps of each by the fitted offset of the reference's clock, and lists it with its "
+      "standard deviation and the errors with and without");
   verb.add_option("--downsample", options.downsample, "Downsamples each to N poses first")
       ->check(console::positive())
       ->type_name("N");

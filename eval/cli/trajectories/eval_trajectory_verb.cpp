@@ -11,6 +11,7 @@
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/trajectories/clock_request.hpp"
 #include "eval/cli/trajectories/trajectory_request.hpp"
 #include "eval/cli/trajectories/trajectory_verbs.hpp"
 #include "eval/evo_results/result_archive.hpp"
@@ -122,6 +123,12 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
   if (auto suited = suit_stamps(*sides, *request); !suited) return tl::unexpected(suited.error());
   auto evaluation = trajectory_error::evaluate(sides->reference.poses, sides->estimate.poses, *request);
   if (!evaluation) return tl::unexpected(evaluation.error());
+  std::optional<reference_clock::ReferenceClock> clock;
+  if (options.fit_time_offset) {
+    const auto fitted = fit_clock(*sides, *request, *evaluation);
+    if (!fitted) return tl::unexpected(fitted.error());
+    clock = *fitted;
+  }
   if (auto changed = change_units(*evaluation, options.change_unit); !changed)
     return tl::unexpected(changed.error());
   warn_of_few(*evaluation, transcript);
@@ -131,8 +138,8 @@ Result<int> run(TrajectoryOptions options, trajectory_error::TrajectoryMetric me
                                                sides->estimate.format};
   const auto each =
       options.all_errors ? metric_reports::EachError::listed : metric_reports::EachError::left_out;
-  transcript.result(options.json ? metric_reports::to_json(*evaluation, files, each)
-                                 : metric_reports::to_text(*evaluation, files));
+  transcript.result(options.json ? metric_reports::to_json(*evaluation, files, each, clock)
+                                 : metric_reports::to_text(*evaluation, files, clock));
   if (auto logged = transcript.finish(); !logged) return tl::unexpected(logged.error());
   return 0;
 }
@@ -247,6 +254,10 @@ console::Verb add(CLI::App& eval, trajectory_error::TrajectoryMetric metric, con
     add_motion_options(*verb, *options);
   else
     add_offset_option(*verb, *options);
+  add_clock_option(
+      *verb, options->fit_time_offset,
+      "Also gives the errors with the fitted offset of the reference's clock (after --t_offset), with "
+      "its standard deviation");
   options->plot.usual_file = metric == trajectory_error::TrajectoryMetric::ate ? "ape.svg" : "rpe.svg";
   add_plot_options(*verb, options->plot);
   add_error_plot_options(*verb, options->error_plot);

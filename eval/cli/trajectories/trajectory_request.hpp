@@ -56,6 +56,7 @@ struct TrajectoryOptions {
   bool all_pairs = false;
   bool pairs_from_reference = false;
   bool fit_offset = false;
+  bool fit_time_offset = false;
   std::filesystem::path errors;
   std::filesystem::path save_results;
   PlotOptions plot;
