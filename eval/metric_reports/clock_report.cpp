@@ -35,9 +35,9 @@ std::string clock_text(const reference_clock::ReferenceClock& clock) {
   const std::vector<std::vector<std::string>> lines = {
       {"", "stamps as read", "offset fitted"},
       {"ATE rmse [m]", shown(as_read.ate_rmse_m, 1), shown(fitted.ate_rmse_m, 1)},
-      {"RPE 1 s rmse [m]", shown(as_read.rpe_second_m, 1), shown(fitted.rpe_second_m, 1)},
-      {"RPE 1 s rmse [deg]", shown(as_read.rpe_second_rad, kDegreesPerRadian),
-       shown(fitted.rpe_second_rad, kDegreesPerRadian)},
+      {"RPE 1 s rmse [m]", shown(as_read.rpe_1s_m, 1), shown(fitted.rpe_1s_m, 1)},
+      {"RPE 1 s rmse [deg]", shown(as_read.rpe_1s_rad, kDegreesPerRadian),
+       shown(fitted.rpe_1s_rad, kDegreesPerRadian)},
       {"silent failures", shown_count(as_read.silent), shown_count(fitted.silent)}};
   return fmt::format("reference clock: {}\n\n{}", offset_text(clock.offset), text::aligned_columns(lines));
 }

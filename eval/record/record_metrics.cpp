@@ -231,9 +231,9 @@ void read(const Json& json, reference_clock::ClockedErrors& errors) {
     if (const Json& at = json.at(key); !at.is_null()) value = at;
   };
   number("ate_rmse_m", errors.ate_rmse_m);
-  number("rpe_second_m", errors.rpe_second_m);
-  number("rpe_second_rad", errors.rpe_second_rad);
-  number("silent", errors.silent);
+  number("rpe_1s_m", errors.rpe_1s_m);
+  number("rpe_1s_rad", errors.rpe_1s_rad);
+  number("silent_failures", errors.silent);
 }
 
 void read(const Json& json, reference_clock::ReferenceClock& clock) {

@@ -7,16 +7,16 @@
 
 namespace fusebench::reference_clock {
 
-/// {"ate_rmse_m", "rpe_second_m", "rpe_second_rad", "silent"}; null where there is no number.
+/// {"ate_rmse_m", "rpe_1s_m", "rpe_1s_rad", "silent_failures"}; null where there is no number.
 [[nodiscard]] inline nlohmann::ordered_json json_of(const ClockedErrors& errors) {
   const auto number = [](const auto& value) -> nlohmann::ordered_json {
     if (!value) return nullptr;
     return *value;
   };
   return {{"ate_rmse_m", number(errors.ate_rmse_m)},
-          {"rpe_second_m", number(errors.rpe_second_m)},
-          {"rpe_second_rad", number(errors.rpe_second_rad)},
-          {"silent", number(errors.silent)}};
+          {"rpe_1s_m", number(errors.rpe_1s_m)},
+          {"rpe_1s_rad", number(errors.rpe_1s_rad)},
+          {"silent_failures", number(errors.silent)}};
 }
 
 /// {"protocol", "applied", "motions", "offset_s", "sigma_s", "significant", "as_read", "fitted"}.

@@ -18,8 +18,8 @@ ClockedErrors clocked_errors(const Trajectory& reference, const Trajectory& esti
   if (const auto ate = trajectory_error::absolute_trajectory_error(reference, estimate))
     errors.ate_rmse_m = ate->stats.rmse;
   if (const auto rpe = trajectory_error::relative_pose_error(reference, estimate)) {
-    errors.rpe_second_m = rpe->translation.rmse;
-    errors.rpe_second_rad = rpe->rotation.rmse;
+    errors.rpe_1s_m = rpe->translation.rmse;
+    errors.rpe_1s_rad = rpe->rotation.rmse;
   }
   if (const auto failures = trajectory_error::silent_failures(reference, estimate))
     errors.silent = failures->silent;

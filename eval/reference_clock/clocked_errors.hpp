@@ -14,8 +14,8 @@ namespace fusebench::reference_clock {
 /// The numbers that an offset of the clock moves most; those that cannot be computed are absent.
 struct ClockedErrors {
   std::optional<double> ate_rmse_m;
-  std::optional<double> rpe_second_m;  ///< rmse over 1 s
-  std::optional<double> rpe_second_rad;
+  std::optional<double> rpe_1s_m;  ///< rmse over 1 s
+  std::optional<double> rpe_1s_rad;
   std::optional<std::size_t> silent;  ///< silent failures
 };
 

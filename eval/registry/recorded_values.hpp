@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "eval/metrics/residual_metrics.hpp"
 #include "eval/metrics/statistics.hpp"
 #include "eval/record/record.hpp"
+#include "eval/reference_clock/clocked_errors.hpp"
 #include "eval/trajectory_error/ate_rpe.hpp"
 
 namespace fusebench::registry {
@@ -80,6 +82,20 @@ template <class Read>
 }
 [[nodiscard]] inline Value silent_judged(const record::RunRecord& r) {
   return read_from(r.metrics.silent, [](const auto& m) { return m.failures.judged; });
+}
+
+/// A number of the clock of the ground truth.
+template <class Read>
+[[nodiscard]] Value of_clock(const record::RunRecord& r, Read read) {
+  return read_from(r.metrics.reference_clock, read);
+}
+/// One of the errors with the fitted offset.
+template <class T>
+[[nodiscard]] Value of_fitted_clock(const record::RunRecord& r,
+                                    std::optional<T> reference_clock::ClockedErrors::*error) {
+  const auto& clock = r.metrics.reference_clock;
+  if (clock.value && !(clock.value->fitted.*error)) return {std::nullopt, "no error with the fitted offset"};
+  return read_from(clock, [&](const auto& m) { return *(m.fitted.*error); });
 }
 
 [[nodiscard]] inline Value aie(const record::RunRecord& r) {

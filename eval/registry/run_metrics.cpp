@@ -27,6 +27,7 @@ constexpr auto kNeither = Better::neither;
 constexpr std::nullopt_t kNoGate = std::nullopt;
 constexpr double kCentimetres = 100;
 constexpr double kMillimetres = 1000;
+constexpr double kMilliseconds = 1000;
 constexpr double kPercent = 100;
 constexpr double kExact = 0;
 
@@ -274,6 +275,59 @@ constexpr auto kMetrics = std::to_array<RunMetric>({
      .tolerance = kNoGate,
      .definition = "1 of a run that was lost or failed, else 0",
      .of = [](const record::RunRecord& r) { return counted(r.status == record::RunStatus::ok ? 0 : 1); }},
+    // The clock of the ground truth.
+    {.key = "reference_offset_s",
+     .unit = "s",
+     .heading = "clock offset [ms]",
+     .shown_factor = kMilliseconds,
+     .decimals = 1,
+     .better = kNeither,
+     .tolerance = kNoGate,
+     .definition =
+         "fitted constant offset of the ground truth's clock, t_reference - t_estimate; absent where the "
+         "motion does not make it observable",
+     .path = "metrics.reference_clock.offset_s",
+     .of =
+         [](const record::RunRecord& r) {
+           return of_clock(r, [](const auto& m) { return m.offset.offset_s; });
+         }},
+    {.key = "reference_offset_sigma_s",
+     .unit = "s",
+     .heading = "clock sigma [ms]",
+     .shown_factor = kMilliseconds,
+     .decimals = 1,
+     .better = kNeither,
+     .tolerance = kNoGate,
+     .definition = "its standard deviation",
+     .path = "metrics.reference_clock.sigma_s",
+     .of =
+         [](const record::RunRecord& r) {
+           return of_clock(r, [](const auto& m) { return m.offset.sigma_s; });
+         }},
+    {.key = "ate_clock_fitted_m",
+     .word = "ate-clock",
+     .unit = "m",
+     .heading = "ATE clock fitted [cm]",
+     .shown_factor = kCentimetres,
+     .tolerance = kNoGate,
+     .definition = "ATE with the fitted offset of the clock, whether the main numbers have it or not",
+     .path = "metrics.reference_clock.fitted.ate_rmse_m",
+     .of =
+         [](const record::RunRecord& r) {
+           return of_fitted_clock(r, &reference_clock::ClockedErrors::ate_rmse_m);
+         }},
+    {.key = "silent_failures_clock_fitted",
+     .unit = "frames",
+     .heading = "silent, clock fitted",
+     .decimals = 0,
+     .kind = count,
+     .tolerance = kNoGate,
+     .definition = "silent_failures with the fitted offset of the clock",
+     .path = "metrics.reference_clock.fitted.silent_failures",
+     .of =
+         [](const record::RunRecord& r) {
+           return of_fitted_clock(r, &reference_clock::ClockedErrors::silent);
+         }},
     // Intensities by poses, and residuals.
     {.key = "pose_aie_grey",
      .word = "pose-aie",

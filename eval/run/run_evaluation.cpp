@@ -88,8 +88,8 @@ reference_clock::ClockedErrors clocked_errors(const record::RecordedMetrics& met
   reference_clock::ClockedErrors errors;
   if (metrics.ate.value) errors.ate_rmse_m = metrics.ate.value->stats.rmse;
   if (const auto& rpe = metrics.rpe_second.value) {
-    errors.rpe_second_m = rpe->translation.rmse;
-    errors.rpe_second_rad = rpe->rotation.rmse;
+    errors.rpe_1s_m = rpe->translation.rmse;
+    errors.rpe_1s_rad = rpe->rotation.rmse;
   }
   errors.silent = metrics.silent_frames();
   return errors;

@@ -243,7 +243,7 @@ TEST(Record, TheReferenceClockSurvives) {
   const json written = json::parse(text).at("metrics").at("reference_clock");
   EXPECT_EQ(written.at("applied"), "fitted");
   EXPECT_EQ(written.at("significant"), true);
-  EXPECT_TRUE(written.at("fitted").at("rpe_second_rad").is_null());
+  EXPECT_TRUE(written.at("fitted").at("rpe_1s_rad").is_null());
   const auto back = parse_record(text, "record.json");
   ASSERT_TRUE(back.has_value()) << back.error().message;
   const auto& read = back->metrics.reference_clock.value;
@@ -254,8 +254,8 @@ TEST(Record, TheReferenceClockSurvives) {
   EXPECT_TRUE(read->applied);
   EXPECT_EQ(read->as_read.ate_rmse_m, clock.as_read.ate_rmse_m);
   EXPECT_EQ(read->as_read.silent, clock.as_read.silent);
-  EXPECT_FALSE(read->fitted.rpe_second_rad);
-  EXPECT_EQ(read->fitted.rpe_second_m, clock.fitted.rpe_second_m);
+  EXPECT_FALSE(read->fitted.rpe_1s_rad);
+  EXPECT_EQ(read->fitted.rpe_1s_m, clock.fitted.rpe_1s_m);
   json older = json::parse(text);
   older["metrics"].erase("reference_clock");
   EXPECT_FALSE(parse_record(older.dump(), "record.json")->metrics.reference_clock.value);

@@ -28,8 +28,8 @@ TEST(ClockedErrors, AShiftedCopyHasNoneWithItsOffset) {
   EXPECT_GT(*clock->as_read.ate_rmse_m, 0.01);
   EXPECT_GT(*clock->as_read.silent, 0U);
   EXPECT_LT(*clock->fitted.ate_rmse_m, 1e-4);
-  EXPECT_LT(*clock->fitted.rpe_second_m, 1e-4);
-  EXPECT_LT(*clock->fitted.rpe_second_rad, 1e-3);
+  EXPECT_LT(*clock->fitted.rpe_1s_m, 1e-4);
+  EXPECT_LT(*clock->fitted.rpe_1s_rad, 1e-3);
   EXPECT_EQ(*clock->fitted.silent, 0U);
 }
 
@@ -40,11 +40,11 @@ TEST(ClockedErrors, AreThoseOfTheMetrics) {
   const ClockedErrors errors = clocked_errors(reference, estimate);
   EXPECT_EQ(errors.ate_rmse_m, trajectory_error::absolute_trajectory_error(reference, estimate)->stats.rmse);
   const auto rpe = trajectory_error::relative_pose_error(reference, estimate);
-  EXPECT_EQ(errors.rpe_second_m, rpe->translation.rmse);
-  EXPECT_EQ(errors.rpe_second_rad, rpe->rotation.rmse);
+  EXPECT_EQ(errors.rpe_1s_m, rpe->translation.rmse);
+  EXPECT_EQ(errors.rpe_1s_rad, rpe->rotation.rmse);
   EXPECT_EQ(errors.silent, trajectory_error::silent_failures(reference, estimate)->silent);
   const ClockedErrors none = clocked_errors(reference, {});
-  EXPECT_FALSE(none.ate_rmse_m || none.rpe_second_m || none.rpe_second_rad || none.silent);
+  EXPECT_FALSE(none.ate_rmse_m || none.rpe_1s_m || none.rpe_1s_rad || none.silent);
   EXPECT_TRUE(json_of(none).at("ate_rmse_m").is_null());
 }
 

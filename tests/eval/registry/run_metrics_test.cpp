@@ -59,6 +59,7 @@ const std::vector<std::regex>& details() {
       std::regex(R"(.*\.mesh\.(accuracy|completeness)\.(rmse|median|std|min|max|sse|count|p90|p95))"),
       std::regex(R"(.*\.silent_failures\.(interval_s|max_.*|first_.*|worst_.*))"),
       std::regex(R"(.*\.pose_intensity\.(rms_grey|frames|pixels))"),
+      std::regex(R"(.*\.reference_clock\.(motions|(as_read|fitted)\..*))"),
       std::regex(R"(.*\.coverage\.(tracked|total))"),
       std::regex(R"(final_metrics\..*)"),  // of the poses at the end: metrics name the errors of trajectories
       std::regex(R"(loops\.error\.(protocol|revisits)\..*)"),

@@ -65,8 +65,8 @@ TEST(ClockedMetrics, WithoutTheOptionTheStampsAreTakenAsTheyAre) {
   EXPECT_TRUE(clock->offset.significant());
   EXPECT_LT(std::abs(clock->offset.offset_s - kClockOffset_s), 3 * clock->offset.sigma_s);
   EXPECT_EQ(clock->as_read.ate_rmse_m, metrics.ate.value->stats.rmse);
-  EXPECT_EQ(clock->as_read.rpe_second_m, metrics.rpe_second.value->translation.rmse);
-  EXPECT_EQ(clock->as_read.rpe_second_rad, metrics.rpe_second.value->rotation.rmse);
+  EXPECT_EQ(clock->as_read.rpe_1s_m, metrics.rpe_second.value->translation.rmse);
+  EXPECT_EQ(clock->as_read.rpe_1s_rad, metrics.rpe_second.value->rotation.rmse);
   EXPECT_EQ(clock->as_read.silent, metrics.silent_frames());
   EXPECT_LT(*clock->fitted.ate_rmse_m, 0.5 * *clock->as_read.ate_rmse_m);
   EXPECT_LT(*clock->fitted.silent, *clock->as_read.silent);
