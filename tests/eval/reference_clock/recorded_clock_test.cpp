@@ -46,26 +46,36 @@ Trajectory camera_before(const Trajectory& reference, double offset_s) {
 
 class RecordedClock : public ::testing::TestWithParam<std::pair<const char*, double>> {};
 
-TEST_P(RecordedClock, ShiftsAreRecovered) {
+TEST_P(RecordedClock, ShiftsAreRecoveredAndTheSigmaIsThatOfTheErrors) {
   const Trajectory reference = recorded(GetParam().first, GetParam().second);
   if (reference.empty()) GTEST_SKIP() << "FUSEBENCH_DATA has no " << GetParam().first;
   const SE3 T_body_camera(so3_exp({0.9, 0.7, -1.8}), {0.2, -0.17, 0.14});
   const testing::PoseErrors errors{.white = 0.001, .correlated = 0.002, .correlation_s = 0.3, .walk = 0.003};
+  constexpr int kDraws = 20;  // of the errors, at each offset
   unsigned seed = 0;
+  std::size_t count = 0, beyond = 0;
   double squares = 0;
   for (const double offset_s : {-0.15, -0.02, 0.0, 0.02, 0.066, 0.15}) {
     const Trajectory exact = seen_by(camera_before(reference, offset_s), T_body_camera, 1.05);
     const auto clean = fitted_time_offset(reference, exact);
     ASSERT_TRUE(clean) << clean.error().message;
     EXPECT_NEAR(clean->offset_s, offset_s, 1e-4);
-    const auto rough = fitted_time_offset(reference, with_errors(exact, errors, ++seed));
-    ASSERT_TRUE(rough) << rough.error().message;
-    const double sigmas = (rough->offset_s - offset_s) / rough->sigma_s;
-    EXPECT_LT(std::abs(sigmas), 4) << "one in a thousand of a few seconds";
-    squares += sigmas * sigmas;
-    EXPECT_LT(rough->sigma_s, 0.006);
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const auto rough = fitted_time_offset(reference, with_errors(exact, errors, ++seed));
+      ASSERT_TRUE(rough) << rough.error().message;
+      EXPECT_LT(rough->sigma_s, 0.006);
+      const double sigmas = (rough->offset_s - offset_s) / rough->sigma_s;
+      ++count;
+      beyond += std::abs(sigmas) > 3 ? 1 : 0;
+      squares += sigmas * sigmas;
+    }
   }
-  EXPECT_LT(squares / 6, 3);
+  // Of normal errors 0.3 % are beyond three sigmas; of a few seconds, whose variance is known less well, 1.3
+  // %, and of 120 draws then more than 4 with a probability of 2 %.
+  EXPECT_LE(beyond, 4U) << count;
+  const double nees = squares / static_cast<double>(count);
+  EXPECT_GT(nees, 0.5);
+  EXPECT_LT(nees, 2.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
