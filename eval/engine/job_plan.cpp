@@ -267,13 +267,14 @@ Result<BatchPlan> plan_batch(const suites::Suite& suite, const BatchOptions& opt
 
   const auto recordings = suites::planned_recordings(suite, {options.data, options.simulated, options.only});
   if (!recordings) return tl::unexpected(recordings.error());
-  if (auto few = check_count(common, *recordings); !few) return tl::unexpected(few.error());
+  if (auto few = check_count(common, recordings->present); !few) return tl::unexpected(few.error());
   BatchPlan plan;
+  plan.absent = recordings->absent;
   for (const auto& program : common.programs) {
     if (!program->absent.empty()) plan.absent.push_back(program->name + ": " + program->absent);
   }
   std::set<const suites::Exclusion*> met;
-  for (const suites::PlannedRecording& recording : *recordings) {
+  for (const suites::PlannedRecording& recording : recordings->present) {
     std::vector<BatchJob> jobs;
     if (auto added = add_runs(common, recording, plan, met, jobs); !added)
       return tl::unexpected(added.error());

@@ -51,7 +51,8 @@ struct BatchPlan {
   std::vector<BatchJob> jobs;
   std::vector<ExcludedRun> excluded;
   std::vector<std::string> warnings;     ///< exclusions that meet no run
-  std::vector<std::string> absent = {};  ///< "NAME: why" of each external program that cannot run here
+  /// "NAME: where to get it" of each absent recording, "NAME: reason" of each external program that cannot run
+  std::vector<std::string> absent = {};
 };
 
 /// By recording (those of the suite, then the simulated ones), window, repetition, replicate, variant as they

@@ -8,9 +8,17 @@
 
 namespace fusebench::study {
 
-/// JSON in SI units with keys in a fixed order: rows, curves, criteria, and every run. No times but frames a
-/// second; what does not exist is null.
-[[nodiscard]] std::string summary_json(const StudySummary& summary, const Study& study);
+/// How a summary was made, so that its numbers can be repeated and two summaries can be told apart.
+struct SummaryOrigin {
+  std::string command = {};              ///< that repeats it, without folders of the machine
+  std::vector<std::string> absent = {};  ///< what the suite left out, as BatchPlan::absent
+};
+
+/// JSON in SI units with keys in a fixed order: origin (with the versions and machines of the records, and the
+/// UTC date of the newest), rows, curves, criteria, and every run. No times but frames a second; numbers that
+/// do not exist are null.
+[[nodiscard]] std::string summary_json(const StudySummary& summary, const Study& study,
+                                       const SummaryOrigin& origin = {});
 
 /// Markdown: the criteria, then a table a split, then AIE against motion.
 [[nodiscard]] std::string summary_text(const StudySummary& summary);

@@ -1,5 +1,14 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <utility>
 
 #include "eval/study/criteria_json.hpp"
 #include "eval/study/summary_formats.hpp"
@@ -85,6 +94,11 @@ Json json_of(const Study& study, const StudyRun& run) {
                {"variant", run.variant},
                {"group", run.group},
                {"split", run.split},
+               {"data", run.record.recording.data},
+               {"imu", run.record.recording.imu},
+               {"truth", run.record.recording.truth},
+               {"repetition", run.record.repetition},
+               {"replicate", run.record.replicate},
                {"status", record::to_string(run.record.status)},
                {"reason", run.record.reason},
                {"config_hash", run.record.config_hash},
@@ -94,6 +108,38 @@ Json json_of(const Study& study, const StudyRun& run) {
     values[std::string(metric->key)] = number(value_of(study, run, *metric));
   json["values"] = std::move(values);
   return json;
+}
+
+void add_once(std::vector<std::string>& texts, std::string text) {
+  if (std::ranges::find(texts, text) == texts.end()) texts.push_back(std::move(text));
+}
+
+/// UTC, as 2026-11-29; empty if no run has a record.
+std::string newest_date(const Study& study) {
+  std::optional<std::filesystem::file_time_type> newest;
+  for (const StudyRun& run : study.runs) {
+    std::error_code missing;
+    const auto time = std::filesystem::last_write_time(run.folder / "record.json", missing);
+    if (!missing) newest = newest ? std::max(*newest, time) : time;
+  }
+  if (!newest) return {};
+  const auto moment = std::chrono::file_clock::to_sys(*newest);
+  return fmt::format("{:%Y-%m-%d}", std::chrono::time_point_cast<std::chrono::seconds>(moment));
+}
+
+Json json_of(const SummaryOrigin& origin, const Study& study) {
+  std::vector<std::string> versions, machines;
+  for (const StudyRun& run : study.runs) {
+    const record::RecordedProvenance& made = run.record.provenance;
+    if (made.version.empty()) continue;
+    add_once(versions, made.git.empty() ? made.version : fmt::format("{} ({})", made.version, made.git));
+    add_once(machines, made.cpu);
+  }
+  return {{"command", origin.command},
+          {"date", newest_date(study)},
+          {"versions", versions},
+          {"machines", machines},
+          {"absent", origin.absent}};
 }
 
 template <class T>
@@ -107,14 +153,18 @@ Json list_of(const std::vector<T>& items) {
 
 Json criteria_json(const std::vector<CriterionResult>& criteria) { return list_of(criteria); }
 
-std::string summary_json(const StudySummary& summary, const Study& study) {
+std::string summary_json(const StudySummary& summary, const Study& study, const SummaryOrigin& origin) {
   Json runs = Json::array();
   for (const StudyRun& run : study.runs) runs.push_back(json_of(study, run));
   Json motion = Json::array();
   for (const MotionCurve& curve : summary.curves) motion.push_back(json_of(summary, curve));
-  const Json document = {{"suite", summary.suite},        {"criteria", criteria_json(summary.criteria)},
-                         {"rows", list_of(summary.rows)}, {"motion", motion},
-                         {"notes", summary.notes},        {"runs", runs}};
+  const Json document = {{"suite", summary.suite},
+                         {"origin", json_of(origin, study)},
+                         {"criteria", criteria_json(summary.criteria)},
+                         {"rows", list_of(summary.rows)},
+                         {"motion", motion},
+                         {"notes", summary.notes},
+                         {"runs", runs}};
   return text::json_text(document) + "\n";
 }
 

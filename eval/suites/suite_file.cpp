@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<std::string_view, 16> kSuiteKeys = {
     "name",     "recordings", "all",  "variants", "systems", "imu",     "config",      "simulations",
     "criteria", "frames",     "keep", "limits",   "sweep",   "exclude", "repetitions", "replicates"};
-constexpr std::array<std::string_view, 4> kRecordingKeys = {"name", "group", "split", "variants"};
+constexpr std::array<std::string_view, 5> kRecordingKeys = {"name", "group", "split", "variants", "source"};
 constexpr std::string_view kConfigPrefix = "config.";
 constexpr std::string_view kLimitPrefix = "limits.";
 
@@ -99,8 +99,10 @@ Result<void> read_recording(const EntryTable& table, Suite& suite) {
       recording.variants = std::move(*list);
       continue;
     }
-    const std::array<std::pair<std::string_view, std::string*>, 3> texts = {
-        {{"name", &recording.name}, {"group", &recording.group}, {"split", &recording.split}}};
+    const std::array<std::pair<std::string_view, std::string*>, 4> texts = {{{"name", &recording.name},
+                                                                             {"group", &recording.group},
+                                                                             {"split", &recording.split},
+                                                                             {"source", &recording.source}}};
     const auto* const target =
         std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.first == entry.key; });
     if (target == texts.end()) return unknown_key(entry.place, entry.key, kRecordingKeys, "a recording");

@@ -26,11 +26,13 @@ namespace fusebench::suites {
 ///     group = "fr1"                       # default: the recording's own name
 ///     split = "tuning"                     # or "held-out" (default)
 ///     variants = ["full"]                 # default: those of the suite
+///     source = "scripts/fetch_datasets.sh fr1_xyz"   # where to get it; one with a source may be absent
 struct SuiteRecording {
   std::string name;
   std::string group = {};  ///< empty: the recording's name
   std::string split = std::string(kHeldOutSplit);
   std::vector<std::string> variants = {};
+  std::string source = {};  ///< not empty: an absent recording is reported with it, and the suite runs the others
 };
 
 /// A suite runs every variant over every recording.

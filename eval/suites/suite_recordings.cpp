@@ -1,6 +1,7 @@
 #include "eval/suites/suite_recordings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <set>
 #include <utility>
@@ -13,8 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Result<std::vector<PlannedRecording>> existing_recordings(const Suite& suite, const RecordingChoice& choice) {
-  std::vector<PlannedRecording> planned;
+Result<PlannedRecordings> existing_recordings(const Suite& suite, const RecordingChoice& choice) {
+  PlannedRecordings planned;
   if (suite.all) {
     if (choice.data.empty()) {
       return fail(ErrorCode::data_missing,
@@ -24,18 +25,22 @@ Result<std::vector<PlannedRecording>> existing_recordings(const Suite& suite, co
     const auto folders = recordings_under(choice.data);
     if (!folders) return tl::unexpected(folders.error());
     for (const fs::path& folder : *folders) {
-      planned.push_back({folder, folder.filename().string(), std::string(kHeldOutSplit), suite.variants});
+      planned.present.push_back(
+          {folder, folder.filename().string(), std::string(kHeldOutSplit), suite.variants});
     }
   }
   for (const SuiteRecording& recording : suite.recordings) {
     const auto folders = find_recordings(recording.name, choice.data);
     if (!folders) {
       if (!recording_may_be_wanted(choice.only, recording.name)) continue;
-      return tl::unexpected(folders.error());
+      if (recording.source.empty()) return tl::unexpected(folders.error());
+      planned.absent.push_back(fmt::format("{}: {}", recording.name, recording.source));
+      continue;
     }
     for (const fs::path& folder : *folders) {
-      planned.push_back({folder, recording.group.empty() ? folder.filename().string() : recording.group,
-                         recording.split, recording.variants.empty() ? suite.variants : recording.variants});
+      planned.present.push_back(
+          {folder, recording.group.empty() ? folder.filename().string() : recording.group, recording.split,
+           recording.variants.empty() ? suite.variants : recording.variants});
     }
   }
   return planned;
@@ -59,18 +64,23 @@ Result<PlannedRecording> simulated_recording(const SuiteSimulation& simulation,
 
 }  // namespace
 
-Result<std::vector<PlannedRecording>> planned_recordings(const Suite& suite, const RecordingChoice& choice) {
+Result<PlannedRecordings> planned_recordings(const Suite& suite, const RecordingChoice& choice) {
   auto planned = existing_recordings(suite, choice);
   if (!planned) return planned;
   for (const SuiteSimulation& simulation : suite.simulations) {
     if (!recording_may_be_wanted(choice.only, simulation.name)) continue;
     auto recording = simulated_recording(simulation, choice);
     if (!recording) return tl::unexpected(recording.error());
-    planned->push_back(std::move(*recording));
+    planned->present.push_back(std::move(*recording));
+  }
+  if (planned->present.empty() && !planned->absent.empty()) {
+    return fail(ErrorCode::data_missing,
+                fmt::format("suite '{}': none of its recordings is under '{}'", suite.name, choice.data.string()),
+                fmt::format("get at least one: {}", fmt::join(planned->absent, "; ")));
   }
   // Runs go by the names of recordings: two of one name would overwrite each other's.
   std::set<std::string> names;
-  for (const PlannedRecording& recording : *planned) {
+  for (const PlannedRecording& recording : planned->present) {
     const std::string name = recording.folder.filename().string();
     if (names.insert(name).second || suite.all) continue;
     return fail(ErrorCode::configuration,

@@ -29,9 +29,13 @@ struct RecordingChoice {
   const OnlyFilters& only;
 };
 
-/// Those that are there, and then the simulated ones. What --only leaves out need not be there. Errors:
-/// data_missing (a recording or a trajectory that is not there), configuration (two of one name).
-[[nodiscard]] Result<std::vector<PlannedRecording>> planned_recordings(const Suite& suite,
-                                                                       const RecordingChoice& choice);
+struct PlannedRecordings {
+  std::vector<PlannedRecording> present;  ///< existing recordings, then the simulated ones
+  std::vector<std::string> absent;        ///< "NAME: SOURCE" of absent recordings that have a source
+};
+
+/// Recordings that --only leaves out need not exist. Errors: data_missing (a recording without a source, or a
+/// trajectory, does not exist; or all recordings are absent), configuration (two of one name).
+[[nodiscard]] Result<PlannedRecordings> planned_recordings(const Suite& suite, const RecordingChoice& choice);
 
 }  // namespace fusebench::suites

@@ -1,5 +1,7 @@
 #include "eval/cli/running/suite_conclusion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -39,6 +41,18 @@ std::vector<study::StudyRun> study_runs(const engine::BatchPlan& plan,
   return runs;
 }
 
+/// Without the folders of this machine.
+std::string command_of(const BenchOptions& options) {
+  const engine::Invocation& asked = options.invocation;
+  const std::filesystem::path suite =
+      asked.suite.is_relative() ? asked.suite : std::filesystem::path(asked.suite.filename());
+  std::string command = fmt::format("fusebench bench {} --data DATA", suite.generic_string());
+  for (const std::string& only : asked.options.only) command += " --only " + only;
+  for (const std::string& set : asked.options.sets) command += " --set " + set;
+  if (asked.overrides.replicates > 0) command += fmt::format(" --replicates {}", asked.overrides.replicates);
+  return command;
+}
+
 }  // namespace
 
 RunCounts counts_of(const std::vector<engine::BatchOutcome>& outcomes) {
@@ -60,7 +74,8 @@ Result<std::vector<study::CriterionResult>> conclude(const suites::Suite& suite,
   const study::Study study = study::gather_study(study_runs(plan, outcomes), suite.variants);
   study::StudySummary summary = study::summarise(suite.name, study, suite.criteria);
   if (!options.summary.empty()) {
-    if (auto written = text::write_text_file(options.summary, study::summary_json(summary, study)); !written)
+    const std::string json = study::summary_json(summary, study, {command_of(options), plan.absent});
+    if (auto written = text::write_text_file(options.summary, json); !written)
       return tl::unexpected(written.error());
   }
   if (!options.summary_page.empty()) {

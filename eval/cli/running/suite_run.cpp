@@ -89,12 +89,11 @@ Result<int> run_suite(BenchOptions options) {
   if (auto sensible = engine::check_simulations(plan->jobs); !sensible)
     return tl::unexpected(sensible.error());
   console::print_warnings(plan->warnings);
+  for (const std::string& absent : plan->absent) console::print_progress("warning: left out: " + absent);
   if (options.controls.dry_run) {
     print_preview(*plan, options.controls);
     return 0;
   }
-  // The preview lists what is excluded; what cannot run here is no choice of the suite's.
-  for (const std::string& absent : plan->absent) console::print_progress("warning: left out: " + absent);
   if (plan->jobs.empty()) {
     return fail(ErrorCode::usage,
                 fmt::format("all {} runs of suite '{}' are excluded, the first one because: {}",

@@ -269,6 +269,27 @@ TEST_F(StudyTest, WhereTheDataComeFromIsSaid) {
   EXPECT_NE(summary_page(summary, all).find("<td>pseudo ground truth: "), std::string::npos);
 }
 
+TEST_F(StudyTest, TheSummaryHasItsOrigin) {
+  add("a", "walk", "full", 0.01).record.provenance.cpu = "A";
+  StudyRun& replicate = add("a", "walk", "full", 0.02);
+  replicate.record.provenance.cpu = "B";
+  for (StudyRun& run : runs_) {
+    run.record.provenance.version = "0.1.0";
+    run.record.provenance.git = "abc";
+  }
+  replicate.record.replicate = 1;
+  const Study all = study();
+  const auto json = nlohmann::json::parse(
+      summary_json(summarise("demo", all, {}), all, {"fusebench bench demo --data DATA", {"b: elsewhere"}}));
+  const nlohmann::json& origin = json.at("origin");
+  EXPECT_EQ(origin.at("command"), "fusebench bench demo --data DATA");
+  EXPECT_EQ(origin.at("versions"), nlohmann::json::array({"0.1.0 (abc)"}));
+  EXPECT_EQ(origin.at("machines"), nlohmann::json::array({"A", "B"}));
+  EXPECT_EQ(origin.at("absent"), nlohmann::json::array({"b: elsewhere"}));
+  EXPECT_EQ(json.at("runs").at(0).at("replicate"), 0);
+  EXPECT_EQ(json.at("runs").at(1).at("replicate"), 1);
+}
+
 /// The JSON that a page draws its charts from.
 nlohmann::json charts_of(const std::string& page) {
   const std::string mark = R"(id="charts">)";

@@ -154,6 +154,26 @@ TEST_F(SuiteTest, WithoutConfigsItIsSaidWhereTheyWereLookedFor) {
   EXPECT_NE(none.error().hint.find("--configs"), std::string::npos);
 }
 
+TEST_F(SuiteTest, RecordingsWithASourceMayBeAbsent) {
+  add_recording("a");
+  const std::string head = "name = \"x\"\nvariants = [\"full\"]\n";
+  const std::string absent = "[[recordings]]\nname = \"b_*\"\nsource = \"https://example.org/b\"\n";
+  const auto suite = read(head + "[[recordings]]\nname = \"a\"\n" + absent);
+  ASSERT_TRUE(suite.has_value()) << suite.error().message;
+  BatchOptions options;
+  options.data = folder_;
+  const auto plan = plan_batch(*suite, options);
+  ASSERT_TRUE(plan.has_value()) << plan.error().message;
+  ASSERT_EQ(plan->jobs.size(), 1U);
+  EXPECT_EQ(plan->jobs[0].recording.filename(), "a");
+  EXPECT_EQ(plan->absent, std::vector<std::string>{"b_*: https://example.org/b"});
+
+  const auto empty = plan_batch(*read(head + absent), options);
+  ASSERT_FALSE(empty.has_value());
+  EXPECT_EQ(empty.error().code, ErrorCode::data_missing);
+  EXPECT_NE(empty.error().hint.find("https://example.org/b"), std::string::npos) << empty.error().hint;
+}
+
 TEST_F(SuiteTest, OnlyFiltersJobs) {
   add_recording("data/fr1_rpy");
   add_recording("data/fr1_xyz");
