@@ -38,21 +38,21 @@ EffectMean mean_for(std::span<const RunRow> rows, const registry::RunMetric& met
 
 std::vector<SweptRun> swept_runs(std::span<const RunRow> rows, const registry::RunMetric& metric,
                                  EffectMean mean) {
-  using RunKey = std::tuple<std::string, std::string_view, std::string_view>;
-  const auto key_of_run = [](const RunRow& row) { return RunKey(row.recorded_part(), row.variant, row.imu); };
-  std::map<RunKey, std::vector<double>> values;
+  using Method = std::tuple<std::string, std::string_view, std::string_view>;
+  const auto method_of = [](const RunRow& row) { return Method(row.recorded_part(), row.variant, row.imu); };
+  std::map<Method, std::vector<double>> values;
   for (const RunRow& row : rows) {
     if (!row.attributable()) continue;
-    if (const auto value = value_of(row, metric)) values[key_of_run(row)].push_back(*value);
+    if (const auto value = value_of(row, metric)) values[method_of(row)].push_back(*value);
   }
-  std::map<RunKey, double> means;
+  std::map<Method, double> means;
   for (const auto& [key, of_key] : values) means[key] = mean_of(of_key, mean);
   std::vector<SweptRun> runs;
   for (const RunRow& row : rows) {
     if (!row.attributable()) continue;
     SweptRun run{&row, value_of(row, metric)};
     if (run.ratio) {
-      const double of_all = means.at(key_of_run(row));
+      const double of_all = means.at(method_of(row));
       run.ratio = of_all != 0 ? std::optional(*run.ratio / of_all) : std::nullopt;  // all are zero
     }
     runs.push_back(run);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "eval/run_files/record_files.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::aggregate {
 
@@ -20,14 +20,15 @@ namespace {
 
 using Scalar = std::variant<std::nullptr_t, bool, std::int64_t, double, std::string_view>;
 
-template <std::string RunRow::*Member>
+/// Member: of RunRow, or of RunIdentity.
+template <auto Member>
 bool text(RunRow& row, const Scalar& value) {
   const auto* given = std::get_if<std::string_view>(&value);
   if (given != nullptr) row.*Member = *given;
   return given != nullptr;
 }
 
-template <std::size_t RunRow::*Member>
+template <auto Member>
 bool count(RunRow& row, const Scalar& value) {
   const auto* given = std::get_if<std::int64_t>(&value);
   if (given == nullptr || *given < 0) return false;

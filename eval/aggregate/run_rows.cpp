@@ -114,7 +114,7 @@ Result<std::vector<RunRow>> read_run_rows(const fs::path& root, const Workers& w
   for (std::vector<RunRow>& chunk : chunks) std::ranges::move(chunk, std::back_inserter(rows));
   recover_options(rows);
   sort_rows(rows);
-  tell_apart(rows);
+  set_labels(rows);
   return rows;
 }
 

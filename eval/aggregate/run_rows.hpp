@@ -13,7 +13,7 @@
 #include "core/base/parallel.hpp"
 #include "eval/record/record.hpp"
 #include "eval/registry/run_numbers.hpp"
-#include "eval/run_files/option_order.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::aggregate {
 
@@ -23,31 +23,17 @@ using run_files::RunOptions;
 /// What stands in place of the value of an option that a run does not edit.
 inline constexpr std::string_view kUnsetOption = "unset";
 
-/// One run, without what no aggregation asks for.
-struct RunRow {
+/// One run, without what no aggregation needs. `imu` is empty where it is unknown.
+struct RunRow : run_files::RunIdentity {
   registry::RunNumbers numbers;
-  std::string recording;
-  std::string data = "recorded";  ///< "recorded", "simulated", kUnknownWord
-  std::string imu = "none";       ///< that it used: "none", "recorded", "synthetic IMU"; empty: not known
-  std::string truth;              ///< "none", "given", kPseudoTruthWord
-  std::string fingerprint;        ///< of the recording; empty: it was never opened
-  std::string variant;
-  std::string label;   ///< the variant with what tells the run from others (run_files::run_labels)
+  std::string label;   ///< the variant with what distinguishes the run from others (RunSet::labels())
   std::string window;  ///< "frames 0:100" where other frames of the recording were run as well
-  std::string run;     ///< name of its folder
   std::string folder;  ///< relative to the root, with "/"
   record::RunStatus status = record::RunStatus::failed;
-  std::string reason;           ///< empty if ok
-  std::size_t first_frame = 0;  ///< of its window of the recording
-  std::size_t frames = 0;       ///< of its window; 0: not known
-  std::size_t repetition = 1;
-  std::size_t replicate = 0;
+  std::string reason;  ///< empty if ok
   std::size_t total = 0;
   std::size_t tracked = 0;
   std::size_t lost = 0;
-  RunOptions options;
-  bool wrote_options = false;  ///< all of those of this program
-  std::string config_hash;
   bool readable = true;  ///< false: the record or a file is damaged; `reason` says how
   /// False for a run that failed before it wrote its options, where no other run has the same configuration.
   bool options_known = true;
@@ -61,8 +47,8 @@ struct RunRow {
   }
 };
 
-/// Fills `label` and `window` of all rows, and `imu` of those that never opened their recording.
-void tell_apart(std::vector<RunRow>& rows);
+/// Fills `label` and `window` of all rows, and `imu` of those that did not open their recording.
+void set_labels(std::vector<RunRow>& rows);
 
 /// The value of an option, or kUnsetOption.
 [[nodiscard]] std::string_view option_of(const RunRow& row, std::string_view key);

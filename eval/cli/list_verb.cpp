@@ -24,7 +24,7 @@
 #include "eval/engine/run_housekeeping.hpp"
 #include "eval/registry/run_metric.hpp"
 #include "eval/run_files/found_runs.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 #include "eval/suites/recording_names.hpp"
 #include "eval/suites/suite_file.hpp"
 #include "eval/suites/suite_names.hpp"
@@ -169,9 +169,9 @@ Result<Listing> list_runs_of(const ListOptions& options) {
   const auto runs = engine::list_runs(folder, options.verify);
   if (!runs) return tl::unexpected(runs.error());
   if (runs->empty()) return run_files::holds_no_runs(folder);
-  std::vector<run_files::RunTraits> traits;
-  for (const engine::ListedRun& run : *runs) traits.push_back(run.traits);
-  const std::vector<std::string> labels = run_files::run_labels(traits);
+  std::vector<run_files::RunIdentity> identities;
+  for (const engine::ListedRun& run : *runs) identities.push_back(run.identity);
+  const std::vector<std::string> labels = run_files::RunSet(std::move(identities)).labels();
   Listing listing{{"run", "label", "status", "reason"}, {}};
   for (std::size_t i = 0; i < runs->size(); ++i) {
     const engine::ListedRun& run = (*runs)[i];

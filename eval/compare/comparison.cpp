@@ -12,7 +12,7 @@
 #include "eval/record/record.hpp"
 #include "eval/registry/run_numbers.hpp"
 #include "eval/run_files/record_files.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::compare {
 
@@ -79,7 +79,7 @@ void add_metric_gates(const RunPair& pair, const Gates& gates, std::vector<GateR
     const auto before = registry::number_of(base, metric);
     const auto after = registry::number_of(fresh, metric);
     if (before.value && after.value) {
-      const auto tolerance = gates.tolerance(i, pair.key.recording, pair.key.variant);
+      const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
       results.push_back(judge(metric, tolerance, *before.value, *after.value, gates));
     } else if (before.value) {
       GateResult gone =
@@ -244,7 +244,7 @@ void add_timed_gates(ComparedRun& run, const Gates& gates,
   if (!is_ok(run.runs.base) || !is_ok(run.runs.fresh)) return;
   std::vector<run_files::FoundRun> again;
   for (const run_files::FoundRun& found : confirming) {
-    if (key_of(found.record) == run.runs.key) again.push_back(found);
+    if (experiment_of(found) == run.runs.experiment) again.push_back(found);
   }
   for (GateResult& result : timed_gates(run.runs, gates, again, !confirming.empty()))
     run.gates.push_back(std::move(result));
@@ -297,7 +297,7 @@ ComparedRun compare_pair(RunPair pair, const Gates& gates,
 void add_unused_overrides(const Gates& gates, RunComparison& comparison) {
   for (const GateOverride& gate : gates.overrides) {
     const bool used = std::ranges::any_of(comparison.runs, [&](const ComparedRun& run) {
-      return gate.is_for(run.runs.key.recording, run.runs.key.variant);
+      return gate.is_for(run.runs.experiment.recording, run.runs.experiment.variant);
     });
     if (!used)
       comparison.notes.push_back(fmt::format("{}: this override is for none of the runs", gate.place));

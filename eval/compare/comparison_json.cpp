@@ -39,14 +39,14 @@ Json json_of(const std::optional<Divergence>& divergence) {
 Json json_of(const ComparedRun& run) {
   Json gates = Json::array();
   for (const GateResult& gate : run.gates) gates.push_back(json_of(gate));
-  const RunKey& key = run.runs.key;
+  const run_files::RunIdentity& experiment = run.runs.experiment;
   return {{"label", run.runs.label},
-          {"recording", key.recording},
-          {"variant", key.variant},
-          {"first_frame", key.first_frame},
-          {"frames", key.frames},
-          {"imu", key.imu},
-          {"options", key.options},
+          {"recording", experiment.recording},
+          {"variant", experiment.variant},
+          {"first_frame", experiment.first_frame},
+          {"frames", experiment.frames},
+          {"imu", experiment.imu},
+          {"options", options_text(experiment)},
           {"base", json_of(run.runs.base)},
           {"new", json_of(run.runs.fresh)},
           {"bit_identical", run.is_identical},

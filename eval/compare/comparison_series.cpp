@@ -73,10 +73,11 @@ std::string label_value(std::string_view text) {
   return result;
 }
 
-std::string labels_of(const RunKey& key) {
+std::string labels_of(const run_files::RunIdentity& experiment) {
   return fmt::format("recording=\"{}\",variant=\"{}\",frames=\"{}:{}\",imu=\"{}\",options=\"{}\"",
-                     label_value(key.recording), label_value(key.variant), key.first_frame,
-                     key.first_frame + key.frames, label_value(key.imu), label_value(key.options));
+                     label_value(experiment.recording), label_value(experiment.variant),
+                     experiment.first_frame, experiment.first_frame + experiment.frames,
+                     label_value(experiment.imu), label_value(options_text(experiment)));
 }
 
 /// One family: all its samples stand together, as the format demands.
@@ -88,7 +89,7 @@ std::string family(std::string_view key, std::string_view help, const RunCompari
   for (const ComparedRun& run : comparison.runs) {
     if (run.runs.fresh.empty()) continue;
     const std::optional<std::string> number = value(run);
-    if (number) samples += fmt::format("{}{{{}}} {}\n", name, labels_of(run.runs.key), *number);
+    if (number) samples += fmt::format("{}{{{}}} {}\n", name, labels_of(run.runs.experiment), *number);
   }
   if (samples.empty()) return {};
   return fmt::format("# TYPE {} gauge\n# HELP {} {}\n{}", name, name, help, samples);

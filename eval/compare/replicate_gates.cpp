@@ -76,7 +76,7 @@ std::vector<GateResult> replicate_gates(const RunPair& pair, const Gates& gates)
     const auto before = registry::median_range(base, metric);
     const auto after = registry::median_range(fresh, metric);
     if (before && after) {
-      const auto tolerance = gates.tolerance(i, pair.key.recording, pair.key.variant);
+      const auto tolerance = gates.tolerance(i, pair.experiment.recording, pair.experiment.variant);
       results.push_back(judge(metric, tolerance, *before, *after, gates));
     } else if (before && !fresh.empty()) {
       results.push_back({std::string(metric.key), GateVerdict::regression, true,

@@ -13,7 +13,6 @@
 #include "core/config/config_access.hpp"
 #include "core/config/toml_document.hpp"
 #include "core/config/variants.hpp"
-#include "eval/run_files/run_labels.hpp"
 
 namespace fusebench::compare {
 
@@ -31,9 +30,10 @@ bool is_default(const config::EffectiveConfig& defaults, const record::RecordedO
          config::config_hash(set.values()) == config::config_hash(defaults.values());
 }
 
-auto order_of(const RunKey& key) {
-  return std::tuple(key.recording, run_files::variant_rank(key.variant), key.variant, key.options, key.imu,
-                    key.first_frame, key.frames);
+/// By recording, variant in the order of all_variants(), options, IMU, window.
+auto order_of(const run_files::RunIdentity& experiment) {
+  return std::tuple(experiment.recording, run_files::variant_rank(experiment.variant), experiment.variant,
+                    options_text(experiment), experiment.imu, experiment.first_frame, experiment.frames);
 }
 
 bool never_opened(const std::vector<run_files::FoundRun>& runs) {
@@ -42,22 +42,23 @@ bool never_opened(const std::vector<run_files::FoundRun>& runs) {
   });
 }
 
-bool alike(const RunKey& a, const RunKey& b) {
+bool alike(const run_files::RunIdentity& a, const run_files::RunIdentity& b) {
   return a.recording == b.recording && a.variant == b.variant && a.options == b.options;
 }
 
 /// Whether the runs of `lone`, which have no counterpart, belong to `pair`.
 bool belongs(const RunPair& lone, const RunPair& pair) {
-  if (!alike(lone.key, pair.key)) return false;
+  if (!alike(lone.experiment, pair.experiment)) return false;
   const bool is_base = !lone.base.empty();
   const auto& own = is_base ? lone.base.runs : lone.fresh.runs;
   const auto& others = is_base ? pair.fresh.runs : pair.base.runs;
   if (others.empty()) return false;
   if (never_opened(own)) return true;
   const bool other_alone = (is_base ? pair.base : pair.fresh).empty();
-  return other_alone && lone.key.first_frame == pair.key.first_frame && lone.key.imu == pair.key.imu &&
+  return other_alone && lone.experiment.first_frame == pair.experiment.first_frame &&
+         lone.experiment.imu == pair.experiment.imu &&
          own.front().record.recording.fingerprint != others.front().record.recording.fingerprint &&
-         lone.key.frames != pair.key.frames && !never_opened(others);
+         lone.experiment.frames != pair.experiment.frames && !never_opened(others);
 }
 
 void move_runs(std::vector<run_files::FoundRun>& from, std::vector<run_files::FoundRun>& to) {
@@ -70,7 +71,8 @@ void move_runs(std::vector<run_files::FoundRun>& from, std::vector<run_files::Fo
 bool has_same_folder(const RunPair& lone, const RunPair& pair) {
   const auto& own = lone.base.empty() ? lone.fresh.runs : lone.base.runs;
   const auto& others = lone.base.empty() ? pair.base.runs : pair.fresh.runs;
-  return lone.key.recording == pair.key.recording && lone.key.variant == pair.key.variant &&
+  return lone.experiment.recording == pair.experiment.recording &&
+         lone.experiment.variant == pair.experiment.variant &&
          std::ranges::all_of(own, [&](const run_files::FoundRun& run) {
            if (run.state == run_files::RunState::whole || !run.record.config.empty()) return false;
            return std::ranges::any_of(others, [&](const run_files::FoundRun& other) {
@@ -114,19 +116,20 @@ void set_replicates_apart(RunSide& side) {
   std::ranges::stable_sort(side.replicates, {}, replicate_of);
 }
 
-std::string short_label(const RunKey& key) {
-  const std::string options = key.options.empty() ? "" : fmt::format(" [{}]", key.options);
-  return fmt::format("{}/{}{}", key.recording, key.variant, options);
+std::string short_label(const run_files::RunIdentity& experiment) {
+  const std::string options =
+      experiment.options.empty() ? "" : fmt::format(" [{}]", options_text(experiment));
+  return fmt::format("{}/{}{}", experiment.recording, experiment.variant, options);
 }
 
 void set_labels(std::vector<RunPair>& pairs) {
   std::map<std::string, std::size_t> uses;
-  for (const RunPair& pair : pairs) ++uses[short_label(pair.key)];
+  for (const RunPair& pair : pairs) ++uses[short_label(pair.experiment)];
   for (RunPair& pair : pairs) {
-    pair.label = short_label(pair.key);
+    pair.label = short_label(pair.experiment);
     if (uses[pair.label] < 2) continue;
-    pair.label += fmt::format(" (frames {}:{}, IMU: {})", pair.key.first_frame,
-                              pair.key.first_frame + pair.key.frames, pair.key.imu);
+    pair.label += fmt::format(" (frames {}:{}, IMU: {})", pair.experiment.first_frame,
+                              pair.experiment.first_frame + pair.experiment.frames, pair.experiment.imu);
   }
 }
 
@@ -146,32 +149,40 @@ std::vector<const run_files::FoundRun*> RunSide::all() const {
   return all;
 }
 
-RunKey key_of(const record::RunRecord& record) {
-  std::vector<std::string> options;
-  const config::EffectiveConfig defaults = defaults_of(record.variant);
-  for (const record::RecordedOption& option : record.config) {
-    // Whoever sets an option to what it is anyway asks for the same run as who does not.
+run_files::RunIdentity experiment_of(const run_files::FoundRun& run) {
+  run_files::RunIdentity experiment = run_files::without_repetition(run_files::identity_of(run));
+  experiment.fingerprint.clear();
+  experiment.config_hash.clear();
+  experiment.data.clear();
+  experiment.truth.clear();
+  const config::EffectiveConfig defaults = defaults_of(experiment.variant);
+  for (const record::RecordedOption& option : run.record.config) {
     if (run_files::is_edit(option.origin) && !is_default(defaults, option))
-      options.push_back(fmt::format("{}={}", option.key, config::to_toml(option.value)));
+      experiment.options.emplace_back(option.key, config::to_toml(option.value));
   }
-  std::ranges::sort(options);
-  return {record.recording.name,   record.variant,       record.recording.first_frame,
-          record.recording.frames, record.recording.imu, fmt::format("{}", fmt::join(options, ", "))};
+  std::ranges::sort(experiment.options);
+  return experiment;
+}
+
+std::string options_text(const run_files::RunIdentity& experiment) {
+  std::vector<std::string> options;
+  for (const auto& [key, value] : experiment.options) options.push_back(fmt::format("{}={}", key, value));
+  return fmt::format("{}", fmt::join(options, ", "));
 }
 
 std::vector<RunPair> pair_runs(const std::vector<run_files::FoundRun>& base,
                                const std::vector<run_files::FoundRun>& fresh) {
-  std::map<decltype(order_of(RunKey{})), RunPair> by_key;
+  std::map<decltype(order_of(run_files::RunIdentity{})), RunPair> by_experiment;
   for (const auto& [runs, side] : {std::pair(&base, &RunPair::base), std::pair(&fresh, &RunPair::fresh)}) {
     for (const run_files::FoundRun& run : *runs) {
-      const RunKey key = key_of(run.record);
-      RunPair& pair = by_key[order_of(key)];
-      pair.key = key;
+      const run_files::RunIdentity experiment = experiment_of(run);
+      RunPair& pair = by_experiment[order_of(experiment)];
+      pair.experiment = experiment;
       (pair.*side).runs.push_back(run);
     }
   }
   std::vector<RunPair> pairs;
-  for (auto& [order, pair] : by_key) {
+  for (auto& [order, pair] : by_experiment) {
     for (RunSide* side : {&pair.base, &pair.fresh})
       std::ranges::sort(side->runs, {}, [](const run_files::FoundRun& run) { return run.folder.string(); });
     pairs.push_back(std::move(pair));

@@ -6,21 +6,9 @@
 #include <vector>
 
 #include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::compare {
-
-/// What was asked of a run. Options count only if somebody set them (in a file or by --set): a default that
-/// has changed since must not make another experiment of it, or the change would go unseen.
-struct RunKey {
-  std::string recording;
-  std::string variant;
-  std::size_t first_frame = 0;
-  std::size_t frames = 0;
-  std::string imu;      ///< "none", "recorded", "synthetic IMU"
-  std::string options;  ///< "iekf.max_iterations=3, tsdf.voxel_m=0.02"; empty if nothing was set
-
-  friend bool operator==(const RunKey&, const RunKey&) = default;
-};
 
 /// The runs of one experiment on one side.
 struct RunSide {
@@ -36,13 +24,20 @@ struct RunSide {
 
 /// The runs of one experiment on both sides.
 struct RunPair {
-  RunKey key;
-  std::string label;  ///< "fr1_rpy/full", with what else tells it from the others
+  run_files::RunIdentity experiment;  ///< of experiment_of()
+  std::string label;                  ///< "fr1_rpy/full", with what else tells it from the others
   RunSide base;
   RunSide fresh;  ///< of NEW
 };
 
-[[nodiscard]] RunKey key_of(const record::RunRecord& record);
+/// The identity that the same run has in every version of the program: without_repetition(), and without the
+/// content of the recording and the values of options that were not edited, so that a changed default or
+/// image is a difference of one experiment and not another experiment. An option that is edited to its
+/// default counts as not edited. Values are TOML text; options are sorted.
+[[nodiscard]] run_files::RunIdentity experiment_of(const run_files::FoundRun& run);
+
+/// "iekf.max_iterations=3, tsdf.voxel_m=0.02"; empty without options.
+[[nodiscard]] std::string options_text(const run_files::RunIdentity& experiment);
 
 /// Every run is in one pair, of which a side may be empty. A run that failed before its recording was open
 /// does not know its frames: it goes to the only pair of its recording, variant and options, if there is one.

@@ -121,7 +121,7 @@ std::vector<GateResult> timed_gates(const RunPair& pair, const Gates& gates,
     const registry::RunMetric& quantity = *gated_costs()[i];
     if (numbers_of(base, quantity).empty() || numbers_of(fresh, quantity).empty()) continue;
     const TimedTest test = test_of(base, fresh, quantity, gates);
-    const double factor = gates.factor(i, pair.key.recording, pair.key.variant);
+    const double factor = gates.factor(i, pair.experiment.recording, pair.experiment.variant);
     GateResult result{std::string(quantity.key),
                       GateVerdict::unchanged,
                       false,

@@ -129,7 +129,7 @@ Result<std::vector<ListedRun>> list_runs(const fs::path& root, bool verify) {
     if (!run) continue;  // removed just now
     run::RecordHead head = run::head_of(*run);
     if (verify) verify_files(folder, head);
-    runs.push_back({folder.lexically_relative(root), std::move(head), run_files::traits_of(*run)});
+    runs.push_back({folder.lexically_relative(root), std::move(head), run_files::identity_of(*run)});
   }
   std::ranges::sort(runs, {}, &ListedRun::folder);
   return runs;

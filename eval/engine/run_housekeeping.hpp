@@ -9,14 +9,14 @@
 
 #include "core/base/error.hpp"
 #include "eval/run/run.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::engine {
 
 struct ListedRun {
   std::filesystem::path folder;  ///< relative to the root
   run::RecordHead head;
-  run_files::RunTraits traits;
+  run_files::RunIdentity identity;
 };
 
 /// Every run below a folder, by path. What is damaged, or no record that can be read, is a failed run with

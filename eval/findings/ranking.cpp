@@ -12,7 +12,7 @@
 
 #include "core/config/variants.hpp"
 #include "eval/record/record.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 
 namespace fusebench::findings {
 
@@ -55,9 +55,9 @@ struct Comparable {
 
 /// Windows that share frames are no independent samples of their recording, so that their numbers are not
 /// averaged; those that share none are.
-std::set<std::string> recordings_with_shared_frames(std::span<const run_files::RunTraits> runs) {
+std::set<std::string> recordings_with_shared_frames(const run_files::RunSet& rows) {
   std::map<std::string, std::set<std::pair<std::size_t, std::size_t>>> windows;  // first, end
-  for (const run_files::RunTraits& run : runs) {
+  for (const run_files::RunIdentity& run : rows.runs()) {
     if (run.frames > 0) windows[run.recording].emplace(run.first_frame, run.first_frame + run.frames);
   }
   std::set<std::string> sharing;
@@ -80,9 +80,8 @@ std::string data_of(const tables::TableRow& row, const tables::ResultTable& tabl
   return known == table.rows.end() ? row.data : known->data;
 }
 
-std::vector<Comparable> comparables_of(std::span<const run_files::RunTraits> rows,
-                                       const tables::ResultTable& table) {
-  const std::vector<std::string> windows = run_files::window_labels(rows);
+std::vector<Comparable> comparables_of(const run_files::RunSet& rows, const tables::ResultTable& table) {
+  const std::vector<std::string> windows = rows.window_labels();
   const std::set<std::string> sharing = recordings_with_shared_frames(rows);
   std::vector<Comparable> comparables;
   for (std::size_t i = 0; i < table.rows.size(); ++i)
@@ -114,7 +113,6 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
   std::vector<Candidate> candidates;
   for (const std::size_t i : members) {
     const tables::TableRow& row = table.rows[i];
-    const run_files::FoundRun& first = runs[row.members.front()];
     const std::string& label = labels[i];
     auto at = std::ranges::find(candidates, label, [](const Candidate& c) { return c.configuration.label; });
     if (at == candidates.end()) {
@@ -130,7 +128,7 @@ std::vector<Candidate> candidates_of(std::span<const run_files::FoundRun> runs,
     if (row.status != record::RunStatus::ok) continue;
     const auto value = row.numbers[metric];
     if (!value || !(*value > 0)) continue;
-    const Recording recording(row.recording, row.first_frame, first.record.recording.frames);
+    const Recording recording(row.recording, row.first_frame, row.frames);
     auto& [sum, count] = at->sums[recording];
     sum += *value;
     ++count;
@@ -201,11 +199,9 @@ void rank(std::vector<Candidate>& candidates, const std::set<Recording>& recordi
 
 std::vector<Ranking> rankings_of(std::span<const run_files::FoundRun> runs,
                                  const tables::ResultTable& table) {
-  std::vector<run_files::RunTraits> traits;  // of the rows
-  for (const tables::TableRow& row : table.rows)
-    traits.push_back(run_files::traits_of(runs[row.members.front()]));
-  const std::vector<std::string> labels = run_files::configuration_labels(traits);
-  const std::vector<Comparable> comparables = comparables_of(traits, table);
+  const run_files::RunSet rows(std::vector<run_files::RunIdentity>(table.rows.begin(), table.rows.end()));
+  const std::vector<std::string> labels = rows.configuration_labels();
+  const std::vector<Comparable> comparables = comparables_of(rows, table);
   std::vector<Ranking> rankings;
   for (std::size_t first = 0; first < comparables.size(); ++first) {
     const auto same = std::ranges::find(comparables, comparables[first]);

@@ -18,7 +18,7 @@
 #include "eval/run_charts/run_charts.hpp"
 #include "eval/run_charts/run_series.hpp"
 #include "eval/run_files/record_files.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 
 namespace fusebench::report {
 
@@ -141,7 +141,7 @@ RecordingSections recording_sections(RunsOfRecording group, const PageContext& c
       group, [](const run_files::FoundRun& run) { return run.record.recording.frames > 0; });
   const record::RecordedRecording& recording =
       (started == group.end() ? group.begin() : started)->record.recording;
-  const RunLabels labels = run_files::run_labels(run_files::traits_of(group));
+  const RunLabels labels = run_files::RunSet(group).labels();
   sections.push_back({title_of(recording, context.runs),
                       started == group.end() ? "No run began." : facts_of(recording),
                       run_facts(group, labels)});

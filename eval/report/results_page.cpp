@@ -9,7 +9,7 @@
 #include "eval/report/recording_sections.hpp"
 #include "eval/report/runs_of_recording.hpp"
 #include "eval/report/summary_sections.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 #include "eval/speed_failures/speed_sections.hpp"
 
 namespace fusebench::report {
@@ -27,7 +27,7 @@ PageDetail detail_for(std::size_t runs, std::size_t recordings) {
 }
 
 std::vector<std::string> methods_of(const std::vector<run_files::FoundRun>& runs) {
-  std::vector<std::string> methods = run_files::differing_edits(run_files::traits_of(runs));
+  std::vector<std::string> methods = run_files::RunSet(runs).differing_options();
   for (std::size_t i = 0; i < runs.size(); ++i)
     methods[i] = runs[i].record.variant + (methods[i].empty() ? "" : " ") + methods[i];
   return methods;

@@ -13,7 +13,7 @@
 #include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::run {
 

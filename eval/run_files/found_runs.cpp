@@ -13,7 +13,7 @@
 #include "core/io/staged_folder.hpp"
 #include "eval/run_files/option_order.hpp"
 #include "eval/run_files/record_files.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::run_files {
 
@@ -166,8 +166,8 @@ namespace {
 void sort_runs(std::vector<FoundRun>& runs) {
   std::vector<std::pair<RunOptions, FoundRun>> keyed;
   for (FoundRun& run : runs) {
-    RunOptions edits = traits_of(run).edits;
-    keyed.emplace_back(std::move(edits), std::move(run));
+    RunOptions options = identity_of(run).options;
+    keyed.emplace_back(std::move(options), std::move(run));
   }
   std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) {
     const auto key = [](const FoundRun& run) {

@@ -11,7 +11,7 @@
 
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "eval/record/data_labels.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
 
@@ -223,9 +223,9 @@ std::string json(const PaperTable& table) {
 
 PaperTable paper_table(const PublishedTable& published, const std::vector<run_files::FoundRun>& runs) {
   PaperTable table{published, systems_here(published, runs), {}, notes_of(published)};
-  const std::vector<run_files::RunTraits> traits = run_files::traits_of(runs);
-  const RunsHere here{runs, table_of(runs), run_files::differing_edits(traits)};
-  if (const std::string shared = run_files::shared_edits(traits); !shared.empty())
+  const run_files::RunSet set(runs);
+  const RunsHere here{runs, table_of(runs), set.differing_options()};
+  if (const std::string shared = set.shared_options(); !shared.empty())
     table.notes.push_back(fmt::format("All runs here: with {}.", shared));
   std::set<std::string> left;
   std::set<std::string> synthetic;

@@ -14,7 +14,7 @@
 #include "datasets/calibration/recording_catalogue.hpp"
 #include "eval/record/data_labels.hpp"
 #include "eval/registry/run_numbers.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 #include "eval/tables/published_table.hpp"
 #include "eval/text/json_text.hpp"
 #include "eval/text/plain_table.hpp"
@@ -68,10 +68,11 @@ std::vector<run_files::FoundRun> with_final_poses(const std::vector<run_files::F
 std::vector<RunGroup> groups_of(const std::vector<run_files::FoundRun>& runs) {
   std::vector<RunGroup> groups;
   for (const run_files::FoundRun& run : runs) {
+    const auto identity = run_files::without_repetition(run_files::identity_of(run));
     const auto same = [&](const RunGroup& group) {
       const record::RunRecord& first = group.front()->record;
-      return same_name(first, run.record) && same_frames(first, run.record) &&
-             first.config_hash == run.record.config_hash;
+      return same_name(first, run.record) &&
+             run_files::without_repetition(run_files::identity_of(*group.front())) == identity;
     };
     auto group = std::ranges::find_if(groups, same);
     if (group == groups.end()) group = groups.insert(groups.end(), RunGroup{});
@@ -246,9 +247,9 @@ SystemsTable systems_table_of(const std::vector<run_files::FoundRun>& found) {
   SystemsTable table;
   const std::vector<run_files::FoundRun> runs = with_final_poses(found);
   const std::vector<RunGroup> groups = groups_of(runs);
-  std::vector<run_files::RunTraits> traits;
-  for (const RunGroup& group : groups) traits.push_back(run_files::traits_of(*group.front()));
-  const std::vector<std::string> edits = run_files::differing_edits(traits);
+  std::vector<run_files::RunIdentity> firsts;
+  for (const RunGroup& group : groups) firsts.push_back(run_files::identity_of(*group.front()));
+  const std::vector<std::string> edits = run_files::RunSet(std::move(firsts)).differing_options();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     table.rows.push_back(row_of(groups[i]));
     SystemRow& row = table.rows.back();

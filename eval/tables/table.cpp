@@ -16,8 +16,7 @@
 #include "eval/record/data_labels.hpp"
 #include "eval/run_files/found_runs.hpp"
 #include "eval/run_files/record_files.hpp"
-#include "eval/run_files/replicate_groups.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 #include "eval/tables/common_pixels.hpp"
 
 namespace fusebench::tables {
@@ -26,19 +25,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-TableRow row_of(const run_files::FoundRun& run, const run_files::RunTraits& traits, std::string label) {
+TableRow row_of(const run_files::FoundRun& run, std::string label) {
   const record::RunRecord& record = run.record;
   TableRow row;
-  row.recording = record.recording.name;
-  row.data = record.recording.data;
-  row.imu = record.recording.imu;
-  row.truth = record.recording.truth;
-  row.variant = record.variant;
+  static_cast<run_files::RunIdentity&>(row) = run_files::identity_of(run);
   row.label = std::move(label);
-  row.edits = traits.edits;
-  row.first_frame = traits.first_frame;
-  row.repetition = traits.repetition;
-  row.run = run.folder.filename().string();
   row.status = record.status;
   row.reason = record.reason;
   row.silent = record.metrics.silent_frames();
@@ -71,11 +62,14 @@ void add_replicates(const std::vector<run_files::FoundRun>& runs, TableRow& row)
   if (row.silent) row.silent = median("silent_failures");
 }
 
-/// "replicate" of a run is said in its numbers, and in no label.
-run_files::RunTraits traits_of_row(const run_files::FoundRun& first) {
-  run_files::RunTraits traits = run_files::traits_of(first);
-  traits.replicate = 0;
-  return traits;
+/// The first run of each group. A row is of all replicates, so that no label names one.
+run_files::RunSet rows_of(const run_files::RunSet& set, const std::vector<std::vector<std::size_t>>& groups) {
+  std::vector<run_files::RunIdentity> rows;
+  for (const auto& group : groups) {
+    rows.push_back(set.runs()[group.front()]);
+    rows.back().replicate = 0;
+  }
+  return run_files::RunSet(std::move(rows));
 }
 
 /// Whether a run's intensity differences are not those that it wrote; the table says so then.
@@ -226,14 +220,14 @@ bool has_replicates(const ResultTable& table) {
 
 ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   ResultTable table;
-  const auto groups = run_files::replicate_groups(runs);
-  std::vector<run_files::RunTraits> traits;
-  for (const auto& group : groups) traits.push_back(traits_of_row(runs[group.front()]));
-  const std::vector<std::string> labels = run_files::run_labels(traits);
-  std::vector<std::string> configurations = run_files::differing_edits(traits);
+  const run_files::RunSet set(runs);
+  const auto groups = set.replicate_groups();
+  const run_files::RunSet rows = rows_of(set, groups);
+  const std::vector<std::string> labels = rows.labels();
+  std::vector<std::string> configurations = rows.differing_options();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const run_files::FoundRun& first = runs[groups[i].front()];
-    TableRow row = row_of(first, traits[i], labels[i]);
+    TableRow row = row_of(first, labels[i]);
     row.members = groups[i];
     if (row.members.size() > 1) add_replicates(runs, row);
     configurations[i] = row.variant + (configurations[i].empty() ? "" : " ") + configurations[i];
@@ -244,7 +238,7 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
           fmt::format("{}, {}: {}: {}", row.recording, row.label, record::to_string(row.status), row.reason));
     table.rows.push_back(std::move(row));
   }
-  if (const std::string shared = run_files::shared_edits(traits); !shared.empty())
+  if (const std::string shared = rows.shared_options(); !shared.empty())
     table.notes.push_back(fmt::format("all runs with {}", shared));
   add_common_pixels(runs, table);
   table.means = means_of(table.rows, configurations);

@@ -14,26 +14,18 @@
 #include "eval/record/record.hpp"
 #include "eval/registry/replicated_numbers.hpp"
 #include "eval/run_files/found_runs.hpp"
+#include "eval/run_files/run_identity.hpp"
 #include "eval/tables/latex_table.hpp"
 
 namespace fusebench::tables {
 
-/// One run, or the replicates of one.
-struct TableRow {
-  std::vector<std::size_t> members = {};              ///< indices of its runs; the first one names it
+/// One run, or the replicates of one, with the identity of the first.
+struct TableRow : run_files::RunIdentity {
+  std::vector<std::size_t> members = {};              ///< indices of its runs
   registry::RunNumbers numbers;                       ///< of replicates: medians over those that are ok
   std::vector<registry::RunNumbers> replicates = {};  ///< of each that is ok, where there are several
   std::size_t ok_members = 0;                         ///< of `members`
-  std::string recording;
-  std::string data;   ///< "recorded", "simulated", kUnknownWord
-  std::string imu;    ///< "none", "recorded", "synthetic IMU", kUnknownWord
-  std::string truth;  ///< "none", "given", kPseudoTruthWord
-  std::string variant;
-  std::string label;  ///< the variant, with what tells the run from others (run_files::run_labels)
-  std::vector<std::pair<std::string, std::string>> edits;  ///< key and value text of edited options
-  std::size_t first_frame = 0;                             ///< of its window of the recording
-  int repetition = 1;
-  std::string run;  ///< folder name, hash8
+  std::string label;  ///< the variant, with what distinguishes the run from others (RunSet::labels())
   record::RunStatus status =
       record::RunStatus::failed;  ///< of the first replicate that is not ok, if there is one
   std::string reason;

@@ -122,7 +122,7 @@ std::string latex(const ResultTable& table, const LatexLayout& layout) {
 
 std::string csv_identity(const TableRow& row) {
   std::string options;
-  for (const auto& [key, value] : row.edits)
+  for (const auto& [key, value] : row.options)
     options += fmt::format("{}{}={}", options.empty() ? "" : " ", key, value);
   return fmt::format("{},{},{},{},{},{},{},{},{},{}", text::csv_cell(row.recording), text::csv_cell(row.data),
                      text::csv_cell(row.imu), text::csv_cell(row.truth), text::csv_cell(row.variant),
@@ -181,7 +181,7 @@ std::string json(const ResultTable& table) {
   Json rows = Json::array();
   for (const TableRow& row : table.rows) {
     Json options = Json::object();
-    for (const auto& [key, value] : row.edits) options[key] = value;
+    for (const auto& [key, value] : row.options) options[key] = value;
     Json json = {{"recording", row.recording},
                  {"data", row.data},
                  {"imu", row.imu},

@@ -115,8 +115,8 @@ TEST(Best, WindowsAndImusAreNotAveragedButRepetitionsAre) {
   std::vector<RunRow> rows = {run(5, 1, "none", 0.02), run(5, 2, "none", 0.04),
                               run(5, 1, "synthetic IMU", 0.01), run(4, 1, "none", 0.08)};
   rows.push_back(sample_bad_row("desk", {}, RunStatus::failed));
-  rows.back().imu.clear();  // it never opened the recording
-  tell_apart(rows);
+  rows.back().fingerprint.clear();  // it did not open the recording
+  set_labels(rows);
   EXPECT_EQ(rows[1].label, "full frames 0:5 repetition 2 no IMU");
   const BestTable table = best(rows, "recording");
   ASSERT_EQ(table.groups.size(), 2U);

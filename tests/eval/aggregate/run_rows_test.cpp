@@ -10,7 +10,7 @@
 #include "eval/aggregate/long_table.hpp"
 #include "eval/aggregate/record_scan.hpp"
 #include "eval/run_files/found_runs.hpp"
-#include "eval/run_files/run_labels.hpp"
+#include "eval/run_files/run_set.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fusebench {
@@ -208,7 +208,7 @@ TEST_F(RunRowsTest, RowsHaveTheLabelsOfTheTable) {
   EXPECT_EQ(read[1].recorded_part(), "desk frames 20:70");
   EXPECT_EQ(read[2].imu, "");  // it could have had either
   const auto found = find_runs(folder_ / "runs");
-  const auto labels = run_labels(traits_of(*found));
+  const auto labels = RunSet(*found).labels();
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(read[i].label, labels[i]);
 }
 

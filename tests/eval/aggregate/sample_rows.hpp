@@ -16,6 +16,7 @@ inline aggregate::RunRow sample_row(std::string recording, aggregate::RunOptions
                                     double cpu_ms_per_frame = 10, std::string variant = "full") {
   aggregate::RunRow row;
   row.recording = std::move(recording);
+  row.fingerprint = "00";
   row.variant = std::move(variant);
   row.truth = "given";
   row.options = std::move(options);

@@ -255,7 +255,7 @@ TEST_F(ComparisonTest, ASimulationMadeAnewIsComparedWhereTheGatesLetIt) {
   EXPECT_EQ(comparison.failures(), 1U) << "what was recorded cannot be made anew";
   ASSERT_EQ(comparison.runs.size(), 2U);
   for (const ComparedRun& run : comparison.runs)
-    EXPECT_EQ(run.gates.size() > 3, run.runs.key.recording == "simulated") << run.runs.label;
+    EXPECT_EQ(run.gates.size() > 3, run.runs.experiment.recording == "simulated") << run.runs.label;
 }
 
 TEST_F(ComparisonTest, DivergencesAreNamedTheEarliestFirst) {

@@ -1,4 +1,4 @@
-#include "eval/run_files/replicate_groups.hpp"
+#include "eval/run_files/run_set.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,13 +19,13 @@ FoundRun run_of(const std::string& variant, int replicate, const std::string& co
 TEST(ReplicateGroups, AreOfOneRequestAndInTheOrderOfReplicates) {
   const std::vector<FoundRun> runs = {run_of("full", 2), run_of("no-imu", 0), run_of("full", 0),
                                       run_of("full", 1, "b"), run_of("full", 1)};
-  EXPECT_EQ(replicate_groups(runs), (Groups{{2, 4, 0}, {1}, {3}}));
+  EXPECT_EQ(RunSet(runs).replicate_groups(), (Groups{{2, 4, 0}, {1}, {3}}));
 }
 
 TEST(ReplicateGroups, TheSameReplicateTwiceIsAnotherRun) {
   const std::vector<FoundRun> runs = {run_of("imported", 0), run_of("imported", 0)};
-  EXPECT_EQ(replicate_groups(runs), (Groups{{0}, {1}}));
-  EXPECT_TRUE(replicate_groups({}).empty());
+  EXPECT_EQ(RunSet(runs).replicate_groups(), (Groups{{0}, {1}}));
+  EXPECT_TRUE(RunSet(std::vector<RunIdentity>()).replicate_groups().empty());
 }
 
 }  // namespace
