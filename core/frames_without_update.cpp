@@ -46,8 +46,8 @@ void keep_moving(Tracking& now, std::int64_t now_ns, const SensorRig& rig,
                               health::to_string(report.health));
   std::ignore = now.occlusion_gate.admits(report, health_options);
   if (!now.estimate) return;
-  now.estimate = prediction::predict_by_constant_velocity(*now.estimate,
-                                                          seconds_between(now.timestamp_ns, now_ns), motion)
+  now.estimate = prediction::predict_by_motion_model(*now.estimate, seconds_between(now.timestamp_ns, now_ns),
+                                                     now.motion_scale, motion)
                      .state;
   ++now.frames;
   ++now.lost_frames;

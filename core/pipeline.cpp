@@ -53,6 +53,7 @@ struct Pipeline::State final : RestartableEstimator {
   void restart(const std::optional<filter::FilterState>& motion) override;
 
   Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
+  filter::GaussianState dead_reckoned(const filter::GaussianState& predicted, std::int64_t now_ns) const;
   health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
   bool track(const filter::GaussianState& prior, bool after_gap, bool thorough, health::FrameReport& report);
   filter::IekfResult update(const filter::GaussianState& prior, bool thorough, health::StageTimes& stages);
@@ -69,6 +70,10 @@ struct Pipeline::State final : RestartableEstimator {
   /// What patches are cut from.
   [[nodiscard]] patches::ReferenceFrame reference_frame() const {
     return {preparation.pyramid(), preparation.patch_depth_m(), rig.camera, T_world_camera()};
+  }
+  /// Since the frame before.
+  [[nodiscard]] double duration_s(const RgbdFrame& frame) const {
+    return seconds_between(tracking->timestamp_ns, frame.capture_ns());
   }
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
@@ -117,7 +122,10 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
   report.status = locate(*predicted, report);  // Eqs. 1-5, 15-23
   const bool updated =
       report.status == health::FrameStatus::tracked || report.status == health::FrameStatus::relocalised;
-  if (!updated) now.estimate = *predicted;
+  if (!updated) now.estimate = dead_reckoned(*predicted, frame.capture_ns());
+  if (report.status == health::FrameStatus::tracked)
+    now.motion_scale =
+        prediction::followed_scale(now.motion_scale, now.estimate->mean, duration_s(frame), config.motion);
   now.lost_frames = report.status == health::FrameStatus::lost ? now.lost_frames + 1 : 0;
   now.timestamp_ns = frame.capture_ns();
   ++now.frames;
@@ -169,9 +177,24 @@ Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
   if (!tracking->estimate)
     return prediction::initial_state(imu, now_ns, rig, config.terms, config.initialisation,
                                      config.self_calibration, initial_motion);
-  return prediction::predict_state(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig,
-                                   config.terms, config.motion, config.initialisation,
-                                   config.self_calibration);
+  if (config.terms.prior == config::Prior::constant_velocity) {
+    const double duration_s = seconds_between(tracking->timestamp_ns, now_ns);
+    return prediction::predict_by_constant_velocity(*tracking->estimate, duration_s, config.motion).state;
+  }
+  return prediction::predict_by_samples(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig,
+                                        config.terms, config.motion, config.initialisation,
+                                        config.self_calibration);
+}
+
+/// The state of a frame without an update. The prior of an update, which is wide on purpose, is `predicted`.
+filter::GaussianState Pipeline::State::dead_reckoned(const filter::GaussianState& predicted,
+                                                     std::int64_t now_ns) const {
+  const bool is_first = !tracking->estimate;
+  if (is_first || config.terms.prior != config::Prior::constant_velocity) return predicted;
+  const double duration_s = seconds_between(tracking->timestamp_ns, now_ns);
+  return prediction::predict_by_motion_model(*tracking->estimate, duration_s, tracking->motion_scale,
+                                             config.motion)
+      .state;
 }
 
 health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
@@ -181,8 +204,9 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
   const bool after_gap = tracking->lost_frames > 0 || tracking->frames == 1;
   if (track(predicted, after_gap, false, report)) return health::FrameStatus::tracked;
   if (novelty.color && track_again(predicted, after_gap, true, report)) return health::FrameStatus::tracked;
-  if (!relocalise(predicted, report)) return health::FrameStatus::lost;
-  tracking->loops.add_relocalisation(predicted, *tracking->estimate, tracking->reference.timestamp_ns);
+  const filter::GaussianState reckoned = dead_reckoned(predicted, preparation.frame().capture_ns());
+  if (!relocalise(reckoned, report)) return health::FrameStatus::lost;
+  tracking->loops.add_relocalisation(reckoned, *tracking->estimate, tracking->reference.timestamp_ns);
   return health::FrameStatus::relocalised;
 }
 

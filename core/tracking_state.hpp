@@ -15,6 +15,7 @@
 #include "core/loops/pending_revisits.hpp"
 #include "core/measurement/residual_scale.hpp"
 #include "core/patches/patches.hpp"
+#include "core/prediction/motion_prior.hpp"
 #include "core/relocalisation/relocalisation.hpp"
 #include "core/repeated_images.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
@@ -31,6 +32,7 @@ struct Tracking {
   loops::LoopClosure loops;
   loops::PendingRevisits revisits;
   std::optional<filter::GaussianState> estimate;  ///< after the last frame
+  prediction::MotionScale motion_scale;           ///< of the tracked frames
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
   int frames = 0;                                 ///< since the start
   double turned_rad = 0;                          ///< since then, in all

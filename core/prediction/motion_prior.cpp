@@ -15,6 +15,34 @@ double square(double x) { return x * x; }
 void add_random_walk(filter::StateMatrix& noise, int offset, int size, double density, double duration_s) {
   noise.diagonal().segment(offset, size).array() += square(density) * duration_s;
 }
+
+/// What remains of a velocity after some time, as an Ornstein-Uhlenbeck process.
+struct DampedMotion {
+  DampedMotion(double duration_s, double time_s)
+      : duration(duration_s / time_s),
+        kept(std::exp(-duration)),
+        reach_s(-time_s * std::expm1(-duration)),
+        time(time_s) {}
+  /// Variance of the pose, covariance of pose and velocity, variance of the velocity, of a process with unit
+  /// stationary variance.
+  [[nodiscard]] Vector3d noise() const {
+    return {square(time) * (2 * duration - 3 + 4 * kept - square(kept)), square(reach_s) / time,
+            1 - square(kept)};
+  }
+
+  double duration;  ///< in time constants
+  double kept;      ///< factor on the velocity
+  double reach_s;   ///< the pose moves by this times the velocity
+  double time;      ///< time constant, s
+};
+
+/// Adds noise of a pose and its velocity: (pose, pose and velocity, velocity), the same on each axis.
+void add_motion_noise(filter::StateMatrix& covariance, int pose, int rate, const Vector3d& noise) {
+  covariance.block<3, 3>(pose, pose).diagonal().array() += noise[0];
+  covariance.block<3, 3>(pose, rate).diagonal().array() += noise[1];
+  covariance.block<3, 3>(rate, pose).diagonal().array() += noise[1];
+  covariance.block<3, 3>(rate, rate).diagonal().array() += noise[2];
+}
 }  // namespace
 
 InertialErrors inertial_errors(const filter::FilterState& state) {
@@ -98,33 +126,65 @@ Prediction predict_by_constant_velocity(const filter::GaussianState& state, doub
   F.block<3, 3>(filter::kRotation, filter::kAngularVelocity) = dt * so3_right_jacobian(turn);
   F.block<3, 3>(filter::kPosition, filter::kVelocity) = dt * Matrix3d::Identity();
 
-  // White acceleration integrated once (rate) and twice (pose).
+  const Vector3d white(dt * dt * dt / 3, dt * dt / 2, dt);  // integrated twice (pose) and once (velocity)
   filter::StateMatrix Q = filter::StateMatrix::Zero();
-  const auto add_white_acceleration = [&](int pose, int rate, double density) {
-    const double q = square(density);
-    Q.block<3, 3>(pose, pose).diagonal().setConstant(q * dt * dt * dt / 3.0);
-    Q.block<3, 3>(pose, rate).diagonal().setConstant(q * dt * dt / 2.0);
-    Q.block<3, 3>(rate, pose).diagonal().setConstant(q * dt * dt / 2.0);
-    Q.block<3, 3>(rate, rate).diagonal().setConstant(q * dt);
-  };
-  add_white_acceleration(filter::kRotation, filter::kAngularVelocity,
-                         config.angular_acceleration_noise_radps2_sqrthz);
-  add_white_acceleration(filter::kPosition, filter::kVelocity, config.acceleration_noise_mps2_sqrthz);
-
+  add_motion_noise(Q, filter::kRotation, filter::kAngularVelocity,
+                   square(config.angular_acceleration_noise_radps2_sqrthz) * white);
+  add_motion_noise(Q, filter::kPosition, filter::kVelocity,
+                   square(config.acceleration_noise_mps2_sqrthz) * white);
   result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
   return result;
 }
 
-Result<filter::GaussianState> predict_state(const filter::GaussianState& state, const FrameInterval& interval,
-                                            std::span<const ImuSample> samples, const SensorRig& rig,
-                                            const config::TermsConfig& terms,
-                                            const config::MotionConfig& motion,
-                                            const config::InitialisationConfig& initialisation,
-                                            const config::SelfCalibrationConfig& self_calibration) {
-  if (terms.prior == config::Prior::constant_velocity) {
-    const double duration_s = seconds_between(interval.begin_ns, interval.end_ns);
-    return predict_by_constant_velocity(state, duration_s, motion).state;
-  }
+MotionScale initial_motion_scale(const config::MotionConfig& config) {
+  return {square(config.speed_mps), square(config.rate_radps)};
+}
+
+MotionScale followed_scale(const MotionScale& scale, const filter::FilterState& state, double duration_s,
+                           const config::MotionConfig& config) {
+  const double weight = 1 - std::exp(-duration_s / config.scale_time_s);
+  const double speed_m2ps2 = state.velocity_world_mps.squaredNorm() / 3;
+  const double rate_rad2ps2 = state.angular_velocity_imu_radps.squaredNorm() / 3;
+  return {scale.speed_m2ps2 + weight * (speed_m2ps2 - scale.speed_m2ps2),
+          scale.rate_rad2ps2 + weight * (rate_rad2ps2 - scale.rate_rad2ps2)};
+}
+
+Prediction predict_by_motion_model(const filter::GaussianState& state, double duration_s,
+                                   const MotionScale& scale, const config::MotionConfig& config) {
+  const filter::FilterState& x = state.mean;
+  const DampedMotion linear(duration_s, config.speed_time_s);
+  const DampedMotion angular(duration_s, config.rate_time_s);
+  const Vector3d turn = angular.reach_s * x.angular_velocity_imu_radps;
+
+  Prediction result;
+  filter::FilterState& y = result.state.mean;
+  y = x;
+  y.T_world_imu.rotation = (x.T_world_imu.rotation * so3_exp(turn)).normalized();
+  y.T_world_imu.translation += linear.reach_s * x.velocity_world_mps;
+  y.velocity_world_mps *= linear.kept;
+  y.angular_velocity_imu_radps *= angular.kept;
+
+  filter::StateMatrix& F = result.transition;
+  F.block<3, 3>(filter::kRotation, filter::kRotation) = so3_exp(turn).toRotationMatrix().transpose();
+  F.block<3, 3>(filter::kRotation, filter::kAngularVelocity) = angular.reach_s * so3_right_jacobian(turn);
+  F.block<3, 3>(filter::kPosition, filter::kVelocity) = linear.reach_s * Matrix3d::Identity();
+  F.block<3, 3>(filter::kVelocity, filter::kVelocity) *= linear.kept;
+  F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity) *= angular.kept;
+
+  filter::StateMatrix Q = filter::StateMatrix::Zero();
+  add_motion_noise(Q, filter::kRotation, filter::kAngularVelocity, scale.rate_rad2ps2 * angular.noise());
+  add_motion_noise(Q, filter::kPosition, filter::kVelocity, scale.speed_m2ps2 * linear.noise());
+  result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
+  return result;
+}
+
+Result<filter::GaussianState> predict_by_samples(const filter::GaussianState& state,
+                                                 const FrameInterval& interval,
+                                                 std::span<const ImuSample> samples, const SensorRig& rig,
+                                                 const config::TermsConfig& terms,
+                                                 const config::MotionConfig& motion,
+                                                 const config::InitialisationConfig& initialisation,
+                                                 const config::SelfCalibrationConfig& self_calibration) {
   const filter::FilterState& x = state.mean;
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * x.imu_time_offset_s));
   const Result<PreintegratedImu> increments =  // Eqs. 11-13

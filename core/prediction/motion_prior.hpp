@@ -1,4 +1,5 @@
-// Prediction between frames (Eqs. 8-10 and 14 of the paper): by the IMU, or by constant velocity.
+// Prediction between frames (Eqs. 8-10 and 14 of the paper): by the IMU, or by constant velocity; and dead
+// reckoning without an IMU by a motion model of hand-held cameras.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +29,32 @@ struct Prediction {
                                         const ImuNoise& noise, const config::MotionConfig& config);
 
 /// Propagates with constant linear velocity (world) and angular velocity (body) over duration_s, driven by
-/// white accelerations. Biases and gravity stay as they are.
+/// white accelerations. Biases and gravity do not change. The prior of an update without an IMU: wide enough
+/// for motions that are much quicker than the recording so far, of which the images decide. Over many frames
+/// without an update its covariance is far too large, for which there is predict_by_motion_model().
 [[nodiscard]] Prediction predict_by_constant_velocity(const filter::GaussianState& state, double duration_s,
                                                       const config::MotionConfig& config);
+
+/// Stationary variances of the velocities of a recording, per axis.
+struct MotionScale {
+  double speed_m2ps2 = 0;   ///< of the linear velocity (world)
+  double rate_rad2ps2 = 0;  ///< of the angular velocity (body)
+};
+/// Before the first frame: motion.speed_mps and motion.rate_radps.
+[[nodiscard]] MotionScale initial_motion_scale(const config::MotionConfig& config);
+/// The exponential mean over motion.scale_time_s of the squared velocities, after a frame of that state and
+/// duration_s since the frame before.
+[[nodiscard]] MotionScale followed_scale(const MotionScale& scale, const filter::FilterState& state,
+                                         double duration_s, const config::MotionConfig& config);
+
+/// Dead reckoning without an IMU. Propagates linear velocity (world) v and angular velocity (body) as
+/// Ornstein-Uhlenbeck processes with time constants motion.speed_time_s and motion.rate_time_s and the
+/// stationary variances of `scale`: with a = exp(-dt / tau), v' = a v + n, var(n) = (1 - a^2) var(v), and the
+/// pose moves by tau (1 - a) v + m, var(m) = tau^2 (2 dt / tau - 3 + 4 a - a^2) var(v), cov(m, n) = tau (1 -
+/// a)^2 var(v). Exact for any division of dt. Biases and gravity do not change.
+[[nodiscard]] Prediction predict_by_motion_model(const filter::GaussianState& state, double duration_s,
+                                                 const MotionScale& scale,
+                                                 const config::MotionConfig& config);
 
 /// Capture instants of the last frame and the one that is predicted.
 struct FrameInterval {
@@ -38,9 +62,9 @@ struct FrameInterval {
   std::int64_t end_ns = 0;
 };
 
-/// Sec. 2.2.1: predicts by the prior of the configuration. The samples are of the whole recording, sorted;
-/// error data_corrupt if they do not cover the interval.
-[[nodiscard]] Result<filter::GaussianState> predict_state(
+/// Sec. 2.2.1: predicts by the IMU of a recording. The samples are of the whole recording, sorted; error
+/// data_corrupt if they do not cover the interval.
+[[nodiscard]] Result<filter::GaussianState> predict_by_samples(
     const filter::GaussianState& state, const FrameInterval& interval, std::span<const ImuSample> samples,
     const SensorRig& rig, const config::TermsConfig& terms, const config::MotionConfig& motion,
     const config::InitialisationConfig& initialisation,

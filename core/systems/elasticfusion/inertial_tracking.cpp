@@ -52,8 +52,9 @@ Result<void> InertialTracking::start(std::int64_t capture_ns) {
 }
 
 Result<void> InertialTracking::predict(std::int64_t capture_ns) {
-  auto state = prediction::predict_state(state_, {capture_ns_, capture_ns}, samples_, rig_, config_.terms,
-                                         config_.motion, config_.initialisation, config_.self_calibration);
+  auto state =
+      prediction::predict_by_samples(state_, {capture_ns_, capture_ns}, samples_, rig_, config_.terms,
+                                     config_.motion, config_.initialisation, config_.self_calibration);
   if (!state) return tl::unexpected(state.error());
   state_ = *state;
   capture_ns_ = capture_ns;

@@ -95,6 +95,17 @@ TEST(MotionPrior, ConstantVelocityTransitionEqualsNumericJacobian) {
   EXPECT_LT(relative_difference(F, numeric_transition(state, predict)), 1e-7);
 }
 
+constexpr MotionScale kScale{0.04, 0.16};
+
+TEST(MotionPrior, MotionModelTransitionEqualsNumericJacobian) {
+  const GaussianState state = some_state();
+  const auto predict = [](const GaussianState& s) {
+    return predict_by_motion_model(s, 0.0334, kScale, {}).state;
+  };
+  const StateMatrix F = predict_by_motion_model(state, 0.0334, kScale, {}).transition;
+  EXPECT_LT(relative_difference(F, numeric_transition(state, predict)), 1e-7);
+}
+
 TEST(MotionPrior, ImuPredictionFollowsClosedFormMotion) {
   const HelixMotion motion;
   GaussianState state;
@@ -109,6 +120,33 @@ TEST(MotionPrior, ImuPredictionFollowsClosedFormMotion) {
   EXPECT_LT((predicted.angular_velocity_imu_radps - motion.body_rate_radps).norm(), 1e-12);
 }
 
+TEST(MotionPrior, MotionModelDoesNotDependOnTheDivisionOfTime) {
+  const MotionConfig config;
+  GaussianState state;  // at rest, so that the chain of transitions is exact
+  const GaussianState whole = predict_by_motion_model(state, 0.4, kScale, config).state;
+  GaussianState steps = state;
+  for (int i = 0; i < 10; ++i) steps = predict_by_motion_model(steps, 0.04, kScale, config).state;
+  EXPECT_LT(testing::relative_distance(steps.covariance, whole.covariance), 1e-10);
+}
+
+TEST(MotionPrior, MotionModelIsAnOrnsteinUhlenbeckProcess) {
+  const MotionConfig config;
+  GaussianState state;
+  state.mean.velocity_world_mps = {0.3, 0, 0};
+  // For long times the velocity has its stationary variance, and the camera stopped after tau * v.
+  const GaussianState late = predict_by_motion_model(state, 100, kScale, config).state;
+  EXPECT_NEAR(late.covariance(kVelocity, kVelocity), kScale.speed_m2ps2, 1e-12);
+  EXPECT_NEAR(late.covariance(kAngularVelocity, kAngularVelocity), kScale.rate_rad2ps2, 1e-12);
+  EXPECT_NEAR(late.mean.T_world_imu.translation.x(), 0.3 * config.speed_time_s, 1e-12);
+  // For short times it is white acceleration of density sqrt(2 var / tau).
+  constexpr double kShort_s = 1e-3;
+  const GaussianState soon = predict_by_motion_model(state, kShort_s, kScale, config).state;
+  const double density2 = 2 * kScale.speed_m2ps2 / config.speed_time_s;
+  EXPECT_NEAR(soon.covariance(kVelocity, kVelocity) / (density2 * kShort_s), 1, 2e-3);
+  EXPECT_NEAR(soon.covariance(kPosition, kPosition) / (density2 * kShort_s * kShort_s * kShort_s / 3), 1,
+              2e-3);
+}
+
 TEST(MotionPrior, ProcessNoiseOfConstantVelocityIsThatOfIntegratedWhiteAcceleration) {
   // Two half steps give the same covariance as one whole step: the noise is a property of time, not of
   // frames.
@@ -121,6 +159,20 @@ TEST(MotionPrior, ProcessNoiseOfConstantVelocityIsThatOfIntegratedWhiteAccelerat
   EXPECT_LT(testing::relative_distance(halves.covariance, whole.covariance), 1e-12);
   const double q = config.acceleration_noise_mps2_sqrthz;
   EXPECT_NEAR(whole.covariance(kPosition, kPosition), q * q * 0.04 * 0.04 * 0.04 / 3, 1e-15);
+}
+
+TEST(MotionPrior, ScaleFollowsTheVelocitiesOfTheRecording) {
+  const MotionConfig config;
+  MotionScale scale = initial_motion_scale(config);
+  EXPECT_NEAR(scale.speed_m2ps2, config.speed_mps * config.speed_mps, 1e-15);
+  FilterState state;
+  state.velocity_world_mps = {1, 1, 1};
+  state.angular_velocity_imu_radps = {0, 0, 0};
+  for (double t_s = 0; t_s < config.scale_time_s; t_s += 0.1)
+    scale = followed_scale(scale, state, 0.1, config);
+  const double forgotten = std::exp(-1.0);
+  EXPECT_NEAR(scale.speed_m2ps2, 1 + forgotten * (config.speed_mps * config.speed_mps - 1), 0.01);
+  EXPECT_NEAR(scale.rate_rad2ps2, forgotten * config.rate_radps * config.rate_radps, 0.01);
 }
 
 TEST(MotionPrior, CovariancesStaySymmetricAndPositive) {
