@@ -55,10 +55,9 @@ struct Pipeline::State final : RestartableEstimator {
   Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
   filter::GaussianState dead_reckoned(const filter::GaussianState& predicted, std::int64_t now_ns) const;
   health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
-  bool track(const filter::GaussianState& prior, bool after_gap, bool thorough, health::FrameReport& report);
+  bool track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report);
   filter::IekfResult update(const filter::GaussianState& prior, bool thorough, health::StageTimes& stages);
-  bool track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
-                   health::FrameReport& report);
+  bool track_again(const filter::GaussianState& prior, bool thorough, health::FrameReport& report);
   bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
   Result<void> fuse(health::FrameReport& report);
   Result<void> integrate(const RgbdFrame& frame) {
@@ -200,10 +199,8 @@ filter::GaussianState Pipeline::State::dead_reckoned(const filter::GaussianState
 health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
                                             health::FrameReport& report) {
   if (!tracking->estimate) return health::FrameStatus::initialised;
-  // As after a gap, the velocity at the start of a recording is unknown.
-  const bool after_gap = tracking->lost_frames > 0 || tracking->frames == 1;
-  if (track(predicted, after_gap, false, report)) return health::FrameStatus::tracked;
-  if (novelty.color && track_again(predicted, after_gap, true, report)) return health::FrameStatus::tracked;
+  if (track(predicted, false, report)) return health::FrameStatus::tracked;
+  if (novelty.color && track_again(predicted, true, report)) return health::FrameStatus::tracked;
   const filter::GaussianState reckoned = dead_reckoned(predicted, preparation.frame().capture_ns());
   if (!relocalise(reckoned, report)) return health::FrameStatus::lost;
   tracking->loops.add_relocalisation(reckoned, *tracking->estimate, tracking->reference.timestamp_ns);
@@ -234,8 +231,7 @@ filter::IekfResult Pipeline::State::update(const filter::GaussianState& prior, b
 }
 
 /// False if the result of the update is not to be believed.
-bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, bool thorough,
-                            health::FrameReport& report) {
+bool Pipeline::State::track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
   Tracking& now = *tracking;
   const filter::IekfResult update = this->update(prior, thorough, report.stages);  // Eqs. 1-5, 15-23
   const health::StageClock clock(report.stages, health::Stage::update);
@@ -252,7 +248,7 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
                           config.iekf, report);
   report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config.health,
                                        config.iekf, config.patches.size_px);
-  report.reason = health::rejection_reason(report, after_gap, config.terms, config.iekf, config.health);
+  report.reason = health::rejection_reason(report, config.terms, config.iekf, config.health);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     now.residual_scale = {std::max(1.0, now.residual_scale.photometric),
@@ -276,11 +272,11 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool after_gap, 
 }
 
 /// The same once more with a report of its own; the report of the first attempt stays if this one fails.
-bool Pipeline::State::track_again(const filter::GaussianState& prior, bool after_gap, bool thorough,
+bool Pipeline::State::track_again(const filter::GaussianState& prior, bool thorough,
                                   health::FrameReport& report) {
   health::FrameReport again = health::report_of(preparation.frame());
   again.stages = report.stages;
-  const bool tracked = track(prior, after_gap, thorough, again);
+  const bool tracked = track(prior, thorough, again);
   if (tracked) {
     report = std::move(again);
   } else {
@@ -305,7 +301,7 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
   }
   if (!found) return false;
   std::swap(now.reference, found->reference);
-  if (!dark && track_again(found->prior, true, false, report)) {
+  if (!dark && track_again(found->prior, false, report)) {
     report.pixels = {};  // the intensity error is one against the frame before
     return true;
   }

@@ -1,7 +1,6 @@
 #include "core/alignment/start_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -58,6 +57,26 @@ int StartSearch::coarsest_level(double sigma_px, const ReferencePoints& referenc
   return level;
 }
 
+/// The camera moved on as before, or it stands still. Where the prediction allows more than the coarsest
+/// level converges from, also turned by that to each side.
+std::vector<filter::MeasuredVector> StartSearch::starts(const filter::GaussianState& prior, double sigma_px,
+                                                        const ReferencePoints& reference) const {
+  std::vector<filter::MeasuredVector> starts = {filter::MeasuredVector::Zero(),
+                                                filter::start_at(prior, prior.mean.T_world_imu_reference)};
+  const double reach_px = config_.reach_px * (1 << reference.coarsest_level());
+  if (config_.reach_sigmas * sigma_px <= reach_px) return starts;
+  const double step_rad = 2 * reach_px / rig_.camera.fx_px;
+  for (const double about_x : {-step_rad, 0.0, step_rad}) {
+    for (const double about_y : {-step_rad, 0.0, step_rad}) {
+      if (about_x == 0 && about_y == 0) continue;
+      const SE3 turned(so3_exp(Vector3d(about_x, about_y, 0)), Vector3d::Zero());
+      starts.push_back(filter::start_at(
+          prior, prior.mean.T_world_imu * rig_.T_imu_camera * turned * rig_.T_imu_camera.inverse()));
+    }
+  }
+  return starts;
+}
+
 FoundStart StartSearch::find(const filter::GaussianState& prior, const ReferencePoints& reference,
                              std::span<const GreyImage> pyramid, bool thorough) {
   FoundStart found;
@@ -69,11 +88,8 @@ FoundStart StartSearch::find(const filter::GaussianState& prior, const Reference
   config::IekfConfig iterations = iekf_;
   iterations.max_iterations = config_.max_iterations;
   const SE3 T_world_reference = prior.mean.T_world_imu_reference * rig_.T_imu_camera;
-  // The camera moved on as before, or it stands still.
-  const std::array<filter::MeasuredVector, 2> starts = {
-      filter::MeasuredVector::Zero(), filter::start_at(prior, prior.mean.T_world_imu_reference)};
   double least = std::numeric_limits<double>::infinity();
-  for (const filter::MeasuredVector& start : starts) {
+  for (const filter::MeasuredVector& start : starts(prior, found.landing_sigma_px, reference)) {
     alignment_.observe(pyramid, reference, T_world_reference, found.coarsest_level);
     const filter::IekfResult result = filter::iekf_update(prior, alignment_, iterations, start);
     // A start that sees less of the reference has fewer residuals, not a better fit.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/alignment/image_alignment.hpp"
 #include "core/alignment/reference_points.hpp"
@@ -32,6 +33,9 @@ class StartSearch {
                                 std::span<const GreyImage> pyramid, bool thorough);
 
  private:
+  [[nodiscard]] std::vector<filter::MeasuredVector> starts(const filter::GaussianState& prior,
+                                                           double sigma_px,
+                                                           const ReferencePoints& reference) const;
   [[nodiscard]] int coarsest_level(double sigma_px, const ReferencePoints& reference) const;
 
   const config::AlignmentConfig& config_;

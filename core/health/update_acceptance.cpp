@@ -9,12 +9,7 @@
 
 namespace fusebench::health {
 
-bool fails_chi2_gate(const FrameReport& report, const config::TermsConfig& terms,
-                     const config::HealthConfig& health) {
-  return terms.photometric_weight > 0 && report.chi2_photometric > health.max_chi2_after_gap;
-}
-
-std::string rejection_reason(const FrameReport& report, bool after_gap, const config::TermsConfig& terms,
+std::string rejection_reason(const FrameReport& report, const config::TermsConfig& terms,
                              const config::IekfConfig& iekf, const config::HealthConfig& health) {
   if (report.patches_accepted < iekf.min_patches) {
     return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
@@ -38,11 +33,6 @@ std::string rejection_reason(const FrameReport& report, bool after_gap, const co
     return fmt::format(
         "the patches are not recognised: their correlation is {:.2f} (health.min_correlation = {})",
         *report.correlation, health.min_correlation);
-  }
-  // Without relocalisation there is nothing better to turn to.
-  if (after_gap && terms.relocalisation && fails_chi2_gate(report, terms, health)) {
-    return fmt::format("after a gap the patches do not fit: {:.1f} times the variance of their noise",
-                       report.chi2_photometric);
   }
   return {};
 }

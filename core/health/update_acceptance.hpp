@@ -10,16 +10,9 @@
 
 namespace fusebench::health {
 
-/// True if the photometric residuals are too large for the patches to lie where they belong: the mean squared
-/// whitened residual of accepted ones. How many patches agree says less: until the noise is learnt, a
-/// sensor's depth alone may fail the gate.
-[[nodiscard]] bool fails_chi2_gate(const FrameReport& report, const config::TermsConfig& terms,
-                                   const config::HealthConfig& health);
-
-/// Why an update, described in the report, is not believed; empty if it is. after_gap: the prediction may be
-/// so far off that patches settle on the wrong corners.
-[[nodiscard]] std::string rejection_reason(const FrameReport& report, bool after_gap,
-                                           const config::TermsConfig& terms, const config::IekfConfig& iekf,
+/// Why an update, described in the report, is rejected; empty if it is accepted.
+[[nodiscard]] std::string rejection_reason(const FrameReport& report, const config::TermsConfig& terms,
+                                           const config::IekfConfig& iekf,
                                            const config::HealthConfig& health);
 
 /// Where the patches that are good enough to be cut again are in the current frame: accepted, and with a mean

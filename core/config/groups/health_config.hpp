@@ -15,7 +15,6 @@ struct HealthConfig {
   double min_contrast_grey = 8.0;
   double max_rotation_sigma_deg = 1.0;
   double max_position_sigma_m = 0.02;
-  double max_chi2_after_gap = 2.5;
   int max_occluded_frames = 30;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -57,11 +56,6 @@ struct HealthConfig {
     v.number("max_position_sigma_m", self.max_position_sigma_m, 1e-4, 100.0,
              "the same for the position (metres); 2.5 sigmas are a silent failure "
              "(evaluation.silent_translation_m)");
-    v.number(
-        "max_chi2_after_gap", self.max_chi2_after_gap, 0.1, 1e6,
-        "after a gap an update with a larger mean squared whitened photometric residual is not believed: of "
-        "well aligned patches it is about 1 at most (photometric.noise_grey is generous), of those on wrong "
-        "corners 3 to 4");
     v.number(
         "max_occluded_frames", self.max_occluded_frames, 0, 100000,
         "what covers the scene for more frames in a row than this is let into the model; 30 are a second "
