@@ -15,8 +15,8 @@ std::string rejection_reason(const FrameReport& report, const config::TermsConfi
     return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
                        report.patches_accepted, report.patches, iekf.min_patches);
   }
-  if (terms.relocalisation && (report.model_rotation_sigma_rad > radians(health.max_rotation_sigma_deg) ||
-                               report.model_position_sigma_m > health.max_position_sigma_m)) {
+  if (report.model_rotation_sigma_rad > radians(health.max_rotation_sigma_deg) ||
+      report.model_position_sigma_m > health.max_position_sigma_m) {
     return fmt::format(
         "uncertain: the pose against the model is known to {:.2f} degrees and {:.1f} cm "
         "(health.max_rotation_sigma_deg = {}, health.max_position_sigma_m = {})",
@@ -24,12 +24,11 @@ std::string rejection_reason(const FrameReport& report, const config::TermsConfi
         health.max_rotation_sigma_deg, health.max_position_sigma_m);
   }
   // Whatever the frame suffers from: a pose that most of the intensities contradict is none.
-  if (terms.relocalisation && 2 * report.patches_contradicting > report.patches_tracked) {
+  if (2 * report.patches_contradicting > report.patches_tracked) {
     return fmt::format("inconsistent: the intensities of {} of {} tracked patches do not fit the pose",
                        report.patches_contradicting, report.patches_tracked);
   }
-  if (terms.relocalisation && terms.photometric_weight > 0 && report.correlation &&
-      *report.correlation < health.min_correlation) {
+  if (terms.photometric_weight > 0 && report.correlation && *report.correlation < health.min_correlation) {
     return fmt::format(
         "the patches are not recognised: their correlation is {:.2f} (health.min_correlation = {})",
         *report.correlation, health.min_correlation);

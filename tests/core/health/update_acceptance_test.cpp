@@ -67,6 +67,18 @@ TEST(UpdateAcceptance, APoseThatMostIntensitiesContradictIsNotBelieved) {
       std::string::npos);
 }
 
+TEST(UpdateAcceptance, DoesNotDependOnRelocalisation) {
+  AcceptanceOptions config;
+  config.terms.relocalisation = false;
+  FrameReport contradicted = report_with(30, 1);
+  contradicted.patches_tracked = 36;
+  contradicted.patches_contradicting = 19;
+  EXPECT_NE(rejection_reason(contradicted, config.terms, config.iekf, config.health), "");
+  FrameReport uncertain = report_with(30, 1);
+  uncertain.model_position_sigma_m = 2 * config.health.max_position_sigma_m;
+  EXPECT_NE(rejection_reason(uncertain, config.terms, config.iekf, config.health), "");
+}
+
 TEST(UpdateAcceptance, HowLongAnOcclusionIsKeptOutIsAnOption) {
   FrameReport report;
   report.status = FrameStatus::tracked;
