@@ -123,9 +123,12 @@ def table(header, rows):
     return "".join("| " + " | ".join(cells) + " |\n" for cells in [header, alignment, *rows])
 
 
+def has_synthetic_imu(summary, variant):
+    return any(run["imu"] == "synthetic IMU" for run in summary.runs if run["variant"] == variant)
+
+
 def system_heading(summary, variant):
-    imus = {run["imu"] for run in summary.runs if run["variant"] == variant and run["imu"]}
-    return f"`{variant}`" + (", synthetic IMU" if "synthetic IMU" in imus else "")
+    return f"`{variant}`" + (", synthetic IMU" if has_synthetic_imu(summary, variant) else "")
 
 
 def best_systems(cells):
@@ -144,7 +147,10 @@ def systems_view(summary, metrics, variants, _):
         for recording in recordings:
             runs = {v: [r for r in summary.runs if r["recording"] == recording and r["variant"] == v] for v in variants}
             cells = {v: spread(good_values(of_variant, metric.key)) for v, of_variant in runs.items()}
-            best = best_systems({v: c for v, c in cells.items() if c}) if metric.key.startswith("ate") else set()
+            best = set()
+            if metric.key.startswith("ate"):  # systems with and without an IMU made from the ground truth do not compare
+                for synthetic in (False, True):
+                    best |= best_systems({v: c for v, c in cells.items() if c and has_synthetic_imu(summary, v) == synthetic})
             row = [recording]
             for variant, of_variant in runs.items():
                 cell = shown(metric, good_values(of_variant, metric.key))

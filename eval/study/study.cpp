@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "core/base/error.hpp"
@@ -12,6 +14,12 @@
 namespace fusebench::study {
 
 namespace {
+
+/// False for a run of a suite with keep = "small", and for a system that has no patches.
+bool kept_intensities(const StudyRun& run) {
+  std::error_code ignored;
+  return std::filesystem::exists(run.folder / "intensity.bin", ignored);
+}
 
 /// The frames of the pair, with the motion that the reference saw.
 Result<std::vector<SharedFrame>> compared(const StudyRun& reference, const StudyRun& run) {
@@ -35,10 +43,15 @@ Result<std::vector<SharedFrame>> compared(const StudyRun& reference, const Study
 Study gather_study(std::vector<StudyRun> runs, std::vector<std::string> variants) {
   check(!variants.empty(), "a suite names a variant");
   Study study{std::move(variants), std::move(runs), {}};
+  bool without_pixels = false;
   for (StudyRun& run : study.runs) {
     if (run.variant == study.reference() || run.record.status != record::RunStatus::ok) continue;
     const StudyRun* reference = sibling(study, run, study.reference());
     if (reference == nullptr || reference->record.status != record::RunStatus::ok) continue;
+    if (!kept_intensities(run) || !kept_intensities(*reference)) {
+      without_pixels = true;
+      continue;
+    }
     auto frames = compared(*reference, run);
     if (frames) {
       run.shared = std::move(*frames);
@@ -47,6 +60,8 @@ Study gather_study(std::vector<StudyRun> runs, std::vector<std::string> variants
                                         frames.error().message));
     }
   }
+  if (without_pixels)
+    study.notes.emplace_back("no AIE on common pixels of runs that kept no intensity.bin (keep = \"small\")");
   return study;
 }
 
