@@ -50,8 +50,9 @@ struct ExcludedRun {
 struct BatchPlan {
   std::vector<BatchJob> jobs;
   std::vector<ExcludedRun> excluded;
-  std::vector<std::string> warnings;     ///< exclusions that meet no run
-  /// "NAME: where to get it" of each absent recording, "NAME: reason" of each external program that cannot run
+  std::vector<std::string> warnings;  ///< exclusions that meet no run
+  /// "NAME: where to get it" of each absent recording, "NAME: reason" of each external program that cannot
+  /// run
   std::vector<std::string> absent = {};
 };
 

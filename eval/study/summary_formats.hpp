@@ -14,9 +14,9 @@ struct SummaryOrigin {
   std::vector<std::string> absent = {};  ///< what the suite left out, as BatchPlan::absent
 };
 
-/// JSON in SI units with keys in a fixed order: origin (with the versions and machines of the records, and the
-/// UTC date of the newest), rows, curves, criteria, and every run. No times but frames a second; numbers that
-/// do not exist are null.
+/// JSON in SI units with keys in a fixed order: origin (with the versions and machines of the records, and
+/// the UTC date of the newest), rows, curves, criteria, and every run. No times but frames a second; numbers
+/// that do not exist are null.
 [[nodiscard]] std::string summary_json(const StudySummary& summary, const Study& study,
                                        const SummaryOrigin& origin = {});
 

@@ -32,7 +32,8 @@ struct SuiteRecording {
   std::string group = {};  ///< empty: the recording's name
   std::string split = std::string(kHeldOutSplit);
   std::vector<std::string> variants = {};
-  std::string source = {};  ///< not empty: an absent recording is reported with it, and the suite runs the others
+  std::string source =
+      {};  ///< not empty: an absent recording is reported with it, and the suite runs the others
 };
 
 /// A suite runs every variant over every recording.

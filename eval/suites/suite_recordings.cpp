@@ -74,9 +74,10 @@ Result<PlannedRecordings> planned_recordings(const Suite& suite, const Recording
     planned->present.push_back(std::move(*recording));
   }
   if (planned->present.empty() && !planned->absent.empty()) {
-    return fail(ErrorCode::data_missing,
-                fmt::format("suite '{}': none of its recordings is under '{}'", suite.name, choice.data.string()),
-                fmt::format("get at least one: {}", fmt::join(planned->absent, "; ")));
+    return fail(
+        ErrorCode::data_missing,
+        fmt::format("suite '{}': none of its recordings is under '{}'", suite.name, choice.data.string()),
+        fmt::format("get at least one: {}", fmt::join(planned->absent, "; ")));
   }
   // Runs go by the names of recordings: two of one name would overwrite each other's.
   std::set<std::string> names;
