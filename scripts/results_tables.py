@@ -65,7 +65,7 @@ class Metric:
         self.smaller_is_better = row["better"] == "smaller"
         self.factor, self.unit, self.decimals = SHOWN_UNITS.get(row["unit"], (1, row["unit"], 2))
         if self.key in SHARES:
-            self.factor, self.unit, self.decimals = 100, "%", 0
+            self.factor, self.unit, self.decimals = 100, "%", 1
 
     def text(self, value):
         return "-" if value is None else f"{self.factor * value:.{self.decimals}f}"
@@ -118,8 +118,8 @@ def good_values(runs, key):
     return [run["values"][key] for run in runs if run["status"] == "ok" and run["values"].get(key) is not None]
 
 
-def table(header, rows):
-    alignment = ["---"] + ["---:"] * (len(header) - 1)
+def table(header, rows, text_columns=1):
+    alignment = ["---"] * text_columns + ["---:"] * (len(header) - text_columns)
     return "".join("| " + " | ".join(cells) + " |\n" for cells in [header, alignment, *rows])
 
 
@@ -193,7 +193,7 @@ def groups_view(summary, metrics, variants, parameters):
                     cell += f" [{metric.text(min(medians))}, {metric.text(max(medians))}]"
                 row.append(cell)
             rows.append(row)
-    return table(["group", "system", "recordings"] + [metric.heading() for metric in metrics], rows) + "\n"
+    return table(["group", "system", "recordings"] + [metric.heading() for metric in metrics], rows, 2) + "\n"
 
 
 def criteria_view(summary, *_):
@@ -202,7 +202,7 @@ def criteria_view(summary, *_):
         measured = "-" if criterion["measured"] is None else f"{criterion['measured']:.4g}"
         rows.append([criterion["title"], criterion["verdict"], measured, criterion["limit"], str(criterion["recordings"])])
     rows.sort(key=lambda row: row[1] == "PASS")
-    return table(["criterion", "verdict", "measured", "limit", "recordings"], rows) + "\n"
+    return table(["criterion", "verdict", "measured", "limit", "recordings"], rows, 2) + "\n"
 
 
 def is_better(metric, theirs, own):
