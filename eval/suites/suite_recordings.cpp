@@ -1,7 +1,6 @@
 #include "eval/suites/suite_recordings.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <set>
 #include <utility>
@@ -77,7 +76,7 @@ Result<PlannedRecordings> planned_recordings(const Suite& suite, const Recording
     return fail(
         ErrorCode::data_missing,
         fmt::format("suite '{}': none of its recordings is under '{}'", suite.name, choice.data.string()),
-        fmt::format("get at least one: {}", fmt::join(planned->absent, "; ")));
+        fmt::format("the suite's file says where to get each, for example {}", planned->absent.front()));
   }
   // Runs go by the names of recordings: two of one name would overwrite each other's.
   std::set<std::string> names;
