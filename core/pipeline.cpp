@@ -71,8 +71,8 @@ struct Pipeline::State final : RestartableEstimator {
     return {preparation.pyramid(), preparation.patch_depth_m(), rig.camera, T_world_camera()};
   }
   /// Since the frame before.
-  [[nodiscard]] double duration_s(const RgbdFrame& frame) const {
-    return seconds_between(tracking->timestamp_ns, frame.capture_ns());
+  [[nodiscard]] double duration_s(std::int64_t now_ns) const {
+    return seconds_between(tracking->timestamp_ns, now_ns);
   }
   [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
 
@@ -123,8 +123,8 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
       report.status == health::FrameStatus::tracked || report.status == health::FrameStatus::relocalised;
   if (!updated) now.estimate = dead_reckoned(*predicted, frame.capture_ns());
   if (report.status == health::FrameStatus::tracked)
-    now.motion_scale =
-        prediction::followed_scale(now.motion_scale, now.estimate->mean, duration_s(frame), config.motion);
+    now.motion_scale = prediction::followed_scale(now.motion_scale, now.estimate->mean,
+                                                  duration_s(frame.capture_ns()), config.motion);
   now.lost_frames = report.status == health::FrameStatus::lost ? now.lost_frames + 1 : 0;
   now.timestamp_ns = frame.capture_ns();
   ++now.frames;
@@ -176,10 +176,9 @@ Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
   if (!tracking->estimate)
     return prediction::initial_state(imu, now_ns, rig, config.terms, config.initialisation,
                                      config.self_calibration, initial_motion);
-  if (config.terms.prior == config::Prior::constant_velocity) {
-    const double duration_s = seconds_between(tracking->timestamp_ns, now_ns);
-    return prediction::predict_by_constant_velocity(*tracking->estimate, duration_s, config.motion).state;
-  }
+  if (config.terms.prior == config::Prior::constant_velocity)
+    return prediction::predict_by_constant_velocity(*tracking->estimate, duration_s(now_ns), config.motion)
+        .state;
   return prediction::predict_by_samples(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig,
                                         config.terms, config.motion, config.initialisation,
                                         config.self_calibration);
@@ -190,8 +189,7 @@ filter::GaussianState Pipeline::State::dead_reckoned(const filter::GaussianState
                                                      std::int64_t now_ns) const {
   const bool is_first = !tracking->estimate;
   if (is_first || config.terms.prior != config::Prior::constant_velocity) return predicted;
-  const double duration_s = seconds_between(tracking->timestamp_ns, now_ns);
-  return prediction::predict_by_motion_model(*tracking->estimate, duration_s, tracking->motion_scale,
+  return prediction::predict_by_motion_model(*tracking->estimate, duration_s(now_ns), tracking->motion_scale,
                                              config.motion)
       .state;
 }

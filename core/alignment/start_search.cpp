@@ -58,7 +58,7 @@ int StartSearch::coarsest_level(double sigma_px, const ReferencePoints& referenc
 }
 
 /// The camera moved on as before, or it stands still. Where the prediction allows more than the coarsest
-/// level converges from, also turned by that to each side.
+/// level converges from, also turned by twice that to each side.
 std::vector<filter::MeasuredVector> StartSearch::starts(const filter::GaussianState& prior, double sigma_px,
                                                         const ReferencePoints& reference) const {
   std::vector<filter::MeasuredVector> starts = {filter::MeasuredVector::Zero(),

@@ -16,25 +16,29 @@ void add_random_walk(filter::StateMatrix& noise, int offset, int size, double de
   noise.diagonal().segment(offset, size).array() += square(density) * duration_s;
 }
 
-/// What remains of a velocity after some time, as an Ornstein-Uhlenbeck process.
-struct DampedMotion {
-  DampedMotion(double duration_s, double time_s)
-      : duration(duration_s / time_s),
-        kept(std::exp(-duration)),
-        reach_s(-time_s * std::expm1(-duration)),
-        time(time_s) {}
-  /// Variance of the pose, covariance of pose and velocity, variance of the velocity, of a process with unit
-  /// stationary variance.
-  [[nodiscard]] Vector3d noise() const {
-    return {square(time) * (2 * duration - 3 + 4 * kept - square(kept)), square(reach_s) / time,
-            1 - square(kept)};
-  }
-
-  double duration;  ///< in time constants
-  double kept;      ///< factor on the velocity
-  double reach_s;   ///< the pose moves by this times the velocity
-  double time;      ///< time constant, s
+/// How a velocity moves a pose over some time.
+struct VelocityEffect {
+  double kept = 1;     ///< factor on the velocity
+  double reach_s = 0;  ///< the pose moves by this times the velocity
+  /// Variance of the pose, covariance of pose and velocity, variance of the velocity, per axis.
+  Vector3d noise = Vector3d::Zero();
 };
+
+/// A constant velocity with white acceleration, integrated twice (pose) and once (velocity).
+VelocityEffect constant_velocity(double dt, double acceleration_density) {
+  const Vector3d white(dt * dt * dt / 3, dt * dt / 2, dt);
+  return {1, dt, square(acceleration_density) * white};
+}
+
+/// An Ornstein-Uhlenbeck process.
+VelocityEffect damped_velocity(double duration_s, double time_constant_s, double variance) {
+  const double duration = duration_s / time_constant_s;
+  const double kept = std::exp(-duration);
+  const double reach_s = -time_constant_s * std::expm1(-duration);
+  const Vector3d unit(square(time_constant_s) * (2 * duration - 3 + 4 * kept - square(kept)),
+                      square(reach_s) / time_constant_s, 1 - square(kept));
+  return {kept, reach_s, variance * unit};
+}
 
 /// Adds noise of a pose and its velocity: (pose, pose and velocity, velocity), the same on each axis.
 void add_motion_noise(filter::StateMatrix& covariance, int pose, int rate, const Vector3d& noise) {
@@ -42,6 +46,34 @@ void add_motion_noise(filter::StateMatrix& covariance, int pose, int rate, const
   covariance.block<3, 3>(pose, rate).diagonal().array() += noise[1];
   covariance.block<3, 3>(rate, pose).diagonal().array() += noise[1];
   covariance.block<3, 3>(rate, rate).diagonal().array() += noise[2];
+}
+
+/// Moves the pose by its velocities: linear (world) and angular (body).
+Prediction moved_by_velocities(const filter::GaussianState& state, const VelocityEffect& linear,
+                               const VelocityEffect& angular) {
+  const filter::FilterState& x = state.mean;
+  const Vector3d turn = angular.reach_s * x.angular_velocity_imu_radps;
+
+  Prediction result;
+  filter::FilterState& y = result.state.mean;
+  y = x;
+  y.T_world_imu.rotation = (x.T_world_imu.rotation * so3_exp(turn)).normalized();
+  y.T_world_imu.translation += linear.reach_s * x.velocity_world_mps;
+  y.velocity_world_mps *= linear.kept;
+  y.angular_velocity_imu_radps *= angular.kept;
+
+  filter::StateMatrix& F = result.transition;
+  F.block<3, 3>(filter::kRotation, filter::kRotation) = so3_exp(turn).toRotationMatrix().transpose();
+  F.block<3, 3>(filter::kRotation, filter::kAngularVelocity) = angular.reach_s * so3_right_jacobian(turn);
+  F.block<3, 3>(filter::kPosition, filter::kVelocity) = linear.reach_s * Matrix3d::Identity();
+  F.block<3, 3>(filter::kVelocity, filter::kVelocity) *= linear.kept;
+  F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity) *= angular.kept;
+
+  filter::StateMatrix Q = filter::StateMatrix::Zero();
+  add_motion_noise(Q, filter::kRotation, filter::kAngularVelocity, angular.noise);
+  add_motion_noise(Q, filter::kPosition, filter::kVelocity, linear.noise);
+  result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
+  return result;
 }
 }  // namespace
 
@@ -111,29 +143,8 @@ Prediction predict_by_imu(const filter::GaussianState& state, const Preintegrate
 
 Prediction predict_by_constant_velocity(const filter::GaussianState& state, double duration_s,
                                         const config::MotionConfig& config) {
-  const filter::FilterState& x = state.mean;
-  const double dt = duration_s;
-  const Vector3d turn = dt * x.angular_velocity_imu_radps;
-
-  Prediction result;
-  filter::FilterState& y = result.state.mean;
-  y = x;
-  y.T_world_imu.rotation = (x.T_world_imu.rotation * so3_exp(turn)).normalized();
-  y.T_world_imu.translation += dt * x.velocity_world_mps;
-
-  filter::StateMatrix& F = result.transition;
-  F.block<3, 3>(filter::kRotation, filter::kRotation) = so3_exp(turn).toRotationMatrix().transpose();
-  F.block<3, 3>(filter::kRotation, filter::kAngularVelocity) = dt * so3_right_jacobian(turn);
-  F.block<3, 3>(filter::kPosition, filter::kVelocity) = dt * Matrix3d::Identity();
-
-  const Vector3d white(dt * dt * dt / 3, dt * dt / 2, dt);  // integrated twice (pose) and once (velocity)
-  filter::StateMatrix Q = filter::StateMatrix::Zero();
-  add_motion_noise(Q, filter::kRotation, filter::kAngularVelocity,
-                   square(config.angular_acceleration_noise_radps2_sqrthz) * white);
-  add_motion_noise(Q, filter::kPosition, filter::kVelocity,
-                   square(config.acceleration_noise_mps2_sqrthz) * white);
-  result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
-  return result;
+  return moved_by_velocities(state, constant_velocity(duration_s, config.acceleration_noise_mps2_sqrthz),
+                             constant_velocity(duration_s, config.angular_acceleration_noise_radps2_sqrthz));
 }
 
 MotionScale initial_motion_scale(const config::MotionConfig& config) {
@@ -151,31 +162,8 @@ MotionScale followed_scale(const MotionScale& scale, const filter::FilterState& 
 
 Prediction predict_by_motion_model(const filter::GaussianState& state, double duration_s,
                                    const MotionScale& scale, const config::MotionConfig& config) {
-  const filter::FilterState& x = state.mean;
-  const DampedMotion linear(duration_s, config.speed_time_s);
-  const DampedMotion angular(duration_s, config.rate_time_s);
-  const Vector3d turn = angular.reach_s * x.angular_velocity_imu_radps;
-
-  Prediction result;
-  filter::FilterState& y = result.state.mean;
-  y = x;
-  y.T_world_imu.rotation = (x.T_world_imu.rotation * so3_exp(turn)).normalized();
-  y.T_world_imu.translation += linear.reach_s * x.velocity_world_mps;
-  y.velocity_world_mps *= linear.kept;
-  y.angular_velocity_imu_radps *= angular.kept;
-
-  filter::StateMatrix& F = result.transition;
-  F.block<3, 3>(filter::kRotation, filter::kRotation) = so3_exp(turn).toRotationMatrix().transpose();
-  F.block<3, 3>(filter::kRotation, filter::kAngularVelocity) = angular.reach_s * so3_right_jacobian(turn);
-  F.block<3, 3>(filter::kPosition, filter::kVelocity) = linear.reach_s * Matrix3d::Identity();
-  F.block<3, 3>(filter::kVelocity, filter::kVelocity) *= linear.kept;
-  F.block<3, 3>(filter::kAngularVelocity, filter::kAngularVelocity) *= angular.kept;
-
-  filter::StateMatrix Q = filter::StateMatrix::Zero();
-  add_motion_noise(Q, filter::kRotation, filter::kAngularVelocity, scale.rate_rad2ps2 * angular.noise());
-  add_motion_noise(Q, filter::kPosition, filter::kVelocity, scale.speed_m2ps2 * linear.noise());
-  result.state.covariance = filter::symmetrised(F * state.covariance * F.transpose() + Q);
-  return result;
+  return moved_by_velocities(state, damped_velocity(duration_s, config.speed_time_s, scale.speed_m2ps2),
+                             damped_velocity(duration_s, config.rate_time_s, scale.rate_rad2ps2));
 }
 
 Result<filter::GaussianState> predict_by_samples(const filter::GaussianState& state,

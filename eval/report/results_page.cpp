@@ -26,13 +26,6 @@ PageDetail detail_for(std::size_t runs, std::size_t recordings) {
           std::min<std::size_t>(kImages / std::max<std::size_t>(recordings, 1), 16)};
 }
 
-std::vector<std::string> methods_of(const std::vector<run_files::FoundRun>& runs) {
-  std::vector<std::string> methods = run_files::RunSet(runs).differing_options();
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    methods[i] = runs[i].record.variant + (methods[i].empty() ? "" : " ") + methods[i];
-  return methods;
-}
-
 std::vector<std::size_t> colours_of(const std::vector<run_files::FoundRun>& runs,
                                     const std::vector<std::string>& methods) {
   std::vector<page::ColouredName> names;
@@ -55,7 +48,7 @@ ResultsPage results_page(const std::vector<run_files::FoundRun>& runs, const std
   const std::vector<RunsOfRecording> groups = runs_by_recording(runs);
   std::size_t drawn = 0;
   for (const RunsOfRecording group : groups) drawn += std::min(group.size(), kMostDrawn);
-  const std::vector<std::string> methods = methods_of(runs);
+  const std::vector<std::string> methods = run_files::RunSet(runs).methods();
   const PageContext context{runs, methods, colours_of(runs, methods), detail_for(drawn, groups.size()),
                             reader};
   speed_failures::FailureSections failures;

@@ -113,18 +113,22 @@ std::vector<std::string> RunSet::imus() const {
   return imus;
 }
 
-std::vector<std::string> RunSet::configuration_labels() const {
+std::vector<std::string> RunSet::methods() const {
   const std::vector<std::string> options = differing_options();
+  std::vector<std::string> methods;
+  for (std::size_t i = 0; i < runs_.size(); ++i) append(methods.emplace_back(runs_[i].variant), options[i]);
+  return methods;
+}
+
+std::vector<std::string> RunSet::configuration_labels() const {
   const std::vector<std::string> used = imus();
   std::map<std::string, std::set<std::string>> of_variant;
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     if (!used[i].empty()) of_variant[runs_[i].variant].insert(used[i]);
   }
-  std::vector<std::string> labels;
+  std::vector<std::string> labels = methods();
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    std::string& label = labels.emplace_back(runs_[i].variant);
-    append(label, options[i]);
-    if (!used[i].empty() && of_variant.at(runs_[i].variant).size() > 1) append(label, imu_words(used[i]));
+    if (!used[i].empty() && of_variant.at(runs_[i].variant).size() > 1) append(labels[i], imu_words(used[i]));
   }
   return labels;
 }

@@ -35,7 +35,10 @@ class RunSet {
   /// same recording, or else over all recordings; empty where these differ.
   [[nodiscard]] std::vector<std::string> imus() const;
 
-  /// The variant with differing_options(), and with its IMU where runs of the variant differ in it: equal for
+  /// The variant of each run with differing_options().
+  [[nodiscard]] std::vector<std::string> methods() const;
+
+  /// methods(), with the IMU where runs of the variant differ in it: equal for
   /// runs that may be averaged.
   [[nodiscard]] std::vector<std::string> configuration_labels() const;
 

@@ -224,13 +224,12 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   const auto groups = set.replicate_groups();
   const run_files::RunSet rows = rows_of(set, groups);
   const std::vector<std::string> labels = rows.labels();
-  std::vector<std::string> configurations = rows.differing_options();
+  const std::vector<std::string> methods = rows.methods();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const run_files::FoundRun& first = runs[groups[i].front()];
     TableRow row = row_of(first, labels[i]);
     row.members = groups[i];
     if (row.members.size() > 1) add_replicates(runs, row);
-    configurations[i] = row.variant + (configurations[i].empty() ? "" : " ") + configurations[i];
     if (const auto note = record::clock_note(first.record))
       table.notes.push_back(fmt::format("{}, {}: {}", row.recording, row.label, *note));
     if (row.status != record::RunStatus::ok)
@@ -241,7 +240,7 @@ ResultTable table_of(const std::vector<run_files::FoundRun>& runs) {
   if (const std::string shared = rows.shared_options(); !shared.empty())
     table.notes.push_back(fmt::format("all runs with {}", shared));
   add_common_pixels(runs, table);
-  table.means = means_of(table.rows, configurations);
+  table.means = means_of(table.rows, methods);
   table.footer = footer_of(table);
   return table;
 }
