@@ -101,14 +101,15 @@ def convert_desk(clone, out):
     (out / "calibration.toml").write_text(DESK_CALIBRATION)
 
 
-def grey_png(width, height):
-    """One uniform image of grey level 128, as RGB."""
+def uniform_png(width, height, bits=8, channels=3, level=0):
+    """An image of one level: bytes of a PNG, grey or RGB; with 16 bits, both bytes of a value are the level."""
 
     def chunk(kind, content):
         return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
-    rows = (b"\0" + b"\x80" * (3 * width)) * height
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    rows = (b"\0" + bytes([level]) * (width * channels * bits // 8)) * height
+    color_type = {1: 0, 3: 2}[channels]
+    header = struct.pack(">IIBBBBB", width, height, bits, color_type, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")
 
 
@@ -132,7 +133,7 @@ def convert_iphone(folder, out):
         link_or_copy(folder / name, out / name)
     depth = sorted((folder / "depth").iterdir())
     first = out / "rgb" / depth[0].name
-    first.write_bytes(grey_png(*IPHONE_SIZE))
+    first.write_bytes(uniform_png(*IPHONE_SIZE, level=128))
     for image in depth:
         link_or_copy(image, out / "depth" / image.name)
         link_or_copy(folder / "confidence" / image.name, out / "confidence" / image.name)

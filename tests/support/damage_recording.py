@@ -17,19 +17,10 @@ import os
 import pathlib
 import struct
 import sys
-import zlib
 
-
-def png(width, height, bits, channels):
-    """An image of zeros."""
-
-    def chunk(kind, content):
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-    rows = (b"\0" + b"\0" * (width * channels * bits // 8)) * height
-    color_type = {1: 0, 3: 2}[channels]
-    header = struct.pack(">IIBBBBB", width, height, bits, color_type, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+sys.dont_write_bytecode = True
+from convert_recordings import uniform_png  # noqa: E402
 
 
 def png_size(path):
@@ -70,8 +61,8 @@ def main():
     lists = {name: rows_of(source / f"{name}.txt") for name in ("rgb", "depth")}
     stretches = stretches_of(kind, sys.argv[4:], [float(stamp) for stamp, _ in lists["rgb"]])
     width, height = png_size(source / lists["depth"][0][1])
-    (out / "no_colour.png").write_bytes(png(width, height, 8, 3))
-    (out / "no_depth.png").write_bytes(png(width, height, 16, 1))
+    (out / "no_colour.png").write_bytes(uniform_png(width, height))
+    (out / "no_depth.png").write_bytes(uniform_png(width, height, bits=16, channels=1))
     half_frame_s = 0.015
     for name, black in (("rgb", "no_colour.png"), ("depth", "no_depth.png")):
         damaged = kind in ("covered", "gap") or kind == {"rgb": "colour", "depth": "depth"}[name]
