@@ -29,7 +29,7 @@ void carry_on(Tracking& now, const filter::GaussianState& predicted, std::int64_
   now.estimate = predicted;
   now.carried_on = true;
   ++now.frames;
-  now.timestamp_ns = now_ns;
+  now.timestamp_ns = now.located_ns = now_ns;
   report.status = health::FrameStatus::tracked;
   report.health = health::FrameHealth::repeated;
   report.reason = "colour is that of the frame before: the pose is predicted";

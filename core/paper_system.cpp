@@ -5,7 +5,7 @@
 namespace fusebench::core {
 
 Result<health::FrameOutcome> PaperSystem::process(const RgbdFrame& frame) {
-  auto report = pipeline_.process(frame);
+  auto report = estimator_.process(frame);
   if (!report) return tl::unexpected(std::move(report.error()));
   report_ = std::move(*report);
   return health::FrameOutcome(report_);

@@ -4,31 +4,31 @@
 #include <span>
 
 #include "core/config/groups/config_fwd.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "core/systems/system.hpp"
 
 namespace fusebench::core {
 
 class PaperSystem final : public systems::System {
  public:
-  /// As Pipeline.
+  /// As RecordingEstimator.
   PaperSystem(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
               const Workers& workers)
-      : pipeline_(config, rig, imu, workers) {}
+      : estimator_(config, rig, imu, workers) {}
 
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   [[nodiscard]] const health::FrameReport* filter_report() const override { return &report_; }
-  [[nodiscard]] bool wants_frames_again() const override { return pipeline_.wants_frames_again(); }
-  void resume() override { pipeline_.resume(); }
-  [[nodiscard]] Result<std::optional<Trajectory>> revise() override { return pipeline_.revise(); }
+  [[nodiscard]] bool wants_frames_again() const override { return estimator_.wants_frames_again(); }
+  void resume() override { estimator_.resume(); }
+  [[nodiscard]] Result<std::optional<Trajectory>> revise() override { return estimator_.revise(); }
   [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame) override {
-    return pipeline_.fuse_again(frame);
+    return estimator_.fuse_again(frame);
   }
-  [[nodiscard]] const loops::LoopClosure* loops() const override { return pipeline_.loops(); }
-  [[nodiscard]] systems::Surface take_surface() override { return std::move(pipeline_).take_model(); }
+  [[nodiscard]] const loops::LoopClosure* loops() const override { return estimator_.loops(); }
+  [[nodiscard]] systems::Surface take_surface() override { return std::move(estimator_).take_model(); }
 
  private:
-  Pipeline pipeline_;
+  RecordingEstimator estimator_;
   health::FrameReport report_;  ///< of the last frame
 };
 

@@ -7,18 +7,12 @@
 #include <utility>
 
 #include "core/config/config.hpp"
-#include "core/filter/iekf.hpp"
-#include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
-#include "core/frame_preparation.hpp"
-#include "core/frame_update.hpp"
 #include "core/frames_without_update.hpp"
 #include "core/measurement/patch_measurement.hpp"
 #include "core/prediction/initialisation.hpp"
 #include "core/prediction/motion_prior.hpp"
-#include "core/recording_start.hpp"
-#include "core/tracking_state.hpp"
 
 namespace fusebench::core {
 
@@ -33,90 +27,47 @@ preprocessing::VelocityTolerance velocity_tolerance_to_fuse(const config::Compen
 
 }  // namespace
 
-struct Pipeline::State final : RestartableEstimator {
-  State(const config::Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu_in,
-        const Workers& workers_in)
-      : config(config_in),
-        rig(rig_in),
-        imu(imu_in),
-        workers(workers_in),
-        preparation(config.terms, config.patches, config.depth, config.alignment, rig, workers),
-        deformed_update(config, rig, workers),
-        tracking(std::in_place, config, rig) {
-    // Constant velocity is of the camera: without an IMU its place and orientation must not matter either.
-    if (config.terms.prior == config::Prior::constant_velocity) rig.T_imu_camera = SE3{};
-  }
+Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
+                   const Workers& workers, std::unique_ptr<Tracking> tracking)
+    : config_(config),
+      rig_(rig),
+      imu_(imu),
+      workers_(workers),
+      preparation_(config.terms, config.patches, config.depth, config.alignment, rig, workers),
+      deformed_update_(config, rig, workers),
+      tracking_(std::move(tracking)) {}
 
-  Result<health::FrameReport> process_frame(const RgbdFrame& frame) override;
-  Result<health::FrameReport> estimate_frame(const RgbdFrame& frame);
-  const std::optional<filter::GaussianState>& estimate() const override { return tracking->estimate; }
-  void restart(const std::optional<filter::FilterState>& motion) override;
-
-  Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
-  filter::GaussianState dead_reckoned(const filter::GaussianState& predicted, std::int64_t now_ns) const;
-  health::FrameStatus locate(const filter::GaussianState& predicted, health::FrameReport& report);
-  bool track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report);
-  filter::IekfResult update(const filter::GaussianState& prior, bool thorough, health::StageTimes& stages);
-  bool track_again(const filter::GaussianState& prior, bool thorough, health::FrameReport& report);
-  bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
-  Result<void> fuse(health::FrameReport& report);
-  Result<void> integrate(const RgbdFrame& frame) {
-    return tracking->model.integrate(frame, rig.camera, T_world_camera(), config.depth, workers);
-  }
-  void refresh(health::StageTimes& stages);
-  void cut_patches();
-  void begin_again(const SE3& T_corrected_current);
-  /// What patches are cut from.
-  [[nodiscard]] patches::ReferenceFrame reference_frame() const {
-    return {preparation.pyramid(), preparation.patch_depth_m(), rig.camera, T_world_camera()};
-  }
-  /// Since the frame before.
-  [[nodiscard]] double duration_s(std::int64_t now_ns) const {
-    return seconds_between(tracking->timestamp_ns, now_ns);
-  }
-  [[nodiscard]] SE3 T_world_camera() const { return tracking->estimate->mean.T_world_imu * rig.T_imu_camera; }
-
-  config::Config config;
-  SensorRig rig;
-  std::span<const ImuSample> imu;
-  const Workers& workers;
-  Novelty novelty;               ///< of the current frame
-  FramePreparation preparation;  ///< of the current frame
-  FrameUpdate deformed_update;   ///< by the patches, deformed into the current frame
-  patches::PatchWorkspace patch_workspace;
-  std::optional<Tracking> tracking;                   ///< always there
-  std::optional<filter::FilterState> initial_motion;  ///< after a restart
-  RecordingStart start{config.initialisation};
-  std::optional<filter::GaussianState> corrected;  ///< by a loop, to go on with once the model is there again
-};
+std::unique_ptr<Tracking> Pipeline::exchange(std::unique_ptr<Tracking> tracking) {
+  return std::exchange(tracking_, std::move(tracking));
+}
 
 /// One frame of the paper: Sec. 2.2.1 (prediction), 2.1 and 2.2.2 (deformation and iterated update), 2.3
 /// (fusion and new patches).
-Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& frame) {
-  Tracking& now = *tracking;
+Result<health::FrameReport> Pipeline::process(const RgbdFrame& frame) {
+  Tracking& now = *tracking_;
   health::FrameReport report = health::report_of(frame);
   check(!now.estimate || frame.capture_ns() > now.timestamp_ns, "frames come in the order of time");
 
-  novelty = now.repeated_images.examine(frame);
-  const bool repeated = !novelty.color && !novelty.depth;
+  novelty_ = now.repeated_images.examine(frame);
+  const bool repeated = !novelty_.color && !novelty_.depth;
   if (repeated && now.estimate && now.lost_frames == 0 &&
-      config.terms.prior == config::Prior::constant_velocity) {
-    repeat_last(now, rig, report);
+      config_.terms.prior == config::Prior::constant_velocity) {
+    repeat_last(now, rig_, report);
     return report;
   }
 
   const Result<filter::GaussianState> predicted = predict(frame.capture_ns(), report.stages);  // Eqs. 8-14
   if (!predicted) return tl::unexpected(predicted.error());
   if (!filter::is_valid(*predicted)) {
-    keep_moving(now, frame.capture_ns(), rig, config.health, config.motion, report);
+    keep_moving(now, frame.capture_ns(), rig_, config_.health, config_.motion, report);
     return report;
   }
-  if (is_carried_on(now, novelty, config.terms)) {
-    carry_on(now, *predicted, frame.capture_ns(), rig, report);
+  if (is_carried_on(now, novelty_, config_.terms)) {
+    carry_on(now, *predicted, frame.capture_ns(), rig_, report);
     return report;
   }
   now.carried_on = false;
-  preparation.prepare(frame, predicted->mean, report.stages);
+  preparation_.prepare(frame, predicted->mean, report.stages);
 
   report.status = locate(*predicted, report);  // Eqs. 1-5, 15-23
   const bool updated =
@@ -124,84 +75,84 @@ Result<health::FrameReport> Pipeline::State::estimate_frame(const RgbdFrame& fra
   if (!updated) now.estimate = dead_reckoned(*predicted, frame.capture_ns());
   if (report.status == health::FrameStatus::tracked)
     now.motion_scale = prediction::followed_scale(now.motion_scale, now.estimate->mean,
-                                                  duration_s(frame.capture_ns()), config.motion);
+                                                  duration_s(frame.capture_ns()), config_.motion);
+  return finish_frame(std::move(report), frame.capture_ns());
+}
+
+Result<health::FrameReport> Pipeline::relocalise_again(const RgbdFrame& frame,
+                                                       const filter::GaussianState& prior,
+                                                       const health::FrameReport& before) {
+  health::FrameReport report = health::report_of(frame);
+  report.health = before.health;
+  report.stages = before.stages;
+  tracking_->estimate = prior;
+  if (!relocalise(prior, report) || report.placed_by_depth) return report;
+  report.status = health::FrameStatus::relocalised;
+  tracking_->loops.add_relocalisation(prior, *tracking_->estimate, tracking_->reference.timestamp_ns);
+  return finish_frame(std::move(report), frame.capture_ns());
+}
+
+/// What follows the update.
+Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report,
+                                                          std::int64_t capture_ns) {
+  Tracking& now = *tracking_;
   now.lost_frames = report.status == health::FrameStatus::lost ? now.lost_frames + 1 : 0;
-  now.timestamp_ns = frame.capture_ns();
+  now.timestamp_ns = capture_ns;
+  if (report.status != health::FrameStatus::lost) now.located_ns = capture_ns;
   ++now.frames;
 
   // Colour and depth of different instants belong neither into the model nor together into a patch.
-  if (now.occlusion_gate.admits(report, config.health) && novelty.complete()) {
+  if (now.occlusion_gate.admits(report, config_.health) && novelty_.complete()) {
     const filter::FilterState& state = now.estimate->mean;
-    preparation.prepare_again(state, velocity_tolerance_to_fuse(config.compensation), report.stages);
+    preparation_.prepare_again(state, velocity_tolerance_to_fuse(config_.compensation), report.stages);
     const Result<void> fused = fuse(report);  // Sec. 2.3: M_k(X)
     if (!fused) return tl::unexpected(fused.error());
+    report.fused = true;
     refresh(report.stages);  // Sec. 2.3: patch update
   }
   if (report.status == health::FrameStatus::initialised)
-    report.health = health::judge_start(preparation.observed(novelty), now.reference.patches.size(),
-                                        config.health, config.iekf, config.patches.size_px);
-  health::describe_state(*now.estimate, rig.T_imu_camera, report);
+    report.health = health::judge_start(preparation_.observed(novelty_), now.reference.patches.size(),
+                                        config_.health, config_.iekf, config_.patches.size_px);
+  health::describe_state(*now.estimate, rig_.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
   return report;
 }
 
-Result<health::FrameReport> Pipeline::State::process_frame(const RgbdFrame& frame) {
-  auto report = estimate_frame(frame);
-  if (!report || report->status == health::FrameStatus::lost) return report;
-  tracking->loops.add_pose(report->timestamp_ns, report->T_world_camera);
-  const auto moved = tracking->loops.correct_online();
-  if (!moved) return tl::unexpected(moved.error());
-  if (*moved) begin_again(**moved);
-  return report;
-}
-
-/// The world moves, and the model has to be made again.
-void Pipeline::State::begin_again(const SE3& T_corrected_current) {
-  Tracking& now = *tracking;
-  corrected = filter::moved(*now.estimate, T_corrected_current);
-  now.model = tsdf::TsdfVolume(config.tsdf);
-  now.relocalisation.move(
-      [&](std::int64_t timestamp_ns) { return now.loops.corrected_pose_near(timestamp_ns); });
-}
-
-void Pipeline::State::restart(const std::optional<filter::FilterState>& motion) {
-  initial_motion = motion;
-  tracking.emplace(config, rig);
-}
-
 /// Sec. 2.2.1: IMU samples carry the state to the frame; without an IMU, constant velocity does.
-Result<filter::GaussianState> Pipeline::State::predict(std::int64_t now_ns,
+Result<filter::GaussianState> Pipeline::predict(std::int64_t now_ns,
                                                        health::StageTimes& stages) const {
   const health::StageClock clock(stages, health::Stage::predict);
-  if (!tracking->estimate)
-    return prediction::initial_state(imu, now_ns, rig, config.terms, config.initialisation,
-                                     config.self_calibration, initial_motion);
-  if (config.terms.prior == config::Prior::constant_velocity)
-    return prediction::predict_by_constant_velocity(*tracking->estimate, duration_s(now_ns), config.motion)
+  const Beginning& beginning = tracking_->beginning;
+  if (!tracking_->estimate && beginning.state) return *beginning.state;
+  if (!tracking_->estimate)
+    return prediction::initial_state(imu_, now_ns, rig_, config_.terms, config_.initialisation,
+                                     config_.self_calibration, beginning.motion);
+  if (config_.terms.prior == config::Prior::constant_velocity)
+    return prediction::predict_by_constant_velocity(*tracking_->estimate, duration_s(now_ns), config_.motion)
         .state;
-  return prediction::predict_by_samples(*tracking->estimate, {tracking->timestamp_ns, now_ns}, imu, rig,
-                                        config.terms, config.motion, config.initialisation,
-                                        config.self_calibration);
+  return prediction::predict_by_samples(*tracking_->estimate, {tracking_->timestamp_ns, now_ns}, imu_, rig_,
+                                        config_.terms, config_.motion, config_.initialisation,
+                                        config_.self_calibration);
 }
 
 /// The state of a frame without an update. The prior of an update, which is wide on purpose, is `predicted`.
-filter::GaussianState Pipeline::State::dead_reckoned(const filter::GaussianState& predicted,
+filter::GaussianState Pipeline::dead_reckoned(const filter::GaussianState& predicted,
                                                      std::int64_t now_ns) const {
-  const bool is_first = !tracking->estimate;
-  if (is_first || config.terms.prior != config::Prior::constant_velocity) return predicted;
-  return prediction::predict_by_motion_model(*tracking->estimate, duration_s(now_ns), tracking->motion_scale,
-                                             config.motion)
+  const bool is_first = !tracking_->estimate;
+  if (is_first || config_.terms.prior != config::Prior::constant_velocity) return predicted;
+  return prediction::predict_by_motion_model(*tracking_->estimate, duration_s(now_ns), tracking_->motion_scale,
+                                             config_.motion)
       .state;
 }
 
-health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predicted,
+health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted,
                                             health::FrameReport& report) {
-  if (!tracking->estimate) return health::FrameStatus::initialised;
+  if (!tracking_->estimate) return health::FrameStatus::initialised;
   if (track(predicted, false, report)) return health::FrameStatus::tracked;
-  if (novelty.color && track_again(predicted, true, report)) return health::FrameStatus::tracked;
-  const filter::GaussianState reckoned = dead_reckoned(predicted, preparation.frame().capture_ns());
+  if (novelty_.color && track_again(predicted, true, report)) return health::FrameStatus::tracked;
+  const filter::GaussianState reckoned = dead_reckoned(predicted, preparation_.frame().capture_ns());
   if (!relocalise(reckoned, report)) return health::FrameStatus::lost;
-  tracking->loops.add_relocalisation(reckoned, *tracking->estimate, tracking->reference.timestamp_ns);
+  tracking_->loops.add_relocalisation(reckoned, *tracking_->estimate, tracking_->reference.timestamp_ns);
   return health::FrameStatus::relocalised;
 }
 
@@ -209,44 +160,44 @@ health::FrameStatus Pipeline::State::locate(const filter::GaussianState& predict
 /// iterate of the update (Eq. 18), which minimises what is left between them and the images (Eqs. 3-5), in
 /// PatchMeasurement::linearise(). The images are those of the frame's instant by the motion that the update
 /// finds.
-filter::IekfResult Pipeline::State::update(const filter::GaussianState& prior, bool thorough,
+filter::IekfResult Pipeline::update(const filter::GaussianState& prior, bool thorough,
                                            health::StageTimes& stages) {
   const auto timed = [&](const auto& run) {
     const health::StageClock clock(stages, health::Stage::update);
     return run();
   };
-  const preprocessing::VelocityTolerance tolerance = velocity_tolerance_to_update(config.compensation);
-  preparation.prepare_again(prior.mean, tolerance, stages);
+  const preprocessing::VelocityTolerance tolerance = velocity_tolerance_to_update(config_.compensation);
+  preparation_.prepare_again(prior.mean, tolerance, stages);
   filter::IekfResult result =
-      timed([&] { return deformed_update.run(prior, *tracking, preparation, novelty, thorough); });
-  for (int again = 0; again < config.compensation.max_updates_again && filter::is_valid(result.posterior);
+      timed([&] { return deformed_update_.run(prior, *tracking_, preparation_, novelty_, thorough); });
+  for (int again = 0; again < config_.compensation.max_updates_again && filter::is_valid(result.posterior);
        ++again) {
-    if (!preparation.prepare_again(result.posterior.mean, tolerance, stages)) break;
+    if (!preparation_.prepare_again(result.posterior.mean, tolerance, stages)) break;
     result = timed(
-        [&] { return deformed_update.run_from(result.solution, prior, *tracking, preparation, novelty); });
+        [&] { return deformed_update_.run_from(result.solution, prior, *tracking_, preparation_, novelty_); });
   }
   return result;
 }
 
 /// False if the result of the update is not to be believed.
-bool Pipeline::State::track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
-  Tracking& now = *tracking;
+bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
+  Tracking& now = *tracking_;
   const filter::IekfResult update = this->update(prior, thorough, report.stages);  // Eqs. 1-5, 15-23
   const health::StageClock clock(report.stages, health::Stage::update);
-  report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig, config.motion.exposure_s);
+  report.blur_px = preprocessing::predicted_blur_px(prior.mean, rig_, config_.motion.exposure_s);
   if (!filter::is_valid(update.posterior)) {
     report.health = health::FrameHealth::diverged;
     report.reason = fmt::format("{}: the update is not finite", health::to_string(report.health));
     return false;
   }
-  if (config.terms.patch_motion == config::PatchMotion::own_translation && novelty.color)
-    deformed_update.move_patches_alone(prior);
-  const std::span<const measurement::PatchOutcome> outcomes = deformed_update.measurement().outcomes();
-  health::describe_update(deformed_update.measurement(), update, now.reference.patches, config.health,
-                          config.iekf, report);
-  report.health = health::judge_health(preparation.observed(novelty), outcomes, report.blur_px, config.health,
-                                       config.iekf, config.patches.size_px);
-  report.reason = health::rejection_reason(report, config.terms, config.iekf, config.health);
+  if (config_.terms.patch_motion == config::PatchMotion::own_translation && novelty_.color)
+    deformed_update_.move_patches_alone(prior);
+  const std::span<const measurement::PatchOutcome> outcomes = deformed_update_.measurement().outcomes();
+  health::describe_update(deformed_update_.measurement(), update, now.reference.patches, config_.health,
+                          config_.iekf, report);
+  report.health = health::judge_health(preparation_.observed(novelty_), outcomes, report.blur_px, config_.health,
+                                       config_.iekf, config_.patches.size_px);
+  report.reason = health::rejection_reason(report, config_.terms, config_.iekf, config_.health);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     now.residual_scale = {std::max(1.0, now.residual_scale.photometric),
@@ -259,20 +210,20 @@ bool Pipeline::State::track(const filter::GaussianState& prior, bool thorough, h
   now.turned_rad +=
       rotation_angle_rad(now.estimate->mean.T_world_imu.rotation, update.posterior.mean.T_world_imu.rotation);
   now.estimate = update.posterior;
-  if (novelty.complete()) now.color_drift.observe(filter::correction_in_imu(update), config.color_drift);
-  if (report.health == health::FrameHealth::good && !novelty.complete())
+  if (novelty_.complete()) now.color_drift.observe(filter::correction_in_imu(update), config_.color_drift);
+  if (report.health == health::FrameHealth::good && !novelty_.complete())
     report.health = health::FrameHealth::repeated;
-  if (report.health != health::FrameHealth::occluded && novelty.complete())
-    now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config.iekf,
-                                                     config.photometric, config.geometric);
-  health::find_survivors(now.reference.patches, outcomes, config.patches, now.survivors);
+  if (report.health != health::FrameHealth::occluded && novelty_.complete())
+    now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config_.iekf,
+                                                     config_.photometric, config_.geometric);
+  health::find_survivors(now.reference.patches, outcomes, config_.patches, now.survivors);
   return true;
 }
 
 /// The same once more with a report of its own; the report of the first attempt stays if this one fails.
-bool Pipeline::State::track_again(const filter::GaussianState& prior, bool thorough,
+bool Pipeline::track_again(const filter::GaussianState& prior, bool thorough,
                                   health::FrameReport& report) {
-  health::FrameReport again = health::report_of(preparation.frame());
+  health::FrameReport again = health::report_of(preparation_.frame());
   again.stages = report.stages;
   const bool tracked = track(prior, thorough, again);
   if (tracked) {
@@ -285,17 +236,17 @@ bool Pipeline::State::track_again(const filter::GaussianState& prior, bool thoro
 
 /// Looks for the frame among the keyframes, and tracks it from there with their patches; where these cannot
 /// be seen, a pose that depth has verified is taken as it is.
-bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health::FrameReport& report) {
-  if (!config.terms.relocalisation || !novelty.color) return false;
-  Tracking& now = *tracking;
+bool Pipeline::relocalise(const filter::GaussianState& prediction, health::FrameReport& report) {
+  if (!config_.terms.relocalisation || !novelty_.color) return false;
+  Tracking& now = *tracking_;
   const bool dark = report.health == health::FrameHealth::dark;
-  if (const auto motion = now.relocalisation.motion_by_places(report.timestamp_ns, prediction.mean))
-    preparation.prepare_again(*motion, velocity_tolerance_to_update(config.compensation), report.stages);
+  const bool measures_depth =
+      novelty_.depth && health::depth_share(preparation_.frame().depth_m) >= config_.health.min_depth_share;
   std::optional<relocalisation::RelocalisedReference> found;
   {
     const health::StageClock clock(report.stages, health::Stage::update);
     found =
-        now.relocalisation.find(preparation.frame(), {!dark, novelty.depth}, prediction, now.model, workers);
+        now.relocalisation.find(preparation_.frame(), {!dark, measures_depth}, prediction, now.model, workers_);
   }
   if (!found) return false;
   std::swap(now.reference, found->reference);
@@ -315,12 +266,12 @@ bool Pipeline::State::relocalise(const filter::GaussianState& prediction, health
 
 /// Sec. 2.3: the depth image goes into the model at the updated pose. Where loops are closed online, without
 /// what an old surface contradicts: the loop will tell.
-Result<void> Pipeline::State::fuse(health::FrameReport& report) {
-  preparation.prepare_color(report.stages);
+Result<void> Pipeline::fuse(health::FrameReport& report) {
+  preparation_.prepare_color(report.stages);
   const health::StageClock clock(report.stages, health::Stage::fuse);
-  const RgbdFrame& frame = preparation.frame();
-  if (!tracking->loops.may_correct_online()) return integrate(frame);
-  auto rest_m = tracking->revisits.depth_to_fuse(tracking->model, frame, T_world_camera(), workers);
+  const RgbdFrame& frame = preparation_.frame();
+  if (!tracking_->loops.may_correct_online()) return integrate(frame);
+  auto rest_m = tracking_->revisits.depth_to_fuse(tracking_->model, frame, T_world_camera(), workers_);
   if (!rest_m) return integrate(frame);
   if (report.health == health::FrameHealth::good) report.health = health::FrameHealth::revisit_pending;
   RgbdFrame rest = frame;
@@ -328,83 +279,49 @@ Result<void> Pipeline::State::fuse(health::FrameReport& report) {
   return integrate(rest);
 }
 
+Result<void> Pipeline::integrate(const RgbdFrame& frame) {
+  return tracking_->model.integrate(frame, rig_.camera, T_world_camera(), config_.depth, workers_);
+}
+
+Result<void> Pipeline::fuse_again(const RgbdFrame& frame, const filter::FilterState& state) {
+  health::StageTimes stages;
+  tracking_->estimate->mean = state;
+  preparation_.prepare(frame, state, stages);
+  preparation_.prepare_color(stages);
+  return integrate(preparation_.frame());
+}
+
+void Pipeline::resume(const filter::GaussianState& estimate) {
+  Tracking& now = *tracking_;
+  now.estimate = estimate;
+  for (patches::TrackedCentre& centre : now.survivors) centre.kept.reset();
+  cut_patches();
+}
+
 /// Sec. 2.3: surviving patches are cut again as squares, new corners join them, depth comes from the model.
-void Pipeline::State::refresh(health::StageTimes& stages) {
+void Pipeline::refresh(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::refresh);
-  Tracking& now = *tracking;
+  Tracking& now = *tracking_;
   cut_patches();
   now.reference.timestamp_ns = now.timestamp_ns;
   const double share =
-      patches::fused_share(now.model, now.reference.patches, reference_frame(), config.depth);
-  now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config.motion.drift_factor},
-                                             now.color_drift.noise(config.color_drift),
-                                             preparation.undone_readout(now.estimate->mean));
-  const RgbdFrame& frame = preparation.frame();
-  const double blur_px = preprocessing::predicted_blur_px(now.estimate->mean, rig, config.motion.exposure_s);
+      patches::fused_share(now.model, now.reference.patches, reference_frame(), config_.depth);
+  now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config_.motion.drift_factor},
+                                             now.color_drift.noise(config_.color_drift),
+                                             preparation_.undone_readout(now.estimate->mean));
+  const RgbdFrame& frame = preparation_.frame();
+  const double blur_px = preprocessing::predicted_blur_px(now.estimate->mean, rig_, config_.motion.exposure_s);
   now.relocalisation.add_keyframe(frame, T_world_camera(), now.timestamp_ns, blur_px);
   now.loops.add_fused(frame, *now.estimate, blur_px);
 }
 
-void Pipeline::State::cut_patches() {
-  Tracking& now = *tracking;
+void Pipeline::cut_patches() {
+  Tracking& now = *tracking_;
   patches::refresh_patches(reference_frame(), now.model, now.survivors,
-                           {config.patches, config.depth, config.terms.deformation}, workers, patch_workspace,
+                           {config_.patches, config_.depth, config_.terms.deformation}, workers_, patch_workspace_,
                            now.reference.patches);
-  now.reference.points.take(preparation.whole_pyramid(), preparation.frame().depth_m, rig.camera,
-                            config.alignment);
-}
-
-Pipeline::Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
-                   const Workers& workers)
-    : state_(std::make_unique<State>(config, rig, imu, workers)) {}
-Pipeline::~Pipeline() = default;
-
-Result<health::FrameReport> Pipeline::process(const RgbdFrame& frame) {
-  return state_->start.process(frame, *state_);
-}
-
-Result<std::optional<Trajectory>> Pipeline::revise() {
-  Tracking& last = *state_->tracking;
-  const Result<bool> changed = last.loops.close();
-  if (!changed) return tl::unexpected(changed.error());
-  if (!*changed) return std::nullopt;
-  last.model = tsdf::TsdfVolume(state_->config.tsdf);
-  return last.loops.corrected_trajectory();
-}
-
-/// Sec. 2.3 once more, at the revised pose and for the motion that the frame turned out to have.
-Result<void> Pipeline::fuse_again(const RgbdFrame& frame) {
-  const std::optional<filter::FilterState> state =
-      state_->tracking->loops.corrected_state(frame.timestamp_ns);
-  if (!state) return {};
-  health::StageTimes stages;
-  state_->tracking->estimate->mean = *state;
-  state_->preparation.prepare(frame, *state, stages);
-  state_->preparation.prepare_color(stages);
-  return state_->integrate(state_->preparation.frame());
-}
-
-bool Pipeline::wants_frames_again() const { return state_->corrected.has_value(); }
-
-/// The last frame that came again is the one that patches were cut from: they are cut again, from the new
-/// model.
-void Pipeline::resume() {
-  Tracking& now = *state_->tracking;
-  now.estimate = std::exchange(state_->corrected, std::nullopt);
-  for (patches::TrackedCentre& centre : now.survivors) centre.kept.reset();
-  state_->cut_patches();
-}
-
-const loops::LoopClosure* Pipeline::loops() const {
-  const loops::LoopClosure& loops = state_->tracking->loops;
-  return loops.enabled() ? &loops : nullptr;
-}
-
-const tsdf::TsdfVolume& Pipeline::model() const { return state_->tracking->model; }
-
-tsdf::TsdfVolume Pipeline::take_model() && {
-  const std::unique_ptr<State> last = std::move(state_);
-  return std::move(last->tracking->model);
+  now.reference.points.take(preparation_.whole_pyramid(), preparation_.frame().depth_m, rig_.camera,
+                            config_.alignment);
 }
 
 }  // namespace fusebench::core

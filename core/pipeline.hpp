@@ -1,6 +1,7 @@
 // The system of the paper, frame by frame: predict, deform and track patches, fuse, refresh patches.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,47 +10,85 @@
 #include "core/base/parallel.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
+#include "core/filter/iekf.hpp"
+#include "core/frame_preparation.hpp"
+#include "core/frame_update.hpp"
 #include "core/health/frame_report.hpp"
-#include "core/loops/loop_closure.hpp"
-#include "core/tsdf/tsdf_volume.hpp"
+#include "core/patches/patches.hpp"
+#include "core/tracking_state.hpp"
 
 namespace fusebench::core {
 
-/// One run of the estimator over one recording.
+/// The steps of a frame. What they change between frames is the Tracking; everything else is memory that is
+/// used again.
 class Pipeline {
  public:
-  /// imu: all samples of the recording, sorted by time (empty if terms.prior does not need them); must
-  /// outlive the pipeline, as must workers.
+  /// imu: all samples of the recording, sorted by time (empty if terms.prior does not need them). All
+  /// references must outlive the pipeline. Begins with `tracking`.
   Pipeline(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
-           const Workers& workers);
-  ~Pipeline();
+           const Workers& workers, std::unique_ptr<Tracking> tracking);
 
-  /// Processes the next frame (time must increase). The first frame that can be used is the first one;
-  /// those before are lost ("waiting for a usable first frame"). A lost frame is a report, not an error;
-  /// errors are IMU samples that do not cover the frame (data_corrupt) and a full model (run_failed).
+  /// Goes on with another tracking; returns the one before.
+  std::unique_ptr<Tracking> exchange(std::unique_ptr<Tracking> tracking);
+  [[nodiscard]] Tracking& tracking() { return *tracking_; }
+  [[nodiscard]] const Tracking& tracking() const { return *tracking_; }
+
+  /// Processes the next frame (time must increase). A lost frame is a report, not an error; errors are IMU
+  /// samples that do not cover the frame (data_corrupt) and a full model (run_failed).
   [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame);
 
-  /// After process(): true if a loop has corrected all poses so far (loops.mode = online). Then the model is
-  /// empty, and is fused again from all frames so far, in order, by fuse_again(), before resume().
-  [[nodiscard]] bool wants_frames_again() const;
-  /// Error run_failed: a full model.
-  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame);
-  void resume();
+  /// The frame that was processed last is looked for among the keyframes of the tracking, which another one
+  /// was exchanged for since, from this prior. Its report is that of a relocalised frame, or of a lost one.
+  /// `before`: the report of process(). Errors: those of process().
+  [[nodiscard]] Result<health::FrameReport> relocalise_again(const RgbdFrame& frame,
+                                                             const filter::GaussianState& prior,
+                                                             const health::FrameReport& before);
+  /// Of the last frame: what was not in the frame before.
+  [[nodiscard]] const Novelty& novelty() const { return novelty_; }
+  [[nodiscard]] SE3 T_world_camera() const { return tracking_->estimate->mean.T_world_imu * rig_.T_imu_camera; }
 
-  /// After the last frame: all poses, if loops change them (loops.mode = final or online); nothing if not.
-  /// Then the model is empty, and is fused again from all frames, in order. Errors: those of
-  /// LoopClosure::close().
-  [[nodiscard]] Result<std::optional<Trajectory>> revise();
-  /// Nothing if loops.mode = off.
-  [[nodiscard]] const loops::LoopClosure* loops() const;
-
-  [[nodiscard]] const tsdf::TsdfVolume& model() const;
-  /// The model, and the end of everything else that the pipeline keeps.
-  [[nodiscard]] tsdf::TsdfVolume take_model() &&;
+  /// Sec. 2.3 once more, at a revised state and for the motion that the frame turned out to have. Errors: a
+  /// full model.
+  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame, const filter::FilterState& state);
+  /// After the last of these frames: tracking goes on from this estimate, with patches that are cut from the
+  /// new model.
+  void resume(const filter::GaussianState& estimate);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  [[nodiscard]] Result<health::FrameReport> finish_frame(health::FrameReport report, std::int64_t capture_ns);
+  [[nodiscard]] Result<filter::GaussianState> predict(std::int64_t now_ns, health::StageTimes& stages) const;
+  [[nodiscard]] filter::GaussianState dead_reckoned(const filter::GaussianState& predicted,
+                                                    std::int64_t now_ns) const;
+  [[nodiscard]] health::FrameStatus locate(const filter::GaussianState& predicted,
+                                           health::FrameReport& report);
+  [[nodiscard]] bool track(const filter::GaussianState& prior, bool thorough, health::FrameReport& report);
+  [[nodiscard]] filter::IekfResult update(const filter::GaussianState& prior, bool thorough,
+                                          health::StageTimes& stages);
+  [[nodiscard]] bool track_again(const filter::GaussianState& prior, bool thorough,
+                                 health::FrameReport& report);
+  [[nodiscard]] bool relocalise(const filter::GaussianState& prediction, health::FrameReport& report);
+  [[nodiscard]] Result<void> fuse(health::FrameReport& report);
+  [[nodiscard]] Result<void> integrate(const RgbdFrame& frame);
+  void refresh(health::StageTimes& stages);
+  void cut_patches();
+  /// What patches are cut from.
+  [[nodiscard]] patches::ReferenceFrame reference_frame() const {
+    return {preparation_.pyramid(), preparation_.patch_depth_m(), rig_.camera, T_world_camera()};
+  }
+  /// Since the frame before.
+  [[nodiscard]] double duration_s(std::int64_t now_ns) const {
+    return seconds_between(tracking_->timestamp_ns, now_ns);
+  }
+
+  const config::Config& config_;
+  const SensorRig& rig_;
+  std::span<const ImuSample> imu_;
+  const Workers& workers_;
+  Novelty novelty_;               ///< of the current frame
+  FramePreparation preparation_;  ///< of the current frame
+  FrameUpdate deformed_update_;   ///< by the patches, deformed into the current frame
+  patches::PatchWorkspace patch_workspace_;
+  std::unique_ptr<Tracking> tracking_;  ///< always there
 };
 
 }  // namespace fusebench::core

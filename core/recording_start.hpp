@@ -10,30 +10,17 @@
 // predicted well.
 #pragma once
 
-#include <optional>
-
-#include "core/base/error.hpp"
-#include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/filter/filter_state.hpp"
 #include "core/health/frame_report.hpp"
 
 namespace fusebench::core {
 
-/// An estimator that can begin again.
-class RestartableEstimator {
- public:
-  RestartableEstimator() = default;
-  RestartableEstimator(const RestartableEstimator&) = delete;
-  RestartableEstimator& operator=(const RestartableEstimator&) = delete;
-  virtual ~RestartableEstimator() = default;
-
-  /// The first frame (status initialised) has the health of judge_start().
-  [[nodiscard]] virtual Result<health::FrameReport> process_frame(const RgbdFrame& frame) = 0;
-  /// The state after the last frame; nothing before the first one.
-  [[nodiscard]] virtual const std::optional<filter::GaussianState>& estimate() const = 0;
-  /// Forgets all frames, to begin with the velocities of this state if there is one.
-  virtual void restart(const std::optional<filter::FilterState>& motion) = 0;
+/// What has to be done after a frame at the beginning of a recording.
+enum class StartAction {
+  go_on,
+  wait,        ///< the frame cannot be the first one: forget it
+  start_here,  ///< hardly a frame was tracked from the first one: forget all, and process this one as the first
+  start_again  ///< forget all, and process the first two frames again, with the velocity that is known now
 };
 
 class RecordingStart {
@@ -41,21 +28,18 @@ class RecordingStart {
   /// The configuration must outlive it.
   explicit RecordingStart(const config::InitialisationConfig& config) : config_(config) {}
 
-  /// Processes the next frame. One that cannot be the first is lost, and its reason says so. The second one
-  /// is processed together with the first one again; its report has the time of all of that. A later start
-  /// has the status initialised and a reason: the frames before do not count any more.
-  [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame, RestartableEstimator& estimator);
+  /// After each frame that was processed, but not the first one of start_again. The first frame (status
+  /// initialised) has the health of judge_start().
+  [[nodiscard]] StartAction judge(const health::FrameReport& report);
 
  private:
-  [[nodiscard]] Result<health::FrameReport> process_first(const RgbdFrame& frame,
-                                                          RestartableEstimator& estimator);
   [[nodiscard]] bool is_false_start(const health::FrameReport& report);
 
   const config::InitialisationConfig& config_;
-  std::optional<RgbdFrame> first_frame_;  ///< until the second one was processed
-  bool confirmed_ = false;                ///< enough frames were tracked after the first one
-  int lost_frames_ = 0;                   ///< since the first one
-  int tracked_frames_ = 0;                ///< the same
+  bool is_second_ = false;   ///< the next frame is the one after the first
+  bool confirmed_ = false;   ///< enough frames were tracked after the first one
+  int lost_frames_ = 0;      ///< since the first one
+  int tracked_frames_ = 0;   ///< the same
 };
 
 }  // namespace fusebench::core

@@ -22,11 +22,18 @@
 
 namespace fusebench::core {
 
+/// What is known before the first frame.
+struct Beginning {
+  std::optional<filter::FilterState> motion = std::nullopt;   ///< of a restart: the velocities of this state
+  std::optional<filter::GaussianState> state = std::nullopt;  ///< of a segment: all of the state at its first frame
+};
+
 /// The complete state of tracking after a frame; a restart replaces it. Buffers without state (images,
 /// workspaces) are elsewhere.
 struct Tracking {
-  Tracking(const config::Config& config, const SensorRig& rig);
+  Tracking(const config::Config& config, const SensorRig& rig, Beginning begins_with = {});
 
+  Beginning beginning;
   tsdf::TsdfVolume model;
   relocalisation::Relocalisation relocalisation;
   loops::LoopClosure loops;
@@ -34,6 +41,7 @@ struct Tracking {
   std::optional<filter::GaussianState> estimate;  ///< after the last frame
   prediction::MotionScale motion_scale;           ///< of the tracked frames
   std::int64_t timestamp_ns = 0;                  ///< capture instant of the last frame
+  std::int64_t located_ns = 0;                    ///< of the last one that was not lost
   int frames = 0;                                 ///< since the start
   double turned_rad = 0;                          ///< since then, in all
   int lost_frames = 0;                            ///< in a row, before the current one

@@ -14,6 +14,7 @@
 #include "core/config/groups/prediction_config.hpp"
 #include "core/config/groups/relocalisation_config.hpp"
 #include "core/config/groups/residuals_config.hpp"
+#include "core/config/groups/segments_config.hpp"
 #include "core/config/groups/systems_config.hpp"
 #include "core/config/groups/terms_config.hpp"
 #include "core/config/groups/tsdf_config.hpp"
@@ -40,6 +41,7 @@ struct Config {
   RelocalisationConfig relocalisation;
   PlaceFeaturesConfig place_features;
   PlacePoseConfig place_pose;
+  SegmentsConfig segments;
   LoopsConfig loops;
   TsdfConfig tsdf;
   InfinitamConfig infinitam;
@@ -66,6 +68,7 @@ struct Config {
     v.group("relocalisation", self.relocalisation);
     v.group("place_features", self.place_features);
     v.group("place_pose", self.place_pose);
+    v.group("segments", self.segments);
     v.group("loops", self.loops);
     v.group("tsdf", self.tsdf);
     v.group("infinitam", self.infinitam);
@@ -80,8 +83,8 @@ static_assert(
     options_cover_all_fields<SystemConfig, TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
                              InitialisationConfig, SelfCalibrationConfig, PatchConfig, PhotometricConfig,
                              GeometricConfig, AlignmentConfig, IekfConfig, ColorDriftConfig, HealthConfig,
-                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, LoopsConfig,
-                             TsdfConfig, InfinitamConfig, OpencvOdometryConfig, BundlefusionConfig,
+                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, SegmentsConfig,
+                             LoopsConfig, TsdfConfig, InfinitamConfig, OpencvOdometryConfig, BundlefusionConfig,
                              ElasticfusionConfig, EvaluationConfig, Config>(),
     "each field of a configuration struct needs its option in visit()");
 

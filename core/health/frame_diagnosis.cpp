@@ -16,12 +16,6 @@ double mean_grey(const GreyImage& image) {
   return static_cast<double>(sum) / static_cast<double>(image.data.size());
 }
 
-double depth_share(const DepthImage& depth_m) {
-  const auto measured =
-      std::count_if(depth_m.data.begin(), depth_m.data.end(), [](float z) { return z > 0; });
-  return static_cast<double>(measured) / static_cast<double>(depth_m.data.size());
-}
-
 /// Share of pixels with a gradient; a coarse level has little noise.
 double texture_share(const GreyImage& image, int gradient_grey) {
   std::size_t textured = 0;
@@ -36,6 +30,17 @@ double texture_share(const GreyImage& image, int gradient_grey) {
 }
 
 }  // namespace
+
+bool is_sound(FrameHealth health) {
+  return health != FrameHealth::dark && health != FrameHealth::diverged &&
+         health != FrameHealth::short_of_depth && health != FrameHealth::short_of_texture;
+}
+
+double depth_share(const DepthImage& depth_m) {
+  const auto measured =
+      std::count_if(depth_m.data.begin(), depth_m.data.end(), [](float z) { return z > 0; });
+  return static_cast<double>(measured) / static_cast<double>(depth_m.data.size());
+}
 
 std::string_view to_string(FrameHealth health) {
   switch (health) {

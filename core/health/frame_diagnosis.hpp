@@ -27,6 +27,13 @@ enum class FrameHealth {
 };
 [[nodiscard]] std::string_view to_string(FrameHealth health);
 
+/// True unless the images are short of light, depth or texture, or were not asked: the next ones could be
+/// tracked from them.
+[[nodiscard]] bool is_sound(FrameHealth health);
+
+/// Share of the pixels with a depth.
+[[nodiscard]] double depth_share(const DepthImage& depth_m);
+
 /// Judges a frame by its pyramid, its gated depth, the outcomes of the patches that were projected into it
 /// and the predicted length of its motion blur.
 [[nodiscard]] FrameHealth judge_health(const measurement::ObservedFrame& frame,

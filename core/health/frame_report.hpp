@@ -57,6 +57,7 @@ struct FrameReport : FrameOutcome {
   std::optional<double> correlation;
   /// Relocalised by depth alone, with images in which no patch can be tracked: the frame is not fused.
   bool placed_by_depth = false;
+  bool fused = false;    ///< into the model
   double blur_px = 0;    ///< predicted length of motion blur at the image centre
   TrackedPixels pixels;  ///< of all tracked patches, by patch, then pixel
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/config/groups/prediction_config.hpp"
@@ -135,6 +136,35 @@ Result<filter::GaussianState> initial_state(std::span<const ImuSample> samples, 
     if (!inertial) initial->mean.angular_velocity_imu_radps = motion->angular_velocity_imu_radps;
   }
   return initial;
+}
+
+filter::GaussianState begun_again(const filter::GaussianState& reckoned) {
+  filter::GaussianState state = reckoned;
+  filter::FilterState& mean = state.mean;
+  mean.T_world_imu_reference = mean.T_world_imu;
+  mean.reference_rate.setZero();
+  mean.reference_offset.setZero();
+  mean.model_offset.setZero();
+  mean.reference_rate_offset.setZero();
+  mean.model_rate_offset.setZero();
+  mean.reference_color_readout_s = 0;
+  mean.model_readout = {};
+  const Matrix3d R = mean.T_world_imu.rotation_matrix();
+  const Matrix3d rotation_world =
+      R * reckoned.covariance.block<3, 3>(filter::kRotation, filter::kRotation) * R.transpose();
+  constexpr int kClones = filter::kStateSize - filter::kReferencePose;
+  for (const auto& [offset, size] : {std::pair{0, filter::kPoseSize}, std::pair{+filter::kReferencePose, kClones}}) {
+    state.covariance.middleRows(offset, size).setZero();
+    state.covariance.middleCols(offset, size).setZero();
+  }
+  const Matrix3d by_velocity = hat(mean.velocity_world_mps);
+  state.covariance.block<3, 3>(filter::kVelocity, filter::kVelocity) +=
+      by_velocity * rotation_world * by_velocity.transpose();
+  const Eigen::Matrix<double, 2, 3> by_gravity =
+      s2_basis(mean.gravity_direction_world).transpose() * hat(mean.gravity_direction_world);
+  state.covariance.block<2, 2>(filter::kGravity, filter::kGravity) +=
+      by_gravity * rotation_world * by_gravity.transpose();
+  return state;
 }
 
 }  // namespace fusebench::prediction

@@ -37,4 +37,8 @@ void set_imu_priors(filter::GaussianState& state, const config::SelfCalibrationC
     const config::TermsConfig& terms, const config::InitialisationConfig& initialisation,
     const config::SelfCalibrationConfig& self_calibration, const std::optional<filter::FilterState>& motion);
 
+/// The first state of a model of its own that begins at a dead-reckoned state: the pose is known by
+/// definition, and velocity and gravity take over its error in rotation.
+[[nodiscard]] filter::GaussianState begun_again(const filter::GaussianState& reckoned);
+
 }  // namespace fusebench::prediction

@@ -134,6 +134,14 @@ void Keyframes::move(const std::function<SE3(std::int64_t timestamp_ns)>& T_worl
   featureless_.reset();  // at worst the same bare wall is looked at once more
 }
 
+void Keyframes::adopt(const Keyframes& other, const SE3& T_world_other) {
+  for (const Keyframe& keyframe : other.kept_) {
+    kept_.push_back(keyframe);
+    kept_.back().T_world_camera = T_world_other * keyframe.T_world_camera;
+    if (kept_.size() > static_cast<std::size_t>(config_.relocalisation.max_keyframes)) drop_most_crowded();
+  }
+}
+
 void Keyframes::drop_most_crowded() {
   // Of the nearest two the earlier one goes: the later one shows the place as it is now.
   std::size_t crowded = 0;
@@ -193,8 +201,7 @@ void Keyframes::complete(Keyframe& keyframe) const {
   keyframe.depth_code = ferns::depth_fern_code(keyframe.small->depth_m);
 }
 
-std::optional<FoundPlace> Keyframes::verified_by_depth(const FoundPlace& found,
-                                                       const places::SmallImages& query) {
+FoundPlace Keyframes::refined_by_depth(const FoundPlace& found, const places::SmallImages& query) {
   Keyframe& keyframe = kept_[found.keyframe];
   complete(keyframe);
   const SE3 T_keyframe_world = keyframe.T_world_camera.inverse();
@@ -202,12 +209,12 @@ std::optional<FoundPlace> Keyframes::verified_by_depth(const FoundPlace& found,
                                   with_position_in(T_keyframe_world.rotation, found.covariance)};
   const places::VerifiedPair pair =
       places::verify_from_features(*keyframe.small, query, pose, camera_, config_);
-  if (!pair.same) return std::nullopt;
-  FoundPlace refined = found;
+  if (!pair.same) return found;
+  FoundPlace place = found;
   const FoundPlace by_depth = found_from(keyframe, pair.T_known_query, pair.covariance);
-  refined.T_world_camera = by_depth.T_world_camera;
-  refined.covariance = by_depth.covariance;
-  return refined;
+  place.T_world_camera = by_depth.T_world_camera;
+  place.covariance = by_depth.covariance;
+  return place;
 }
 
 std::vector<Keyframes::AlignmentCandidate> Keyframes::seen_by_prediction(const places::SmallImages& query,

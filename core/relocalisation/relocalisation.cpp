@@ -1,8 +1,6 @@
 #include "core/relocalisation/relocalisation.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <limits>
 #include <span>
 
 #include "core/config/config.hpp"
@@ -55,13 +53,12 @@ Relocalisation::Relocalisation(const config::Config& config, const SensorRig& ri
     : config_(config),
       rig_(rig),
       keyframes_(rig.camera, config),
-      refused_(config.relocalisation, config.loops, config.terms, config.initialisation),
-      rivals_(config.relocalisation) {}
+      odds_(config.relocalisation) {}
 
 void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera,
                                   std::int64_t timestamp_ns, double blur_px) {
   if (!config_.terms.relocalisation) return;
-  rivals_.clear();
+  odds_.clear();
   keyframes_.offer(frame.grey, frame.depth_m, T_world_camera, timestamp_ns, blur_px);
 }
 
@@ -69,67 +66,27 @@ RelocalisedPose Relocalisation::pose_of(const FoundPlace& found) const {
   return relocalised_pose(found, keyframes_[found.keyframe], rig_.T_imu_camera, config_.relocalisation);
 }
 
-/// Those within these limits of the prediction.
-std::vector<FoundPlace> Relocalisation::allowed_places(const std::vector<FoundPlace>& places,
-                                                       const filter::GaussianState& prediction,
-                                                       const Limits& limits) const {
-  // Repeating texture gives false poses: one that is inconsistent with the predicted motion is refused. The
-  // gates widen with the covariance while the tracker is lost. What repeats, as the doors of a corridor, is
-  // found with all certainty in frame after frame, so that where the camera can be always decides. Written so
-  // that NaN is refused as well.
-  std::vector<FoundPlace> allowed;
-  std::ranges::copy_if(places, std::back_inserter(allowed), [&](const FoundPlace& place) {
-    const RelocalisedPose pose = pose_of(place);
-    return rotation_angle_rad(pose.T_world_imu.rotation, prediction.mean.T_world_imu.rotation) <=
-               limits.rotation_rad &&
-           normalised_position_innovation(prediction, pose) <=
-               config_.relocalisation.max_position_innovation &&
-           normalised_innovation(prediction, pose) <= limits.innovation;
-  });
-  return allowed;
+std::optional<FoundPlace> Relocalisation::likely_one(const std::vector<FoundPlace>& candidates,
+                                                     const filter::GaussianState& prediction) {
+  std::vector<RelocalisedPose> poses;
+  for (const FoundPlace& candidate : candidates) poses.push_back(pose_of(candidate));
+  const std::optional<std::size_t> likeliest = odds_.decide(poses, prediction);
+  return likeliest ? std::optional(candidates[*likeliest]) : std::nullopt;
 }
 
-/// The place if the frames before found the same: where the prediction rules it out, or does not tell places
-/// apart. What features found is verified by depth.
-std::optional<FoundPlace> Relocalisation::supported(const FoundPlace& found, const RgbdFrame& frame,
-                                                    const filter::GaussianState& prediction) {
-  refused_.add({frame.timestamp_ns, pose_of(found), prediction.mean.T_world_imu});
-  if (!refused_.are_enough()) return std::nullopt;
-  if (found.inliers == 0) return found;
-  return keyframes_.verified_by_depth(found, places::small_images_of(frame.grey, frame.depth_m));
-}
-
+/// By features, or where these are not enough, by depth alone.
 std::optional<FoundPlace> Relocalisation::place_of(const RgbdFrame& frame, const UsableImages& usable,
                                                    const filter::GaussianState& prediction) {
-  const SE3 T_world_camera = prediction.mean.T_world_imu * rig_.T_imu_camera;
-  const PredictedPosition predicted{T_world_camera.translation, position_sigma_m(prediction)};
-  const config::RelocalisationConfig& config = config_.relocalisation;
-  const bool places_are_told_apart = predicted.sigma_m <= config.max_unsupported_position_sigma_m;
-  const Limits likely{config.max_innovation, std::numeric_limits<double>::infinity()};
-  // A filter may rule a place out because it was wrong before it was lost.
-  const Limits conceivable{config.max_supported_innovation, radians(config.max_supported_rotation_deg)};
-  std::vector<FoundPlace> places;
-  if (usable.grey) places = keyframes_.find(frame.grey);
-  rivals_.observe(frame.timestamp_ns, places);
-  std::vector<FoundPlace> allowed = allowed_places(places, prediction, likely);
-  const bool is_likely = !allowed.empty();
-  if (!is_likely && usable.depth) allowed = allowed_places(places, prediction, conceivable);
-  if (!allowed.empty()) {
-    if (!rivals_.is_only_one(frame.timestamp_ns, allowed, predicted)) return std::nullopt;
-    if (is_likely && places_are_told_apart) return allowed.front();
-    if (usable.depth) {
-      if (const auto found = supported(allowed.front(), frame, prediction)) return found;
-    }
-    if (!places_are_told_apart) return std::nullopt;
+  std::vector<FoundPlace> candidates;
+  if (usable.grey) candidates = keyframes_.find(frame.grey);
+  if (!usable.depth) return likely_one(candidates, prediction);
+  const places::SmallImages small = places::small_images_of(frame.grey, frame.depth_m);
+  if (candidates.empty()) {
+    const SE3 T_world_camera = prediction.mean.T_world_imu * rig_.T_imu_camera;
+    return likely_one(keyframes_.find_by_depth(small, T_world_camera, reach_m(prediction)), prediction);
   }
-  if (!usable.depth) return std::nullopt;
-  places = keyframes_.find_by_depth(places::small_images_of(frame.grey, frame.depth_m), T_world_camera,
-                                    reach_m(prediction));
-  rivals_.observe(frame.timestamp_ns, places);
-  allowed = allowed_places(places, prediction, likely);
-  if (allowed.empty() || !rivals_.is_only_one(frame.timestamp_ns, allowed, predicted)) return std::nullopt;
-  if (places_are_told_apart) return allowed.front();
-  return supported(allowed.front(), frame, prediction);
+  for (FoundPlace& candidate : candidates) candidate = keyframes_.refined_by_depth(candidate, small);
+  return likely_one(candidates, prediction);
 }
 
 std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame, const UsableImages& usable,
@@ -139,7 +96,6 @@ std::optional<RelocalisedReference> Relocalisation::find(const RgbdFrame& frame,
   if (!config_.terms.relocalisation) return std::nullopt;
   const std::optional<FoundPlace> found = place_of(frame, usable, prediction);
   if (!found) return std::nullopt;
-  refused_.clear();
   const Keyframe& keyframe = keyframes_[found->keyframe];
   RelocalisedReference result;
   result.by_depth = found->inliers == 0;

@@ -1,8 +1,8 @@
 // Where a lost camera is, by the frames that were fused before. The paper leaves this open.
 //
-// A pose found by features or, where there are none, by depth (keyframes.hpp) is held against the prediction,
-// updates the filter (relocalisation_update.hpp), and is tracked from with patches of the keyframe that
-// showed it.
+// Candidates are found by features or, where there are too few, by depth (keyframes.hpp).
+// The one whose posterior odds suffice (place_odds.hpp) updates the filter (relocalisation_update.hpp), and
+// tracking goes on with patches of its keyframe.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,9 @@
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/filter/filter_state.hpp"
-#include "core/relocalisation/agreeing_places.hpp"
 #include "core/relocalisation/keyframes.hpp"
+#include "core/relocalisation/place_odds.hpp"
 #include "core/relocalisation/relocalisation_update.hpp"
-#include "core/relocalisation/rival_places.hpp"
 #include "core/tsdf/tsdf_volume.hpp"
 
 namespace fusebench::relocalisation {
@@ -48,45 +47,32 @@ class Relocalisation {
   /// All poses were corrected: those of the keyframes become these, by their stamps.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at) {
     keyframes_.move(T_world_camera_at);
-    refused_.clear();
-    rivals_.clear();
+    odds_.clear();
   }
 
-  /// The motion of the camera by the places of the frames before, where these contradict the prediction: what
-  /// dead reckoning says of the velocity would then spoil the images that are compensated for it.
-  [[nodiscard]] std::optional<filter::FilterState> motion_by_places(
-      std::int64_t timestamp_ns, const filter::FilterState& predicted) const {
-    return refused_.motion(timestamp_ns, predicted);
+  /// Takes over the keyframes of a model that was joined to this one.
+  void adopt(const Relocalisation& joined, const SE3& T_world_joined) {
+    keyframes_.adopt(joined.keyframes_, T_world_joined);
   }
 
-  /// Looks for the frame among the keyframes; nothing if none shows its place for certain, if the prediction
-  /// rules the place out and the frames before do not support it (agreeing_places.hpp), or if it allows
-  /// several that look alike (rival_places.hpp).
+  /// Looks for the frame among the keyframes; nothing if none shows its place for certain, or if the odds of
+  /// the likeliest place are too small.
   [[nodiscard]] std::optional<RelocalisedReference> find(const RgbdFrame& frame, const UsableImages& usable,
                                                          const filter::GaussianState& prediction,
                                                          const tsdf::TsdfVolume& model,
                                                          const Workers& workers);
 
  private:
-  /// How far a place may be from the prediction.
-  struct Limits {
-    double innovation;  ///< squared, in variances, per degree of freedom
-    double rotation_rad;
-  };
   [[nodiscard]] RelocalisedPose pose_of(const FoundPlace& found) const;
-  [[nodiscard]] std::vector<FoundPlace> allowed_places(const std::vector<FoundPlace>& places,
-                                                       const filter::GaussianState& prediction,
-                                                       const Limits& limits) const;
-  [[nodiscard]] std::optional<FoundPlace> supported(const FoundPlace& found, const RgbdFrame& frame,
-                                                    const filter::GaussianState& prediction);
+  [[nodiscard]] std::optional<FoundPlace> likely_one(const std::vector<FoundPlace>& candidates,
+                                                     const filter::GaussianState& prediction);
   [[nodiscard]] std::optional<FoundPlace> place_of(const RgbdFrame& frame, const UsableImages& usable,
                                                    const filter::GaussianState& prediction);
 
   const config::Config& config_;
   const SensorRig& rig_;
   Keyframes keyframes_;
-  AgreeingPlaces refused_;
-  RivalPlaces rivals_;
+  PlaceOdds odds_;
 };
 
 }  // namespace fusebench::relocalisation

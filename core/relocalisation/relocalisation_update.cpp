@@ -43,12 +43,6 @@ filter::GaussianState inflated(const filter::GaussianState& prediction, double i
   return state;
 }
 
-Matrix6d innovation_covariance(const filter::GaussianState& prediction, const RelocalisedPose& place) {
-  const Matrix6d carried = filter::pose_transport(place.T_world_imu, place.T_world_imu_reference);
-  return prediction.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() + place.covariance +
-         carried * place.reference_covariance * carried.transpose();
-}
-
 /// The keyframe becomes the reference pose; its error is not correlated with the rest of the state.
 filter::GaussianState with_reference_pose(const filter::GaussianState& state, const RelocalisedPose& place) {
   const Matrix6d carried =
@@ -74,16 +68,16 @@ filter::GaussianState with_reference_pose(const filter::GaussianState& state, co
 
 }  // namespace
 
+Matrix6d innovation_covariance(const filter::GaussianState& prediction, const RelocalisedPose& place) {
+  const Matrix6d carried = filter::pose_transport(place.T_world_imu, place.T_world_imu_reference);
+  return prediction.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>() + place.covariance +
+         carried * place.reference_covariance * carried.transpose();
+}
+
 double normalised_innovation(const filter::GaussianState& prediction, const RelocalisedPose& place) {
   const Vector6d innovation = pose_minus(place.T_world_imu, prediction.mean.T_world_imu);
   return innovation.dot(innovation_covariance(prediction, place).ldlt().solve(innovation)) /
          filter::kPoseSize;
-}
-
-double normalised_position_innovation(const filter::GaussianState& prediction, const RelocalisedPose& place) {
-  const Vector3d innovation = place.T_world_imu.translation - prediction.mean.T_world_imu.translation;
-  const Matrix3d covariance = innovation_covariance(prediction, place).bottomRightCorner<3, 3>();
-  return innovation.dot(covariance.ldlt().solve(innovation)) / 3;
 }
 
 filter::GaussianState relocalisation_update(const filter::GaussianState& prediction,

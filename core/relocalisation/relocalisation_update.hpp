@@ -19,9 +19,10 @@ struct RelocalisedPose {
 [[nodiscard]] double normalised_innovation(const filter::GaussianState& prediction,
                                            const RelocalisedPose& place);
 
-/// The same of the position alone, whatever the rotation (three degrees of freedom).
-[[nodiscard]] double normalised_position_innovation(const filter::GaussianState& prediction,
-                                                    const RelocalisedPose& place);
+/// The covariance of the pose of a place minus the predicted one: that of the prediction, of the pose against
+/// the keyframe, and of the keyframe.
+[[nodiscard]] Matrix6d innovation_covariance(const filter::GaussianState& prediction,
+                                             const RelocalisedPose& place);
 
 /// The prior of velocities where the motion so far says nothing: zero, with these standard deviations.
 struct UnknownMotion {

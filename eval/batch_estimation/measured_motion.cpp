@@ -8,7 +8,7 @@
 
 #include "core/config/config.hpp"
 #include "core/config/variants.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "eval/run/frame_source.hpp"
 
 namespace fusebench::batch_estimation {
@@ -26,7 +26,7 @@ class MotionCollector {
     measured_.stamps_ns.push_back(report.timestamp_ns);
     measured_.input.instants_ns.push_back(report.capture_ns);
     measured_.input.initial.push_back(report.estimate.mean);
-    measured_.tracked += report.status == health::FrameStatus::lost ? 0 : 1;
+    measured_.tracked += health::is_in_map(report.status) ? 1U : 0U;
     // The first frame, or one that was taken anew: the world is where it was put.
     Seen seen{frame, {report.T_world_camera, Matrix6d::Zero()}};
     if (report.evidence) {
@@ -41,7 +41,7 @@ class MotionCollector {
       measured_.input.timing.push_back(smoother::visual_timing(*report.evidence));
       measured_.input.timing.back().frame = frame;
     }
-    if (report.status != health::FrameStatus::lost) seen_[report.capture_ns] = seen;
+    if (health::is_in_map(report.status)) seen_[report.capture_ns] = seen;
   }
 
  private:
@@ -68,7 +68,7 @@ Result<MeasuredMotion> measure_motion(const recording::Recording& recording, con
   // With an IMU of so little weight nothing would contradict a place that only looks like another.
   config::Config measuring = config;
   measuring.terms.relocalisation = false;
-  core::Pipeline pipeline(measuring, recording.rig, recording.imu, workers);
+  core::RecordingEstimator pipeline(measuring, recording.rig, recording.imu, workers);
   run::FrameSource source(recording, workers.threads() > 1);
   int lost_in_a_row = 0;
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {

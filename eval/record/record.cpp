@@ -181,7 +181,12 @@ RunRecord record_of(const Json& json) {
     read_metrics(*final, record.final_metrics.emplace());
   if (const auto loops = json.find("loops"); loops != json.end()) record.loops = loops_of(*loops);
   const Json& frames = json.at("frames");
-  record.frames = {frames.at("total"), frames.at("tracked"), frames.at("lost")};
+  record.frames = {frames.at("total"),
+                   frames.at("tracked"),
+                   frames.at("lost"),
+                   frames.value("other_segments", std::size_t{0}),
+                   frames.value("segments", std::size_t{0}),
+                   frames.value("segments_joined", std::size_t{0})};
   const Json& model = json.at("model");
   record.model = {model.at("vertices"), model.at("triangles"), model.at("blocks")};
   const auto sensors = json.find("sensors");  // older records have none
@@ -250,7 +255,12 @@ Json document_of(const RunRecord& record) {
       {"config_hash", record.config_hash},
       {"metrics", json_of_metrics(record.metrics, record.frames)},
       {"frames",
-       {{"total", record.frames.total}, {"tracked", record.frames.tracked}, {"lost", record.frames.lost}}},
+       {{"total", record.frames.total},
+        {"tracked", record.frames.tracked},
+        {"lost", record.frames.lost},
+        {"other_segments", record.frames.other_segments},
+        {"segments", record.frames.segments},
+        {"segments_joined", record.frames.segments_joined}}},
       {"model",
        {{"vertices", record.model.vertices},
         {"triangles", record.model.triangles},

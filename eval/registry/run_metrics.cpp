@@ -37,7 +37,8 @@ std::optional<double> ratio(const std::optional<double>& a, const std::optional<
 
 /// Of the frames that were processed: a run that was lost early must not look fast.
 std::optional<double> cpu_ms_per_frame(const RunNumbers& numbers) {
-  const double processed = numbers["frames_tracked"].value_or(0) + numbers["frames_lost"].value_or(0);
+  const double processed = numbers["frames_tracked"].value_or(0) + numbers["frames_lost"].value_or(0) +
+                            numbers["frames_other_segments"].value_or(0);
   const auto seconds = ratio(numbers["cpu_s"], processed);
   return seconds ? std::optional(1000 * *seconds) : std::nullopt;
 }
@@ -254,6 +255,37 @@ constexpr auto kMetrics = std::to_array<RunMetric>({
      .definition = "frames that were processed and have no pose",
      .path = "frames.lost",
      .of = [](const record::RunRecord& r) { return frame_count(r, r.frames.lost); }},
+    {.key = "frames_other_segments",
+     .unit = "frames",
+     .heading = "in other segments",
+     .decimals = 0,
+     .kind = count,
+     .of_every_run = true,
+     .tolerance = kNoGate,
+     .definition = "frames tracked apart from the map, in segments that begin while the camera is lost",
+     .path = "frames.other_segments",
+     .of = [](const record::RunRecord& r) { return frame_count(r, r.frames.other_segments); }},
+    {.key = "segments",
+     .unit = "segments",
+     .heading = "segments",
+     .decimals = 0,
+     .kind = count,
+     .of_every_run = true,
+     .tolerance = kNoGate,
+     .definition = "stretches that were tracked apart from the map",
+     .path = "frames.segments",
+     .of = [](const record::RunRecord& r) { return frame_count(r, r.frames.segments); }},
+    {.key = "segments_joined",
+     .unit = "segments",
+     .heading = "segments joined",
+     .decimals = 0,
+     .better = kLarger,
+     .kind = count,
+     .of_every_run = true,
+     .tolerance = kNoGate,
+     .definition = "segments in which a place of the map was recognised; their final poses are in the map",
+     .path = "frames.segments_joined",
+     .of = [](const record::RunRecord& r) { return frame_count(r, r.frames.segments_joined); }},
     {.key = "frames_total",
      .unit = "frames",
      .heading = "frames",

@@ -10,7 +10,7 @@
 
 namespace fusebench::registry {
 
-inline constexpr std::size_t kMetricCount = 49;  ///< rows of run_metrics()
+inline constexpr std::size_t kMetricCount = 52;  ///< rows of run_metrics()
 
 /// A number that does not exist is absent, never 0 or NaN.
 class RunNumbers {

@@ -75,7 +75,8 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
   timing.wall_s = cost.wall_s;
   timing.cpu_s = cost.cpu_s;
   timing.peak_rss_bytes = cost.peak_rss_bytes;
-  const auto processed = static_cast<double>(progress.frames.tracked + progress.frames.lost);
+  const auto processed = static_cast<double>(progress.frames.tracked + progress.frames.lost +
+                                            progress.frames.other_segments);
   const auto mean = [&](double sum_ms) { return processed > 0 ? sum_ms / processed : 0.0; };
   timing.fps = cost.wall_s > 0 ? processed / cost.wall_s : 0.0;
   timing.stages_ms.emplace_back("decode", mean(progress.decode_ms));

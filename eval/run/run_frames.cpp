@@ -46,7 +46,7 @@ void take_filter_report(RunProgress& progress, const health::FrameReport& report
   if (report.status == health::FrameStatus::initialised) return;
   progress.output.intensity.add_frame(report.pixels.intensity);
   progress.output.intensity_readings.add_frame(report.pixels.squares);
-  if (report.status != health::FrameStatus::lost) progress.output.residuals.add_frame(residuals_of(report));
+  if (health::is_in_map(report.status)) progress.output.residuals.add_frame(residuals_of(report));
 }
 
 /// A frame with a pose.
@@ -69,6 +69,17 @@ void take_pose(RunProgress& progress, std::size_t frame, const health::FrameOutc
   progress.output.last_state = filter->estimate;
 }
 
+/// Counts segments that begin or are joined.
+void follow_segments(RunProgress& progress, std::size_t frame, const health::FrameOutcome& outcome) {
+  if (outcome.joined_segment > 0) {
+    ++progress.frames.segments_joined;
+    progress.log += fmt::format("frame {}: segment {} is joined to the map\n", frame, outcome.joined_segment);
+  }
+  if (outcome.segment <= progress.frames.segments) return;
+  progress.frames.segments = outcome.segment;
+  progress.log += fmt::format("frame {}: lost, tracked in segment {} from here\n", frame, outcome.segment);
+}
+
 /// Takes one frame into the progress; ends the run when too many frames are lost in a row.
 void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOutcome& outcome,
                 const health::FrameReport* filter, const PreparedRun& run, double decode_ms) {
@@ -78,8 +89,14 @@ void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOut
     progress.stage_ms[stage] += outcome.stages.sums_ms()[stage];
   }
   if (filter != nullptr) take_filter_report(progress, *filter, run.recording.rig.timing);
-  if (outcome.status != health::FrameStatus::lost) {
+  follow_segments(progress, frame, outcome);
+  if (health::is_in_map(outcome.status)) {
     take_pose(progress, frame, outcome, filter);
+    return;
+  }
+  if (outcome.status == health::FrameStatus::other_segment) {
+    ++progress.frames.other_segments;
+    progress.lost_in_a_row = 0;
     return;
   }
   ++progress.frames.lost;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/config/config.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "core/preprocessing/depth_gates.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/open_recording.hpp"
@@ -81,7 +81,7 @@ void make_recording(BenchScene& scene) {
   config.patches = scene.config.patches;
   config.depth = scene.config.depth;
   config.tsdf = scene.config.tsdf;
-  Pipeline pipeline(config, recording->rig, recording->imu, workers);
+  RecordingEstimator pipeline(config, recording->rig, recording->imu, workers);
   std::int64_t first_ns = 0;
   for (std::size_t i = 0; i <= kRecordedViews; ++i) {
     if (i == kRecordedViews) scene.model = pipeline.model();

@@ -1,4 +1,4 @@
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -308,7 +308,7 @@ TEST(Pipeline, MissingImuIsAnErrorThatSaysWhichTimes) {
   std::erase_if(truncated.imu,
                 [&](const ImuSample& s) { return s.timestamp_ns > truncated.frames[3].timestamp_ns; });
   const Workers workers(1);
-  Pipeline pipeline(config_of("full"), truncated.rig, truncated.imu, workers);
+  RecordingEstimator pipeline(config_of("full"), truncated.rig, truncated.imu, workers);
   Result<FrameReport> last = fail(ErrorCode::internal, "");
   for (const RgbdFrame& frame : truncated.frames) {
     last = pipeline.process(frame);

@@ -12,7 +12,7 @@
 
 #include "core/base/error.hpp"
 #include "core/config/config_access.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 // glibc's own names of what is replaced here.
@@ -89,7 +89,7 @@ std::size_t median(std::vector<std::size_t> values) {
 int count_of_frames() {
   const testing::SimulatedRun run = testing::simulate(kFrames);
   const Workers workers(1);
-  Pipeline pipeline(EffectiveConfig{}.values(), run.rig, run.imu, workers);
+  RecordingEstimator pipeline(EffectiveConfig{}.values(), run.rig, run.imu, workers);
   std::vector<std::size_t> counts;
   std::vector<std::size_t> counts_of_image_size;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {

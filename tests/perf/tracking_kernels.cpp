@@ -1,7 +1,7 @@
 #include <optional>
 
 #include "core/config/config.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "tests/bench/bench_scene.hpp"
 #include "tests/bench/patch_answers.hpp"
 #include "tests/perf/kernel_counts.hpp"
@@ -82,7 +82,7 @@ void count_update(KernelCounts& counts, const testing::PatchProblem& problem, co
 void count_whole_frame(KernelCounts& counts, const Config& config, const Workers& workers) {
   const testing::SimulatedRun run =
       testing::simulate(4, {.color_readout_s = 0.026, .depth_readout_s = 0.026, .depth_delay_s = 0.01});
-  Pipeline pipeline(config, run.rig, run.imu, workers);
+  RecordingEstimator pipeline(config, run.rig, run.imu, workers);
   std::size_t next = 0;
   std::optional<Result<FrameReport>> report;
   const auto process = [&] { report = pipeline.process(run.frames[next++]); };

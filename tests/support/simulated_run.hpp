@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/config/groups/config_fwd.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 namespace fusebench::testing {
@@ -16,7 +16,7 @@ namespace fusebench::testing {
 inline std::vector<health::FrameReport> track(const SimulatedRun& run, const config::Config& config,
                                               int threads = 1) {
   const Workers workers(threads);
-  core::Pipeline pipeline(config, run.rig, run.imu, workers);
+  core::RecordingEstimator pipeline(config, run.rig, run.imu, workers);
   std::vector<health::FrameReport> reports;
   for (const RgbdFrame& frame : run.frames) {
     auto report = pipeline.process(frame);

@@ -26,6 +26,7 @@ struct PhotometricConfig;
 struct PlaceFeaturesConfig;
 struct PlacePoseConfig;
 struct RelocalisationConfig;
+struct SegmentsConfig;
 struct SelfCalibrationConfig;
 struct SystemConfig;
 struct TermsConfig;

@@ -24,16 +24,9 @@ struct RelocalisationConfig {
   double shared_error_factor = 3.0;
   double keyframe_rotation_sigma_rad = 0.005;
   double keyframe_position_sigma_m = 0.005;
-  double max_innovation = 225.0;
-  double max_position_innovation = 9.0;
-  double max_supported_innovation = 2250.0;
-  double max_supported_rotation_deg = 30.0;
-  double max_unsupported_position_sigma_m = 0.5;
-  int agreeing_frames = 5;
-  double agreeing_within_s = 0.5;
   double rival_support = 0.5;
-  double rival_separation = 2.0;
-  double rivals_within_s = 10.0;
+  double lookalike_density = 1e-6;
+  double min_odds = 100.0;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("keyframe_distance_m", self.keyframe_distance_m, 0.001, 100.0,
@@ -102,44 +95,17 @@ struct RelocalisationConfig {
              "keyframe was fused (rad); half a voxel at 1 m");
     v.number("keyframe_position_sigma_m", self.keyframe_position_sigma_m, 0.0, 1.0,
              "the same for its position (metres); half a voxel");
-    v.number(
-        "max_innovation", self.max_innovation, 0.1, 1e12,
-        "a found pose is refused if its squared distance from the prediction, in variances and per degree "
-        "of freedom, is larger (repeating texture gives false poses); 225 are five standard deviations, each "
-        "three times what the filter claims, as of drift (loops.drift_factor)");
-    v.number(
-        "max_position_innovation", self.max_position_innovation, 0.1, 1e12,
-        "and the same of its position alone, of which a lost tracker claims its error better than of its "
-        "rotation: in simulated recordings right places had up to 4, after 0.6 to 50 s, and doors and "
-        "pictures 3 to 6 m aside that repeat 14 and more; 9 are three standard deviations, root mean square "
-        "of the axes");
-    v.number("max_supported_innovation", self.max_supported_innovation, 0.1, 1e12,
-             "up to so much, where its position alone is within max_position_innovation, it is "
-             "believed all the same if several frames in a row agree on it, the last verified by depth as "
-             "loops are: a filter that was wrong before it was lost claims too little of its error in "
-             "rotation; ten times as much, as of loops (loops.max_supported_chi2)");
-    v.number("max_supported_rotation_deg", self.max_supported_rotation_deg, 0.1, 180.0,
-             "but not beyond such a rotation: paths drift by up to 5 % of what the camera turns, which is 18 "
-             "degrees in a lap of a room. After many seconds of dead reckoning the position rules nothing "
-             "out, and the pictures and doors of a corridor repeat");
-    v.number("max_unsupported_position_sigma_m", self.max_unsupported_position_sigma_m, 0.0, 1e6,
-             "such support is needed by every place where dead reckoning knows the position no better than "
-             "this (metres, one standard deviation): pictures and doors repeat every few metres");
-    v.number("agreeing_frames", self.agreeing_frames, 2, 1000,
-             "so many frames have to agree, each with the one before within loops.agreeing_chi2");
-    v.number("agreeing_within_s", self.agreeing_within_s, 0.01, 10.0,
-             "which is no longer ago than this (seconds)");
     v.number("rival_support", self.rival_support, 0.0, 1.0,
-             "another place is a rival of the best if it has this share of its inliers (of the depth that "
-             "agrees, where there are no features): of two that the prediction allows none is believed. In "
-             "simulated corridors wrong doors had 0.6 to 1.1 times the inliers of each other");
-    v.number("rival_separation", self.rival_separation, 0.1, 1000.0,
-             "and is so far away, in units of the keyframes' spacing: less is drift between two visits of "
-             "one place");
-    v.number("rivals_within_s", self.rivals_within_s, 0.0, 1e6,
-             "after two rivals, for this long (seconds), a place near them is believed only within half "
-             "their distance of the prediction, and if three standard deviations of that are less as well: "
-             "the camera may stand before a third, which it never saw");
+             "a place is a candidate beside the best if it has this share of its inliers (of the depth that "
+             "agrees, where there are no features). In simulated corridors wrong doors had 0.6 to 1.1 times the "
+             "inliers of each other");
+    v.number("lookalike_density", self.lookalike_density, 0.0, 1e6,
+             "places outside of the map that look like one inside, per cubic metre and cubic radian (of which "
+             "there are 79): 1e-6 is one in 13,000 m3, a large floor of a building. It bounds how uncertain dead "
+             "reckoning may be when a place is believed");
+    v.number("min_odds", self.min_odds, 1.0, 1e12,
+             "a place is believed if it is this many times as probable as all others that look like it, known or "
+             "not");
   }
 };
 

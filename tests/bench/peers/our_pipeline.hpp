@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/config/groups/config_fwd.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "core/preprocessing/rolling_shutter_compensation.hpp"
 #include "datasets/recording/recording.hpp"
 #include "tests/bench/peers/contestant.hpp"
@@ -25,7 +25,7 @@ class OurPipeline {
   OurPipeline(const Config& config, const Recording& recording)
       : rig_(recording.rig), pipeline_(config, recording.rig, recording.imu, workers_) {}
 
-  /// Errors: those of Pipeline::process().
+  /// Errors: those of RecordingEstimator::process().
   [[nodiscard]] Result<OurCost> process(const RgbdFrame& frame);
 
   /// T_before_now by the last two frames' poses; nothing if the last frame was lost.
@@ -41,7 +41,7 @@ class OurPipeline {
  private:
   SensorRig rig_;
   Workers workers_{1};
-  Pipeline pipeline_;
+  RecordingEstimator pipeline_;
   SE3 T_world_camera_;
   CameraVelocity velocity_;
   std::optional<SE3> motion_;

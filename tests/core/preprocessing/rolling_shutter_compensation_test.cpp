@@ -14,7 +14,7 @@
 
 #include "core/config/variants.hpp"
 #include "core/meshing/marching_cubes.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "tests/support/rolling_shutter.hpp"
 #include "tests/support/simulated_run.hpp"
 
@@ -323,7 +323,7 @@ TEST(MotionCompensation, FramesAreFusedWithTheirOwnColour) {
   for (std::size_t k = 0; k < run.frames.size(); ++k)
     run.frames[k].color = ColorImage(run.frames[k].grey.width, run.frames[k].grey.height, colors[k]);
   const Workers workers(1);
-  Pipeline pipeline(variant_config(*find_variant("full")).values(), run.rig, run.imu, workers);
+  RecordingEstimator pipeline(variant_config(*find_variant("full")).values(), run.rig, run.imu, workers);
   for (const RgbdFrame& frame : run.frames) ASSERT_TRUE(pipeline.process(frame).has_value());
   const Mesh mesh = extract_mesh(pipeline.model(), 0.0, workers);
   ASSERT_FALSE(mesh.colors.empty());

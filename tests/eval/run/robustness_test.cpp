@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/config/variants.hpp"
-#include "core/pipeline.hpp"
+#include "core/recording_estimator.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/simulator/simulation.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -93,7 +93,7 @@ class Robustness : public testing::InTemporaryFolder {
   static RunResult run(const Result<Recording>& recording, const Playback& playback) {
     EXPECT_TRUE(recording) << (recording ? "" : recording.error().message);
     const Workers workers(1);
-    Pipeline pipeline(variant_config(find_variant(playback.variant).value()).values(), recording->rig,
+    RecordingEstimator pipeline(variant_config(find_variant(playback.variant).value()).values(), recording->rig,
                       recording->imu, workers);
     const std::int64_t first_ns = recording->frames.front().timestamp_ns;
     const SE3 T_first_truth = truth_at(*recording, first_ns).inverse();
