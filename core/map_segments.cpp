@@ -13,18 +13,17 @@ namespace fusebench::core {
 void MapSegments::begin(const filter::GaussianState& reckoned_in_map) {
   Segment segment;
   segment.begin = reckoned_in_map.mean;
-  segment.begin_covariance =
-      reckoned_in_map.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>();
+  segment.begin_covariance = reckoned_in_map.covariance.topLeftCorner<filter::kPoseSize, filter::kPoseSize>();
   segments_.push_back(segment);
   open_ = segments_.size();
 }
 
 void MapSegments::join(std::int64_t timestamp_ns, const SE3& T_map_camera, const SE3& T_segment_camera) {
   check(open_ > 0, "a segment is open");
-  Segment& segment = segments_[open_ - 1];
-  segment.joined_ns = timestamp_ns;
-  segment.T_map_camera_at_join = T_map_camera;
-  segment.T_camera_segment_at_join = T_segment_camera.inverse();
+  Segment& joined = segments_[open_ - 1];
+  joined.joined_ns = timestamp_ns;
+  joined.T_map_camera_at_join = T_map_camera;
+  joined.T_camera_segment_at_join = T_segment_camera.inverse();
   open_ = 0;
 }
 
@@ -33,17 +32,18 @@ void MapSegments::join(std::int64_t timestamp_ns, const SE3& T_map_camera, const
 filter::GaussianState MapSegments::in_map(const filter::GaussianState& in_segment) const {
   check(open_ > 0, "a segment is open");
   const Segment& segment = segments_[open_ - 1];
-  const filter::FilterState& now = in_segment.mean;
+  filter::GaussianState result = filter::in_first_camera_world(in_segment);
+  const filter::FilterState& now = result.mean;
   const Matrix3d R_begin = segment.begin.T_world_imu.rotation_matrix();
   Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize> by_begin =
       Eigen::Matrix<double, filter::kStateSize, filter::kPoseSize>::Zero();
-  by_begin.topRows<filter::kPoseSize>() =
-      filter::pose_transport(now.T_world_imu, segment.begin.T_world_imu);
+  by_begin.topRows<filter::kPoseSize>() = filter::pose_transport(now.T_world_imu, segment.begin.T_world_imu);
   by_begin.block<3, 3>(filter::kVelocity, 0) = -hat(now.velocity_world_mps) * R_begin;
   by_begin.block<2, 3>(filter::kGravity, 0) =
       -s2_basis(now.gravity_direction_world).transpose() * hat(now.gravity_direction_world) * R_begin;
-  const filter::StateMatrix added = by_begin * segment.begin_covariance * by_begin.transpose();
-  return {now, filter::symmetrised(in_segment.covariance + added)};
+  result.covariance += by_begin * segment.begin_covariance * by_begin.transpose();
+  result.covariance = filter::symmetrised(result.covariance);
+  return result;
 }
 
 void MapSegments::add(PosedFrame frame) { frames_.push_back(std::move(frame)); }

@@ -1,9 +1,9 @@
 // Stretches of a recording that are tracked apart from the map. Not in the paper.
 //
 // A camera that is lost and sees nothing that is in the map may still be tracked from one image to the next.
-// Such a stretch is a *segment*: it starts at the dead-reckoned pose and has a model, patches and keyframes of
-// its own. When a place of the map is recognised in it, the segment is joined: the pose of that frame in the
-// map and in the segment tell how all of the segment moves. What is never joined stays apart.
+// Such a stretch is a *segment*: it starts at the dead-reckoned pose and has a model, patches and keyframes
+// of its own. When a place of the map is recognised in it, the segment is joined: the pose of that frame in
+// the map and in the segment tell how all of the segment moves. What is never joined stays apart.
 //
 // Segment 0 is the map. All poses are in the world of the map as far as dead reckoning knows it.
 #pragma once
@@ -33,12 +33,13 @@ class MapSegments {
   void begin(const filter::GaussianState& reckoned_in_map);
   /// The open segment ends; it stays apart.
   void close() { open_ = 0; }
-  /// The open segment ends: the camera is at both poses.
+  /// The open segment ends and is joined to the map: the camera is at both poses.
   void join(std::int64_t timestamp_ns, const SE3& T_map_camera, const SE3& T_segment_camera);
 
   /// Number of the segment that frames are tracked in; 0: the map.
   [[nodiscard]] std::size_t open() const { return open_; }
-  /// The estimate of the open segment, with what was unknown of its beginning.
+  /// An estimate in the open segment as one in the map: with its drift in the segment, and with what was
+  /// unknown of the segment's beginning.
   [[nodiscard]] filter::GaussianState in_map(const filter::GaussianState& in_segment) const;
 
   void add(PosedFrame frame);
@@ -51,7 +52,8 @@ class MapSegments {
   [[nodiscard]] std::optional<filter::FilterState> fused_state(std::int64_t timestamp_ns,
                                                                const CorrectedPose& corrected) const;
   /// Of the camera in the map: frames of joined segments and, with `map`, of the map itself, in order.
-  [[nodiscard]] Trajectory trajectory(const SE3& T_imu_camera, bool map, const CorrectedPose& corrected) const;
+  [[nodiscard]] Trajectory trajectory(const SE3& T_imu_camera, bool map,
+                                      const CorrectedPose& corrected) const;
   /// Of the IMU in the map, at the frame nearest in time, if that is of a joined segment.
   [[nodiscard]] std::optional<SE3> joined_pose_near(std::int64_t timestamp_ns,
                                                     const CorrectedPose& corrected) const;

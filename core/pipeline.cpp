@@ -93,8 +93,7 @@ Result<health::FrameReport> Pipeline::relocalise_again(const RgbdFrame& frame,
 }
 
 /// What follows the update.
-Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report,
-                                                          std::int64_t capture_ns) {
+Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report, std::int64_t capture_ns) {
   Tracking& now = *tracking_;
   now.lost_frames = report.status == health::FrameStatus::lost ? now.lost_frames + 1 : 0;
   now.timestamp_ns = capture_ns;
@@ -119,8 +118,7 @@ Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report,
 }
 
 /// Sec. 2.2.1: IMU samples carry the state to the frame; without an IMU, constant velocity does.
-Result<filter::GaussianState> Pipeline::predict(std::int64_t now_ns,
-                                                       health::StageTimes& stages) const {
+Result<filter::GaussianState> Pipeline::predict(std::int64_t now_ns, health::StageTimes& stages) const {
   const health::StageClock clock(stages, health::Stage::predict);
   const Beginning& beginning = tracking_->beginning;
   if (!tracking_->estimate && beginning.state) return *beginning.state;
@@ -137,16 +135,15 @@ Result<filter::GaussianState> Pipeline::predict(std::int64_t now_ns,
 
 /// The state of a frame without an update. The prior of an update, which is wide on purpose, is `predicted`.
 filter::GaussianState Pipeline::dead_reckoned(const filter::GaussianState& predicted,
-                                                     std::int64_t now_ns) const {
+                                              std::int64_t now_ns) const {
   const bool is_first = !tracking_->estimate;
   if (is_first || config_.terms.prior != config::Prior::constant_velocity) return predicted;
-  return prediction::predict_by_motion_model(*tracking_->estimate, duration_s(now_ns), tracking_->motion_scale,
-                                             config_.motion)
+  return prediction::predict_by_motion_model(*tracking_->estimate, duration_s(now_ns),
+                                             tracking_->motion_scale, config_.motion)
       .state;
 }
 
-health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted,
-                                            health::FrameReport& report) {
+health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted, health::FrameReport& report) {
   if (!tracking_->estimate) return health::FrameStatus::initialised;
   if (track(predicted, false, report)) return health::FrameStatus::tracked;
   if (novelty_.color && track_again(predicted, true, report)) return health::FrameStatus::tracked;
@@ -161,7 +158,7 @@ health::FrameStatus Pipeline::locate(const filter::GaussianState& predicted,
 /// PatchMeasurement::linearise(). The images are those of the frame's instant by the motion that the update
 /// finds.
 filter::IekfResult Pipeline::update(const filter::GaussianState& prior, bool thorough,
-                                           health::StageTimes& stages) {
+                                    health::StageTimes& stages) {
   const auto timed = [&](const auto& run) {
     const health::StageClock clock(stages, health::Stage::update);
     return run();
@@ -173,8 +170,9 @@ filter::IekfResult Pipeline::update(const filter::GaussianState& prior, bool tho
   for (int again = 0; again < config_.compensation.max_updates_again && filter::is_valid(result.posterior);
        ++again) {
     if (!preparation_.prepare_again(result.posterior.mean, tolerance, stages)) break;
-    result = timed(
-        [&] { return deformed_update_.run_from(result.solution, prior, *tracking_, preparation_, novelty_); });
+    result = timed([&] {
+      return deformed_update_.run_from(result.solution, prior, *tracking_, preparation_, novelty_);
+    });
   }
   return result;
 }
@@ -195,8 +193,8 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
   const std::span<const measurement::PatchOutcome> outcomes = deformed_update_.measurement().outcomes();
   health::describe_update(deformed_update_.measurement(), update, now.reference.patches, config_.health,
                           config_.iekf, report);
-  report.health = health::judge_health(preparation_.observed(novelty_), outcomes, report.blur_px, config_.health,
-                                       config_.iekf, config_.patches.size_px);
+  report.health = health::judge_health(preparation_.observed(novelty_), outcomes, report.blur_px,
+                                       config_.health, config_.iekf, config_.patches.size_px);
   report.reason = health::rejection_reason(report, config_.terms, config_.iekf, config_.health);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
@@ -221,8 +219,7 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
 }
 
 /// The same once more with a report of its own; the report of the first attempt stays if this one fails.
-bool Pipeline::track_again(const filter::GaussianState& prior, bool thorough,
-                                  health::FrameReport& report) {
+bool Pipeline::track_again(const filter::GaussianState& prior, bool thorough, health::FrameReport& report) {
   health::FrameReport again = health::report_of(preparation_.frame());
   again.stages = report.stages;
   const bool tracked = track(prior, thorough, again);
@@ -245,8 +242,8 @@ bool Pipeline::relocalise(const filter::GaussianState& prediction, health::Frame
   std::optional<relocalisation::RelocalisedReference> found;
   {
     const health::StageClock clock(report.stages, health::Stage::update);
-    found =
-        now.relocalisation.find(preparation_.frame(), {!dark, measures_depth}, prediction, now.model, workers_);
+    found = now.relocalisation.find(preparation_.frame(), {!dark, measures_depth}, prediction, now.model,
+                                    workers_);
   }
   if (!found) return false;
   std::swap(now.reference, found->reference);
@@ -310,7 +307,8 @@ void Pipeline::refresh(health::StageTimes& stages) {
                                              now.color_drift.noise(config_.color_drift),
                                              preparation_.undone_readout(now.estimate->mean));
   const RgbdFrame& frame = preparation_.frame();
-  const double blur_px = preprocessing::predicted_blur_px(now.estimate->mean, rig_, config_.motion.exposure_s);
+  const double blur_px =
+      preprocessing::predicted_blur_px(now.estimate->mean, rig_, config_.motion.exposure_s);
   now.relocalisation.add_keyframe(frame, T_world_camera(), now.timestamp_ns, blur_px);
   now.loops.add_fused(frame, *now.estimate, blur_px);
 }
@@ -318,8 +316,8 @@ void Pipeline::refresh(health::StageTimes& stages) {
 void Pipeline::cut_patches() {
   Tracking& now = *tracking_;
   patches::refresh_patches(reference_frame(), now.model, now.survivors,
-                           {config_.patches, config_.depth, config_.terms.deformation}, workers_, patch_workspace_,
-                           now.reference.patches);
+                           {config_.patches, config_.depth, config_.terms.deformation}, workers_,
+                           patch_workspace_, now.reference.patches);
   now.reference.points.take(preparation_.whole_pyramid(), preparation_.frame().depth_m, rig_.camera,
                             config_.alignment);
 }

@@ -45,7 +45,9 @@ class Pipeline {
                                                              const health::FrameReport& before);
   /// Of the last frame: what was not in the frame before.
   [[nodiscard]] const Novelty& novelty() const { return novelty_; }
-  [[nodiscard]] SE3 T_world_camera() const { return tracking_->estimate->mean.T_world_imu * rig_.T_imu_camera; }
+  [[nodiscard]] SE3 T_world_camera() const {
+    return tracking_->estimate->mean.T_world_imu * rig_.T_imu_camera;
+  }
 
   /// Sec. 2.3 once more, at a revised state and for the motion that the frame turned out to have. Errors: a
   /// full model.

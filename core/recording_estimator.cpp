@@ -7,6 +7,7 @@
 
 #include "core/config/config.hpp"
 #include "core/filter/moved_state.hpp"
+#include "core/filter/pose_clones.hpp"
 #include "core/map_segments.hpp"
 #include "core/pipeline.hpp"
 #include "core/prediction/initialisation.hpp"
@@ -147,7 +148,8 @@ Result<health::FrameReport> RecordingEstimator::State::look_for_map(const RgbdFr
       report.status == health::FrameStatus::lost || in_segment.frames % config.segments.search_every == 0;
   if (!due || !pipeline.novelty().complete()) return report;
   const SE3 T_segment_camera = pipeline.T_world_camera();
-  const filter::GaussianState prior = segments.in_map(*in_segment.estimate);
+  const filter::GaussianState prior =
+      filter::with_model_of(segments.in_map(*in_segment.estimate), *map->estimate);
   map->repeated_images = in_segment.repeated_images;
   std::unique_ptr<Tracking> segment = pipeline.exchange(std::move(map));
   Result<health::FrameReport> found = pipeline.relocalise_again(frame, prior, report);
@@ -178,8 +180,10 @@ bool RecordingEstimator::State::may_begin_segment(const health::FrameReport& rep
 Result<health::FrameReport> RecordingEstimator::State::begin_segment(const RgbdFrame& frame,
                                                                      health::FrameReport report) {
   const Tracking& lost = pipeline.tracking();
-  const filter::GaussianState reckoned = segments.open() > 0 ? segments.in_map(*lost.estimate) : *lost.estimate;
-  auto begun = std::make_unique<Tracking>(segment_config, rig, Beginning{.state = prediction::begun_again(reckoned)});
+  const filter::GaussianState reckoned =
+      segments.open() > 0 ? segments.in_map(*lost.estimate) : *lost.estimate;
+  auto begun =
+      std::make_unique<Tracking>(segment_config, rig, Beginning{.state = prediction::begun_again(reckoned)});
   begun->motion_scale = lost.motion_scale;
   begun->residual_scale = lost.residual_scale;
   begun->turned_rad = lost.turned_rad;
@@ -192,8 +196,8 @@ Result<health::FrameReport> RecordingEstimator::State::begin_segment(const RgbdF
     return report;
   }
   first->stages = report.stages;
-  segments.begin(reckoned);
   if (!map) map = std::move(before);
+  segments.begin(reckoned);
   return first;
 }
 
@@ -222,7 +226,9 @@ Result<void> RecordingEstimator::State::correct_by_loops() {
 /// Empty unless a loop has corrected the map.
 MapSegments::CorrectedPose RecordingEstimator::State::corrected_pose() const {
   if (!map_is_corrected) return {};
-  return [&loops = of_map().loops](std::int64_t timestamp_ns) { return loops.corrected_pose_near(timestamp_ns); };
+  return [&loops = of_map().loops](std::int64_t timestamp_ns) {
+    return loops.corrected_pose_near(timestamp_ns);
+  };
 }
 
 Trajectory RecordingEstimator::State::revised_trajectory() const {

@@ -14,7 +14,6 @@
 #include "core/config/groups/prediction_config.hpp"
 #include "core/config/groups/relocalisation_config.hpp"
 #include "core/config/groups/residuals_config.hpp"
-#include "core/config/groups/segments_config.hpp"
 #include "core/config/groups/systems_config.hpp"
 #include "core/config/groups/terms_config.hpp"
 #include "core/config/groups/tsdf_config.hpp"
@@ -40,7 +39,6 @@ struct Config {
   HealthConfig health;
   RelocalisationConfig relocalisation;
   PlaceFeaturesConfig place_features;
-  PlacePoseConfig place_pose;
   SegmentsConfig segments;
   LoopsConfig loops;
   TsdfConfig tsdf;
@@ -67,7 +65,6 @@ struct Config {
     v.group("health", self.health);
     v.group("relocalisation", self.relocalisation);
     v.group("place_features", self.place_features);
-    v.group("place_pose", self.place_pose);
     v.group("segments", self.segments);
     v.group("loops", self.loops);
     v.group("tsdf", self.tsdf);
@@ -83,8 +80,8 @@ static_assert(
     options_cover_all_fields<SystemConfig, TermsConfig, DepthConfig, CompensationConfig, MotionConfig,
                              InitialisationConfig, SelfCalibrationConfig, PatchConfig, PhotometricConfig,
                              GeometricConfig, AlignmentConfig, IekfConfig, ColorDriftConfig, HealthConfig,
-                             RelocalisationConfig, PlaceFeaturesConfig, PlacePoseConfig, SegmentsConfig,
-                             LoopsConfig, TsdfConfig, InfinitamConfig, OpencvOdometryConfig, BundlefusionConfig,
+                             RelocalisationConfig, PlaceFeaturesConfig, SegmentsConfig, LoopsConfig,
+                             TsdfConfig, InfinitamConfig, OpencvOdometryConfig, BundlefusionConfig,
                              ElasticfusionConfig, EvaluationConfig, Config>(),
     "each field of a configuration struct needs its option in visit()");
 

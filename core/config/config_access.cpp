@@ -180,43 +180,6 @@ Result<void> check_group(const Config& config, const TomlTable& table) {
       fmt::format("tables are {}", fmt::join(groups, ", ")));
 }
 
-/// Relations between the options by which places are recognised.
-Result<void> check_place_relations(const Config& config) {
-  const RelocalisationConfig& r = config.relocalisation;
-  const PlaceFeaturesConfig& features = config.place_features;
-  std::string violated;
-  // OpenCV makes an image of each scale, which must not vanish.
-  constexpr double kCoarsestScale = 16;
-  const double coarsest_scale = std::pow(features.level_factor, features.levels - 1);
-  if (r.min_landmarks < r.min_inliers) {
-    violated = fmt::format(
-        "relocalisation.min_landmarks = {} (allowed: at least relocalisation.min_inliers = {}, or a keyframe "
-        "may never be found)",
-        r.min_landmarks, r.min_inliers);
-  } else if (r.plenty_of_corners < r.min_landmarks) {
-    violated = fmt::format(
-        "relocalisation.plenty_of_corners = {} (allowed: at least relocalisation.min_landmarks = {})",
-        r.plenty_of_corners, r.min_landmarks);
-  } else if (r.min_spread_cells > r.spread_cells_per_side * r.spread_cells_per_side) {
-    violated = fmt::format(
-        "relocalisation.min_spread_cells = {} (allowed: at most the cells of the grid, "
-        "relocalisation.spread_cells_per_side^2 = {})",
-        r.min_spread_cells, r.spread_cells_per_side * r.spread_cells_per_side);
-  } else if (features.max_count < r.min_landmarks) {
-    violated = fmt::format(
-        "place_features.max_count = {} (allowed: at least relocalisation.min_landmarks = {}, or no frame "
-        "becomes a keyframe)",
-        features.max_count, r.min_landmarks);
-  } else if (coarsest_scale > kCoarsestScale) {
-    violated = fmt::format(
-        "place_features.level_factor = {} (allowed: the coarsest of place_features.levels = {} is at most "
-        "{} times as coarse as the image; it is {:.3g} times)",
-        features.level_factor, features.levels, kCoarsestScale, coarsest_scale);
-  }
-  if (!violated.empty()) return fail(ErrorCode::configuration, std::move(violated));
-  return {};
-}
-
 Error with_origin(Error error, const std::string& origin) {
   error.message = fmt::format("{}: {}", origin, error.message);
   return error;
@@ -255,7 +218,7 @@ Result<void> check_relations(const Config& config) {
         fmt::format("tsdf.truncation_m = {} (allowed: at least two voxels, 2 * tsdf.voxel_m = {})",
                     config.tsdf.truncation_m, 2 * config.tsdf.voxel_m));
   }
-  return check_place_relations(config);
+  return {};
 }
 
 EffectiveConfig::EffectiveConfig() : values_(std::make_unique<Config>()) {}

@@ -106,6 +106,22 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
   return result;
 }
 
+GaussianState with_model_of(const GaussianState& state, const GaussianState& there) {
+  GaussianState result = state;
+  const Matrix6d carried =
+      pose_transport(state.mean.T_world_imu_reference, there.mean.T_world_imu_reference);
+  result.mean.model_offset = carried * there.mean.model_offset;
+  result.mean.model_rate_offset = carried * there.mean.model_rate_offset;
+  result.mean.model_readout = transported(carried, there.mean.model_readout);
+  for (const int offset : {+kModelPose, +kModelRate}) {
+    result.covariance.middleRows<kPoseSize>(offset).setZero();
+    result.covariance.middleCols<kPoseSize>(offset).setZero();
+    result.covariance.block<kPoseSize, kPoseSize>(offset, offset) =
+        carried * there.covariance.block<kPoseSize, kPoseSize>(offset, offset) * carried.transpose();
+  }
+  return result;
+}
+
 GaussianState in_first_camera_world(const GaussianState& state) {
   const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
   StateMatrix to_world = StateMatrix::Identity();

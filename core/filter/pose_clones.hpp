@@ -56,6 +56,10 @@ struct UndoneReadout {
                                                 const ReferenceNoise& noise = {},
                                                 const UndoneReadout& undone = {});
 
+/// The state with the errors of another model in place of those of its own: of `there`, at the reference pose
+/// of that state.
+[[nodiscard]] GaussianState with_model_of(const GaussianState& state, const GaussianState& there);
+
 /// The estimate in the world of the first camera: the uncertainty of the model's pose is added to that of the
 /// pose, the velocity and the direction of gravity.
 [[nodiscard]] GaussianState in_first_camera_world(const GaussianState& state);

@@ -21,13 +21,13 @@ struct RelativePose {
 struct AlignmentStart {
   RelativePose pose;
   bool from_features = false;
-  double reach_m = 0;  ///< points so far from their plane count at first; at least loops.dense_gate_m
+  double reach_m = 0;  ///< points so far from their plane count at first; at least LoopsConfig::dense_gate_m
 };
 
 /// Searches from that pose. With `from_features`, its covariance counts: directions that depth does not tell,
 /// such as sideways along a wall, stay as they were; without, the pose is no more than the start. Nothing if
 /// too little of the depth lies near the other surface, or it leaves a direction open. The covariance is that
-/// of the scatter, as loops.dense_measurements counts it.
+/// of the scatter, as LoopsConfig::dense_measurements counts it.
 [[nodiscard]] std::optional<RelativePose> aligned_by_depth(const SmallImages& known, const SmallImages& query,
                                                            const AlignmentStart& start,
                                                            const PinholeCamera& camera,

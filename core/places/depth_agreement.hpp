@@ -16,7 +16,7 @@ struct DepthAgreement {
   double violating = 0;   ///< of those that overlap, the share that lies where the other saw free space
 };
 
-/// On the surface: within loops.depth_sigmas of the depth noise, and 1 cm more.
+/// On the surface: within LoopsConfig::depth_sigmas of the depth noise, and 1 cm more.
 [[nodiscard]] DepthAgreement depth_agreement(const SmallImages& from, const SmallImages& to,
                                              const SE3& T_to_from, const PinholeCamera& camera,
                                              const config::DepthConfig& depth,

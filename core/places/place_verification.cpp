@@ -39,7 +39,7 @@ std::optional<RelativePose> pose_by_features(const Appearance& known, const Appe
         fmt::format("{} matches of features (at least {})", pair.matches, config.relocalisation.min_inliers);
     return std::nullopt;
   }
-  const auto pose = pose_from_points(seen, camera, config.place_pose);
+  const auto pose = pose_from_points(seen, camera);
   if (pose) pair.inliers = static_cast<int>(pose->inliers.size());
   if (!pose || !is_certain_place(seen, *pose, camera, config.relocalisation)) {
     pair.reason = fmt::format("{} of {} matches agree, which is not certain", pair.inliers, pair.matches);

@@ -8,11 +8,26 @@
 #include <opencv2/calib3d.hpp>
 
 #include "core/base/solvers.hpp"
-#include "core/config/groups/relocalisation_config.hpp"
 
 namespace fusebench::places {
 
 namespace {
+
+/// Largest reprojection error of an inlier (pixels of the level of its feature): three standard deviations
+/// of a corner.
+constexpr double kInlierGate_px = 3.0;
+/// Largest number of draws of three points: log(0.001) / log(1 - 0.25^3), for a quarter of inliers.
+constexpr int kMaxDraws = 440;
+/// Drawing ends when the probability of having missed three inliers, given the share found so far, is below
+/// this.
+constexpr double kFailureProbability = 0.001;
+/// Rounds of refining the pose by its inliers and finding these again.
+constexpr int kRefinementRounds = 3;
+/// Gauss-Newton steps of a round.
+constexpr int kStepsPerRound = 5;
+/// Threshold of the Huber norm of reprojection errors (pixels of the level): one standard deviation of a
+/// corner.
+constexpr double kHuber_px = 1.0;
 
 // Twice the three points that determine a pose: as many measurements are left over to tell how well they fit.
 constexpr std::size_t kMinPoints = 6;
@@ -86,27 +101,26 @@ Score score_of(std::span<const SeenPoint> seen, const SE3& T_camera_a, const Pin
 }
 
 /// Draws that find three inliers of such a share with the wanted certainty.
-int draws_needed(std::size_t inliers, std::size_t count, const config::PlacePoseConfig& config) {
+int draws_needed(std::size_t inliers, std::size_t count) {
   const double share = static_cast<double>(inliers) / static_cast<double>(count);
   const double all_right = share * share * share;
-  if (all_right > 1.0 - config.failure_probability) return 1;
-  const double draws = std::ceil(std::log(config.failure_probability) / std::log1p(-all_right));
-  return static_cast<int>(std::min(static_cast<double>(config.max_draws), draws));
+  if (all_right > 1.0 - kFailureProbability) return 1;
+  const double draws = std::ceil(std::log(kFailureProbability) / std::log1p(-all_right));
+  return static_cast<int>(std::min(static_cast<double>(kMaxDraws), draws));
 }
 
-SE3 best_of_draws(std::span<const SeenPoint> seen, const PinholeCamera& camera,
-                  const config::PlacePoseConfig& config) {
+SE3 best_of_draws(std::span<const SeenPoint> seen, const PinholeCamera& camera) {
   Draws draws;
   SE3 best;
   Score best_score;
-  int needed = config.max_draws;
+  int needed = kMaxDraws;
   for (int draw = 0; draw < needed; ++draw) {
     for (const SE3& pose : poses_of_three(seen, draws.three_below(seen.size()), camera)) {
-      const Score score = score_of(seen, pose, camera, config.inlier_gate_px);
+      const Score score = score_of(seen, pose, camera, kInlierGate_px);
       if (score.cost >= best_score.cost) continue;
       best = pose;
       best_score = score;
-      needed = draws_needed(score.inliers, seen.size(), config);
+      needed = draws_needed(score.inliers, seen.size());
     }
   }
   return best;
@@ -175,21 +189,20 @@ void describe(std::span<const SeenPoint> seen, const PinholeCamera& camera, doub
 
 }  // namespace
 
-std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen, const PinholeCamera& camera,
-                                               const config::PlacePoseConfig& config) {
+std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen, const PinholeCamera& camera) {
   if (seen.size() < kMinPoints) return std::nullopt;
   PoseFromPoints result;
-  result.T_a_camera = best_of_draws(seen, camera, config).inverse();
+  result.T_a_camera = best_of_draws(seen, camera).inverse();
   // The right points of three noisy ones are not all: each round finds more.
-  for (int round = 0; round < config.refinement_rounds; ++round) {
-    result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, config.inlier_gate_px);
+  for (int round = 0; round < kRefinementRounds; ++round) {
+    result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, kInlierGate_px);
     if (result.inliers.size() < kMinPoints) return std::nullopt;
-    for (int step = 0; step < config.steps_per_round; ++step)
-      result.T_a_camera = stepped(seen, result.inliers, result.T_a_camera, camera, config.huber_px);
+    for (int step = 0; step < kStepsPerRound; ++step)
+      result.T_a_camera = stepped(seen, result.inliers, result.T_a_camera, camera, kHuber_px);
   }
-  result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, config.inlier_gate_px);
+  result.inliers = inliers_of(seen, result.T_a_camera.inverse(), camera, kInlierGate_px);
   if (result.inliers.size() < kMinPoints) return std::nullopt;
-  describe(seen, camera, config.huber_px, result);
+  describe(seen, camera, kHuber_px, result);
   if (!result.covariance.allFinite()) return std::nullopt;
   return result;
 }

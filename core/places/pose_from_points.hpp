@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/base/types.hpp"
-#include "core/config/groups/config_fwd.hpp"
 
 namespace fusebench::places {
 
@@ -33,7 +32,6 @@ struct PoseFromPoints {
 /// The pose that most points agree with. Depends on the points and their order alone: the random draws are
 /// the same in each call.
 [[nodiscard]] std::optional<PoseFromPoints> pose_from_points(std::span<const SeenPoint> seen,
-                                                             const PinholeCamera& camera,
-                                                             const config::PlacePoseConfig& config);
+                                                             const PinholeCamera& camera);
 
 }  // namespace fusebench::places

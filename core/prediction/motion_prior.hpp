@@ -42,13 +42,13 @@ struct MotionScale {
 };
 /// Before the first frame: motion.speed_mps and motion.rate_radps.
 [[nodiscard]] MotionScale initial_motion_scale(const config::MotionConfig& config);
-/// The exponential mean over motion.scale_time_s of the squared velocities, after a frame of that state and
+/// The exponential mean over MotionConfig::scale_time_s of the squared velocities, after a frame of that state and
 /// duration_s since the frame before.
 [[nodiscard]] MotionScale followed_scale(const MotionScale& scale, const filter::FilterState& state,
                                          double duration_s, const config::MotionConfig& config);
 
 /// Dead reckoning without an IMU. Propagates linear velocity (world) v and angular velocity (body) as
-/// Ornstein-Uhlenbeck processes with time constants motion.speed_time_s and motion.rate_time_s and the
+/// Ornstein-Uhlenbeck processes with time constants MotionConfig::speed_time_s and rate_time_s and the
 /// stationary variances of `scale`: with a = exp(-dt / tau), v' = a v + n, var(n) = (1 - a^2) var(v), and the
 /// pose moves by tau (1 - a) v + m, var(m) = tau^2 (2 dt / tau - 3 + 4 a - a^2) var(v), cov(m, n) = tau (1 -
 /// a)^2 var(v). Exact for any division of dt. Biases and gravity do not change.

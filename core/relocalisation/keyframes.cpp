@@ -62,7 +62,7 @@ std::optional<FoundPlace> place_by(std::span<const places::PlaceFeature> query, 
                                    std::span<const places::FeatureMatch> matches, const PinholeCamera& camera,
                                    const config::Config& config) {
   const std::vector<places::SeenPoint> seen = seen_points(query, *keyframe.landmarks, matches);
-  const auto pose = places::pose_from_points(seen, camera, config.place_pose);
+  const auto pose = places::pose_from_points(seen, camera);
   if (!pose || !places::is_certain_place(seen, *pose, camera, config.relocalisation)) return std::nullopt;
   FoundPlace found =
       found_from(keyframe, pose->T_a_camera, config.relocalisation.shared_error_factor * pose->covariance);
@@ -201,7 +201,8 @@ void Keyframes::complete(Keyframe& keyframe) const {
   keyframe.depth_code = ferns::depth_fern_code(keyframe.small->depth_m);
 }
 
-FoundPlace Keyframes::refined_by_depth(const FoundPlace& found, const places::SmallImages& query) {
+std::optional<FoundPlace> Keyframes::refined_by_depth(const FoundPlace& found,
+                                                      const places::SmallImages& query) {
   Keyframe& keyframe = kept_[found.keyframe];
   complete(keyframe);
   const SE3 T_keyframe_world = keyframe.T_world_camera.inverse();
@@ -209,7 +210,7 @@ FoundPlace Keyframes::refined_by_depth(const FoundPlace& found, const places::Sm
                                   with_position_in(T_keyframe_world.rotation, found.covariance)};
   const places::VerifiedPair pair =
       places::verify_from_features(*keyframe.small, query, pose, camera_, config_);
-  if (!pair.same) return found;
+  if (!pair.same) return std::nullopt;
   FoundPlace place = found;
   const FoundPlace by_depth = found_from(keyframe, pair.T_known_query, pair.covariance);
   place.T_world_camera = by_depth.T_world_camera;

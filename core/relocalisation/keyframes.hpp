@@ -65,9 +65,9 @@ class Keyframes {
              std::int64_t timestamp_ns, double blur_px = 0);
 
   /// The pose of an image by the kept frame with which most of it agrees, and by those others with which
-  /// nearly as much does (relocalisation.rival_support): best first, each certain; none if nothing is. The
-  /// first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long as
-  /// offering them would have taken, but all in one frame.
+  /// nearly as much does (RelocalisationConfig::rival_support): best first, each certain; none if nothing is.
+  /// The first time finds the landmarks of every kept frame, which takes some 10 ms each at 640x480: as long
+  /// as offering them would have taken, but all in one frame.
   [[nodiscard]] std::vector<FoundPlace> find(const GreyImage& grey);
 
   /// The pose of an image by its depth alone, where blur, darkness or a bare wall leave no features, verified
@@ -78,10 +78,11 @@ class Keyframes {
   [[nodiscard]] std::vector<FoundPlace> find_by_depth(const places::SmallImages& query,
                                                       const SE3& T_world_camera_predicted, double reach_m);
 
-  /// The place that find() has found of that image, refined by depth where the depth of both frames agrees. It
-  /// need not: while the camera turns fast, up to a third of the depth of a right place seems to be in free
-  /// space, since the prediction that the read-out is compensated by is wrong.
-  [[nodiscard]] FoundPlace refined_by_depth(const FoundPlace& found, const places::SmallImages& query);
+  /// The place that find() has found of that image, refined by depth; nothing if the depth of either frame
+  /// contradicts that of the other. Of a right place it may: while the camera turns fast, up to a third of
+  /// the depth seems to be in free space, since the prediction that the read-out is compensated by is wrong.
+  [[nodiscard]] std::optional<FoundPlace> refined_by_depth(const FoundPlace& found,
+                                                           const places::SmallImages& query);
 
   /// The pose of each kept frame becomes that of the function, by its stamp.
   void move(const std::function<SE3(std::int64_t timestamp_ns)>& T_world_camera_at);

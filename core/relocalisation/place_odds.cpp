@@ -60,20 +60,20 @@ void PlaceOdds::measure_spacing(std::span<const RelocalisedPose> candidates) {
   }
 }
 
-/// Of the most likely pose at that distance from the place: towards the prediction and beyond it, or along the
-/// axis of which dead reckoning knows least.
+/// Of the most likely pose at that distance from the place: towards the prediction and beyond it, or along
+/// the axis of which dead reckoning knows least.
 double PlaceOdds::density_at_spacing(const RelocalisedPose& place,
                                      const filter::GaussianState& prediction) const {
   if (!spacing_m_) return 0;
   const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(
       prediction.covariance.block<3, 3>(filter::kPosition, filter::kPosition));
   const Vector3d loose = *spacing_m_ * axes.eigenvectors().col(2);
-  double density =
-      std::max(pose_density(prediction, shifted(place, loose)), pose_density(prediction, shifted(place, -loose)));
+  double density = std::max(pose_density(prediction, shifted(place, loose)),
+                            pose_density(prediction, shifted(place, -loose)));
   const Vector3d towards_m = prediction.mean.T_world_imu.translation - place.T_world_imu.translation;
   if (towards_m.norm() > 0)
-    density = std::max(density,
-                       pose_density(prediction, shifted(place, *spacing_m_ * towards_m.normalized())));
+    density =
+        std::max(density, pose_density(prediction, shifted(place, *spacing_m_ * towards_m.normalized())));
   return density;
 }
 
@@ -82,9 +82,9 @@ std::optional<std::size_t> PlaceOdds::decide(std::span<const RelocalisedPose> ca
   if (candidates.empty()) return std::nullopt;
   measure_spacing(candidates);
   std::vector<double> densities;
-  for (const RelocalisedPose& candidate : candidates) densities.push_back(pose_density(prediction, candidate));
-  const auto likeliest =
-      static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin());
+  for (const RelocalisedPose& candidate : candidates)
+    densities.push_back(pose_density(prediction, candidate));
+  const auto likeliest = static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin());
   std::optional<std::size_t> first;
   double others = config_.lookalike_density + density_at_spacing(candidates[likeliest], prediction);
   for (std::size_t i = 0; i < candidates.size(); ++i) {

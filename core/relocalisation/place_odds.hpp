@@ -25,8 +25,8 @@ namespace fusebench::relocalisation {
 /// Prior density of the pose of a place (per cubic metre and cubic radian).
 [[nodiscard]] double pose_density(const filter::GaussianState& prediction, const RelocalisedPose& place);
 
-/// True if the cameras are further apart than two views of one place that the model has drifted between: twice
-/// the spacing of keyframes.
+/// True if the cameras are further apart than two views of one place that the model has drifted between:
+/// twice the spacing of keyframes.
 [[nodiscard]] bool are_elsewhere(const SE3& T_world_a, const SE3& T_world_b,
                                  const config::RelocalisationConfig& config);
 

@@ -50,10 +50,7 @@ UnknownMotion unknown_motion(const config::Config& config) {
 }  // namespace
 
 Relocalisation::Relocalisation(const config::Config& config, const SensorRig& rig)
-    : config_(config),
-      rig_(rig),
-      keyframes_(rig.camera, config),
-      odds_(config.relocalisation) {}
+    : config_(config), rig_(rig), keyframes_(rig.camera, config), odds_(config.relocalisation) {}
 
 void Relocalisation::add_keyframe(const RgbdFrame& frame, const SE3& T_world_camera,
                                   std::int64_t timestamp_ns, double blur_px) {
@@ -85,7 +82,8 @@ std::optional<FoundPlace> Relocalisation::place_of(const RgbdFrame& frame, const
     const SE3 T_world_camera = prediction.mean.T_world_imu * rig_.T_imu_camera;
     return likely_one(keyframes_.find_by_depth(small, T_world_camera, reach_m(prediction)), prediction);
   }
-  for (FoundPlace& candidate : candidates) candidate = keyframes_.refined_by_depth(candidate, small);
+  for (FoundPlace& candidate : candidates)
+    candidate = keyframes_.refined_by_depth(candidate, small).value_or(candidate);
   return likely_one(candidates, prediction);
 }
 

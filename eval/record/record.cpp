@@ -214,6 +214,12 @@ std::string_view to_string(RunStatus status) {
   return "unknown";
 }
 
+std::string segments_text(const RecordedFrames& frames) {
+  if (frames.segments == 0) return {};
+  return fmt::format("{} frames in {} segment{} apart from the map, {} joined", frames.other_segments,
+                     frames.segments, frames.segments == 1 ? "" : "s", frames.segments_joined);
+}
+
 double coverage_share(const RecordedFrames& frames) {
   return frames.total == 0 ? 0.0 : static_cast<double>(frames.tracked) / static_cast<double>(frames.total);
 }
@@ -242,34 +248,33 @@ std::optional<PoseKind> parse_pose_kind(std::string_view text) {
 namespace {
 
 Json document_of(const RunRecord& record) {
-  Json json = {
-      {"schema", record.schema},
-      {"status", to_string(record.status)},
-      {"reason", record.reason},
-      {"run_id", record.run_id},
-      {"repetition", record.repetition},
-      {"replicate", record.replicate},
-      {"recording", json_of(record.recording)},
-      {"variant", record.variant},
-      {"poses", to_string(record.poses)},
-      {"config_hash", record.config_hash},
-      {"metrics", json_of_metrics(record.metrics, record.frames)},
-      {"frames",
-       {{"total", record.frames.total},
-        {"tracked", record.frames.tracked},
-        {"lost", record.frames.lost},
-        {"other_segments", record.frames.other_segments},
-        {"segments", record.frames.segments},
-        {"segments_joined", record.frames.segments_joined}}},
-      {"model",
-       {{"vertices", record.model.vertices},
-        {"triangles", record.model.triangles},
-        {"blocks", record.model.blocks}}},
-      {"sensors", json_of(record.sensors)},
-      {"files", json_of(record.files)},
-      {"config", json_of(record.config)},
-      {"timing", json_of(record.timing)},
-      {"provenance", json_of(record.provenance)}};
+  Json json = {{"schema", record.schema},
+               {"status", to_string(record.status)},
+               {"reason", record.reason},
+               {"run_id", record.run_id},
+               {"repetition", record.repetition},
+               {"replicate", record.replicate},
+               {"recording", json_of(record.recording)},
+               {"variant", record.variant},
+               {"poses", to_string(record.poses)},
+               {"config_hash", record.config_hash},
+               {"metrics", json_of_metrics(record.metrics, record.frames)},
+               {"frames",
+                {{"total", record.frames.total},
+                 {"tracked", record.frames.tracked},
+                 {"lost", record.frames.lost},
+                 {"other_segments", record.frames.other_segments},
+                 {"segments", record.frames.segments},
+                 {"segments_joined", record.frames.segments_joined}}},
+               {"model",
+                {{"vertices", record.model.vertices},
+                 {"triangles", record.model.triangles},
+                 {"blocks", record.model.blocks}}},
+               {"sensors", json_of(record.sensors)},
+               {"files", json_of(record.files)},
+               {"config", json_of(record.config)},
+               {"timing", json_of(record.timing)},
+               {"provenance", json_of(record.provenance)}};
   if (record.final_metrics) json["final_metrics"] = json_of_metrics(*record.final_metrics, record.frames);
   if (record.loops) json["loops"] = json_of_loops(*record.loops);
   if (record.program) {

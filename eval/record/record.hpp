@@ -159,13 +159,16 @@ struct RecordedMetrics {
 };
 
 struct RecordedFrames {
-  std::size_t total = 0;    ///< that the run was asked to process
-  std::size_t tracked = 0;  ///< including the first
-  std::size_t lost = 0;     ///< processed and lost
+  std::size_t total = 0;            ///< that the run was asked to process
+  std::size_t tracked = 0;          ///< including the first
+  std::size_t lost = 0;             ///< processed and lost
   std::size_t other_segments = 0;   ///< tracked apart from the map; what is left of the total was not reached
   std::size_t segments = 0;         ///< stretches that were tracked apart from the map
   std::size_t segments_joined = 0;  ///< of them, those that were joined to it
 };
+
+/// "12 frames in 2 segments apart from the map, 1 joined"; empty without segments.
+[[nodiscard]] std::string segments_text(const RecordedFrames& frames);
 
 /// Tracked frames / frames that the run was asked for; 0 of a run that did not begin.
 [[nodiscard]] double coverage_share(const RecordedFrames& frames);

@@ -12,7 +12,8 @@ void RunNumbers::set(const RunMetric& metric, std::optional<double> value) {
 
 void RunNumbers::derive() {
   if ((*this)["frames_total"] == 0) {  // the run did not begin
-    for (const std::string_view key : {"frames_total", "frames_tracked", "frames_lost", "frames_other_segments"})
+    for (const std::string_view key : {"frames_total", "frames_tracked", "frames_lost",
+                                       "frames_other_segments", "segments", "segments_joined"})
       set(run_metric(key), std::nullopt);
   }
   if ((*this)["model_vertices"] == 0) set(run_metric("model_vertices"), std::nullopt);

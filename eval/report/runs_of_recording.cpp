@@ -58,7 +58,10 @@ page::PageTable run_facts(RunsOfRecording group, const RunLabels& labels) {
   page::PageTable table;
   const bool reasons =
       std::ranges::any_of(group, [](const run_files::FoundRun& r) { return !r.record.reason.empty(); });
+  const bool segments =
+      std::ranges::any_of(group, [](const run_files::FoundRun& r) { return r.record.frames.segments > 0; });
   table.header = {"run", "status", "tracked", "lost", "IMU"};
+  if (segments) table.header.emplace_back("tracked apart from the map");
   if (reasons) table.header.emplace_back("reason");
   for (std::size_t i = 0; i < group.size(); ++i) {
     const record::RunRecord& r = group[i].record;
@@ -67,6 +70,7 @@ page::PageTable run_facts(RunsOfRecording group, const RunLabels& labels) {
           fmt::format("{}/{}", r.frames.tracked, r.frames.total), fmt::format("{}", r.frames.lost),
           r.recording.imu},
          r.status == record::RunStatus::ok && r.metrics.silent_frames().value_or(0) == 0 ? "" : "warning"});
+    if (segments) table.rows.back().cells.push_back(record::segments_text(r.frames));
     if (reasons) table.rows.back().cells.push_back(r.reason);
   }
   return table;

@@ -75,8 +75,8 @@ record::RecordedTiming timing_of(const RunProgress& progress, const record::Proc
   timing.wall_s = cost.wall_s;
   timing.cpu_s = cost.cpu_s;
   timing.peak_rss_bytes = cost.peak_rss_bytes;
-  const auto processed = static_cast<double>(progress.frames.tracked + progress.frames.lost +
-                                            progress.frames.other_segments);
+  const auto processed =
+      static_cast<double>(progress.frames.tracked + progress.frames.lost + progress.frames.other_segments);
   const auto mean = [&](double sum_ms) { return processed > 0 ? sum_ms / processed : 0.0; };
   timing.fps = cost.wall_s > 0 ? processed / cost.wall_s : 0.0;
   timing.stages_ms.emplace_back("decode", mean(progress.decode_ms));
@@ -154,6 +154,8 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   if (const auto note = record::clock_note(record)) progress->log += *note + "\n";
   progress->log += fmt::format("{}: {} of {} frames tracked\n", record::to_string(record.status),
                                record.frames.tracked, record.frames.total);
+  if (const std::string segments = record::segments_text(record.frames); !segments.empty())
+    progress->log += segments + "\n";
   const std::string title = fmt::format("fusebench {} {}", record.recording.name, record.variant);
   const std::array<NamedText, 10> texts = {
       {{"trajectory.tum", trajectory::tum_text(progress->output.trajectory)},

@@ -22,8 +22,8 @@ namespace {
 /// Whether a group of options belongs to a system, by its name; see system.method.
 bool has_effect(std::string_view group, std::string_view system) {
   constexpr std::array<std::string_view, 10> kOfTheFilter = {
-      "patches",     "photometric",    "geometric",      "alignment",  "iekf",
-      "color_drift", "relocalisation", "place_features", "place_pose", "loops"};
+      "patches",     "photometric",    "geometric",      "alignment", "iekf",
+      "color_drift", "relocalisation", "place_features", "segments",  "loops"};
   if (std::ranges::find(kOfTheFilter, group) != kOfTheFilter.end()) return system == "filter";
   return group == system || std::ranges::none_of(config::option_choices(config::SystemMethod{}),
                                                  [&](const auto& other) { return other.first == group; });

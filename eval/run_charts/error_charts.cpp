@@ -118,8 +118,8 @@ page::Chart error_and_sigma(std::span<const RunSeries> runs, std::size_t buckets
     chart.series.push_back({runs[i].label + ", 3 sigma",
                             of_frames(runs[i], buckets / 8 + 1,
                                       [](const run_files::FrameTableRow& f) {
-                                        return f.status == "lost" ? std::nan("")
-                                                                  : 3 * kCentimetres * f.position_sigma_m;
+                                        return f.is_in_map() ? 3 * kCentimetres * f.position_sigma_m
+                                                             : std::nan("");
                                       }),
                             page::SeriesStyle::band, false, runs[i].colour});
   }

@@ -61,8 +61,7 @@ page::Chart frame_chart(std::span<const RunSeries> runs, std::size_t buckets, pa
 std::string health_text(const RunSeries& run) {
   std::map<std::string, std::size_t> counts;
   for (const run_files::FrameTableRow& frame : run.frames) {
-    const bool tracked = frame.status != "lost";
-    ++counts[tracked ? frame.health : "lost (" + frame.health + ")"];
+    ++counts[frame.is_in_map() ? frame.health : frame.status + " (" + frame.health + ")"];
   }
   std::string text = run.label + ":";
   for (const auto& [health, count] : counts) text += fmt::format(" {} {},", count, health);

@@ -29,7 +29,8 @@ std::string number_cell(double value) { return std::isfinite(value) ? fmt::forma
 
 std::string frame_table_header() {
   std::string header =
-      "frame,timestamp,status,health,reason,patches,patches_tracked,patches_accepted,patches_shrunk,patches_"
+      "frame,timestamp,status,segment,health,reason,patches,patches_tracked,patches_accepted,patches_shrunk,"
+      "patches_"
       "extended,"
       "pixels_photometric,pixels_geometric,aie_grey,aie_pixels,iterations,converged,chi2_photometric,chi2_"
       "geometric,variance_photometric,variance_geometric,"
@@ -68,8 +69,8 @@ constexpr std::size_t kFilterCells = 25;
 std::string frame_table_row(std::size_t frame, const health::FrameOutcome& outcome,
                             const health::FrameReport* filter, double decode_ms) {
   std::string row =
-      fmt::format("{},{},{},{},{}", frame, trajectory::stamp_text(outcome.timestamp_ns),
-                  health::to_string(outcome.status),
+      fmt::format("{},{},{},{},{},{}", frame, trajectory::stamp_text(outcome.timestamp_ns),
+                  health::to_string(outcome.status), outcome.segment,
                   filter != nullptr ? health::to_string(filter->health) : "", text_cell(outcome.reason));
   row += filter != nullptr ? filter_cells(*filter) : std::string(kFilterCells, ',');
   row += fmt::format(",{},{:.3f}", outcome.model_blocks, decode_ms);

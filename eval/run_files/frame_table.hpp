@@ -32,6 +32,9 @@ namespace fusebench::run_files {
 
 /// A row, as far as reports need it. What the table leaves empty is absent.
 struct FrameTableRow {
+  /// False of a frame that is lost, or tracked apart from the map.
+  [[nodiscard]] bool is_in_map() const { return status != "lost" && status != "other-segment"; }
+
   std::int64_t timestamp_ns = 0;
   std::string status;
   std::string health;

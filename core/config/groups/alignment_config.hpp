@@ -7,30 +7,24 @@ namespace fusebench::config {
 /// the IMU is near enough).
 struct AlignmentConfig {
   int coarsest_level = 5;
-  int finest_level = 3;
-  double reach_px = 2.5;
-  double reach_sigmas = 2.0;
+  /// The level on which the alignment ends, and by whose cost starts are compared.
+  static constexpr int finest_level = 3;
+  /// A level converges from this far (its own pixels): gradients of a 10x10 patch are of about its size.
+  static constexpr double reach_px = 2.5;
+  /// Images are aligned before the patches where so many standard deviations of the predicted place of a
+  /// pixel exceed the reach of the coarsest level of the patches, and from the first level whose reach they
+  /// do not exceed.
+  static constexpr double reach_sigmas = 2.0;
   double pixels_per_measurement = 10.0;
-  int max_iterations = 10;
+  /// Iterations of an alignment from one start, over all levels.
+  static constexpr int max_iterations = 10;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("coarsest_level", self.coarsest_level, 0, 8,
              "coarsest pyramid level on which whole images are aligned (640x480: 5 is 20x15); 0 switches the "
              "search off");
-    v.number("finest_level", self.finest_level, 1, 8,
-             "the level on which the alignment ends, and by whose cost starts are compared");
-    v.number(
-        "reach_px", self.reach_px, 0.1, 100.0,
-        "a level converges from this far (its own pixels): gradients of a 10x10 patch are of about its size");
-    v.number(
-        "reach_sigmas", self.reach_sigmas, 0.1, 10.0,
-        "images are aligned before the patches where so many standard deviations of the predicted place "
-        "of a pixel exceed the reach of the coarsest level of the patches, and from the first level whose "
-        "reach they do not exceed");
     v.number("pixels_per_measurement", self.pixels_per_measurement, 1.0, 1000.0,
              "this many residuals count as one measurement against the prediction, as for patches");
-    v.number("max_iterations", self.max_iterations, 1, 200,
-             "of an alignment from one start, over all levels");
   }
 };
 

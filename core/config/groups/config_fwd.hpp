@@ -24,7 +24,6 @@ struct OpencvOdometryConfig;
 struct PatchConfig;
 struct PhotometricConfig;
 struct PlaceFeaturesConfig;
-struct PlacePoseConfig;
 struct RelocalisationConfig;
 struct SegmentsConfig;
 struct SelfCalibrationConfig;

@@ -15,7 +15,8 @@ constexpr auto option_choices(MeasurementForm) {
 /// The iterated extended Kalman filter (Eqs. 15-23).
 struct IekfConfig {
   int max_iterations = 10;
-  int coarse_iterations = 2;
+  /// Iterations on each coarser pyramid level, at most, before the finer levels join.
+  static constexpr int coarse_iterations = 2;
   bool prior_in_every_iteration = true;
   MeasurementForm measurement = MeasurementForm::residuals;
   double converged_rotation_rad = 1e-4;
@@ -28,8 +29,6 @@ struct IekfConfig {
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("max_iterations", self.max_iterations, 1, 200, "iterations of one update; 1 is the plain EKF");
-    v.number("coarse_iterations", self.coarse_iterations, 0, 100,
-             "of these, at most this many on each coarser pyramid level before the finer ones join");
     v.flag("prior_in_every_iteration", self.prior_in_every_iteration,
            "each iteration weighs the distance to the prediction (the MAP estimate, Bell & Cathey 1993); "
            "false is "
@@ -64,17 +63,16 @@ struct IekfConfig {
 /// paper).
 struct ColorDriftConfig {
   double factor = 1.0;
-  int lag_frames = 10;
-  int memory_frames = 100;
+  /// Distance in frames of the corrections that are compared: white noise has no correlation over it, drift
+  /// has.
+  static constexpr int lag_frames = 10;
+  /// Frames over which their covariance is averaged.
+  static constexpr int memory_frames = 100;
 
   static constexpr void visit(auto& self, auto&& v) {
     v.number("factor", self.factor, 0.0, 100.0,
              "colour loses weight against the model by so many times the drift that the corrections by depth "
              "show (standard deviations); 0 leaves it the weight that the scatter of the patches gives it");
-    v.number("lag_frames", self.lag_frames, 1, 1000,
-             "corrections so many frames apart are compared: what they have in common is drift, no noise");
-    v.number("memory_frames", self.memory_frames, 1, 100000,
-             "their covariance is averaged over about so many frames");
   }
 };
 

@@ -32,28 +32,20 @@ struct DepthConfig {
 /// When a frame that was compensated for the predicted motion is compensated again for the estimated one:
 /// for another update, and before it is fused.
 struct CompensationConfig {
-  double redo_angular_velocity_radps = 0.05;
-  double redo_velocity_mps = 0.05;
-  double update_again_angular_velocity_radps = 0.15;
-  double update_again_velocity_mps = 0.3;
+  /// A frame is compensated again before it is fused if the update changed the angular velocity by more
+  /// (rad/s): over half a read-out of 13 ms at a focal length of 520 px that moves a pixel by a third of one.
+  static constexpr double redo_angular_velocity_radps = 0.05;
+  /// The same for the linear velocity (m/s); at a distance of 1 m it moves a pixel as far.
+  static constexpr double redo_velocity_mps = 0.05;
+  /// A frame is compensated and the update made once more if the update changed the angular velocity by more
+  /// (rad/s): the update undoes small changes by itself; over half a read-out of 13 ms at a focal length of
+  /// 520 px this moves a pixel by one.
+  static constexpr double update_again_angular_velocity_radps = 0.15;
+  /// The same for the linear velocity (m/s), which images alone tell no better from frame to frame.
+  static constexpr double update_again_velocity_mps = 0.3;
   int max_updates_again = 1;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number(
-        "redo_angular_velocity_radps", self.redo_angular_velocity_radps, 0.0, 100.0,
-        "a frame is compensated again before it is fused if the update changed the angular velocity by more "
-        "(rad/s): over half a read-out of 13 ms at a focal length of 520 px that moves a pixel by a third of "
-        "one");
-    v.number(
-        "redo_velocity_mps", self.redo_velocity_mps, 0.0, 100.0,
-        "the same for the velocity (m/s): at 1 m distance it moves a pixel as far as that angular velocity");
-    v.number(
-        "update_again_angular_velocity_radps", self.update_again_angular_velocity_radps, 0.0, 100.0,
-        "a frame is compensated and the update made once more if the update changed the angular velocity "
-        "by more (rad/s): the update undoes small changes by itself; over half a read-out of 13 ms at a "
-        "focal length of 520 px this moves a pixel by one");
-    v.number("update_again_velocity_mps", self.update_again_velocity_mps, 0.0, 100.0,
-             "the same for the velocity (m/s), which images alone tell no better from frame to frame");
     v.number("max_updates_again", self.max_updates_again, 0, 10, "at most so many more updates of a frame");
   }
 };

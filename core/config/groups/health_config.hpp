@@ -8,11 +8,21 @@ struct HealthConfig {
   double dark_grey = 6.0;
   double covered_share = 0.25;
   double min_depth_share = 0.1;
-  int texture_gradient_grey = 4;
-  double min_texture_share = 0.01;
-  double sure_correlation = 0.7;
+  /// A pixel of the coarsest pyramid level has texture if its gradient exceeds this (grey levels between
+  /// neighbours), which the noise of that level does not.
+  static constexpr int texture_gradient_grey = 4;
+  /// A frame with texture on a smaller share of its pixels is short of texture: at 640x480 and 3 levels 1 %
+  /// is 192 pixels, less than two patches.
+  static constexpr double min_texture_share = 0.01;
+  /// An update is tried again from the coarsest level if the mean correlation (ZNCC) of the patches in view
+  /// with their reference is below this; 95 % of the frames of real recordings are above 0.85, blurred ones
+  /// between 0.5 and 0.8.
+  static constexpr double sure_correlation = 0.7;
   double min_correlation = 0.3;
-  double min_contrast_grey = 8.0;
+  /// Patches with a smaller standard deviation of their intensities do not count in the median correlation
+  /// (grey levels): camera noise of 1 to 4 grey levels lowers the correlation of a patch with 8 by up to a
+  /// fifth.
+  static constexpr double min_contrast_grey = 8.0;
   double max_rotation_sigma_deg = 1.0;
   double max_position_sigma_m = 0.02;
   int max_occluded_frames = 30;
@@ -29,26 +39,10 @@ struct HealthConfig {
     v.number("min_depth_share", self.min_depth_share, 0.0, 1.0,
              "a frame with usable depth on a smaller share of its pixels is short of depth; low, since the "
              "patches themselves ask for more (patches.min_valid_fraction)");
-    v.number("texture_gradient_grey", self.texture_gradient_grey, 0, 255,
-             "a pixel of the coarsest pyramid level has texture if its gradient exceeds this (grey levels "
-             "between neighbours), which the noise of that level does not");
-    v.number("min_texture_share", self.min_texture_share, 0.0, 1.0,
-             "a frame with texture on a smaller share of its pixels is short of texture: at 640x480 and 3 "
-             "levels 1 % is 192 pixels, less than two patches");
-    v.number(
-        "sure_correlation", self.sure_correlation, -1.0, 1.0,
-        "an update is tried again from the coarsest level if the mean correlation (ZNCC) of the patches in "
-        "view with their reference is below this; 95 % of the frames of real recordings are above 0.85, "
-        "blurred ones between 0.5 and 0.8");
     v.number(
         "min_correlation", self.min_correlation, -1.0, 1.0,
         "an update is not believed if the median correlation of the tracked patches is below this: 0 to 0.25 "
         "on wrong places, at least 0.34 under the worst blur of simulated motion at 10 rad/s");
-    v.number(
-        "min_contrast_grey", self.min_contrast_grey, 0.0, 255.0,
-        "patches with a smaller standard deviation of their intensities do not count in that median (grey "
-        "levels): the noise of cameras, 1 to 4, takes up to a fifth of the correlation of a patch with 8, "
-        "and all that of a bare wall");
     v.number("max_rotation_sigma_deg", self.max_rotation_sigma_deg, 0.01, 180.0,
              "an update is not believed if the orientation against the model is less certain along some axis "
              "(degrees, one sigma): what follows would be fused apart from what is there; three sigmas are a "

@@ -7,13 +7,19 @@ namespace fusebench::config {
 struct MotionConfig {
   double imu_noise_factor = 1.0;
   double speed_mps = 0.2;
-  double speed_time_s = 1.5;
+  /// Time constant of the linear velocity (seconds): a lost camera is expected to stop. Fitted to the errors
+  /// of dead reckoning over 0.1 to 10 s on the same recordings.
+  static constexpr double speed_time_s = 1.5;
   double rate_radps = 0.4;
-  double rate_time_s = 0.4;
-  double scale_time_s = 20.0;
+  /// Time constant of the angular velocity (seconds).
+  static constexpr double rate_time_s = 0.4;
+  /// Time constant with which the standard deviations follow the velocities of the recording (seconds):
+  /// recordings differ by a factor of five.
+  static constexpr double scale_time_s = 20.0;
   double acceleration_noise_mps2_sqrthz = 1.5;
   double angular_acceleration_noise_radps2_sqrthz = 3.0;
-  double gravity_noise_rad_sqrthz = 1e-5;
+  /// Random walk of the gravity direction against the map (rad/sqrt(Hz)), for the map's slow tilt.
+  static constexpr double gravity_noise_rad_sqrthz = 1e-5;
   double drift_factor = 10.0;
   double exposure_s = 0.01;
 
@@ -25,26 +31,14 @@ struct MotionConfig {
         "speed_mps", self.speed_mps, 1e-3, 100.0,
         "dead reckoning without an IMU: standard deviation of the linear velocity per axis at the start of a "
         "recording (m/s); root mean square of seven hand-held recordings (0.06 to 0.28)");
-    v.number(
-        "speed_time_s", self.speed_time_s, 0.01, 1000.0,
-        "time constant of the linear velocity (seconds): a lost camera is expected to stop. Fitted to the "
-        "errors of dead reckoning over 0.1 to 10 s on the same recordings");
     v.number("rate_radps", self.rate_radps, 1e-3, 100.0,
              "the same of the angular velocity (rad/s; 0.15 to 0.74 on these)");
-    v.number("rate_time_s", self.rate_time_s, 0.01, 1000.0,
-             "time constant of the angular velocity (seconds)");
-    v.number(
-        "scale_time_s", self.scale_time_s, 0.1, 1e6,
-        "the standard deviations follow the velocities of the recording with this time constant (seconds): "
-        "recordings differ by a factor of five");
     v.number(
         "acceleration_noise_mps2_sqrthz", self.acceleration_noise_mps2_sqrthz, 1e-3, 1e3,
         "prior of an update without an IMU: white acceleration (m/s^2/sqrt(Hz)), 0.3 m/s from frame to frame "
         "at 30 Hz: more than hand-held cameras have, so that the images decide on sudden motions");
     v.number("angular_acceleration_noise_radps2_sqrthz", self.angular_acceleration_noise_radps2_sqrthz, 1e-3,
              1e3, "the same of the angular velocity (rad/s^2/sqrt(Hz)): 0.5 rad/s from frame to frame");
-    v.number("gravity_noise_rad_sqrthz", self.gravity_noise_rad_sqrthz, 0.0, 1.0,
-             "random walk of the gravity direction against the map (rad/sqrt(Hz)), for the map's slow tilt");
     v.number(
         "drift_factor", self.drift_factor, 1.0, 100.0,
         "the model drifts this much more than independent errors of the frames would make it (standard "
@@ -61,11 +55,17 @@ struct MotionConfig {
 /// The first state.
 struct InitialisationConfig {
   double window_s = 0.25;
-  double rest_gyroscope_std_radps = 0.02;
-  double rest_accelerometer_std_mps2 = 0.15;
-  double rest_velocity_sigma_mps = 0.02;
+  /// The camera is at rest if the standard deviation of the gyroscope in the window is below this (rad/s),
+  /// and
+  static constexpr double rest_gyroscope_std_radps = 0.02;
+  /// if the standard deviation of the accelerometer is below this (m/s^2).
+  static constexpr double rest_accelerometer_std_mps2 = 0.15;
+  /// Standard deviation of the velocity at rest (m/s).
+  static constexpr double rest_velocity_sigma_mps = 0.02;
   double moving_velocity_sigma_mps = 1.0;
-  double moving_gravity_sigma_rad = 0.15;
+  /// Standard deviation of the direction of gravity in motion (rad): the mean specific force contains
+  /// acceleration.
+  static constexpr double moving_gravity_sigma_rad = 0.15;
   double angular_velocity_sigma_radps = 1.5;
   double gyroscope_bias_sigma_radps = 0.005;
   double accelerometer_bias_sigma_mps2 = 0.3;
@@ -76,15 +76,8 @@ struct InitialisationConfig {
     v.number(
         "window_s", self.window_s, 0.02, 10.0,
         "IMU samples within this time around the first frame give gravity (and the gyroscope bias at rest)");
-    v.number("rest_gyroscope_std_radps", self.rest_gyroscope_std_radps, 0.0, 10.0,
-             "at rest if the gyroscope's standard deviation in the window is below this");
-    v.number("rest_accelerometer_std_mps2", self.rest_accelerometer_std_mps2, 0.0, 100.0,
-             "at rest if the accelerometer's standard deviation in the window is below this as well");
-    v.number("rest_velocity_sigma_mps", self.rest_velocity_sigma_mps, 1e-4, 10.0, "velocity prior at rest");
     v.number("moving_velocity_sigma_mps", self.moving_velocity_sigma_mps, 1e-3, 10.0,
              "velocity prior in motion: zero with this standard deviation");
-    v.number("moving_gravity_sigma_rad", self.moving_gravity_sigma_rad, 1e-3, 1.0,
-             "gravity direction prior in motion, where the mean specific force contains acceleration");
     v.number("angular_velocity_sigma_radps", self.angular_velocity_sigma_radps, 1e-3, 100.0,
              "angular velocity prior without an IMU: zero with this standard deviation");
     v.number("gyroscope_bias_sigma_radps", self.gyroscope_bias_sigma_radps, 0.0, 1.0,
@@ -113,7 +106,9 @@ struct SelfCalibrationConfig {
   double imu_rotation_sigma_rad = 0.01;
   double gyroscope_scale_sigma = 0.01;
   double accelerometer_scale_sigma = 0.01;
-  double turn_before_rad = 0.02;
+  /// The constants of the sensors and the offset of the IMU clock are not estimated before the camera has
+  /// turned by this angle in all (rad). Their uncertainty counts from the first frame on.
+  static constexpr double turn_before_rad = 0.02;
   double timing_walk = 0.0;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -129,9 +124,6 @@ struct SelfCalibrationConfig {
              "0 holds them");
     v.number("accelerometer_scale_sigma", self.accelerometer_scale_sigma, 0.0, 0.2,
              "the same for the accelerometer");
-    v.number("turn_before_rad", self.turn_before_rad, 0.0, 100.0,
-             "all of these, and the offset of the IMU's clock, stay as they are until the camera has turned "
-             "by so much in all (rad); their uncertainty counts from the first frame on");
     v.number(
         "timing_walk", self.timing_walk, 0.0, 10.0,
         "read-outs, delay of depth and offset of the IMU's clock may wander by so many standard "

@@ -64,16 +64,27 @@ struct InfinitamConfig {
   int iterations_fine = 50;
   double gate_coarse = 0.1;
   double gate_fine = 0.004;
-  double gate_factor = 8.0;
+  /// The bound of the squared distance of the extended tracker is this many times the gate.
+  static constexpr double gate_factor = 8.0;
   double min_step = 1e-4;
-  int frames_to_skip = 20;
-  int frames_to_weight = 50;
-  double color_weight = 0.3;
-  double color_gate_coarse = 0.175;
-  double color_gate_fine = 0.005;
-  double min_color_gradient = 0.01;
-  double good_inlier_share = 0.5;
-  double failed_inlier_share = 0.2;
+  /// After a hundred frames the extended tracker does not use surfaces of this weight or less.
+  static constexpr int frames_to_skip = 20;
+  /// After a hundred frames a match of the extended tracker weighs in proportion to the weight of the surface
+  /// above that, up to 1 at this weight.
+  static constexpr int frames_to_weight = 50;
+  /// Factor on the residuals of intensity.
+  static constexpr double color_weight = 0.3;
+  /// Width of Tukey's norm of the coarsest level (intensities from 0 to 1).
+  static constexpr double color_gate_coarse = 0.175;
+  /// Width of Tukey's norm of the finest level.
+  static constexpr double color_gate_fine = 0.005;
+  /// Pixels whose gradient is smaller in x or y are not used (intensity per pixel).
+  static constexpr double min_color_gradient = 0.01;
+  /// A frame is good if this share of its depth pixels has a match on the finest level; a plain gate in place
+  /// of the program's trained classifier.
+  static constexpr double good_inlier_share = 0.5;
+  /// Below this share a frame has failed; between the two it is poor and not fused.
+  static constexpr double failed_inlier_share = 0.2;
   InfinitamFailure on_failure = InfinitamFailure::ignore;
   PeerDefects defects = PeerDefects::fixed;
 
@@ -92,25 +103,7 @@ struct InfinitamConfig {
              "of the coarsest level: width of Huber's norm (metres; extended), and bound of the squared "
              "distance of a match (square metres), with gate_factor; levels between are interpolated");
     v.number("gate_fine", self.gate_fine, 1e-6, 10.0, "the same of the finest level");
-    v.number("gate_factor", self.gate_factor, 1.0, 100.0,
-             "the extended tracker's bound of the squared distance is so many times the gate");
     v.number("min_step", self.min_step, 0.0, 1.0, "a level ends when a step is smaller (radians and metres)");
-    v.number("frames_to_skip", self.frames_to_skip, 0, 1000,
-             "after a hundred frames, surfaces of this weight or less are not used (extended)");
-    v.number("frames_to_weight", self.frames_to_weight, 1, 1000,
-             "after a hundred frames, matches weigh in proportion to the weight of the surface beyond "
-             "that, 1 at so much (extended)");
-    v.number("color_weight", self.color_weight, 0.0, 100.0, "factor on the residuals of intensity");
-    v.number("color_gate_coarse", self.color_gate_coarse, 1e-6, 10.0,
-             "width of Tukey's norm of the coarsest level (intensities from 0 to 1)");
-    v.number("color_gate_fine", self.color_gate_fine, 1e-6, 10.0, "the same of the finest level");
-    v.number("min_color_gradient", self.min_color_gradient, 0.0, 1.0,
-             "pixels whose gradient is smaller in x or y are not used (intensity per pixel)");
-    v.number("good_inlier_share", self.good_inlier_share, 0.0, 1.0,
-             "a frame is good if this share of its depth pixels has a match on the finest level; a plain "
-             "gate in place of the program's trained classifier");
-    v.number("failed_inlier_share", self.failed_inlier_share, 0.0, 1.0,
-             "below this share a frame has failed; between the two it is poor and not fused");
     v.choice("on_failure", self.on_failure,
              "what follows from that: nothing (the program's default), bad frames are not fused, or the "
              "place is looked for among stored frames (Glocker et al. 2015)");
@@ -141,35 +134,30 @@ struct OpencvOdometryConfig {
 /// BundleFusion: weights of its adjustments, and what its keypoints are chosen by. Defaults are the
 /// program's, but for dense_far_m.
 struct BundlefusionConfig {
-  int max_keypoints = 1024;
+  /// Keypoints of a frame, at most, the strongest first.
+  static constexpr int max_keypoints = 1024;
   double min_keypoint_scale_px = 3.0;
-  double keypoint_min_depth_m = 0.1;
-  double keypoint_max_depth_m = 4.0;
-  double sparse_weight = 1.0;
-  double dense_weight = 2.0;
-  double final_dense_weight = 15.0;
+  /// Depth below this is not used to find poses (metres); depth.min_m is the model's.
+  static constexpr double keypoint_min_depth_m = 0.1;
+  /// Depth above this is not used to find poses (metres); depth.max_m is the model's.
+  static constexpr double keypoint_max_depth_m = 4.0;
+  /// Weight of squared distances of matched keypoints.
+  static constexpr double sparse_weight = 1.0;
+  /// Weight of squared distances of points from planes within a chunk of frames; 0: not compared.
+  static constexpr double dense_weight = 2.0;
+  /// The same among all chunks at the end.
+  static constexpr double final_dense_weight = 15.0;
   double dense_far_m = 4.0;
   double max_residual_m = 0.08;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number("max_keypoints", self.max_keypoints, 8, 20000, "keypoints of a frame, the strongest first");
-    v.number("min_keypoint_scale_px", self.min_keypoint_scale_px, 0.0, 100.0,
-             "standard deviation of the Gaussian at which a keypoint is found (pixels); finer ones are not "
-             "used");
-    v.number("keypoint_min_depth_m", self.keypoint_min_depth_m, 0.0, 100.0,
-             "depth below this is not used to find poses (metres); depth.min_m is the model's");
-    v.number("keypoint_max_depth_m", self.keypoint_max_depth_m, 0.01, 100.0,
-             "depth above this is not used to find poses (metres); depth.max_m is the model's");
-    v.number("sparse_weight", self.sparse_weight, 1e-6, 1e6,
-             "weight of squared distances of matched keypoints");
-    v.number("dense_weight", self.dense_weight, 0.0, 1e6,
-             "weight of squared distances of points from planes within a chunk of frames; 0: not compared");
-    v.number("final_dense_weight", self.final_dense_weight, 0.0, 1e6,
-             "the same among all chunks, at the end");
     v.number("dense_far_m", self.dense_far_m, 0.1, 100.0,
              "the weight of depth falls to 0 here (metres), as (1 - z / dense_far_m)^2.5. The authors edited "
              "this function in the source for each sequence that they published; this is one setting for all "
              "recordings");
+    v.number(
+        "min_keypoint_scale_px", self.min_keypoint_scale_px, 0.0, 100.0,
+        "standard deviation of the Gaussian at which a keypoint is found (pixels); finer ones are not used");
     v.number("max_residual_m", self.max_residual_m, 0.001, 10.0,
              "the worst pair of chunks is dropped if its keypoints are further apart along an axis (metres)");
   }
@@ -186,22 +174,25 @@ constexpr auto option_choices(ElasticfusionLoops) {
 /// ElasticFusion: tracking, surfels and loops. Defaults are the article's or, where it has none, the
 /// program's.
 struct ElasticfusionConfig {
-  double icp_weight = 10.0;
+  /// Factor on distances from planes (metres) beside differences of intensity (grey levels, each divided by
+  /// their deviation and its own size).
+  static constexpr double icp_weight = 10.0;
   bool rotation_start = true;
   double stable_confidence = 10.0;
   int time_window = 200;
   ElasticfusionLoops loops = ElasticfusionLoops::all;
-  double loop_min_inliers = 35000.0;
-  double loop_max_error_m = 5e-5;
-  double loop_max_variance = 1e-5;
+  /// Fewest matched pixels of a local loop, for an image of 640x480 (the program: 40000).
+  static constexpr double loop_min_inliers = 35000.0;
+  /// Most of the root of the summed squared distances of a local loop by the number of matches, for 640x480
+  /// (the program: 4e-5).
+  static constexpr double loop_max_error_m = 5e-5;
+  /// Most of any diagonal entry of the inverse normal equations of a local loop, for 640x480.
+  static constexpr double loop_max_variance = 1e-5;
   bool relocalise = false;
   bool use_imu = false;
   PeerDefects defects = PeerDefects::fixed;
 
   static constexpr void visit(auto& self, auto&& v) {
-    v.number("icp_weight", self.icp_weight, 0.0, 1000.0,
-             "factor on distances from planes (metres) beside differences of intensity (grey levels, each "
-             "divided by their deviation and its own size)");
     v.flag("rotation_start", self.rotation_start,
            "tracking starts from the rotation between the last two small images");
     v.number("stable_confidence", self.stable_confidence, 0.0, 1000.0,
@@ -211,13 +202,6 @@ struct ElasticfusionConfig {
     v.choice("loops", self.loops,
              "none; local: the active model is registered to the inactive one in view; all: places that "
              "ferns recognise as well");
-    v.number("loop_min_inliers", self.loop_min_inliers, 0.0, 1e7,
-             "fewest matched pixels of a local loop, for an image of 640x480 (the program: 40000)");
-    v.number("loop_max_error_m", self.loop_max_error_m, 0.0, 1.0,
-             "most of the root of the summed squared distances of a local loop by the number of matches, for "
-             "640x480 (the program: 4e-5)");
-    v.number("loop_max_variance", self.loop_max_variance, 0.0, 1.0,
-             "most of any diagonal entry of the inverse normal equations of a local loop, for 640x480");
     v.flag("relocalise", self.relocalise,
            "a frame that fits badly is lost and not fused, and its place is looked for by ferns");
     v.flag("use_imu", self.use_imu,

@@ -116,6 +116,8 @@ std::string summary_line(const record::RunRecord& record) {
     line += ", ";
   }
   line += fmt::format("{}/{} frames", record.frames.tracked, record.frames.total);
+  if (const std::string segments = record::segments_text(record.frames); !segments.empty())
+    line += ", " + segments;
   // Nobody timed what was imported.
   if (record.timing.fps > 0) line += fmt::format(", {:.1f} fps", record.timing.fps);
   if (const std::size_t silent = record.metrics.silent_frames().value_or(0); silent > 0)

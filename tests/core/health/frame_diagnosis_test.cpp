@@ -55,13 +55,10 @@ TEST(FrameHealth, HowMuchDepthIsEnough) {
 }
 
 TEST(FrameHealth, WhatCountsAsTexture) {
-  HealthConfig health;
-  const Scene faint{.contrast_grey = 5};
-  EXPECT_EQ(faint.judged(health), FrameHealth::good);
-  health.texture_gradient_grey = 5;
-  EXPECT_EQ(faint.judged(health), FrameHealth::short_of_texture) << "a gradient has to exceed it";
-  health.min_texture_share = 0;
-  EXPECT_EQ(faint.judged(health), FrameHealth::good);
+  const HealthConfig health;
+  EXPECT_EQ((Scene{.contrast_grey = 5}).judged(health), FrameHealth::good);
+  EXPECT_EQ((Scene{.contrast_grey = 4}).judged(health), FrameHealth::short_of_texture)
+      << "a gradient has to exceed 4 grey levels";
 }
 
 TEST(FrameHealth, HowManyCoveredPatchesAreAnOcclusion) {

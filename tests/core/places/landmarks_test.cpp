@@ -47,7 +47,7 @@ TEST(CoarseLandmarks, TellThePoseOfAnotherView) {
     for (const FeatureMatch& match : match_features(query.features, known.features, kFeatureOptions))
       seen.push_back({known.points_camera[match.known], query.features[match.query].pixel_px,
                       query.features[match.query].scale});
-    const auto pose = pose_from_points(seen, camera, {});
+    const auto pose = pose_from_points(seen, camera);
     ASSERT_TRUE(pose) << width_px;
     EXPECT_GT(pose->inliers.size(), 0.5 * static_cast<double>(seen.size()));
     EXPECT_LT((pose->T_a_camera.translation - T_known_query.translation).norm(), 0.02) << width_px;

@@ -52,38 +52,6 @@ TEST(PlaceFeatures, MatchesAreMutualNearAndDistinct) {
   EXPECT_EQ(matches.front().query, 1U);
 }
 
-TEST(PlaceFeatures, HowNearAndHowDistinctIsAskedFor) {
-  const auto matches = [](int query_bits, const std::vector<PlaceFeature>& known,
-                          const PlaceFeaturesConfig& config) {
-    return match_features(std::vector<PlaceFeature>{with_bits(query_bits)}, known, config).size();
-  };
-  const std::vector<PlaceFeature> far{with_bits(170)};
-  EXPECT_EQ(matches(100, far, {.max_descriptor_bits = 69}), 0U);
-  EXPECT_EQ(matches(100, far, {.max_descriptor_bits = 70}), 1U);
-  const std::vector<PlaceFeature> alike{with_bits(110), with_bits(112)};
-  EXPECT_EQ(matches(100, alike, {.max_ratio_percent = 83}), 0U) << "10 is not below 9.96";
-  EXPECT_EQ(matches(100, alike, {.max_ratio_percent = 84}), 1U) << "10 is below 10.08";
-}
-
-TEST(PlaceFeatures, AHigherThresholdFindsFewerCorners) {
-  const GreyImage grey = room_image();
-  const std::size_t faint = find_corners(grey, {.fast_threshold = 4}).size();
-  const std::size_t usual = find_corners(grey, kFeatureDefaults).size();
-  const std::size_t strong = find_corners(grey, {.fast_threshold = 60}).size();
-  EXPECT_GT(faint, usual);
-  EXPECT_GT(usual, strong);
-}
-
-TEST(PlaceFeatures, TheCoarsestScaleFollowsLevelsAndFactor) {
-  const auto coarsest = [grey = room_image()](const PlaceFeaturesConfig& config) {
-    double scale = 0;
-    for (const PlaceFeature& f : find_place_features(grey, config)) scale = std::max(scale, f.scale);
-    return scale;
-  };
-  EXPECT_NEAR(coarsest({.levels = 1}), 1.0, 1e-6);
-  EXPECT_NEAR(coarsest({.levels = 2, .level_factor = 1.5}), 1.5, 1e-6);
-}
-
 TEST(PlaceFeatures, CornersAreWhereTheImageHasThem) {
   GreyImage grey(200, 150, 60);
   grey(50, 61) = 200;
