@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/config/toml_document.hpp"
 #include "eval/record/record.hpp"
@@ -108,6 +111,15 @@ std::map<std::string, std::string> defaults_of(const record::RunRecord& record) 
   return defaults;
 }
 
+/// Options that only one of two versions has; of many their number.
+std::string differing_options_text(const std::vector<std::string>& differences) {
+  constexpr std::size_t kMostNamed = 8;
+  if (differences.size() <= kMostNamed) return fmt::format("options: {}", fmt::join(differences, ", "));
+  return fmt::format("options: {}, and {} more that only one of the two versions has",
+                     fmt::join(std::span(differences).first(kMostNamed), ", "),
+                     differences.size() - kMostNamed);
+}
+
 void add_config_gates(const record::RunRecord& base, const record::RunRecord& fresh, const Gates& gates,
                       std::vector<GateResult>& results) {
   const auto before = defaults_of(base);
@@ -127,7 +139,7 @@ void add_config_gates(const record::RunRecord& base, const record::RunRecord& fr
   for (const auto& [key, value] : after) {
     if (!before.contains(key)) others.push_back(fmt::format("{} = {} is new", key, value));
   }
-  if (!others.empty()) results.push_back(note("config", fmt::format("options: {}", fmt::join(others, ", "))));
+  if (!others.empty()) results.push_back(note("config", differing_options_text(others)));
   if (changed.empty()) {
     if (others.empty()) results.push_back({"config", GateVerdict::unchanged, false, {}});
     return;

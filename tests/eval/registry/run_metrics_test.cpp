@@ -37,7 +37,8 @@ json numbered_record() {
     number += 2;
     value = metric.kind == MetricKind::estimate ? json(number + 0.125) : json(number);
   }
-  document["frames"] = {{"total", 300}, {"tracked", 200}, {"lost", 50}};
+  document["frames"] = {{"total", 300},         {"tracked", 200}, {"lost", 50},
+                        {"other_segments", 30}, {"segments", 3},  {"segments_joined", 2}};
   document[pointer_of(run_metric("coverage").path)] = 200.0 / 300.0;
   return document;
 }
