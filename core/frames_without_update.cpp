@@ -33,7 +33,7 @@ void carry_on(Tracking& now, const filter::GaussianState& predicted, std::int64_
   report.status = health::FrameStatus::tracked;
   report.health = health::FrameHealth::repeated;
   report.reason = "colour is that of the frame before: the pose is predicted";
-  health::describe_certainty(predicted, report);
+  report.certainty = health::certainty_of(predicted);
   health::describe_state(predicted, rig.T_imu_camera, report);
   report.model_blocks = now.model.block_count();
 }

@@ -34,11 +34,9 @@ void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_came
   report.angular_velocity_radps = estimate.mean.angular_velocity_imu_radps;
 }
 
-void describe_certainty(const filter::GaussianState& estimate, FrameReport& report) {
-  report.model_rotation_sigma_rad =
-      largest_sigma(estimate.covariance.block<3, 3>(filter::kRotation, filter::kRotation));
-  report.model_position_sigma_m =
-      largest_sigma(estimate.covariance.block<3, 3>(filter::kPosition, filter::kPosition));
+PoseCertainty certainty_of(const filter::GaussianState& state) {
+  return {largest_sigma(state.covariance.block<3, 3>(filter::kRotation, filter::kRotation)),
+          largest_sigma(state.covariance.block<3, 3>(filter::kPosition, filter::kPosition))};
 }
 
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,
@@ -72,7 +70,7 @@ void describe_update(const measurement::PatchMeasurement& measurement, const fil
     report.correlation = median(correlations);
   report.variance_photometric = measurement.photometric_variance();
   report.variance_geometric = measurement.geometric_variance();
-  describe_certainty(result.posterior, report);
+  report.certainty = certainty_of(result.posterior);
   report.iterations = result.iterations;
   report.converged = result.converged;
   report.pixels = measurement.tracked_pixels();

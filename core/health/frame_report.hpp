@@ -27,6 +27,13 @@ struct PoseEvidence {
   filter::PoseTimingQuadratic timing;  ///< there
 };
 
+/// Standard deviations of the pose against the model, along the axis that it is least certain of.
+struct PoseCertainty {
+  double rotation_sigma_rad = 0;
+  double position_sigma_m = 0;
+};
+[[nodiscard]] PoseCertainty certainty_of(const filter::GaussianState& state);
+
 /// What happened in one frame, as only a filter that tracks patches can tell.
 struct FrameReport : FrameOutcome {
   FrameHealth health = FrameHealth::good;
@@ -48,9 +55,8 @@ struct FrameReport : FrameOutcome {
   double chi2_geometric = 0;
   double variance_photometric = 1;  ///< factor on the claimed variance (patch_scatter.hpp)
   double variance_geometric = 1;
-  /// Of the pose against the model, along the axis that it is least certain of.
-  double model_rotation_sigma_rad = 0;
-  double model_position_sigma_m = 0;
+  PoseCertainty predicted_certainty;  ///< before the update
+  PoseCertainty certainty;            ///< after it
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
   /// Median ZNCC of the tracked patches with their reference, of those with contrast; nothing if there are
   /// too few of these, or the colour is a repeated one.
@@ -67,9 +73,6 @@ struct FrameReport : FrameOutcome {
 
 /// Fills in the state after the frame: of the IMU that the camera is mounted to.
 void describe_state(const filter::GaussianState& estimate, const SE3& T_imu_camera, FrameReport& report);
-
-/// Fills in how certain the pose is against the model.
-void describe_certainty(const filter::GaussianState& estimate, FrameReport& report);
 
 /// Fills in what an update says of its patches: counts, chi-squares, variances, iterations, intensity.
 void describe_update(const measurement::PatchMeasurement& measurement, const filter::IekfResult& result,

@@ -58,8 +58,8 @@ std::string filter_cells(const health::FrameReport& report) {
       number_cell(report.variance_geometric), number_cell(report.velocity_world_mps.norm()),
       number_cell(report.angular_velocity_radps.norm()), number_cell(report.blur_px),
       number_cell(report.patch_motion_px), number_cell(sigma(filter::kPosition)),
-      number_cell(sigma(filter::kRotation)), number_cell(report.model_position_sigma_m),
-      number_cell(report.model_rotation_sigma_rad), number_cell(report.estimate.mean.imu_time_offset_s),
+      number_cell(sigma(filter::kRotation)), number_cell(report.certainty.position_sigma_m),
+      number_cell(report.certainty.rotation_sigma_rad), number_cell(report.estimate.mean.imu_time_offset_s),
       report.correlation ? number_cell(*report.correlation) : "");
 }
 constexpr std::size_t kFilterCells = 25;

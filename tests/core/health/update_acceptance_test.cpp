@@ -23,8 +23,10 @@ struct AcceptanceOptions {
   HealthConfig health;
 };
 
+/// Of an update whose prediction was uncertain.
 FrameReport report_with(int accepted, double chi2_photometric) {
   FrameReport report;
+  report.predicted_certainty = {.rotation_sigma_rad = 0.1, .position_sigma_m = 0.1};
   report.patches = 40;
   report.patches_accepted = accepted;
   report.chi2_photometric = chi2_photometric;
@@ -67,6 +69,19 @@ TEST(UpdateAcceptance, APoseThatMostIntensitiesContradictIsNotBelieved) {
       std::string::npos);
 }
 
+TEST(UpdateAcceptance, ASceneThatChangesDoesNotContradictAPoseThatIsKnownBefore) {
+  const AcceptanceOptions config;
+  FrameReport report = report_with(30, 1);
+  report.patches_tracked = 88;
+  report.patches_contradicting = 60;
+  report.correlation = 0.1;
+  report.predicted_certainty = {.rotation_sigma_rad = 0.001, .position_sigma_m = 0.002};
+  EXPECT_EQ(rejection_reason(report, config.terms, config.iekf, config.health), "")
+      << "a screen was switched";
+  report.predicted_certainty.position_sigma_m = 2 * config.health.max_position_sigma_m;
+  EXPECT_NE(rejection_reason(report, config.terms, config.iekf, config.health), "");
+}
+
 TEST(UpdateAcceptance, DoesNotDependOnRelocalisation) {
   AcceptanceOptions config;
   config.terms.relocalisation = false;
@@ -75,7 +90,7 @@ TEST(UpdateAcceptance, DoesNotDependOnRelocalisation) {
   contradicted.patches_contradicting = 19;
   EXPECT_NE(rejection_reason(contradicted, config.terms, config.iekf, config.health), "");
   FrameReport uncertain = report_with(30, 1);
-  uncertain.model_position_sigma_m = 2 * config.health.max_position_sigma_m;
+  uncertain.certainty.position_sigma_m = 2 * config.health.max_position_sigma_m;
   EXPECT_NE(rejection_reason(uncertain, config.terms, config.iekf, config.health), "");
 }
 
