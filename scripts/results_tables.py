@@ -10,6 +10,8 @@ writes the content:
     ...
     <!-- end of results -->
 
+Several summaries, `real.json,real_peers.json`, are tables of the runs of all of them.
+
   view=systems    a table for each of `values`: a row for each recording, a column for each system
   view=groups     a row for each group of recordings and system, a column for each of `values`: mean [smallest, largest] over
                   the recordings of the group
@@ -34,7 +36,7 @@ import re
 import statistics
 import sys
 
-REGION = re.compile(r"(<!-- results: (\S+\.json)([^\n]*?) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
+REGION = re.compile(r"(<!-- results: (\S+\.json(?:,\S+\.json)*)([^\n]*?) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 PARAMETERS = {
     "systems": {"values", "variants"},
     "groups": {"values", "variants", "split"},
@@ -98,6 +100,23 @@ class Summary:
         if origin["absent"]:
             text += " Not run, since not present: " + ", ".join(f"`{item.split(':')[0]}`" for item in origin["absent"]) + "."
         return text
+
+
+class SeveralSummaries:
+    """The runs of several summaries, in their order."""
+
+    def __init__(self, parts):
+        self.parts = parts
+        self.name = ",".join(part.name for part in parts)
+        self.runs = [run for part in parts for run in part.runs]
+        self.criteria = [criterion for part in parts for criterion in part.criteria]
+        self.versions = list(dict.fromkeys(version for part in parts for version in part.versions))
+
+    def variants(self):
+        return list(dict.fromkeys(run["variant"] for run in self.runs))
+
+    def made_by(self):
+        return "\n\n".join(part.made_by() for part in self.parts)
 
 
 def spread(values):
@@ -269,10 +288,11 @@ def new_page(path, root, metrics, summaries):
         raise PageError(f"{where}: a region '<!-- results: NAME.json ... -->' has no '<!-- end of results -->', or names no .json")
     versions = set()
     for region in regions:
-        name = region.group(2)
-        if name not in summaries:
-            summaries[name] = Summary(root / "results" / name)
-        versions.add(tuple(summaries[name].versions))
+        names = region.group(2)
+        if names not in summaries:
+            parts = [Summary(root / "results" / name) for name in names.split(",")]
+            summaries[names] = parts[0] if len(parts) == 1 else SeveralSummaries(parts)
+        versions.update(summaries[names].versions)
 
     def replaced(region):
         summary = summaries[region.group(2)]

@@ -183,7 +183,7 @@ TEST(Pipeline, BesideARepeatedColourTheVelocityCarriesOnOnce) {
   const auto reports = track(stalled, config_of("no-imu"));
   EXPECT_EQ(reports[5].health, FrameHealth::repeated);
   EXPECT_EQ(reports[5].patches_tracked, 0);
-  EXPECT_GT(reports[5].model_position_sigma_m, reports[4].model_position_sigma_m);
+  EXPECT_GT(reports[5].certainty.position_sigma_m, reports[4].certainty.position_sigma_m);
   EXPECT_FALSE(reports[5].reason.empty());
   EXPECT_GT(reports[6].patches_tracked, 0);
   for (std::size_t k = 5; k < reports.size(); ++k) EXPECT_EQ(reports[k].status, FrameStatus::tracked) << k;

@@ -30,6 +30,7 @@ summary() {
 summary a 1.0 "$(run no-imu desk none 0 ok 0.01)" "$(run no-imu desk none 1 ok 0.02)" "$(run no-imu desk none 2 lost null)" \
   "$(run peer desk none 0 ok 0.005)" "$(run full desk 'synthetic IMU' 0 ok 0.03)"
 summary b 2.0 "$(run no-imu desk none 0 ok 0.01)"
+summary more 1.0 "$(run other desk none 0 ok 0.02)"
 
 # expect STATUS WORDS PAGE [OPTION]: the exit code, and words of the page or of what the script prints.
 expect() {
@@ -51,6 +52,7 @@ expect 0 '- `ate_rmse_m` [cm]: desk: `peer` 0.50, `no-imu` 1.50 [1.00, 2.00]' "$
 expect 0 '- `ate_rmse_m` [cm]: none' "$(region 'a.json view=worse values=ate_rmse_m system=peer peers=no-imu')"
 expect 0 '| desk | `no-imu` | 1 | 1.50 |' "$(region 'a.json view=groups values=ate_rmse_m variants=no-imu')"
 expect 0 'of different versions' "$(region 'a.json view=criteria')\n$(region 'b.json view=criteria')"
+expect 0 '| desk | **1.50 [1.00, 2.00]** (lost: 1 of 3) | **2.00** |' "$(region 'a.json,more.json view=systems values=ate_rmse_m variants=no-imu,other')"
 expect 1 'run scripts/results_tables.py' "$(region 'a.json view=criteria' 'old\n')" --check
 expect 2 "no metric of" "$(region 'a.json view=systems values=ate')"
 expect 2 "view=table (allowed: systems" "$(region 'a.json view=table')"
