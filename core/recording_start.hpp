@@ -19,7 +19,8 @@ namespace fusebench::core {
 enum class StartAction {
   go_on,
   wait,        ///< the frame cannot be the first one: forget it
-  start_here,  ///< hardly a frame was tracked from the first one: forget all, and process this one as the first
+  start_here,  ///< hardly a frame was tracked from the first one: forget all, and process this one as the
+               ///< first
   start_again  ///< forget all, and process the first two frames again, with the velocity that is known now
 };
 
@@ -36,10 +37,10 @@ class RecordingStart {
   [[nodiscard]] bool is_false_start(const health::FrameReport& report);
 
   const config::InitialisationConfig& config_;
-  bool is_second_ = false;   ///< the next frame is the one after the first
-  bool confirmed_ = false;   ///< enough frames were tracked after the first one
-  int lost_frames_ = 0;      ///< since the first one
-  int tracked_frames_ = 0;   ///< the same
+  bool is_second_ = false;  ///< the next frame is the one after the first
+  bool confirmed_ = false;  ///< enough frames were tracked after the first one
+  int lost_frames_ = 0;     ///< since the first one
+  int tracked_frames_ = 0;  ///< the same
 };
 
 }  // namespace fusebench::core

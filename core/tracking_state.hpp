@@ -24,8 +24,9 @@ namespace fusebench::core {
 
 /// What is known before the first frame.
 struct Beginning {
-  std::optional<filter::FilterState> motion = std::nullopt;   ///< of a restart: the velocities of this state
-  std::optional<filter::GaussianState> state = std::nullopt;  ///< of a segment: all of the state at its first frame
+  std::optional<filter::FilterState> motion = std::nullopt;  ///< of a restart: the velocities of this state
+  std::optional<filter::GaussianState> state =
+      std::nullopt;  ///< of a segment: all of the state at its first frame
 };
 
 /// The complete state of tracking after a frame; a restart replaces it. Buffers without state (images,

@@ -108,8 +108,7 @@ GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& 
 
 GaussianState with_model_of(const GaussianState& state, const GaussianState& there) {
   GaussianState result = state;
-  const Matrix6d carried =
-      pose_transport(state.mean.T_world_imu_reference, there.mean.T_world_imu_reference);
+  const Matrix6d carried = pose_transport(state.mean.T_world_imu_reference, there.mean.T_world_imu_reference);
   result.mean.model_offset = carried * there.mean.model_offset;
   result.mean.model_rate_offset = carried * there.mean.model_rate_offset;
   result.mean.model_readout = transported(carried, there.mean.model_readout);

@@ -153,7 +153,8 @@ filter::GaussianState begun_again(const filter::GaussianState& reckoned) {
   const Matrix3d rotation_world =
       R * reckoned.covariance.block<3, 3>(filter::kRotation, filter::kRotation) * R.transpose();
   constexpr int kClones = filter::kStateSize - filter::kReferencePose;
-  for (const auto& [offset, size] : {std::pair{0, filter::kPoseSize}, std::pair{+filter::kReferencePose, kClones}}) {
+  for (const auto& [offset, size] :
+       {std::pair{0, filter::kPoseSize}, std::pair{+filter::kReferencePose, kClones}}) {
     state.covariance.middleRows(offset, size).setZero();
     state.covariance.middleCols(offset, size).setZero();
   }

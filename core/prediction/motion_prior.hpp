@@ -42,8 +42,8 @@ struct MotionScale {
 };
 /// Before the first frame: motion.speed_mps and motion.rate_radps.
 [[nodiscard]] MotionScale initial_motion_scale(const config::MotionConfig& config);
-/// The exponential mean over MotionConfig::scale_time_s of the squared velocities, after a frame of that state and
-/// duration_s since the frame before.
+/// The exponential mean over MotionConfig::scale_time_s of the squared velocities, after a frame of that
+/// state and duration_s since the frame before.
 [[nodiscard]] MotionScale followed_scale(const MotionScale& scale, const filter::FilterState& state,
                                          double duration_s, const config::MotionConfig& config);
 

@@ -38,7 +38,7 @@ std::optional<double> ratio(const std::optional<double>& a, const std::optional<
 /// Of the frames that were processed: a run that was lost early must not look fast.
 std::optional<double> cpu_ms_per_frame(const RunNumbers& numbers) {
   const double processed = numbers["frames_tracked"].value_or(0) + numbers["frames_lost"].value_or(0) +
-                            numbers["frames_other_segments"].value_or(0);
+                           numbers["frames_other_segments"].value_or(0);
   const auto seconds = ratio(numbers["cpu_s"], processed);
   return seconds ? std::optional(1000 * *seconds) : std::nullopt;
 }

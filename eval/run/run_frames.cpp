@@ -115,9 +115,11 @@ void end_if_hardly_tracked(RunProgress& progress, const config::EvaluationConfig
   const record::RecordedFrames& frames = progress.frames;
   const double least = config.min_tracked_share * static_cast<double>(frames.total);
   if (progress.status != record::RunStatus::ok || static_cast<double>(frames.tracked) >= least) return;
-  progress.end(record::RunStatus::lost,
-               fmt::format("only {} of {} frames tracked (evaluation.min_tracked_share = {})", frames.tracked,
-                           frames.total, config.min_tracked_share));
+  const std::string segments = record::segments_text(frames);
+  progress.end(
+      record::RunStatus::lost,
+      fmt::format("only {} of {} frames tracked{}{} (evaluation.min_tracked_share = {})", frames.tracked,
+                  frames.total, segments.empty() ? "" : ", ", segments, config.min_tracked_share));
 }
 
 bool is_bad_data(const Error& error) {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/config/config.hpp"
-#include "core/recording_estimator.hpp"
 #include "core/preprocessing/depth_gates.hpp"
+#include "core/recording_estimator.hpp"
 #include "core/trajectory/trajectory.hpp"
 #include "datasets/open_recording.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"

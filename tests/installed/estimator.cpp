@@ -42,7 +42,8 @@ int main() {
   fusebench::SensorRig rig;
   rig.camera = camera();
   const fusebench::Workers workers(1);
-  fusebench::core::RecordingEstimator pipeline(config.values(), rig, std::span<const fusebench::ImuSample>(), workers);
+  fusebench::core::RecordingEstimator pipeline(config.values(), rig, std::span<const fusebench::ImuSample>(),
+                                               workers);
   for (int i = 0; i < 4; ++i) {
     const auto report = pipeline.process(frame_at(i, 0.005 * i));
     if (!report) {

@@ -22,7 +22,9 @@ constexpr config::RelocalisationConfig kOddsDefaults{};
 /// Dead reckoning to the origin.
 filter::GaussianState reckoned(double position_sigma_m, double rotation_sigma_rad = 0.1) {
   filter::GaussianState state;
-  state.covariance.diagonal().segment<3>(filter::kRotation).setConstant(rotation_sigma_rad * rotation_sigma_rad);
+  state.covariance.diagonal()
+      .segment<3>(filter::kRotation)
+      .setConstant(rotation_sigma_rad * rotation_sigma_rad);
   state.covariance.diagonal().segment<3>(filter::kPosition).setConstant(position_sigma_m * position_sigma_m);
   return state;
 }

@@ -93,8 +93,8 @@ class Robustness : public testing::InTemporaryFolder {
   static RunResult run(const Result<Recording>& recording, const Playback& playback) {
     EXPECT_TRUE(recording) << (recording ? "" : recording.error().message);
     const Workers workers(1);
-    RecordingEstimator pipeline(variant_config(find_variant(playback.variant).value()).values(), recording->rig,
-                      recording->imu, workers);
+    RecordingEstimator pipeline(variant_config(find_variant(playback.variant).value()).values(),
+                                recording->rig, recording->imu, workers);
     const std::int64_t first_ns = recording->frames.front().timestamp_ns;
     const SE3 T_first_truth = truth_at(*recording, first_ns).inverse();
     RunResult results;
