@@ -23,17 +23,14 @@ struct LoopsConfig {
   static constexpr double place_angle_deg = 15.0;
   int query_every = 10;
   double least_age_s = 10.0;
-  /// Features of a place, at most. They are found at half the image size (not below 320 pixels); depth
-  /// refines the pose that they give.
-  static constexpr int max_features = 400;
+  int max_features = 400;
   /// Candidates by appearance that are verified, the most similar first.
   static constexpr int max_candidates = 8;
   double max_dissimilarity = 0.7;
   int max_path_candidates = 3;
   /// Least share of the depth pixels of either frame that lie on the surface seen by the other one.
   static constexpr double min_consistent_share = 0.25;
-  /// Largest share of the depth pixels of either frame that lie where the other one saw free space.
-  static constexpr double max_violating_share = 0.05;
+  double max_violating_share = 0.05;
   /// A point lies on the surface within this many standard deviations of the depth noise plus 1 cm.
   static constexpr double depth_sigmas = 3.0;
   /// Dense alignment: largest distance of a point to its plane in the first iterations (metres), a quarter of
@@ -93,10 +90,15 @@ struct LoopsConfig {
         "place at 640x480");
     v.number("least_age_s", self.least_age_s, 0.5, 1000.0,
              "least time between the two places of a loop (seconds); the model itself holds what is younger");
+    v.number(
+        "max_features", self.max_features, 20, 20000,
+        "largest number of features of a place; they are found at half the image size, not below 320 pixels");
     v.number("max_dissimilarity", self.max_dissimilarity, 0.05, 1.0,
              "share of the ferns in which two similar places may differ (Glocker et al. 2015)");
     v.number("max_path_candidates", self.max_path_candidates, 0, 100,
              "candidates by the poses so far, those with the nearest view first, beside eight by appearance");
+    v.number("max_violating_share", self.max_violating_share, 0.0, 1.0,
+             "largest share of the depth of either frame that may lie where the other one saw free space");
     v.number("timing_sigma_s", self.timing_sigma_s, 0.0, 0.1,
              "standard deviation of the instants of colour, depth and their rows (seconds): the motion of "
              "the camera "
