@@ -191,7 +191,6 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
   if (config_.terms.patch_motion == config::PatchMotion::own_translation && novelty_.color)
     deformed_update_.move_patches_alone(prior);
   const std::span<const measurement::PatchOutcome> outcomes = deformed_update_.measurement().outcomes();
-  report.predicted_certainty = health::certainty_of(prior);
   health::describe_update(deformed_update_.measurement(), update, now.reference.patches, config_.health,
                           config_.iekf, report);
   report.health = health::judge_health(preparation_.observed(novelty_), outcomes, report.blur_px,

@@ -55,8 +55,7 @@ struct FrameReport : FrameOutcome {
   double chi2_geometric = 0;
   double variance_photometric = 1;  ///< factor on the claimed variance (patch_scatter.hpp)
   double variance_geometric = 1;
-  PoseCertainty predicted_certainty;  ///< before the update
-  PoseCertainty certainty;            ///< after it
+  PoseCertainty certainty;     ///< after the update
   double patch_motion_px = 0;  ///< median distance that the tracked patches moved since their reference
   /// Median ZNCC of the tracked patches with their reference, of those with contrast; nothing if there are
   /// too few of these, or the colour is a repeated one.

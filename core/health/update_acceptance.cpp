@@ -46,8 +46,6 @@ std::string rejection_reason(const FrameReport& report, const config::TermsConfi
         degrees(report.certainty.rotation_sigma_rad), 100 * report.certainty.position_sigma_m,
         health.max_rotation_sigma_deg, health.max_position_sigma_m);
   }
-  // Where the prediction knows the pose already, the scene has changed, as a screen does.
-  if (is_certain(report.predicted_certainty, health)) return {};
   return contradiction(report, terms, health);
 }
 

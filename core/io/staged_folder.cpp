@@ -34,8 +34,9 @@ std::error_code create_parents(const fs::path& path, std::vector<fs::path>& crea
   }
   error.clear();
   for (auto parent = missing.rbegin(); parent != missing.rend() && !error; ++parent) {
+    created.push_back(*parent);  // first: what is created has to be removed, also when memory runs out
     // Another process may have created it in the meantime: no error, and it must not be removed here.
-    if (fs::create_directory(*parent, error)) created.push_back(*parent);
+    if (!fs::create_directory(*parent, error)) created.pop_back();
   }
   return error;
 }

@@ -23,10 +23,8 @@ struct AcceptanceOptions {
   HealthConfig health;
 };
 
-/// Of an update whose prediction was uncertain.
 FrameReport report_with(int accepted, double chi2_photometric) {
   FrameReport report;
-  report.predicted_certainty = {.rotation_sigma_rad = 0.1, .position_sigma_m = 0.1};
   report.patches = 40;
   report.patches_accepted = accepted;
   report.chi2_photometric = chi2_photometric;
@@ -67,19 +65,6 @@ TEST(UpdateAcceptance, APoseThatMostIntensitiesContradictIsNotBelieved) {
   EXPECT_NE(
       rejection_reason(report, config.terms, config.iekf, config.health).find("19 of 36 tracked patches"),
       std::string::npos);
-}
-
-TEST(UpdateAcceptance, ASceneThatChangesDoesNotContradictAPoseThatIsKnownBefore) {
-  const AcceptanceOptions config;
-  FrameReport report = report_with(30, 1);
-  report.patches_tracked = 88;
-  report.patches_contradicting = 60;
-  report.correlation = 0.1;
-  report.predicted_certainty = {.rotation_sigma_rad = 0.001, .position_sigma_m = 0.002};
-  EXPECT_EQ(rejection_reason(report, config.terms, config.iekf, config.health), "")
-      << "a screen was switched";
-  report.predicted_certainty.position_sigma_m = 2 * config.health.max_position_sigma_m;
-  EXPECT_NE(rejection_reason(report, config.terms, config.iekf, config.health), "");
 }
 
 TEST(UpdateAcceptance, DoesNotDependOnRelocalisation) {
