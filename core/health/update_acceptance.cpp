@@ -9,16 +9,21 @@
 
 namespace fusebench::health {
 
-namespace {
-
-bool is_certain(const PoseCertainty& pose, const config::HealthConfig& health) {
-  return pose.rotation_sigma_rad <= radians(health.max_rotation_sigma_deg) &&
-         pose.position_sigma_m <= health.max_position_sigma_m;
-}
-
-/// Why the intensities say that the pose is a wrong one.
-std::string contradiction(const FrameReport& report, const config::TermsConfig& terms,
-                          const config::HealthConfig& health) {
+std::string rejection_reason(const FrameReport& report, const config::TermsConfig& terms,
+                             const config::IekfConfig& iekf, const config::HealthConfig& health) {
+  if (report.patches_accepted < iekf.min_patches) {
+    return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
+                       report.patches_accepted, report.patches, iekf.min_patches);
+  }
+  if (report.certainty.rotation_sigma_rad > radians(health.max_rotation_sigma_deg) ||
+      report.certainty.position_sigma_m > health.max_position_sigma_m) {
+    return fmt::format(
+        "uncertain: the pose against the model is known to {:.2f} degrees and {:.1f} cm "
+        "(health.max_rotation_sigma_deg = {}, health.max_position_sigma_m = {})",
+        degrees(report.certainty.rotation_sigma_rad), 100 * report.certainty.position_sigma_m,
+        health.max_rotation_sigma_deg, health.max_position_sigma_m);
+  }
+  // Whatever the frame suffers from: a pose that most of the intensities contradict is none.
   if (2 * report.patches_contradicting > report.patches_tracked) {
     return fmt::format("inconsistent: the intensities of {} of {} tracked patches do not fit the pose",
                        report.patches_contradicting, report.patches_tracked);
@@ -29,24 +34,6 @@ std::string contradiction(const FrameReport& report, const config::TermsConfig& 
         *report.correlation, health.min_correlation);
   }
   return {};
-}
-
-}  // namespace
-
-std::string rejection_reason(const FrameReport& report, const config::TermsConfig& terms,
-                             const config::IekfConfig& iekf, const config::HealthConfig& health) {
-  if (report.patches_accepted < iekf.min_patches) {
-    return fmt::format("{}: {} of {} patches were usable (iekf.min_patches = {})", to_string(report.health),
-                       report.patches_accepted, report.patches, iekf.min_patches);
-  }
-  if (!is_certain(report.certainty, health)) {
-    return fmt::format(
-        "uncertain: the pose against the model is known to {:.2f} degrees and {:.1f} cm "
-        "(health.max_rotation_sigma_deg = {}, health.max_position_sigma_m = {})",
-        degrees(report.certainty.rotation_sigma_rad), 100 * report.certainty.position_sigma_m,
-        health.max_rotation_sigma_deg, health.max_position_sigma_m);
-  }
-  return contradiction(report, terms, health);
 }
 
 void find_survivors(std::span<const patches::Patch> patches,

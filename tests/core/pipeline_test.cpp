@@ -23,6 +23,7 @@ using namespace core;
 
 namespace {
 
+using testing::config_of;
 using testing::simulate;
 using testing::SimulatedRun;
 using testing::track;
@@ -34,8 +35,6 @@ const SimulatedRun& shared_run() {
   static const SimulatedRun run = simulate(kFrames);
   return run;
 }
-
-Config config_of(std::string_view variant) { return variant_config(*find_variant(variant)).values(); }
 
 int tracked(const std::vector<FrameReport>& reports) {
   return static_cast<int>(std::count_if(

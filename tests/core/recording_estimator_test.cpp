@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "core/base/solvers.hpp"
-#include "core/config/config.hpp"
-#include "core/config/variants.hpp"
 #include "tests/support/simulated_run.hpp"
 
 namespace fusebench {
@@ -20,12 +18,11 @@ using namespace core;
 
 namespace {
 
+using testing::config_of;
 using testing::simulate;
 using testing::SimulatedRun;
 using testing::track;
 using testing::worst_error_m;
-
-Config options_of(std::string_view variant) { return variant_config(*find_variant(variant)).values(); }
 
 /// The light of a frame, times a factor; the response of the camera has a gamma of 2.2.
 void expose(RgbdFrame& frame, double factor) {
@@ -40,7 +37,7 @@ TEST(RecordingEstimator, FollowsAnExposureThatChangesByAFactorOfFourInFiveFrames
     for (std::size_t k = 4; k < run.frames.size(); ++k)
       expose(run.frames[k], std::pow(factor, std::min(1.0, static_cast<double>(k - 3) / 5)));
     for (const char* const variant : {"full", "no-imu"}) {
-      const std::vector<FrameReport> reports = track(run, options_of(variant));
+      const std::vector<FrameReport> reports = track(run, config_of(variant));
       EXPECT_TRUE(std::ranges::all_of(reports, [](const FrameReport& r) { return is_in_map(r.status); }))
           << variant << ", " << factor;
       EXPECT_LT(worst_error_m(run, reports), 0.01) << variant << ", " << factor;
@@ -98,7 +95,7 @@ class TwoViews : public ::testing::Test {
 
 TEST_F(TwoViews, WhatIsSeenWhileTheCameraIsLostIsASegmentThatAKnownPlaceJoinsToTheMap) {
   const Workers workers(1);
-  RecordingEstimator estimator(options_of("no-imu"), run_.rig, {}, workers);
+  RecordingEstimator estimator(config_of("no-imu"), run_.rig, {}, workers);
   const std::vector<FrameReport> reports = process(estimator);
   ASSERT_EQ(reports.size(), frames_.size());
   const auto status = [&](std::size_t frame) { return reports[frame].status; };
@@ -127,7 +124,7 @@ TEST_F(TwoViews, WhatIsSeenWhileTheCameraIsLostIsASegmentThatAKnownPlaceJoinsToT
 }
 
 TEST_F(TwoViews, WithoutSegmentsTheOtherViewIsLost) {
-  Config config = options_of("no-imu");
+  Config config = config_of("no-imu");
   config.segments.begin_after_s = 0;
   const Workers workers(1);
   RecordingEstimator estimator(config, run_.rig, {}, workers);

@@ -4,13 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
-#include "core/config/groups/config_fwd.hpp"
+#include "core/config/config.hpp"
+#include "core/config/variants.hpp"
 #include "core/recording_estimator.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 namespace fusebench::testing {
+
+inline config::Config config_of(std::string_view variant) {
+  return config::variant_config(*config::find_variant(variant)).values();
+}
 
 /// Runs the pipeline over all frames; errors fail the test that calls.
 inline std::vector<health::FrameReport> track(const SimulatedRun& run, const config::Config& config,

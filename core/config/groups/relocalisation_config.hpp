@@ -75,10 +75,10 @@ struct RelocalisationConfig {
         "lookalike_density", self.lookalike_density, 0.0, 1e6,
         "places outside of the map that look like one inside, per cubic metre and cubic radian (of which "
         "there are 79): 1e-6 is one in 13,000 m3, a large floor of a building. It bounds how uncertain dead "
-        "reckoning may be when a place is believed");
+        "reckoning may be when a place is accepted");
     v.number(
         "min_odds", self.min_odds, 1.0, 1e12,
-        "a place is believed if it is this many times as probable as all others that look like it, known or "
+        "a place is accepted if it is this many times as probable as all others that look like it, known or "
         "not");
   }
 };
