@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/config/config.hpp"
 #include "core/paper_system.hpp"
@@ -17,30 +18,31 @@ namespace {
 using MadeSystem = std::unique_ptr<systems::System>;
 
 MadeSystem make_filter(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
-                       const Workers& workers) {
-  return std::make_unique<PaperSystem>(config, rig, imu, workers);
+                       const Workers& workers, Replay replay) {
+  return std::make_unique<PaperSystem>(config, rig, imu, workers, std::move(replay));
 }
 
 MadeSystem make_infinitam(const config::Config& config, const SensorRig& rig,
-                          std::span<const ImuSample> /*imu*/, const Workers& workers) {
+                          std::span<const ImuSample> /*imu*/, const Workers& workers, Replay /*replay*/) {
   return std::make_unique<systems::infinitam::InfinitamSystem>(config.infinitam, config.depth, config.tsdf,
                                                                rig, workers);
 }
 
 MadeSystem make_opencv_odometry(const config::Config& config, const SensorRig& rig,
-                                std::span<const ImuSample> /*imu*/, const Workers& workers) {
+                                std::span<const ImuSample> /*imu*/, const Workers& workers,
+                                Replay /*replay*/) {
   return std::make_unique<systems::opencv_odometry::OpencvOdometrySystem>(
       config.opencv_odometry.method, config.depth, config.tsdf, rig, workers);
 }
 
 MadeSystem make_bundlefusion(const config::Config& config, const SensorRig& rig,
-                             std::span<const ImuSample> /*imu*/, const Workers& workers) {
-  return std::make_unique<systems::bundlefusion::BundlefusionSystem>(config.bundlefusion, config.depth,
-                                                                     config.tsdf, rig, workers);
+                             std::span<const ImuSample> /*imu*/, const Workers& workers, Replay replay) {
+  return std::make_unique<systems::bundlefusion::BundlefusionSystem>(
+      config.bundlefusion, config.depth, config.tsdf, rig, workers, std::move(replay));
 }
 
 MadeSystem make_elasticfusion(const config::Config& config, const SensorRig& rig,
-                              std::span<const ImuSample> imu, const Workers& workers) {
+                              std::span<const ImuSample> imu, const Workers& workers, Replay /*replay*/) {
   return std::make_unique<systems::elasticfusion::ElasticfusionSystem>(config, rig, imu, workers);
 }
 
@@ -73,10 +75,10 @@ constexpr std::array kSystems = {
 std::span<const SystemRow> all_systems() { return kSystems; }
 
 MadeSystem make_system(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
-                       const Workers& workers) {
+                       const Workers& workers, Replay replay) {
   const auto row = std::ranges::find(kSystems, config.system.method, &SystemRow::method);
   check(row != kSystems.end(), "the table of systems has a row for each system.method");
-  return row->make(config, rig, imu, workers);
+  return row->make(config, rig, imu, workers, std::move(replay));
 }
 
 }  // namespace fusebench::core

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/parallel.hpp"
+#include "core/base/replay.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/systems/system.hpp"
 
@@ -19,15 +20,16 @@ struct SystemRow {
   std::string_view threads;   ///< how many threads it uses, and whether that changes its results
   /// imu: empty for systems without one. What is passed by reference must outlive the system.
   std::unique_ptr<systems::System> (*make)(const config::Config& config, const SensorRig& rig,
-                                           std::span<const ImuSample> imu, const Workers& workers);
+                                           std::span<const ImuSample> imu, const Workers& workers,
+                                           Replay replay);
 };
 
 /// All systems, in the order in which they are listed.
 [[nodiscard]] std::span<const SystemRow> all_systems();
 
-/// The system of a configuration.
+/// The system of a configuration. replay: as of RecordingEstimator; bundlefusion makes its model by it.
 [[nodiscard]] std::unique_ptr<systems::System> make_system(const config::Config& config, const SensorRig& rig,
                                                            std::span<const ImuSample> imu,
-                                                           const Workers& workers);
+                                                           const Workers& workers, Replay replay = {});
 
 }  // namespace fusebench::core

@@ -44,7 +44,7 @@ void keep_moving(Tracking& now, std::int64_t now_ns, const SensorRig& rig,
   report.health = health::FrameHealth::diverged;
   report.reason = fmt::format("{}: the state predicted from the inertial samples is not finite",
                               health::to_string(report.health));
-  std::ignore = now.occlusion_gate.admits(report, health_options);
+  std::ignore = now.fusion_gate.admits(report, false, health_options);
   if (!now.estimate) return;
   now.estimate = prediction::predict_by_motion_model(*now.estimate, seconds_between(now.timestamp_ns, now_ns),
                                                      now.motion_scale, motion)

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <span>
+#include <utility>
 
+#include "core/base/replay.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/recording_estimator.hpp"
 #include "core/systems/system.hpp"
@@ -13,17 +15,12 @@ class PaperSystem final : public systems::System {
  public:
   /// As RecordingEstimator.
   PaperSystem(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
-              const Workers& workers)
-      : estimator_(config, rig, imu, workers) {}
+              const Workers& workers, Replay replay)
+      : estimator_(config, rig, imu, workers, std::move(replay)) {}
 
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
   [[nodiscard]] const health::FrameReport* filter_report() const override { return &report_; }
-  [[nodiscard]] bool wants_frames_again() const override { return estimator_.wants_frames_again(); }
-  void resume() override { estimator_.resume(); }
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override { return estimator_.revise(); }
-  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame) override {
-    return estimator_.fuse_again(frame);
-  }
   [[nodiscard]] const loops::LoopClosure* loops() const override { return estimator_.loops(); }
   [[nodiscard]] systems::Surface take_surface() override { return std::move(estimator_).take_model(); }
 

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/acceptance/surviving_patches.hpp"
+#include "core/acceptance/update_tests.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/filter/state_validity.hpp"
@@ -101,7 +103,7 @@ Result<health::FrameReport> Pipeline::finish_frame(health::FrameReport report, s
   ++now.frames;
 
   // Colour and depth of different instants belong neither into the model nor together into a patch.
-  if (now.occlusion_gate.admits(report, config_.health) && novelty_.complete()) {
+  if (now.fusion_gate.admits(report, novelty_.complete(), config_.health)) {
     const filter::FilterState& state = now.estimate->mean;
     preparation_.prepare_again(state, velocity_tolerance_to_fuse(config_.compensation), report.stages);
     const Result<void> fused = fuse(report);  // Sec. 2.3: M_k(X)
@@ -195,7 +197,7 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
                           config_.iekf, report);
   report.health = health::judge_health(preparation_.observed(novelty_), outcomes, report.blur_px,
                                        config_.health, config_.iekf, config_.patches.size_px);
-  report.reason = health::rejection_reason(report, config_.terms, config_.iekf, config_.health);
+  report.reason = acceptance::rejection_reason(report, config_.terms, config_.iekf, config_.health);
   if (!report.reason.empty()) {
     // A light or a blur that the learnt noise does not allow must not lock every frame out.
     now.residual_scale = {std::max(1.0, now.residual_scale.photometric),
@@ -214,7 +216,7 @@ bool Pipeline::track(const filter::GaussianState& prior, bool thorough, health::
   if (report.health != health::FrameHealth::occluded && novelty_.complete())
     now.residual_scale = measurement::followed_scale(now.residual_scale, outcomes, config_.iekf,
                                                      config_.photometric, config_.geometric);
-  health::find_survivors(now.reference.patches, outcomes, config_.patches, now.survivors);
+  acceptance::find_survivors(now.reference.patches, outcomes, config_.patches, now.survivors);
   return true;
 }
 

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/acceptance/fusion_gate.hpp"
+#include "core/acceptance/recording_start.hpp"
 #include "core/config/config.hpp"
 #include "core/filter/moved_state.hpp"
 #include "core/filter/pose_clones.hpp"
 #include "core/map_segments.hpp"
 #include "core/pipeline.hpp"
 #include "core/prediction/initialisation.hpp"
-#include "core/recording_start.hpp"
 #include "core/tracking_state.hpp"
 
 namespace fusebench::core {
@@ -34,11 +35,12 @@ SensorRig rig_for(const config::TermsConfig& terms, SensorRig rig) {
 
 struct RecordingEstimator::State {
   State(const config::Config& config_in, const SensorRig& rig_in, std::span<const ImuSample> imu,
-        const Workers& workers)
+        const Workers& workers, Replay replay_in)
       : config(config_in),
         segment_config(config_of_segment(config_in)),
         rig(rig_for(config.terms, rig_in)),
-        pipeline(config, rig, imu, workers, std::make_unique<Tracking>(config, rig)) {}
+        pipeline(config, rig, imu, workers, std::make_unique<Tracking>(config, rig)),
+        replay(std::move(replay_in)) {}
 
   Result<health::FrameReport> process(const RgbdFrame& frame);
   Result<health::FrameReport> process_second_again(const RgbdFrame& second);
@@ -50,7 +52,9 @@ struct RecordingEstimator::State {
   Result<health::FrameReport> begin_segment(const RgbdFrame& frame, health::FrameReport report);
   void leave_segment();
 
-  Result<void> correct_by_loops();
+  Result<bool> correct_by_loops();
+  Result<void> fuse_all_again();
+  Result<void> fuse_again(const RgbdFrame& frame);
   [[nodiscard]] MapSegments::CorrectedPose corrected_pose() const;
   [[nodiscard]] Trajectory revised_trajectory() const;
   [[nodiscard]] const Tracking& of_map() const { return map ? *map : pipeline.tracking(); }
@@ -59,12 +63,12 @@ struct RecordingEstimator::State {
   config::Config segment_config;
   SensorRig rig;
   Pipeline pipeline;
-  RecordingStart start{config.initialisation};
+  acceptance::RecordingStart start{config.initialisation};
   std::optional<RgbdFrame> first_frame;  ///< until the second one was processed
   MapSegments segments;
-  std::unique_ptr<Tracking> map;                   ///< while a segment is open
-  std::optional<filter::GaussianState> corrected;  ///< by a loop, to go on with once the model is there again
-  bool map_is_corrected = false;                   ///< by a loop, at least once
+  Replay replay;
+  std::unique_ptr<Tracking> map;  ///< while a segment is open
+  bool map_is_corrected = false;  ///< by a loop, at least once
 };
 
 void RecordingEstimator::State::restart(Beginning beginning) {
@@ -73,12 +77,12 @@ void RecordingEstimator::State::restart(Beginning beginning) {
   segments = {};
 }
 
-/// From the first frame on, as RecordingStart says.
+/// From the first frame on, as acceptance::RecordingStart decides.
 Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& frame) {
   Result<health::FrameReport> report = process_located(frame);
   if (!report) return report;
-  StartAction action = start.judge(*report);
-  if (action == StartAction::start_again) {
+  acceptance::StartAction action = start.judge(*report);
+  if (action == acceptance::StartAction::start_again) {
     health::StageTimes so_far = report->stages;
     report = process_second_again(frame);
     if (!report) return report;
@@ -86,7 +90,7 @@ Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& 
     report->stages = so_far;
     action = start.judge(*report);
   }
-  if (action == StartAction::start_here) {
+  if (action == acceptance::StartAction::start_here) {
     health::StageTimes so_far = report->stages;
     restart({});
     report = process_located(frame);
@@ -94,11 +98,11 @@ Result<health::FrameReport> RecordingEstimator::State::process(const RgbdFrame& 
     so_far.add(report->stages);
     report->stages = so_far;
     action = start.judge(*report);
-    if (action == StartAction::go_on)
+    if (action == acceptance::StartAction::go_on)
       report->reason = "started again: hardly a frame could be tracked from the first start";
   }
   const bool is_first = report->status == health::FrameStatus::initialised;
-  if (action == StartAction::wait) {
+  if (action == acceptance::StartAction::wait) {
     report->status = health::FrameStatus::lost;
     report->reason = fmt::format("waiting for a usable first frame: {}", health::to_string(report->health));
     report->model_blocks = 0;
@@ -135,7 +139,9 @@ Result<health::FrameReport> RecordingEstimator::State::process_located(const Rgb
     return report;
   }
   pipeline.tracking().loops.add_pose(report->timestamp_ns, report->T_world_camera);
-  if (const auto done = correct_by_loops(); !done) return tl::unexpected(done.error());
+  const Result<bool> corrected = correct_by_loops();
+  if (!corrected) return tl::unexpected(corrected.error());
+  report->poses_corrected = *corrected;
   return report;
 }
 
@@ -166,13 +172,10 @@ Result<health::FrameReport> RecordingEstimator::State::look_for_map(const RgbdFr
   return found;
 }
 
-/// The camera has been lost for a while, and its images are sound.
 bool RecordingEstimator::State::may_begin_segment(const health::FrameReport& report) const {
   const Tracking& lost = pipeline.tracking();
-  return config.terms.relocalisation && config.segments.begin_after_s > 0 &&
-         report.status == health::FrameStatus::lost && health::is_sound(report.health) &&
-         pipeline.novelty().complete() &&
-         seconds_between(lost.located_ns, lost.timestamp_ns) >= config.segments.begin_after_s;
+  return acceptance::may_begin_segment(report, seconds_between(lost.located_ns, lost.timestamp_ns),
+                                       pipeline.novelty().complete(), config.terms, config.segments);
 }
 
 /// The frame becomes the first one of a new segment, unless it cannot be tracked from. An earlier segment
@@ -207,20 +210,36 @@ void RecordingEstimator::State::leave_segment() {
   if (map) std::ignore = pipeline.exchange(std::move(map));
 }
 
-/// The world moves, and the model has to be made again.
-Result<void> RecordingEstimator::State::correct_by_loops() {
+/// True if a loop has corrected all poses: the world has moved, and the model is fused again.
+Result<bool> RecordingEstimator::State::correct_by_loops() {
   Tracking& now = pipeline.tracking();
   const auto moved = now.loops.correct_online();
   if (!moved) return tl::unexpected(moved.error());
-  if (!*moved) return {};
+  if (!*moved) return false;
   map_is_corrected = true;
-  corrected = filter::moved(*now.estimate, **moved);
-  now.model = tsdf::TsdfVolume(config.tsdf);
+  const filter::GaussianState corrected = filter::moved(*now.estimate, **moved);
   now.relocalisation.move([&](std::int64_t timestamp_ns) {
     const std::optional<SE3> joined = segments.joined_pose_near(timestamp_ns, corrected_pose());
     return joined ? *joined * rig.T_imu_camera : now.loops.corrected_pose_near(timestamp_ns);
   });
-  return {};
+  if (const Result<void> fused = fuse_all_again(); !fused) return tl::unexpected(fused.error());
+  pipeline.resume(corrected);
+  return true;
+}
+
+/// The model of the map, from every frame that was fused into it, at its pose of now.
+Result<void> RecordingEstimator::State::fuse_all_again() {
+  check(static_cast<bool>(replay), "an estimator that changes poses has a replay");
+  pipeline.tracking().model = tsdf::TsdfVolume(config.tsdf);
+  return replay([this](const RgbdFrame& frame) { return fuse_again(frame); });
+}
+
+Result<void> RecordingEstimator::State::fuse_again(const RgbdFrame& frame) {
+  std::optional<filter::FilterState> state;
+  if (map_is_corrected) state = of_map().loops.corrected_state(frame.timestamp_ns);
+  if (!state) state = segments.fused_state(frame.timestamp_ns, corrected_pose());
+  if (!state) return {};
+  return pipeline.fuse_again(frame, *state);
 }
 
 /// Empty unless a loop has corrected the map.
@@ -241,8 +260,8 @@ Trajectory RecordingEstimator::State::revised_trajectory() const {
 }
 
 RecordingEstimator::RecordingEstimator(const config::Config& config, const SensorRig& rig,
-                                       std::span<const ImuSample> imu, const Workers& workers)
-    : state_(std::make_unique<State>(config, rig, imu, workers)) {}
+                                       std::span<const ImuSample> imu, const Workers& workers, Replay replay)
+    : state_(std::make_unique<State>(config, rig, imu, workers, std::move(replay))) {}
 RecordingEstimator::~RecordingEstimator() = default;
 
 Result<health::FrameReport> RecordingEstimator::process(const RgbdFrame& frame) {
@@ -256,22 +275,8 @@ Result<std::optional<Trajectory>> RecordingEstimator::revise() {
   if (!changed) return tl::unexpected(changed.error());
   state_->map_is_corrected = *changed;
   if (!*changed && !state_->segments.has_joined()) return std::nullopt;
-  last.model = tsdf::TsdfVolume(state_->config.tsdf);
+  if (const Result<void> fused = state_->fuse_all_again(); !fused) return tl::unexpected(fused.error());
   return state_->revised_trajectory();
-}
-
-Result<void> RecordingEstimator::fuse_again(const RgbdFrame& frame) {
-  std::optional<filter::FilterState> state;
-  if (state_->map_is_corrected) state = state_->of_map().loops.corrected_state(frame.timestamp_ns);
-  if (!state) state = state_->segments.fused_state(frame.timestamp_ns, state_->corrected_pose());
-  if (!state) return {};
-  return state_->pipeline.fuse_again(frame, *state);
-}
-
-bool RecordingEstimator::wants_frames_again() const { return state_->corrected.has_value(); }
-
-void RecordingEstimator::resume() {
-  state_->pipeline.resume(*std::exchange(state_->corrected, std::nullopt));
 }
 
 const loops::LoopClosure* RecordingEstimator::loops() const {

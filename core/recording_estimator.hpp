@@ -8,6 +8,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/parallel.hpp"
+#include "core/base/replay.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/health/frame_report.hpp"
@@ -20,26 +21,21 @@ namespace fusebench::core {
 class RecordingEstimator {
  public:
   /// imu: all samples of the recording, sorted by time (empty if terms.prior does not need them); must
-  /// outlive the estimator, as must workers.
+  /// outlive the estimator, as must workers. replay: needed for loops.mode = online and for revise(), where
+  /// the model is fused again at other poses.
   RecordingEstimator(const config::Config& config, const SensorRig& rig, std::span<const ImuSample> imu,
-                     const Workers& workers);
+                     const Workers& workers, Replay replay = {});
   ~RecordingEstimator();
 
   /// Processes the next frame (time must increase). The first frame that can be used is the first one;
   /// those before are lost ("waiting for a usable first frame"). A lost frame is a report, not an error;
-  /// errors are IMU samples that do not cover the frame (data_corrupt) and a full model (run_failed).
+  /// errors are IMU samples that do not cover the frame (data_corrupt), a full model (run_failed), and those
+  /// of the replay. A loop may correct all poses so far (FrameOutcome::poses_corrected; loops.mode = online).
   [[nodiscard]] Result<health::FrameReport> process(const RgbdFrame& frame);
 
-  /// After process(): true if a loop has corrected all poses so far (loops.mode = online). Then the model is
-  /// empty, and is fused again from all frames so far, in order, by fuse_again(), before resume().
-  [[nodiscard]] bool wants_frames_again() const;
-  /// Error run_failed: a full model.
-  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame);
-  void resume();
-
   /// After the last frame: all poses in the map, if loops change them (loops.mode = final or online) or
-  /// segments were joined to the map; nothing if not. Then the model is empty, and is fused again from all
-  /// frames, in order. Errors: those of LoopClosure::close().
+  /// segments were joined to the map, and the model fused again at these; nothing if not. Errors: those of
+  /// LoopClosure::close() and of the replay, a full model (run_failed).
   [[nodiscard]] Result<std::optional<Trajectory>> revise();
   /// Nothing if loops.mode = off.
   [[nodiscard]] const loops::LoopClosure* loops() const;

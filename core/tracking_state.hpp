@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/acceptance/fusion_gate.hpp"
 #include "core/alignment/tracking_reference.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/filter/color_drift.hpp"
 #include "core/filter/filter_state.hpp"
-#include "core/health/update_acceptance.hpp"
 #include "core/loops/loop_closure.hpp"
 #include "core/loops/pending_revisits.hpp"
 #include "core/measurement/residual_scale.hpp"
@@ -48,7 +48,7 @@ struct Tracking {
   int lost_frames = 0;                            ///< in a row, before the current one
   bool carried_on = false;                        ///< the last frame has its pose from the velocity alone
   RepeatedImages repeated_images;
-  health::OcclusionGate occlusion_gate;
+  acceptance::FusionGate fusion_gate;
   filter::ColorDrift color_drift;
   measurement::ResidualScale residual_scale;      ///< noise scale estimated from earlier frames
   alignment::TrackingReference reference;         ///< from the last fused frame

@@ -32,6 +32,7 @@ struct FrameOutcome {
   SE3 T_world_camera;
   std::size_t segment = 0;         ///< that the frame was processed in; 0: the map
   std::size_t joined_segment = 0;  ///< that this frame joined to the map; 0: none
+  bool poses_corrected = false;    ///< by a loop after this frame: all poses so far have moved
   std::size_t model_blocks = 0;    ///< of the system's TSDF, if it has one
   StageTimes stages;               ///< wall time; the only part that is not reproducible
 };

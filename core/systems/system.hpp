@@ -32,16 +32,9 @@ class System {
   /// What a filter says of the last frame beyond its outcome; nothing of a system that has none.
   [[nodiscard]] virtual const health::FrameReport* filter_report() const { return nullptr; }
 
-  /// After process(): true if the system has corrected all its poses so far. Then the frames up to that one
-  /// come once more, in order, to fuse_again(), and resume() follows.
-  [[nodiscard]] virtual bool wants_frames_again() const { return false; }
-  virtual void resume() {}
-
-  /// The poses as the system revises them at the end, of the frames that have one; nothing if those of
-  /// process() are its last word. If there are some, all frames come once more, in order, to fuse_again().
-  /// Errors end the run.
+  /// The poses as the system revises them after the last frame, of the frames that have one, and its surface
+  /// at these poses; nothing if the poses of process() are not changed. Errors end the run.
   [[nodiscard]] virtual Result<std::optional<Trajectory>> revise() { return std::nullopt; }
-  [[nodiscard]] virtual Result<void> fuse_again(const RgbdFrame& /*frame*/) { return {}; }
 
   /// The places that the system knows, and the loops that it found; nothing of one that does not look for
   /// any. Until take_surface().

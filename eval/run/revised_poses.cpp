@@ -4,26 +4,18 @@
 
 #include <utility>
 
-#include "eval/run/frames_again.hpp"
-
 namespace fusebench::run {
 
-Result<std::optional<Trajectory>> revised_poses(const PreparedRun& run, systems::System& system,
-                                                RunProgress& progress, const RunControl& control) {
+Result<std::optional<Trajectory>> revised_poses(systems::System& system, RunProgress& progress,
+                                                const RunControl& control) {
   if (progress.status == record::RunStatus::failed || progress.frames.tracked == 0) return std::nullopt;
   auto revised = system.revise();
-  if (revised && !*revised) return std::nullopt;
-  Result<void> done;
   if (!revised) {
-    done = tl::unexpected(revised.error());
-  } else {
-    done = fuse_again(run, run.recording.frames.size(), system, control);
-  }
-  if (!done) {
-    if (control.is_stopped()) return tl::unexpected(done.error());
-    progress.end(record::RunStatus::failed, "revising the poses: " + done.error().message);
+    if (control.is_stopped()) return tl::unexpected(revised.error());
+    progress.end(record::RunStatus::failed, "revising the poses: " + revised.error().message);
     return std::nullopt;
   }
+  if (!*revised) return std::nullopt;
   progress.log +=
       fmt::format("poses revised at the end: {} frames, the model fused again\n", (*revised)->size());
   return revised;

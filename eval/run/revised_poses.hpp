@@ -1,4 +1,4 @@
-// The end of a run of a system that revises its poses: all frames once more, for the model.
+// The end of a run of a system that revises its poses.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,12 @@
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_frames.hpp"
-#include "eval/run/run_placement.hpp"
 
 namespace fusebench::run {
 
-/// Asks the system for its revised poses, and has it fuse the frames again if there are any; nothing if there
-/// are none, or the run did not come to its end. What goes wrong ends the run and is in the progress. Errors:
-/// run_failed (a stop).
-[[nodiscard]] Result<std::optional<Trajectory>> revised_poses(const PreparedRun& run, systems::System& system,
-                                                              RunProgress& progress,
+/// Asks the system for its revised poses; nothing if there are none, or the run did not come to its end. What
+/// goes wrong ends the run and is in the progress. Errors: run_failed (a stop).
+[[nodiscard]] Result<std::optional<Trajectory>> revised_poses(systems::System& system, RunProgress& progress,
                                                               const RunControl& control);
 
 /// What metrics need of the revised poses, with the mesh of the online output.

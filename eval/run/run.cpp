@@ -117,10 +117,12 @@ Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& 
   if (run.spec.replicate > 0)
     rig.T_world_first_camera =
         trajectory::noisy_pose(static_cast<std::uint64_t>(run.spec.replicate), config.system.replicate_noise);
-  auto system = core::make_system(config, rig, run.recording.imu, workers);
-  auto progress = process_frames(run, *system, *folder, control);
+  FrameReplay replay(run, control);
+  auto system = core::make_system(config, rig, run.recording.imu, workers,
+                                  [&replay](const FrameVisitor& visitor) { return replay.visit(visitor); });
+  auto progress = process_frames(run, *system, replay, *folder, control);
   if (!progress) return tl::unexpected(progress.error());
-  auto revised = revised_poses(run, *system, *progress, control);
+  auto revised = revised_poses(*system, *progress, control);
   if (!revised) return tl::unexpected(revised.error());
   const Trajectory truth = record::true_trajectory(run.recording, record::frame_stamps(run.recording));
   const LoopResults loops =

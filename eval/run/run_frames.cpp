@@ -10,7 +10,6 @@
 #include "eval/metrics/intensity_file.hpp"
 #include "eval/record/record_origin.hpp"
 #include "eval/run/frame_source.hpp"
-#include "eval/run/frames_again.hpp"
 
 namespace fusebench::run {
 
@@ -90,6 +89,9 @@ void take_frame(RunProgress& progress, std::size_t frame, const health::FrameOut
   }
   if (filter != nullptr) take_filter_report(progress, *filter, run.recording.rig.timing);
   follow_segments(progress, frame, outcome);
+  if (outcome.poses_corrected)
+    progress.log +=
+        fmt::format("frame {}: a loop corrected the poses: {} frames fused again\n", frame, frame + 1);
   if (health::is_in_map(outcome.status)) {
     take_pose(progress, frame, outcome, filter);
     return;
@@ -147,16 +149,6 @@ Result<std::optional<metrics::IntensityWriter>> intensity_writer(const PreparedR
   return std::move(*writer);
 }
 
-/// After a frame by which the system has corrected its poses: all frames so far once more, for its model.
-Result<void> make_model_again(const PreparedRun& run, std::size_t frame, systems::System& system,
-                              RunProgress& progress, const RunControl& control) {
-  if (auto again = fuse_again(run, frame + 1, system, control); !again) return again;
-  system.resume();
-  progress.log +=
-      fmt::format("frame {}: a loop corrected the poses: {} frames fused again\n", frame, frame + 1);
-  return {};
-}
-
 }  // namespace
 
 void RunProgress::end(record::RunStatus how, std::string why) {
@@ -165,7 +157,7 @@ void RunProgress::end(record::RunStatus how, std::string why) {
   log += fmt::format("{}: {}\n", record::to_string(status), reason);
 }
 
-Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
+Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system, FrameReplay& replay,
                                    const io::StagedFolder& folder, const RunControl& control) {
   RunProgress progress;
   const recording::Recording& recording = run.recording;
@@ -191,8 +183,10 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
       if (const auto ended = ends(frame, loaded.error()); !ended) return tl::unexpected(ended.error());
       break;
     }
+    replay.set_seen(frame + 1);
     const auto outcome = system.process(loaded->frame);
     if (!outcome) {
+      if (control.is_stopped()) return tl::unexpected(outcome.error());
       if (const auto ended = ends(frame, outcome.error()); !ended) return tl::unexpected(ended.error());
       break;
     }
@@ -211,13 +205,6 @@ Result<RunProgress> process_frames(const PreparedRun& run, systems::System& syst
                                          {begin, ready},
                                          outcome->stages,
                                          {processed, FrameClock::now()}});
-    if (system.wants_frames_again()) {
-      if (const auto again = make_model_again(run, frame, system, progress, control); !again) {
-        if (control.is_stopped()) return tl::unexpected(again.error());
-        if (const auto ended = ends(frame, again.error()); !ended) return tl::unexpected(ended.error());
-        break;
-      }
-    }
     if (control.progress) control.progress(frame + 1, recording.frames.size());
   }
   if (progress.status == record::RunStatus::ok && progress.frames.tracked == 0)

@@ -11,6 +11,7 @@
 #include "core/systems/system.hpp"
 #include "eval/profile/run_profile.hpp"
 #include "eval/record/record.hpp"
+#include "eval/run/frame_replay.hpp"
 #include "eval/run/run_control.hpp"
 #include "eval/run/run_evaluation.hpp"
 #include "eval/run/run_placement.hpp"
@@ -38,9 +39,11 @@ struct RunProgress {
   void end(record::RunStatus how, std::string why);
 };
 
-/// Processes all frames; intensity.bin goes into `folder` if it is kept. Errors: io, run_failed (a stop), and
-/// bad data if it is not recorded; whatever else goes wrong ends the run and is in the progress.
+/// Processes all frames; the replay, which the system was made with, follows. intensity.bin goes into
+/// `folder` if it is kept. Errors: io, run_failed (a stop), and bad data if it is not recorded; whatever else
+/// goes wrong ends the run and is in the progress.
 [[nodiscard]] Result<RunProgress> process_frames(const PreparedRun& run, systems::System& system,
-                                                 const io::StagedFolder& folder, const RunControl& control);
+                                                 FrameReplay& replay, const io::StagedFolder& folder,
+                                                 const RunControl& control);
 
 }  // namespace fusebench::run

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/replay.hpp"
 #include "tests/support/analytic_motion.hpp"
 #include "tests/support/rolling_shutter.hpp"
 #include "tests/support/textured_room.hpp"
@@ -49,6 +50,16 @@ inline SimulatedRun simulate(int count, const SensorTiming& timing = {},
   }
   run.imu = motion.samples(begin_s - 0.5, begin_s + count / 30.0 + 0.5, 200);
   return run;
+}
+
+/// Of all these frames, which must outlive it.
+inline Replay replay_of(const std::vector<RgbdFrame>& frames) {
+  return [&frames](const FrameVisitor& visit) -> Result<void> {
+    for (const RgbdFrame& frame : frames) {
+      if (auto visited = visit(frame); !visited) return visited;
+    }
+    return {};
+  };
 }
 
 }  // namespace fusebench::testing

@@ -26,7 +26,7 @@ config::DepthConfig keypoint_depth(config::DepthConfig depth, const config::Bund
 
 BundlefusionSystem::BundlefusionSystem(const config::BundlefusionConfig& config,
                                        const config::DepthConfig& depth, const config::TsdfConfig& tsdf,
-                                       const SensorRig& rig, const Workers& workers)
+                                       const SensorRig& rig, const Workers& workers, Replay replay)
     : config_(config),
       depth_(depth),
       keypoint_depth_(keypoint_depth(depth, config)),
@@ -34,7 +34,8 @@ BundlefusionSystem::BundlefusionSystem(const config::BundlefusionConfig& config,
       workers_(workers),
       graph_(config, workers),
       model_(tsdf),
-      T_world_start_(rig.first_camera()) {
+      T_world_start_(rig.first_camera()),
+      replay_(std::move(replay)) {
   cv::setNumThreads(workers.threads());
 }
 
@@ -141,12 +142,15 @@ Result<std::optional<Trajectory>> BundlefusionSystem::revise() {
     chunk_.reset();
   }
   graph_.finish();
+  Trajectory final_trajectory;
   for (const KnownFrame& frame : frames_) {
     if (const auto T_world_camera = final_pose(frame))
-      final_trajectory_.push_back({frame.timestamp_ns, *T_world_camera});
+      final_trajectory.push_back({frame.timestamp_ns, *T_world_camera});
   }
-  if (final_trajectory_.empty()) return std::nullopt;
-  return final_trajectory_;
+  if (final_trajectory.empty()) return std::nullopt;
+  const auto fused = replay_([&](const RgbdFrame& frame) { return fuse(frame, final_trajectory); });
+  if (!fused) return tl::unexpected(fused.error());
+  return final_trajectory;
 }
 
 /// By the latest chunk that gives one.
@@ -159,10 +163,11 @@ std::optional<SE3> BundlefusionSystem::final_pose(const KnownFrame& frame) const
   return std::nullopt;
 }
 
-Result<void> BundlefusionSystem::fuse_again(const RgbdFrame& frame) {
+/// If it has a final pose.
+Result<void> BundlefusionSystem::fuse(const RgbdFrame& frame, const Trajectory& final_trajectory) {
   const auto pose =
-      std::ranges::lower_bound(final_trajectory_, frame.timestamp_ns, {}, &StampedPose::timestamp_ns);
-  if (pose == final_trajectory_.end() || pose->timestamp_ns != frame.timestamp_ns) return {};
+      std::ranges::lower_bound(final_trajectory, frame.timestamp_ns, {}, &StampedPose::timestamp_ns);
+  if (pose == final_trajectory.end() || pose->timestamp_ns != frame.timestamp_ns) return {};
   return model_.integrate(frame, camera_, pose->T_world_camera, depth_, workers_);
 }
 

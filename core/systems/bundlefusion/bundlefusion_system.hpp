@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/replay.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/config/groups/frame_config.hpp"
 #include "core/config/groups/systems_config.hpp"
@@ -21,18 +22,18 @@ namespace fusebench::systems::bundlefusion {
 
 class BundlefusionSystem final : public System {
  public:
-  /// workers must outlive it. The threads of OpenCV are limited to as many.
+  /// workers must outlive it. The threads of OpenCV are limited to as many. replay: needed for revise().
   BundlefusionSystem(const config::BundlefusionConfig& config, const config::DepthConfig& depth,
-                     const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers);
+                     const config::TsdfConfig& tsdf, const SensorRig& rig, const Workers& workers,
+                     Replay replay);
 
   /// The world is the camera of the first frame that has keypoints. The pose is that of the chunk's first
   /// frame by all chunks before, times that within the chunk by the frames so far.
   [[nodiscard]] Result<health::FrameOutcome> process(const RgbdFrame& frame) override;
-  /// Poses after the last adjustment, of the frames whose chunk has a place; nothing if there are none.
+  /// Poses after the last adjustment, of the frames whose chunk has a place, which are fused; nothing if
+  /// there are none. Errors: run_failed (a full model), those of the replay.
   [[nodiscard]] Result<std::optional<Trajectory>> revise() override;
-  /// Fuses the frame if it has a final pose. Error run_failed: a full model.
-  [[nodiscard]] Result<void> fuse_again(const RgbdFrame& frame) override;
-  /// What fuse_again() has made.
+  /// What revise() has fused.
   [[nodiscard]] Surface take_surface() override;
 
  private:
@@ -58,6 +59,7 @@ class BundlefusionSystem final : public System {
   void start_next_chunk();
   [[nodiscard]] std::optional<SE3> T_world_chunk(std::size_t chunk) const;
   [[nodiscard]] std::optional<SE3> final_pose(const KnownFrame& frame) const;
+  [[nodiscard]] Result<void> fuse(const RgbdFrame& frame, const Trajectory& final_trajectory);
 
   config::BundlefusionConfig config_;
   config::DepthConfig depth_;
@@ -74,7 +76,7 @@ class BundlefusionSystem final : public System {
   SE3 T_world_start_;                         ///< of the first frame that can be matched
   SE3 T_world_camera_;                        ///< of the last frame that was not lost
   bool was_lost_ = false;
-  Trajectory final_trajectory_;
+  Replay replay_;
   DepthImage gated_m_;
 };
 

@@ -36,7 +36,8 @@ struct SystemRun {
 
 SystemRun run_system(const testing::SimulatedRun& recording, int threads) {
   const Workers workers(threads);
-  BundlefusionSystem system(test_config(), {}, {}, recording.rig, workers);
+  BundlefusionSystem system(test_config(), {}, {}, recording.rig, workers,
+                            testing::replay_of(recording.frames));
   SystemRun run;
   for (const RgbdFrame& frame : recording.frames) {
     auto outcome = system.process(frame);
@@ -44,7 +45,6 @@ SystemRun run_system(const testing::SimulatedRun& recording, int threads) {
     run.outcomes.push_back(std::move(*outcome));
   }
   run.revised = *system.revise();
-  for (const RgbdFrame& frame : recording.frames) EXPECT_TRUE(system.fuse_again(frame).has_value());
   run.model_blocks = std::get<tsdf::TsdfVolume>(system.take_surface()).block_count();
   return run;
 }

@@ -13,7 +13,7 @@
 #include "core/config/groups/config_fwd.hpp"
 #include "core/health/frame_report.hpp"
 
-namespace fusebench::core {
+namespace fusebench::acceptance {
 
 /// What has to be done after a frame at the beginning of a recording.
 enum class StartAction {
@@ -43,4 +43,4 @@ class RecordingStart {
   int tracked_frames_ = 0;  ///< the same
 };
 
-}  // namespace fusebench::core
+}  // namespace fusebench::acceptance

@@ -1,10 +1,10 @@
-#include "core/recording_start.hpp"
+#include "core/acceptance/recording_start.hpp"
 
 #include <utility>
 
 #include "core/config/groups/prediction_config.hpp"
 
-namespace fusebench::core {
+namespace fusebench::acceptance {
 
 StartAction RecordingStart::judge(const health::FrameReport& report) {
   if (confirmed_) return StartAction::go_on;
@@ -26,4 +26,4 @@ bool RecordingStart::is_false_start(const health::FrameReport& report) {
   return ++lost_frames_ >= config_.false_start_frames && health::is_sound(report.health);
 }
 
-}  // namespace fusebench::core
+}  // namespace fusebench::acceptance

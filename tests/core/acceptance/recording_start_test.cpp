@@ -1,4 +1,4 @@
-#include "core/recording_start.hpp"
+#include "core/acceptance/recording_start.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace fusebench {
 
 using namespace health;
-using namespace core;
+using namespace acceptance;
 
 namespace {
 

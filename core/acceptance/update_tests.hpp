@@ -1,0 +1,24 @@
+// Whether an update of the filter is accepted. The paper leaves this open.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/acceptance/acceptance_test.hpp"
+#include "core/config/groups/config_fwd.hpp"
+#include "core/health/frame_report.hpp"
+
+namespace fusebench::acceptance {
+
+/// The tests of an update that the report describes, in the order in which they are asked.
+[[nodiscard]] std::array<AcceptanceTest, 5> update_tests(const health::FrameReport& report,
+                                                         const config::TermsConfig& terms,
+                                                         const config::IekfConfig& iekf,
+                                                         const config::HealthConfig& health);
+
+/// Why the update is rejected, with the diagnosis of its frame; empty if it is accepted.
+[[nodiscard]] std::string rejection_reason(const health::FrameReport& report,
+                                           const config::TermsConfig& terms, const config::IekfConfig& iekf,
+                                           const config::HealthConfig& health);
+
+}  // namespace fusebench::acceptance

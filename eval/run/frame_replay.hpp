@@ -1,0 +1,32 @@
+// The frames that a system has seen, once more: after it has changed their poses.
+#pragma once
+
+#include <cstddef>
+
+#include "core/base/error.hpp"
+#include "core/base/replay.hpp"
+#include "eval/run/run_control.hpp"
+#include "eval/run/run_placement.hpp"
+
+namespace fusebench::run {
+
+/// What a system of the run replays frames by (base/replay.hpp).
+class FrameReplay {
+ public:
+  /// The references must outlive it.
+  FrameReplay(const PreparedRun& run, const RunControl& control) : run_(run), control_(control) {}
+
+  /// So many frames were given to the system.
+  void set_seen(std::size_t frames) { seen_ = frames; }
+
+  /// The frames that were seen, in order. Errors: run_failed (a stop), those of the recording and the
+  /// visitor.
+  [[nodiscard]] Result<void> visit(const FrameVisitor& visitor) const;
+
+ private:
+  const PreparedRun& run_;
+  const RunControl& control_;
+  std::size_t seen_ = 0;
+};
+
+}  // namespace fusebench::run
