@@ -87,6 +87,7 @@ int command_line(int given_count, const char* const* given) {
                                             recordings::add_export_verb(app),
                                             recordings::add_convert_verb(app),
                                             recordings::add_calibrate_verb(app),
+                                            recordings::add_prepare_verb(app),
                                             recordings::add_smooth_verb(app),
                                             shell::add_completion_verb(app),
                                             shell::add_manual_verb(app)};

@@ -74,6 +74,7 @@ Result<BatchJob> job_of(const Common& common, const suites::PlannedRecording& re
   run::RunSpec spec;
   spec.recording = recording.folder;
   spec.imu = common.suite.imu;
+  spec.prepare = common.suite.prepare;
   spec.variant = variant_name;
   spec.config = std::move(*config);
   spec.threads = common.options.threads;

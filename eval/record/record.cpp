@@ -33,6 +33,7 @@ Json json_of(const RecordedRecording& recording) {
                {"imu", recording.imu},
                {"imu_note", recording.imu_note},
                {"truth", recording.truth},
+               {"prepared", recording.prepared},
                {"notes", recording.notes}};
   if (recording.camera) json["camera"] = json_of_camera(*recording.camera);
   return json;
@@ -49,6 +50,7 @@ void read(const Json& json, RecordedRecording& recording) {
   recording.imu = json.at("imu");
   recording.imu_note = json.at("imu_note");
   recording.truth = json.value("truth", std::string());
+  recording.prepared = json.value("prepared", false);
   recording.notes = json.at("notes").get<std::vector<std::string>>();
   if (const auto camera = json.find("camera"); camera != json.end()) recording.camera = camera_of(*camera);
 }

@@ -16,6 +16,8 @@
 #include "core/meshing/marching_cubes.hpp"
 #include "core/trajectory/noisy_pose.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/preparation/preparation.hpp"
+#include "eval/preparation/prepared_recording.hpp"
 #include "eval/profile/trace_file.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/record/process_meter.hpp"
@@ -102,17 +104,39 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
                               record.recording.first_frame + silent.first_frame.value_or(0));
 }
 
+/// The run over the recording with the constants that it tells itself. What cannot be read is left to the
+/// run.
+Result<PreparedRun> with_preparation(const PreparedRun& run, const Workers& workers,
+                                     const RunControl& control) {
+  PreparedRun result = run;
+  if (!is_prepared(run.spec, run.recording)) return result;
+  if (control.preparing && !preparation::is_kept(run.spec.out, run.recording)) control.preparing();
+  auto recording = preparation::prepared_recording(run.recording, run.spec.out, workers, control.stop);
+  if (recording) {
+    result.recording = *std::move(recording);
+    return result;
+  }
+  const Error& error = recording.error();
+  if (error.code != ErrorCode::data_missing && error.code != ErrorCode::data_corrupt)
+    return tl::unexpected(error);
+  result.recording.notes.push_back("not prepared: " + error.message);
+  return result;
+}
+
 }  // namespace
 
-Result<record::RunRecord> execute_run(const PreparedRun& run, const RunControl& control) {
-  if (run.spec.program) return execute_program_run(run, control);
+Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl& control) {
+  if (asked.spec.program) return execute_program_run(asked, control);
+  const Workers workers(asked.spec.threads);
+  const auto prepared = with_preparation(asked, workers, control);
+  if (!prepared) return tl::unexpected(prepared.error());
+  const PreparedRun& run = *prepared;
   const record::ProcessMeter meter;
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());
   record::RunRecord record = requested_record(run);
 
   const config::Config& config = run.spec.config.values();
-  const Workers workers(run.spec.threads);
   SensorRig rig = run.recording.rig;
   if (run.spec.replicate > 0)
     rig.T_world_first_camera =

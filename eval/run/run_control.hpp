@@ -15,6 +15,7 @@ struct RunControl {
   /// goes on. Otherwise it is an error of the run like any bad data met on opening, and nothing is left
   /// behind.
   bool bad_data_is_recorded = true;
+  std::function<void()> preparing = {};  ///< before the recording is prepared, which takes seconds
 
   [[nodiscard]] bool is_stopped() const { return stop != nullptr && stop->load(); }
 };

@@ -22,6 +22,7 @@ std::string run_identity(const RunSpec& spec, const recording::Recording& record
   identity.add(fmt::format("{} {} {} {} {} {}", camera.width_px, camera.height_px, camera.fx_px, camera.fy_px,
                            camera.cx_px, camera.cy_px));
   identity.add(spec.program ? spec.program->identity : record::build_info().estimator);
+  if (is_prepared(spec, recording)) identity.add("prepared");
   if (spec.replicate > 0) identity.add(fmt::format("replicate {}", spec.replicate));
   return identity.hex();
 }
@@ -67,6 +68,7 @@ record::RunRecord requested_record(const PreparedRun& run) {
   record::RunRecord record;
   record.recording = record::recorded_recording(run.recording, run.spec.recording,
                                                 run.spec.frames ? run.spec.frames->begin : 0);
+  record.recording.prepared = is_prepared(run.spec, run.recording);
   record.variant = run.spec.variant;
   for (const config::OptionRow& row : config::describe_options(run.spec.config.values())) {
     if (run.spec.program && !row.key.starts_with("evaluation.")) continue;

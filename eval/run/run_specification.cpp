@@ -13,6 +13,7 @@
 #include "core/config/config.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/synthetic_imu/synthetic_imu.hpp"
+#include "eval/preparation/preparation.hpp"
 #include "eval/run_files/run_identity.hpp"
 
 namespace fusebench::run {
@@ -102,6 +103,10 @@ bool runs_filter(const RunSpec& spec) {
 }
 
 int seed_of(const RunSpec& spec) { return spec.repetition + spec.replicate; }
+
+bool is_prepared(const RunSpec& spec, const recording::Recording& recording) {
+  return spec.prepare && !spec.program && preparation::can_be_prepared(recording);
+}
 
 bool wants_imu(const RunSpec& spec) {
   return spec.program ? spec.program->imu != "none" : config::needs_imu(spec.config.values());

@@ -66,6 +66,7 @@ struct RunSpec {
   int threads = 1;
   int repetition = 1;  ///< the time is another sample; so are a program's results, unless it is deterministic
   int replicate = 0;   ///< above 0: begins at trajectory::noisy_pose(); of a program it is another seed
+  bool prepare = false;  ///< first measure what the calibration leaves open (preparation.hpp)
   KeptFiles kept = KeptFiles::all;
   bool profile = false;  ///< also trace.json and the record's histograms of times; no part of the identity
   std::filesystem::path out;
@@ -76,6 +77,9 @@ struct RunSpec {
 
 /// What {seed} of an external program stands for: another number for each repetition and replicate.
 [[nodiscard]] int seed_of(const RunSpec& spec);
+
+/// Whether the run first measures constants of the recording's sensors. External programs do not get them.
+[[nodiscard]] bool is_prepared(const RunSpec& spec, const recording::Recording& recording);
 
 /// Whether the run needs inertial samples.
 [[nodiscard]] bool wants_imu(const RunSpec& spec);

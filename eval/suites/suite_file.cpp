@@ -16,9 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 16> kSuiteKeys = {
-    "name",     "recordings", "all",  "variants", "systems", "imu",     "config",      "simulations",
-    "criteria", "frames",     "keep", "limits",   "sweep",   "exclude", "repetitions", "replicates"};
+constexpr std::array<std::string_view, 17> kSuiteKeys = {
+    "name",    "recordings", "all",         "variants",    "systems",   "imu",
+    "prepare", "config",     "simulations", "criteria",    "frames",    "keep",
+    "limits",  "sweep",      "exclude",     "repetitions", "replicates"};
 constexpr std::array<std::string_view, 5> kRecordingKeys = {"name", "group", "split", "variants", "source"};
 constexpr std::string_view kConfigPrefix = "config.";
 constexpr std::string_view kLimitPrefix = "limits.";
@@ -38,6 +39,13 @@ Result<void> read_imu(const config::TomlEntry& entry, Suite& suite) {
   if (!choice)
     return fail(ErrorCode::configuration, fmt::format("{}: {}", entry.place, choice.error().message));
   suite.imu = *choice;
+  return {};
+}
+
+Result<void> read_prepare(const config::TomlEntry& entry, Suite& suite) {
+  const auto text = plain_entry<std::string>(entry);
+  if (text != "auto" && text != "off") return wrong_entry(entry, "\"auto\" or \"off\"");
+  suite.prepare = text == "auto";
   return {};
 }
 
@@ -70,6 +78,7 @@ Result<void> read_entry(const config::TomlEntry& entry, Suite& suite) {
   if (entry.key == "variants") return store(variants_entry(entry), suite.variants);
   if (entry.key == "systems") return store(names_entry(entry), suite.systems);
   if (entry.key == "imu") return read_imu(entry, suite);
+  if (entry.key == "prepare") return read_prepare(entry, suite);
   if (entry.key == "keep") return read_kept(entry, suite);
   if (entry.key == "repetitions") return read_count(entry, run::kMostRepetitions, suite.repetitions);
   if (entry.key == "replicates") return read_count(entry, run::kMostReplicates, suite.replicates);

@@ -45,6 +45,7 @@ struct SuiteRecording {
 ///     systems = ["configs/systems/open3d.toml"]   # external programs, over the same recordings; files are
 ///                                     # read when runs are planned (engine::plan_batch())
 ///     imu = "synthetic"               # or "auto", "recorded" (default): see ImuChoice
+///     prepare = "off"                 # or "auto" (default): measure first what a calibration leaves open
 ///     [config]                        # edits for all runs, as in a configuration file
 ///     iekf.max_iterations = 8
 ///     repetitions = 3                 # of each run, for its time; default 1
@@ -64,6 +65,7 @@ struct Suite {
   std::vector<std::string> variants;
   std::vector<std::string> systems;  ///< files that define external programs, as the suite names them
   run::ImuChoice imu = run::ImuChoice::recorded;
+  bool prepare = true;                    ///< RunSpec::prepare of each run
   std::vector<config::TomlEntry> config;  ///< keys without "config."
   int repetitions = 1;
   int replicates = 1;

@@ -42,6 +42,7 @@ Result<run::RunSpec> spec_of(const RunRequest& request) {
   spec.recording = *folder;
   spec.open = std::move(*open);
   spec.imu = *imu;
+  spec.prepare = request.prepare == "auto";
   spec.variant = request.variant;
   spec.config = std::move(*config);
   spec.frames = *window;

@@ -21,6 +21,7 @@ struct RunRequest {
   std::filesystem::path data;
   std::string variant = "full";
   std::string imu = "recorded";
+  std::string prepare = "off";  ///< or "auto"
   ReadingOptions reading;
   std::filesystem::path config;
   std::vector<std::string> sets;

@@ -4,10 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
 
-#include "core/base/printable.hpp"
 #include "core/config/config_access.hpp"
 #include "core/config/variants.hpp"
 #include "datasets/calibration/rig_calibration.hpp"
@@ -17,10 +15,10 @@
 #include "eval/cli/console/number_checks.hpp"
 #include "eval/cli/console/run_request.hpp"
 #include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/recordings/calibration_output.hpp"
 #include "eval/cli/recordings/recording_verbs.hpp"
 #include "eval/inspection_report/depth_camera_report.hpp"
 #include "eval/run/run.hpp"
-#include "eval/text/text_file.hpp"
 
 namespace fusebench::cli::recordings {
 
@@ -37,22 +35,6 @@ struct CalibrateVerbOptions {
   bool depth_camera = false;
   bool json = false;
 };
-
-Result<void> write_calibration(const std::filesystem::path& out, const calibration::RigCalibration& rig) {
-  if (out.empty()) return {};
-  std::error_code ignored;
-  const bool there = std::filesystem::exists(out, ignored);
-  const auto replaced = calibration::read_calibration(out);
-  if (auto written = text::write_text_file(out, calibration::to_toml(rig)); !written) return written;
-  std::string before;
-  if (replaced)
-    before = fmt::format(", in place of a calibration ({})",
-                         replaced->source.empty() ? "no source given" : printable(replaced->source, 200));
-  else if (there)
-    before = ", in place of another file";
-  console::print_progress(fmt::format("{}: written{}", out.string(), before));
-  return {};
-}
 
 /// Of the images alone: no estimator runs, and no IMU is needed.
 Result<int> run_depth_camera(const CalibrateVerbOptions& options) {

@@ -84,6 +84,7 @@ Result<run::RunSpec> spec_like(const record::RunRecord& record, const console::R
   spec.recording = *folder;
   spec.open = std::move(*open);
   spec.imu = imu_of(record);
+  spec.prepare = record.recording.prepared;
   spec.variant = record.variant;
   spec.config = std::move(*config);
   if (const std::size_t count = record.recording.frames; count > 0)

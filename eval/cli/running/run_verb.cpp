@@ -15,6 +15,7 @@
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/external/external_program.hpp"
 #include "eval/external/system_name.hpp"
+#include "eval/preparation/preparation.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/run/run.hpp"
 #include "eval/run/run_specification.hpp"
@@ -124,8 +125,8 @@ Result<run::PreparedRun> prepare_like(const RunOptions& options) {
 /// The record says these. (The parser lists options that exclude several in another order each time.)
 Result<void> check_alone(const CLI::App& verb) {
   if (verb.count("--like") == 0) return {};
-  for (const char* const option :
-       {"--variant", "--imu", "--config", "--frames", "--repetition", "--replicates", "--system"}) {
+  for (const char* const option : {"--variant", "--imu", "--config", "--frames", "--prepare", "--repetition",
+                                   "--replicates", "--system"}) {
     if (verb.count(option) > 0)
       return fail(
           ErrorCode::usage, fmt::format("--like and {} exclude each other", option),
@@ -153,10 +154,19 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
   const run::RunControl control = {
       .progress = [&](std::size_t frame, std::size_t total) { bar.show(frame, total); },
       .stop = &console::stop_requested(),
-      .bad_data_is_recorded = false};
+      .bad_data_is_recorded = false,
+      .preparing =
+          [&] {
+            console::print_progress(
+                fmt::format("{}: measures what its calibration leaves open (--prepare off: it does not)",
+                            prepared.recording.name));
+          }};
   auto record = run::execute_run(prepared, control);
   bar.clear();
   if (!record) return record;
+  for (const std::string& note : record->recording.notes) {
+    if (note.starts_with(preparation::kPreparedNote)) console::print_progress(note);
+  }
 
   const std::string ending = record->status == record::RunStatus::ok
                                  ? console::summary_line(*record)
@@ -202,6 +212,12 @@ console::Verb add_run_verb(CLI::App& app) {
       app.add_subcommand("run", "Runs one variant over one recording and writes the run's folder");
   console::add_run_request(*verb, options->request);
   verb->get_option("RECORDING")->required(false);  // a record names one
+  options->request.prepare = "auto";
+  verb->add_option("--prepare", options->request.prepare,
+                   "auto: first measures, once for a recording, what its calibration leaves open (`fusebench "
+                   "prepare`), and runs with that; off: takes the calibration as it is")
+      ->check(CLI::IsMember({"auto", "off"}))
+      ->capture_default_str();
   verb->add_option(
           "--like", options->like,
           "Repeats the run of this record.json, or of this run's folder: the same recording (by its "

@@ -1,0 +1,15 @@
+// The calibration.toml that a verb writes.
+#pragma once
+
+#include <filesystem>
+
+#include "core/base/error.hpp"
+#include "datasets/calibration/rig_calibration.hpp"
+
+namespace fusebench::cli::recordings {
+
+/// Writes the file, unless its name is empty, and says so, with what it replaces. Error io.
+[[nodiscard]] Result<void> write_calibration(const std::filesystem::path& out,
+                                             const calibration::RigCalibration& rig);
+
+}  // namespace fusebench::cli::recordings

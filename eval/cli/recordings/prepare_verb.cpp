@@ -1,0 +1,77 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "eval/cli/console/console.hpp"
+#include "eval/cli/console/reading_options.hpp"
+#include "eval/cli/console/shared_options.hpp"
+#include "eval/cli/recordings/calibration_output.hpp"
+#include "eval/cli/recordings/recording_verbs.hpp"
+#include "eval/preparation/preparation_report.hpp"
+#include "eval/run/run_specification.hpp"
+#include "eval/suites/recording_names.hpp"
+
+namespace fusebench::cli::recordings {
+
+namespace {
+
+struct PrepareVerbOptions {
+  std::string recording;
+  std::filesystem::path data;
+  std::string frames;
+  console::ReadingOptions reading;
+  int threads = 1;
+  std::filesystem::path out;
+  bool json = false;
+};
+
+Result<recording::Recording> open(const PrepareVerbOptions& options) {
+  const auto window = console::parse_frames(options.frames);
+  if (!window) return tl::unexpected(window.error());
+  const auto folder = suites::find_recording(options.recording, options.data);
+  if (!folder) return tl::unexpected(folder.error());
+  const auto how = console::open_options(options.reading);
+  if (!how) return tl::unexpected(how.error());
+  return run::open_window(*folder, *how, *window);
+}
+
+Result<int> run(const PrepareVerbOptions& options) {
+  const auto recording = open(options);
+  if (!recording) return tl::unexpected(recording.error());
+  console::print_warnings(recording->warnings);
+  const Workers workers(options.threads);
+  const auto prepared = preparation::prepare(*recording, workers, &console::stop_requested());
+  if (!prepared) return tl::unexpected(prepared.error());
+  const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
+  if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
+  console::print_output(options.json ? preparation::to_json(*prepared, *recording)
+                                     : preparation::to_text(*prepared, *recording));
+  return 0;
+}
+
+}  // namespace
+
+console::Verb add_prepare_verb(CLI::App& app) {
+  auto options = std::make_shared<PrepareVerbOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "prepare",
+      "Measures from the images what the calibration leaves open: read-out of colour and of depth, delay of "
+      "depth");
+  verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
+      ->required();
+  console::add_threads_option(*verb, options->threads);
+  verb->add_option("--frames", options->frames, "Only frames A to B-1; A: takes all from A on")
+      ->type_name("A:B");
+  console::add_reading_options(*verb, options->reading);
+  console::add_data_option(*verb, options->data);
+  verb->add_option("--out", options->out,
+                   "Writes the calibration of all sensors, for --calibration of other verbs or as the "
+                   "recording's calibration.toml")
+      ->type_name("FILE.toml");
+  console::add_json_flag(*verb, options->json);
+  verb->footer(
+      "`run` and `bench` do the same before they run (--prepare auto). No IMU and no ground truth are used. "
+      "How it is measured: docs/calibration.md.");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace fusebench::cli::recordings

@@ -1,0 +1,35 @@
+// The timing of the image sensors, measured from the images alone: read-out of colour and of depth, delay of
+// depth against colour. By pairs of frames between which the velocity of the camera changes
+// (timing_pair.hpp).
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/base/parallel.hpp"
+#include "core/base/types.hpp"
+#include "eval/preparation/moving_frame.hpp"
+
+namespace fusebench::preparation {
+
+/// Read-out of colour, read-out of depth, delay of depth; seconds.
+struct TimingEstimate {
+  Vector3d value_s = Vector3d::Zero();
+  Vector3d sigma_s = Vector3d::Zero();
+};
+[[nodiscard]] TimingEstimate timing_of(const SensorTiming& timing);
+[[nodiscard]] SensorTiming sensor_timing(const TimingEstimate& estimate);
+
+struct MeasuredTiming {
+  TimingEstimate measured;   ///< by the images alone
+  TimingEstimate posterior;  ///< with the prior
+  std::size_t pairs = 0;     ///< of frames; 0: nothing could be measured, and the posterior is the prior
+};
+
+/// A value whose prior has no standard deviation is held. Standard deviations are from the scatter of the
+/// pairs (sandwich estimator), and of what is the same in all of them: colour and depth lie on each other to
+/// a quarter of a pixel (focal_length_px: of the recording's images).
+[[nodiscard]] MeasuredTiming measure_timing(std::span<const MovingFrames> windows, const SensorTiming& prior,
+                                            double focal_length_px, const Workers& workers);
+
+}  // namespace fusebench::preparation
