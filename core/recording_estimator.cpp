@@ -145,14 +145,18 @@ Result<health::FrameReport> RecordingEstimator::State::process_located(const Rgb
   return report;
 }
 
-/// Relocalises a frame of the open segment in the map; where that succeeds, the segment is joined, and the
-/// frame is one of the map.
+/// Relocalises a frame of the open segment in the map; where that succeeds, the frame is one of the map, and
+/// the segment is joined. A segment that has lost the camera some time before stays apart: nothing tells how
+/// the camera moved since.
 Result<health::FrameReport> RecordingEstimator::State::look_for_map(const RgbdFrame& frame,
                                                                     health::FrameReport report) {
   const Tracking& in_segment = pipeline.tracking();
   const bool due =
       report.status == health::FrameStatus::lost || in_segment.frames % config.segments.search_every == 0;
   if (!due || !pipeline.novelty().complete()) return report;
+  constexpr double kDeadReckoned_s = 0.1;  // to a few millimetres
+  const bool is_connected =
+      seconds_between(in_segment.located_ns, in_segment.timestamp_ns) <= kDeadReckoned_s;
   const SE3 T_segment_camera = pipeline.T_world_camera();
   const filter::GaussianState prior =
       filter::with_model_of(segments.in_map(*in_segment.estimate), *map->estimate);
@@ -164,6 +168,10 @@ Result<health::FrameReport> RecordingEstimator::State::look_for_map(const RgbdFr
     map = pipeline.exchange(std::move(segment));
     report.stages = found->stages;
     return report;
+  }
+  if (!is_connected) {
+    segments.close();
+    return found;
   }
   found->joined_segment = segments.open();
   segments.join(frame.timestamp_ns, pipeline.T_world_camera(), T_segment_camera);

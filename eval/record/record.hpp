@@ -99,9 +99,9 @@ struct RecordedRecording {
   std::string imu_note;
   /// What trajectories are compared with: "none", "given", kPseudoTruthWord; empty in a record that is older.
   std::string truth = "none";
-  bool prepared = false;  ///< constants of its sensors were measured first: camera and notes say which
   std::vector<std::string> notes;  ///< what was done to the data on reading, then "warning: ..." lines
   std::optional<RecordedCamera> camera = {};  ///< none in a record that is older
+  bool prepared = false;  ///< constants of its sensors were measured first: camera and notes say which
 };
 
 /// In the order of kStateParts.

@@ -45,7 +45,7 @@ TEST(RecordingEstimator, FollowsAnExposureThatChangesByAFactorOfFourInFiveFrames
   }
 }
 
-/// A view of the room, darkness, another view, and the first one again.
+/// A view of the room, darkness, and another view.
 class TwoViews : public ::testing::Test {
  protected:
   static constexpr std::size_t kSeen = 10, kDark = 18, kOther = 12;
@@ -53,14 +53,25 @@ class TwoViews : public ::testing::Test {
   TwoViews() : run_(simulate(kSeen)), other_(simulate(kOther, {}, {-0.2, 0.4, 0.5})) {
     for (RgbdFrame& frame : other_.frames) turn_upside_down(frame);
     append(run_.frames);
+    append_darkness();
+    append(other_.frames);
+  }
+
+  void append(const std::vector<RgbdFrame>& frames) {
+    for (const RgbdFrame& frame : frames) {
+      frames_.push_back(frame);
+      frames_.back().timestamp_ns =
+          1'000'000'000 +
+          static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(frames_.size()) / 30));
+    }
+  }
+  void append_darkness() {
     std::vector<RgbdFrame> dark(kDark, run_.frames.front());
     for (RgbdFrame& frame : dark) {
       std::ranges::fill(frame.grey.data, std::uint8_t{0});
       std::ranges::fill(frame.depth_m.data, 0.0F);
     }
     append(dark);
-    append(other_.frames);
-    append(run_.frames);
   }
 
   std::vector<FrameReport> process(RecordingEstimator& estimator) const {
@@ -83,17 +94,10 @@ class TwoViews : public ::testing::Test {
     std::ranges::reverse(frame.depth_m.data);
     std::ranges::reverse(frame.color.data);
   }
-  void append(const std::vector<RgbdFrame>& frames) {
-    for (const RgbdFrame& frame : frames) {
-      frames_.push_back(frame);
-      frames_.back().timestamp_ns =
-          1'000'000'000 +
-          static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(frames_.size()) / 30));
-    }
-  }
 };
 
 TEST_F(TwoViews, WhatIsSeenWhileTheCameraIsLostIsASegmentThatAKnownPlaceJoinsToTheMap) {
+  append(run_.frames);
   const Workers workers(1);
   RecordingEstimator estimator(config_of("no-imu"), run_.rig, {}, workers, testing::replay_of(frames_));
   const std::vector<FrameReport> reports = process(estimator);
@@ -122,7 +126,23 @@ TEST_F(TwoViews, WhatIsSeenWhileTheCameraIsLostIsASegmentThatAKnownPlaceJoinsToT
   EXPECT_GT(estimator.model().block_count(), reports[kSeen - 1].model_blocks);
 }
 
+TEST_F(TwoViews, ASegmentThatIsLostBeforeTheMapIsSeenAgainStaysApart) {
+  append_darkness();
+  append(run_.frames);
+  const Workers workers(1);
+  RecordingEstimator estimator(config_of("no-imu"), run_.rig, {}, workers, testing::replay_of(frames_));
+  const std::vector<FrameReport> reports = process(estimator);
+  const FrameReport& found = reports[kSeen + kDark + kOther + kDark];
+  EXPECT_EQ(found.status, FrameStatus::relocalised);
+  EXPECT_EQ(found.joined_segment, 0U) << "nothing tells how the camera moved in the dark";
+  EXPECT_EQ(reports.back().status, FrameStatus::tracked);
+  const auto revised = estimator.revise();
+  ASSERT_TRUE(revised.has_value());
+  EXPECT_FALSE(revised->has_value());
+}
+
 TEST_F(TwoViews, WithoutSegmentsTheOtherViewIsLost) {
+  append(run_.frames);
   Config config = config_of("no-imu");
   config.segments.begin_after_s = 0;
   const Workers workers(1);
