@@ -23,7 +23,7 @@ MOST_UNITS = 15
 METRICS = {"metrics", "trajectory_files", "trajectory_error", "reference_clock", "mesh_error"}
 ESTIMATOR = {"prediction", "preprocessing", "patches", "measurement", "relocalisation", "health", "core"}
 # Rooms that put recordings into the pipeline; the command line lists the systems as well.
-RUNNERS = {"run", "batch_estimation", "cli"}
+RUNNERS = {"preparation", "run", "batch_estimation", "cli"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])(?:fusebench/)?([^">]+)[">]')
 NAMESPACE = re.compile(r"^namespace (fusebench[\w:]*) \{")
 

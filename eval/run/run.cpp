@@ -16,6 +16,7 @@
 #include "core/meshing/marching_cubes.hpp"
 #include "core/trajectory/noisy_pose.hpp"
 #include "core/trajectory/trajectory_file.hpp"
+#include "eval/preparation/imu_check.hpp"
 #include "eval/preparation/preparation.hpp"
 #include "eval/preparation/prepared_recording.hpp"
 #include "eval/profile/trace_file.hpp"
@@ -104,23 +105,37 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
                               record.recording.first_frame + silent.first_frame.value_or(0));
 }
 
-/// The run over the recording with the constants that it tells itself. What cannot be read is left to the
-/// run.
-Result<PreparedRun> with_preparation(const PreparedRun& run, const Workers& workers,
-                                     const RunControl& control) {
-  PreparedRun result = run;
-  if (!is_prepared(run.spec, run.recording)) return result;
+/// Inertial samples that results would be invalid with are refused; of others that contradict there are
+/// notes.
+Result<void> check_imu(PreparedRun& run, const Workers& workers) {
+  if (!run.spec.prepare || !wants_imu(run.spec) || run.recording.imu_source != recording::ImuSource::recorded)
+    return {};
+  const auto findings = preparation::imu_findings(run.recording, run.spec.out, workers);
+  if (!findings) return tl::unexpected(findings.error());
+  for (const inspection::Finding& finding : *findings) {
+    if (preparation::makes_results_invalid(finding))
+      return fail(
+          ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", run.recording.name, finding.message),
+          fmt::format("{}{}--prepare off runs all the same", finding.hint, finding.hint.empty() ? "" : "; "));
+    run.recording.warnings.push_back(finding.message);
+  }
+  return {};
+}
+
+/// The recording with the constants that it tells itself. What cannot be read is left to the run.
+Result<void> measure_constants(PreparedRun& run, const Workers& workers, const RunControl& control) {
+  if (!is_prepared(run.spec, run.recording)) return {};
   if (control.preparing && !preparation::is_kept(run.spec.out, run.recording)) control.preparing();
   auto recording = preparation::prepared_recording(run.recording, run.spec.out, workers, control.stop);
   if (recording) {
-    result.recording = *std::move(recording);
-    return result;
+    run.recording = *std::move(recording);
+    return {};
   }
   const Error& error = recording.error();
   if (error.code != ErrorCode::data_missing && error.code != ErrorCode::data_corrupt)
     return tl::unexpected(error);
-  result.recording.notes.push_back("not prepared: " + error.message);
-  return result;
+  run.recording.notes.push_back("not prepared: " + error.message);
+  return {};
 }
 
 }  // namespace
@@ -128,9 +143,11 @@ Result<PreparedRun> with_preparation(const PreparedRun& run, const Workers& work
 Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl& control) {
   if (asked.spec.program) return execute_program_run(asked, control);
   const Workers workers(asked.spec.threads);
-  const auto prepared = with_preparation(asked, workers, control);
-  if (!prepared) return tl::unexpected(prepared.error());
-  const PreparedRun& run = *prepared;
+  PreparedRun prepared = asked;
+  if (auto sound = check_imu(prepared, workers); !sound) return tl::unexpected(sound.error());
+  if (auto measured = measure_constants(prepared, workers, control); !measured)
+    return tl::unexpected(measured.error());
+  const PreparedRun& run = prepared;
   const record::ProcessMeter meter;
   auto folder = io::StagedFolder::create(run.folder);
   if (!folder) return tl::unexpected(folder.error());

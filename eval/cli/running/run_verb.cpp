@@ -15,8 +15,8 @@
 #include "eval/cli/running/run_verbs.hpp"
 #include "eval/external/external_program.hpp"
 #include "eval/external/system_name.hpp"
-#include "eval/preparation/preparation.hpp"
 #include "eval/record/clock_note.hpp"
+#include "eval/record/record_origin.hpp"
 #include "eval/run/run.hpp"
 #include "eval/run/run_specification.hpp"
 #include "eval/suites/suite_names.hpp"
@@ -164,8 +164,10 @@ Result<record::RunRecord> execute(const run::PreparedRun& prepared) {
   auto record = run::execute_run(prepared, control);
   bar.clear();
   if (!record) return record;
+  // What opening it has not said: what was measured in the recording and found of its IMU.
+  const std::vector<std::string> said = record::reading_notes(prepared.recording, prepared.spec.recording);
   for (const std::string& note : record->recording.notes) {
-    if (note.starts_with(preparation::kPreparedNote)) console::print_progress(note);
+    if (std::ranges::find(said, note) == said.end()) console::print_progress(note);
   }
 
   const std::string ending = record->status == record::RunStatus::ok
