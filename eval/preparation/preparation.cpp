@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kWindowFrames = 120;
 constexpr std::size_t kMostWindows = 5;
+constexpr std::size_t kFewestFrames = 30;  // fewer give too few pairs
 constexpr double kOpenShare = 0.7;    // a posterior that is wider than this share of the prior says nothing
 constexpr double kContradicting = 3;  // standard deviations
 
@@ -43,6 +44,16 @@ Result<std::vector<MovingFrames>> load_windows(const recording::Recording& recor
 bool is_unknown(const TimingEstimate& prior, int i) {
   const TimingEstimate unknown = timing_of(calibration::kUnknownTiming);
   return prior.value_s[i] == unknown.value_s[i] && prior.sigma_s[i] == unknown.sigma_s[i];
+}
+
+/// What nobody has said is no prior: it is only what is used where nothing is measured.
+SensorTiming prior_of(const TimingEstimate& told) {
+  constexpr double kNoPrior_s = 0.1;
+  TimingEstimate prior = told;
+  for (int i = 0; i < 3; ++i) {
+    if (is_unknown(told, i)) prior.sigma_s[i] = kNoPrior_s;
+  }
+  return sensor_timing(prior);
 }
 
 PreparedConstant constant_of(const TimingEstimate& prior, const MeasuredTiming& timing, int i) {
@@ -94,7 +105,8 @@ std::string_view to_string(Verdict verdict) {
 }
 
 bool can_be_prepared(const recording::Recording& recording) {
-  return (timing_of(recording.rig.timing).sigma_s.array() > 0).any();
+  return recording.frames.size() >= kFewestFrames &&
+         (timing_of(recording.rig.timing).sigma_s.array() > 0).any();
 }
 
 Result<Preparation> prepare(const recording::Recording& recording, const Workers& workers,
@@ -110,7 +122,7 @@ Result<Preparation> prepare(const recording::Recording& recording, const Workers
       result.tracked += static_cast<std::size_t>(std::ranges::count_if(
           window.frames, [](const MovingFrame& moving) { return moving.motion.has_value(); }));
     }
-    timing = measure_timing(*windows, recording.rig.timing, recording.rig.camera.fx_px, workers);
+    timing = measure_timing(*windows, prior_of(prior), recording.rig.camera.fx_px, workers);
   }
   result.pairs = timing.pairs;
   for (int i = 0; i < 3; ++i) result.constants[static_cast<std::size_t>(i)] = constant_of(prior, timing, i);

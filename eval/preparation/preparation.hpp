@@ -44,7 +44,7 @@ struct Preparation {
   std::array<PreparedConstant, 3> constants;
 };
 
-/// Whether its calibration leaves anything open.
+/// Whether its calibration leaves anything open, and it is long enough to tell.
 [[nodiscard]] bool can_be_prepared(const recording::Recording& recording);
 
 /// Nothing changes with the number of threads. Errors: those of reading a frame, run_failed (stopped).

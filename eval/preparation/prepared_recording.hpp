@@ -19,8 +19,9 @@ namespace fusebench::preparation {
 [[nodiscard]] bool is_kept(const std::filesystem::path& out, const recording::Recording& recording);
 
 /// The recording with the constants that it tells itself (preparation.hpp): as that file says, or as they are
-/// measured now; the file is then written. A recording whose calibration leaves nothing open stays as it is.
-/// Errors: those of prepare() and read_calibration(), io.
+/// measured now; the file is then written
+/// if it can be. A recording whose calibration leaves nothing open stays as it is.
+/// Errors: those of prepare() and read_calibration().
 [[nodiscard]] Result<recording::Recording> prepared_recording(recording::Recording recording,
                                                               const std::filesystem::path& out,
                                                               const Workers& workers,

@@ -110,9 +110,7 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 Result<void> check_imu(PreparedRun& run, const Workers& workers) {
   if (!run.spec.prepare || !wants_imu(run.spec) || run.recording.imu_source != recording::ImuSource::recorded)
     return {};
-  const auto findings = preparation::imu_findings(run.recording, run.spec.out, workers);
-  if (!findings) return tl::unexpected(findings.error());
-  for (const inspection::Finding& finding : *findings) {
+  for (const auto& finding : preparation::imu_findings(run.recording, run.spec.out, workers)) {
     if (preparation::makes_results_invalid(finding))
       return fail(
           ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", run.recording.name, finding.message),

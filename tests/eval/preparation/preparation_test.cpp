@@ -56,13 +56,13 @@ TEST(Preparation, ARecordingThatIsTooShortKeepsItsCalibration) {
   const Workers workers(2);
   const auto prepared = prepare(recording, workers, nullptr);
   ASSERT_TRUE(prepared.has_value());
-  for (const PreparedConstant& constant : prepared->constants) EXPECT_EQ(constant.verdict, Verdict::open);
+  for (const PreparedConstant& constant : prepared->constants) EXPECT_EQ(constant.after_s, constant.before_s);
   EXPECT_EQ(timing_after(*prepared).color_readout_s, calibration::kUnknownReadout_s);
-  EXPECT_NE(to_text(*prepared, recording).find("does not determine it"), std::string::npos);
+  EXPECT_NE(to_text(*prepared, recording).find("calibration"), std::string::npos);
 }
 
 TEST(Preparation, AFrameThatCannotBeReadIsNamed) {
-  recording::Recording recording = recording_with(calibration::kUnknownTiming, 6);
+  recording::Recording recording = recording_with(calibration::kUnknownTiming, 30);
   recording.load_frame = [load = recording.load_frame](std::size_t k) -> Result<RgbdFrame> {
     if (k == 4) return fail(ErrorCode::data_corrupt, "damaged");
     return load(k);
