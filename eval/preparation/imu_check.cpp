@@ -5,20 +5,22 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <sstream>
-#include <string>
+#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <tuple>
 
 #include "core/io/staged_file.hpp"
 #include "datasets/inspection/inspection.hpp"
+#include "eval/preparation/preparation.hpp"
 #include "eval/preparation/prepared_recording.hpp"
+#include "eval/text/json_text.hpp"
 
 namespace fusebench::preparation {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
 using inspection::Finding;
 using inspection::Severity;
 
@@ -28,52 +30,81 @@ constexpr std::array<std::string_view, 6> kInvalidating = {
     "gyroscope-unit",     "accelerometer-unit", "accelerometer-without-gravity",
     "accelerometer-sign", "imu-axes-swapped",   "imu-unrelated"};
 
-std::filesystem::path findings_file(const std::filesystem::path& out, const recording::Recording& recording) {
-  return preparation_file(out, recording).replace_extension(".imu.txt");
-}
-
 bool is_of_imu(const Finding& finding) {
   return finding.severity != Severity::note &&
          std::ranges::any_of(kOfImu, [&](std::string_view of) { return finding.code.starts_with(of); });
 }
 
-/// A line a finding: severity, code, message and hint, separated by tabs.
-std::string text_of(const std::vector<Finding>& findings) {
-  std::string text;
-  for (const Finding& finding : findings)
-    text += fmt::format("{}\t{}\t{}\t{}\n", to_string(finding.severity), finding.code, finding.message,
-                        finding.hint);
-  return text;
+ImuCheck imu_check_of(const Json& json) {
+  ImuCheck result;
+  for (const Json& finding : json.at("findings")) {
+    const bool is_error = finding.at("severity") == to_string(Severity::error);
+    result.findings.push_back({finding.at("code"), is_error ? Severity::error : Severity::warning,
+                               finding.at("message"), finding.at("hint")});
+  }
+  if (const auto bias = json.find("gyroscope_bias_radps"); bias != json.end())
+    result.gyroscope_bias_radps = Vector3d(bias->at(0), bias->at(1), bias->at(2));
+  return result;
 }
 
-std::vector<Finding> findings_of(std::istream& text) {
-  std::vector<Finding> findings;
-  for (std::string line; std::getline(text, line);) {
-    std::istringstream parts(line);
-    std::string severity;
-    Finding finding;
-    std::getline(parts, severity, '\t');
-    std::getline(parts, finding.code, '\t');
-    std::getline(parts, finding.message, '\t');
-    std::getline(parts, finding.hint, '\t');
-    finding.severity = severity == to_string(Severity::error) ? Severity::error : Severity::warning;
-    findings.push_back(std::move(finding));
+/// Nothing if there is no such file, or if it is damaged.
+std::optional<ImuCheck> kept_check(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  if (!text) return std::nullopt;
+  try {
+    return imu_check_of(Json::parse(text));
+  } catch (const Json::exception&) {
+    return std::nullopt;
   }
-  return findings;
+}
+
+/// Ground truth must not reach the estimator.
+bool is_independent_of_truth(const inspection::ImuMeasurement& imu) {
+  return imu.bias_source == "at rest" || imu.bias_source == "images";
 }
 
 }  // namespace
 
-std::vector<Finding> imu_findings(const recording::Recording& recording, const std::filesystem::path& out,
-                                  const Workers& workers) {
-  const std::filesystem::path file = findings_file(out, recording);
-  if (std::ifstream kept(file); kept) return findings_of(kept);
-  std::vector<Finding> findings = inspection::inspect(recording, workers).findings;
-  std::erase_if(findings, [](const Finding& finding) { return !is_of_imu(finding); });
+nlohmann::ordered_json json_of(const ImuCheck& result) {
+  Json json = {{"findings", Json::array()}};
+  for (const Finding& finding : result.findings)
+    json["findings"].push_back({{"severity", to_string(finding.severity)},
+                                {"code", finding.code},
+                                {"message", finding.message},
+                                {"hint", finding.hint}});
+  if (const auto& bias = result.gyroscope_bias_radps)
+    json["gyroscope_bias_radps"] = {bias->x(), bias->y(), bias->z()};
+  return json;
+}
+
+ImuCheck inspected_imu(const recording::Recording& recording, const Workers& workers) {
+  const inspection::Inspection inspected = inspection::inspect(recording, workers);
+  ImuCheck result;
+  std::ranges::copy_if(inspected.findings, std::back_inserter(result.findings), is_of_imu);
+  if (inspected.imu && is_independent_of_truth(*inspected.imu))
+    result.gyroscope_bias_radps = inspected.imu->gyroscope_bias_radps;
+  return result;
+}
+
+ImuCheck check_imu(const recording::Recording& recording, const std::filesystem::path& out,
+                   const Workers& workers) {
+  const std::filesystem::path file = preparation_file(out, recording).replace_extension(".imu.json");
+  if (auto kept = kept_check(file)) return *std::move(kept);
+  ImuCheck result = inspected_imu(recording, workers);
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
-  if (!failed) std::ignore = io::write_file_atomically(file, text_of(findings));
-  return findings;
+  if (!failed) std::ignore = io::write_file_atomically(file, text::json_text(json_of(result)) + "\n");
+  return result;
+}
+
+void take_out_bias(recording::Recording& recording, const Vector3d& bias_radps) {
+  if (bias_radps.norm() < kLeastBias_radps) return;
+  for (ImuSample& sample : recording.imu) sample.angular_velocity_radps -= bias_radps;
+  for (filter::StampedState& truth : recording.state_truth) truth.state.gyroscope_bias_radps -= bias_radps;
+  recording.notes.push_back(
+      fmt::format("{}bias of the gyroscope ({:.4f}, {:.4f}, {:.4f}) rad/s, measured in the recording and "
+                  "taken out of its samples",
+                  kPreparedNote, bias_radps.x(), bias_radps.y(), bias_radps.z()));
 }
 
 bool makes_results_invalid(const Finding& finding) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -10,14 +12,29 @@
 
 namespace fusebench::preparation {
 
-/// The errors and warnings of `fusebench inspect` about the IMU. They are kept among the results, as
-/// <out>/prepared/<recording>-<16 digits>.imu.txt, and looked for once.
-[[nodiscard]] std::vector<inspection::Finding> imu_findings(const recording::Recording& recording,
-                                                            const std::filesystem::path& out,
-                                                            const Workers& workers);
+struct ImuCheck {
+  std::vector<inspection::Finding> findings;  ///< errors and warnings of `fusebench inspect` about the IMU
+  /// At rest, or else by the turns of the camera in the images; nothing where neither tells it.
+  std::optional<Vector3d> gyroscope_bias_radps;
+};
+
+/// The recording has inertial samples.
+[[nodiscard]] ImuCheck inspected_imu(const recording::Recording& recording, const Workers& workers);
+
+/// The same, measured once: the result is kept as <out>/prepared/<recording>-<16 digits>.imu.json.
+[[nodiscard]] ImuCheck check_imu(const recording::Recording& recording, const std::filesystem::path& out,
+                                 const Workers& workers);
+
+[[nodiscard]] nlohmann::ordered_json json_of(const ImuCheck& check);
 
 /// Whether no result of such samples means anything: another unit, gravity that is missing, axes that are
 /// exchanged, or the IMU of another recording.
 [[nodiscard]] bool makes_results_invalid(const inspection::Finding& finding);
+
+/// Takes the bias out of the samples and the true states, with a note, if it is larger than kLeastBias_radps:
+/// the filter expects one of 0.005 rad/s (initialisation.gyroscope_bias_sigma_radps) and would take longer to
+/// find it.
+void take_out_bias(recording::Recording& recording, const Vector3d& gyroscope_bias_radps);
+inline constexpr double kLeastBias_radps = 0.015;
 
 }  // namespace fusebench::preparation

@@ -10,6 +10,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string imu_text(const ImuCheck& imu) {
+  std::string text = "\n";
+  if (const auto& bias = imu.gyroscope_bias_radps)
+    text +=
+        fmt::format("gyroscope bias ({:.4f}, {:.4f}, {:.4f}) rad/s; {}\n", bias->x(), bias->y(), bias->z(),
+                    bias->norm() < kLeastBias_radps ? "small enough for the filter to find"
+                                                    : "a run takes it out of the samples");
+  if (imu.findings.empty()) text += "IMU: nothing contradicts its calibration\n";
+  for (const inspection::Finding& finding : imu.findings)
+    text += fmt::format("IMU: {}: {}{}\n", to_string(finding.severity), finding.message,
+                        makes_results_invalid(finding) ? "; a run refuses it" : "");
+  return text;
+}
+
 std::string_view meaning(Verdict verdict) {
   switch (verdict) {
     case Verdict::held:
@@ -30,7 +44,8 @@ std::string milliseconds(double value_s, double sigma_s) {
 
 }  // namespace
 
-std::string to_text(const Preparation& preparation, const recording::Recording& recording) {
+std::string to_text(const Preparation& preparation, const std::optional<ImuCheck>& imu,
+                    const recording::Recording& recording) {
   std::string text =
       fmt::format("{}: {} of {} frames looked at, {} tracked, {} pairs of frames\n\n", recording.name,
                   preparation.frames, recording.frames.size(), preparation.tracked, preparation.pairs);
@@ -42,10 +57,11 @@ std::string to_text(const Preparation& preparation, const recording::Recording& 
                         measured ? milliseconds(constant.measured_s, constant.measured_sigma_s) : "-",
                         milliseconds(constant.after_s, constant.after_sigma_s), meaning(constant.verdict));
   }
-  return text;
+  return imu ? text + imu_text(*imu) : text;
 }
 
-std::string to_json(const Preparation& preparation, const recording::Recording& recording) {
+std::string to_json(const Preparation& preparation, const std::optional<ImuCheck>& imu,
+                    const recording::Recording& recording) {
   Json json = {{"recording", recording.name},
                {"frames", preparation.frames},
                {"tracked", preparation.tracked},
@@ -62,6 +78,7 @@ std::string to_json(const Preparation& preparation, const recording::Recording& 
     entry["verdict"] = to_string(constant.verdict);
     json["constants"][std::string(constant.name)] = std::move(entry);
   }
+  if (imu) json["imu"] = json_of(*imu);
   return text::json_text(json) + "\n";
 }
 

@@ -106,17 +106,19 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 }
 
 /// Inertial samples that results would be invalid with are refused; of others that contradict there are
-/// notes.
-Result<void> check_imu(PreparedRun& run, const Workers& workers) {
+/// notes. A large bias of the gyroscope is taken out.
+Result<void> prepare_imu(PreparedRun& run, const Workers& workers) {
   if (!run.spec.prepare || !wants_imu(run.spec) || run.recording.imu_source != recording::ImuSource::recorded)
     return {};
-  for (const auto& finding : preparation::imu_findings(run.recording, run.spec.out, workers)) {
+  const preparation::ImuCheck checked = preparation::check_imu(run.recording, run.spec.out, workers);
+  for (const inspection::Finding& finding : checked.findings) {
     if (preparation::makes_results_invalid(finding))
       return fail(
           ErrorCode::data_corrupt, fmt::format("the IMU of '{}': {}", run.recording.name, finding.message),
           fmt::format("{}{}--prepare off runs all the same", finding.hint, finding.hint.empty() ? "" : "; "));
     run.recording.warnings.push_back(finding.message);
   }
+  if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);
   return {};
 }
 
@@ -142,7 +144,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl
   if (asked.spec.program) return execute_program_run(asked, control);
   const Workers workers(asked.spec.threads);
   PreparedRun prepared = asked;
-  if (auto sound = check_imu(prepared, workers); !sound) return tl::unexpected(sound.error());
+  if (auto sound = prepare_imu(prepared, workers); !sound) return tl::unexpected(sound.error());
   if (auto measured = measure_constants(prepared, workers, control); !measured)
     return tl::unexpected(measured.error());
   const PreparedRun& run = prepared;

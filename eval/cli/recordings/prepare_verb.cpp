@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/reading_options.hpp"
@@ -43,8 +44,11 @@ Result<int> run(const PrepareVerbOptions& options) {
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
-  console::print_output(options.json ? preparation::to_json(*prepared, *recording)
-                                     : preparation::to_text(*prepared, *recording));
+  std::optional<preparation::ImuCheck> imu;
+  if (recording->imu_source == recording::ImuSource::recorded)
+    imu = preparation::inspected_imu(*recording, workers);
+  console::print_output(options.json ? preparation::to_json(*prepared, imu, *recording)
+                                     : preparation::to_text(*prepared, imu, *recording));
   return 0;
 }
 
@@ -54,8 +58,8 @@ console::Verb add_prepare_verb(CLI::App& app) {
   auto options = std::make_shared<PrepareVerbOptions>();
   CLI::App* verb = app.add_subcommand(
       "prepare",
-      "Measures from the images what the calibration leaves open: read-out of colour and of depth, delay of "
-      "depth");
+      "Measures from the images what the calibration leaves open (read-outs of colour and depth, delay of "
+      "depth), and checks the IMU");
   verb->add_option("RECORDING", options->recording, "Folder of a recording, or the name of one under --data")
       ->required();
   console::add_threads_option(*verb, options->threads);
@@ -69,7 +73,8 @@ console::Verb add_prepare_verb(CLI::App& app) {
       ->type_name("FILE.toml");
   console::add_json_flag(*verb, options->json);
   verb->footer(
-      "`run` and `bench` do the same before they run (--prepare auto). No IMU and no ground truth are used. "
+      "`run` and `bench` do the same before they run (--prepare auto). The timing needs neither IMU nor "
+      "ground truth. "
       "How it is measured: docs/calibration.md.");
   return {verb, [options] { return run(*options); }};
 }
