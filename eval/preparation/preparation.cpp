@@ -104,9 +104,12 @@ std::string_view to_string(Verdict verdict) {
   return "open";
 }
 
+bool is_long_enough(const recording::Recording& recording) {
+  return recording.frames.size() >= kFewestFrames;
+}
+
 bool can_be_prepared(const recording::Recording& recording) {
-  return recording.frames.size() >= kFewestFrames &&
-         (timing_of(recording.rig.timing).sigma_s.array() > 0).any();
+  return is_long_enough(recording) && (timing_of(recording.rig.timing).sigma_s.array() > 0).any();
 }
 
 Result<Preparation> prepare(const recording::Recording& recording, const Workers& workers,

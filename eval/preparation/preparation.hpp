@@ -44,6 +44,9 @@ struct Preparation {
   std::array<PreparedConstant, 3> constants;
 };
 
+/// Whether it has frames enough to tell anything of its sensors.
+[[nodiscard]] bool is_long_enough(const recording::Recording& recording);
+
 /// Whether its calibration leaves anything open, and it is long enough to tell.
 [[nodiscard]] bool can_be_prepared(const recording::Recording& recording);
 

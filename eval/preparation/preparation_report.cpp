@@ -10,16 +10,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string imu_text(const ImuCheck& imu) {
+std::string sensors_text(const SensorCheck& sensors) {
   std::string text = "\n";
-  if (const auto& bias = imu.gyroscope_bias_radps)
+  if (const auto& bias = sensors.gyroscope_bias_radps)
     text +=
         fmt::format("gyroscope bias ({:.4f}, {:.4f}, {:.4f}) rad/s; {}\n", bias->x(), bias->y(), bias->z(),
                     bias->norm() < kLeastBias_radps ? "small enough for the filter to find"
                                                     : "a run takes it out of the samples");
-  if (imu.findings.empty()) text += "IMU: nothing contradicts its calibration\n";
-  for (const inspection::Finding& finding : imu.findings)
-    text += fmt::format("IMU: {}: {}{}\n", to_string(finding.severity), finding.message,
+  if (sensors.findings.empty()) text += "nothing contradicts the calibration\n";
+  for (const inspection::Finding& finding : sensors.findings)
+    text += fmt::format("{}: {}{}\n", to_string(finding.severity), finding.message,
                         makes_results_invalid(finding) ? "; a run refuses it" : "");
   return text;
 }
@@ -44,7 +44,7 @@ std::string milliseconds(double value_s, double sigma_s) {
 
 }  // namespace
 
-std::string to_text(const Preparation& preparation, const std::optional<ImuCheck>& imu,
+std::string to_text(const Preparation& preparation, const SensorCheck& sensors,
                     const recording::Recording& recording) {
   std::string text =
       fmt::format("{}: {} of {} frames looked at, {} tracked, {} pairs of frames\n\n", recording.name,
@@ -57,10 +57,10 @@ std::string to_text(const Preparation& preparation, const std::optional<ImuCheck
                         measured ? milliseconds(constant.measured_s, constant.measured_sigma_s) : "-",
                         milliseconds(constant.after_s, constant.after_sigma_s), meaning(constant.verdict));
   }
-  return imu ? text + imu_text(*imu) : text;
+  return text + sensors_text(sensors);
 }
 
-std::string to_json(const Preparation& preparation, const std::optional<ImuCheck>& imu,
+std::string to_json(const Preparation& preparation, const SensorCheck& sensors,
                     const recording::Recording& recording) {
   Json json = {{"recording", recording.name},
                {"frames", preparation.frames},
@@ -78,7 +78,7 @@ std::string to_json(const Preparation& preparation, const std::optional<ImuCheck
     entry["verdict"] = to_string(constant.verdict);
     json["constants"][std::string(constant.name)] = std::move(entry);
   }
-  if (imu) json["imu"] = json_of(*imu);
+  json["sensors"] = json_of(sensors);
   return text::json_text(json) + "\n";
 }
 

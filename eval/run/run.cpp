@@ -16,9 +16,9 @@
 #include "core/meshing/marching_cubes.hpp"
 #include "core/trajectory/noisy_pose.hpp"
 #include "core/trajectory/trajectory_file.hpp"
-#include "eval/preparation/imu_check.hpp"
 #include "eval/preparation/preparation.hpp"
 #include "eval/preparation/prepared_recording.hpp"
+#include "eval/preparation/sensor_check.hpp"
 #include "eval/profile/trace_file.hpp"
 #include "eval/record/clock_note.hpp"
 #include "eval/record/process_meter.hpp"
@@ -105,12 +105,11 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
                               record.recording.first_frame + silent.first_frame.value_or(0));
 }
 
-/// Inertial samples that results would be invalid with are refused; of others that contradict there are
-/// notes. A large bias of the gyroscope is taken out.
-Result<void> prepare_imu(PreparedRun& run, const Workers& workers) {
-  if (!run.spec.prepare || !wants_imu(run.spec) || run.recording.imu_source != recording::ImuSource::recorded)
-    return {};
-  const preparation::ImuCheck checked = preparation::check_imu(run.recording, run.spec.out, workers);
+/// Inertial samples that results would be invalid with are refused; of other contradictions there are
+/// warnings. A large bias of the gyroscope is taken out.
+Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
+  if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
+  const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
   for (const inspection::Finding& finding : checked.findings) {
     if (preparation::makes_results_invalid(finding))
       return fail(
@@ -144,7 +143,7 @@ Result<record::RunRecord> execute_run(const PreparedRun& asked, const RunControl
   if (asked.spec.program) return execute_program_run(asked, control);
   const Workers workers(asked.spec.threads);
   PreparedRun prepared = asked;
-  if (auto sound = prepare_imu(prepared, workers); !sound) return tl::unexpected(sound.error());
+  if (auto sound = check_sensors(prepared, workers); !sound) return tl::unexpected(sound.error());
   if (auto measured = measure_constants(prepared, workers, control); !measured)
     return tl::unexpected(measured.error());
   const PreparedRun& run = prepared;

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <optional>
 
 #include "eval/cli/console/console.hpp"
 #include "eval/cli/console/reading_options.hpp"
@@ -44,11 +43,9 @@ Result<int> run(const PrepareVerbOptions& options) {
   if (!prepared) return tl::unexpected(prepared.error());
   const auto rig = preparation::rig_with_timing(*recording, preparation::timing_after(*prepared));
   if (auto written = write_calibration(options.out, rig); !written) return tl::unexpected(written.error());
-  std::optional<preparation::ImuCheck> imu;
-  if (recording->imu_source == recording::ImuSource::recorded)
-    imu = preparation::inspected_imu(*recording, workers);
-  console::print_output(options.json ? preparation::to_json(*prepared, imu, *recording)
-                                     : preparation::to_text(*prepared, imu, *recording));
+  const preparation::SensorCheck sensors = preparation::inspected_sensors(*recording, workers);
+  console::print_output(options.json ? preparation::to_json(*prepared, sensors, *recording)
+                                     : preparation::to_text(*prepared, sensors, *recording));
   return 0;
 }
 

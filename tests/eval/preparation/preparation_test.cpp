@@ -58,7 +58,7 @@ TEST(Preparation, ARecordingThatIsTooShortKeepsItsCalibration) {
   ASSERT_TRUE(prepared.has_value());
   for (const PreparedConstant& constant : prepared->constants) EXPECT_EQ(constant.after_s, constant.before_s);
   EXPECT_EQ(timing_after(*prepared).color_readout_s, calibration::kUnknownReadout_s);
-  EXPECT_NE(to_text(*prepared, std::nullopt, recording).find("calibration"), std::string::npos);
+  EXPECT_NE(to_text(*prepared, {}, recording).find("calibration"), std::string::npos);
 }
 
 TEST(Preparation, AFrameThatCannotBeReadIsNamed) {

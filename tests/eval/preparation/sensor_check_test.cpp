@@ -1,4 +1,4 @@
-#include "eval/preparation/imu_check.hpp"
+#include "eval/preparation/sensor_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ recording::Recording recording_at_rest(const Vector3d& bias_radps) {
   return recording;
 }
 
-TEST(ImuCheck, ALargeBiasIsTakenOutOfSamplesAndTruth) {
+TEST(SensorCheck, ALargeBiasIsTakenOutOfSamplesAndTruth) {
   const Vector3d bias_radps(0.01, -0.02, 0.078);
   recording::Recording recording = recording_at_rest(bias_radps);
   take_out_bias(recording, bias_radps);
@@ -31,7 +31,7 @@ TEST(ImuCheck, ALargeBiasIsTakenOutOfSamplesAndTruth) {
   EXPECT_TRUE(recording.notes[0].starts_with(kPreparedNote)) << recording.notes[0];
 }
 
-TEST(ImuCheck, ABiasThatTheFilterExpectsIsLeft) {
+TEST(SensorCheck, ABiasThatTheFilterExpectsIsLeft) {
   const Vector3d bias_radps(0.005, 0, -0.005);
   recording::Recording recording = recording_at_rest(bias_radps);
   take_out_bias(recording, bias_radps);
@@ -39,7 +39,7 @@ TEST(ImuCheck, ABiasThatTheFilterExpectsIsLeft) {
   EXPECT_TRUE(recording.notes.empty());
 }
 
-TEST(ImuCheck, OnlyErrorsOfUnitsGravityAxesAndRecordingInvalidateResults) {
+TEST(SensorCheck, OnlyErrorsOfUnitsGravityAxesAndRecordingInvalidateResults) {
   EXPECT_TRUE(makes_results_invalid({"accelerometer-unit", Severity::error, "", ""}));
   EXPECT_TRUE(makes_results_invalid({"imu-axes-swapped", Severity::error, "", ""}));
   EXPECT_FALSE(makes_results_invalid({"imu-time-offset", Severity::error, "", ""}));

@@ -1,4 +1,4 @@
-// Inertial samples that contradict their calibration or the images, before a run uses them.
+// What contradicts the calibration of a recording, looked for before it is run.
 #pragma once
 
 #include <filesystem>
@@ -12,20 +12,22 @@
 
 namespace fusebench::preparation {
 
-struct ImuCheck {
-  std::vector<inspection::Finding> findings;  ///< errors and warnings of `fusebench inspect` about the IMU
-  /// At rest, or else by the turns of the camera in the images; nothing where neither tells it.
+struct SensorCheck {
+  /// Errors and warnings of `fusebench inspect` about the depth camera, and about recorded inertial samples.
+  std::vector<inspection::Finding> findings;
+  /// Of a recorded IMU: at rest, or else by the turns of the camera in the images; nothing where neither
+  /// tells it.
   std::optional<Vector3d> gyroscope_bias_radps;
 };
 
-/// The recording has inertial samples.
-[[nodiscard]] ImuCheck inspected_imu(const recording::Recording& recording, const Workers& workers);
+[[nodiscard]] SensorCheck inspected_sensors(const recording::Recording& recording, const Workers& workers);
 
-/// The same, measured once: the result is kept as <out>/prepared/<recording>-<16 digits>.imu.json.
-[[nodiscard]] ImuCheck check_imu(const recording::Recording& recording, const std::filesystem::path& out,
-                                 const Workers& workers);
+/// The same, measured once: the result is kept as <out>/prepared/<recording>-<16 digits>.checks.json.
+[[nodiscard]] SensorCheck check_sensors(const recording::Recording& recording,
+                                        const std::filesystem::path& out, const Workers& workers);
 
-[[nodiscard]] nlohmann::ordered_json json_of(const ImuCheck& check);
+/// For programs, and as it is kept.
+[[nodiscard]] nlohmann::ordered_json json_of(const SensorCheck& check);
 
 /// Whether no result of such samples means anything: another unit, gravity that is missing, axes that are
 /// exchanged, or the IMU of another recording.

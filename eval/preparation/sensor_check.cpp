@@ -1,4 +1,4 @@
-#include "eval/preparation/imu_check.hpp"
+#include "eval/preparation/sensor_check.hpp"
 
 #include <fmt/format.h>
 
@@ -26,17 +26,24 @@ using inspection::Severity;
 
 constexpr std::array<std::string_view, 5> kOfImu = {"imu-", "gyroscope-", "accelerometer-", "gravity-",
                                                     "extrinsic-"};
+constexpr std::array<std::string_view, 2> kOfDepth = {"depth-misregistered", "depth-range"};
 constexpr std::array<std::string_view, 6> kInvalidating = {
     "gyroscope-unit",     "accelerometer-unit", "accelerometer-without-gravity",
     "accelerometer-sign", "imu-axes-swapped",   "imu-unrelated"};
 
-bool is_of_imu(const Finding& finding) {
-  return finding.severity != Severity::note &&
+bool has_recorded_imu(const recording::Recording& recording) {
+  return recording.imu_source == recording::ImuSource::recorded;
+}
+
+bool is_of_sensors(const Finding& finding, bool with_imu) {
+  if (finding.severity == Severity::note) return false;
+  if (std::ranges::find(kOfDepth, finding.code) != kOfDepth.end()) return true;
+  return with_imu &&
          std::ranges::any_of(kOfImu, [&](std::string_view of) { return finding.code.starts_with(of); });
 }
 
-ImuCheck imu_check_of(const Json& json) {
-  ImuCheck result;
+SensorCheck sensor_check_of(const Json& json) {
+  SensorCheck result;
   for (const Json& finding : json.at("findings")) {
     const bool is_error = finding.at("severity") == to_string(Severity::error);
     result.findings.push_back({finding.at("code"), is_error ? Severity::error : Severity::warning,
@@ -48,11 +55,11 @@ ImuCheck imu_check_of(const Json& json) {
 }
 
 /// Nothing if there is no such file, or if it is damaged.
-std::optional<ImuCheck> kept_check(const std::filesystem::path& file) {
+std::optional<SensorCheck> kept_check(const std::filesystem::path& file) {
   std::ifstream text(file);
   if (!text) return std::nullopt;
   try {
-    return imu_check_of(Json::parse(text));
+    return sensor_check_of(Json::parse(text));
   } catch (const Json::exception&) {
     return std::nullopt;
   }
@@ -65,7 +72,7 @@ bool is_independent_of_truth(const inspection::ImuMeasurement& imu) {
 
 }  // namespace
 
-nlohmann::ordered_json json_of(const ImuCheck& result) {
+nlohmann::ordered_json json_of(const SensorCheck& result) {
   Json json = {{"findings", Json::array()}};
   for (const Finding& finding : result.findings)
     json["findings"].push_back({{"severity", to_string(finding.severity)},
@@ -77,20 +84,24 @@ nlohmann::ordered_json json_of(const ImuCheck& result) {
   return json;
 }
 
-ImuCheck inspected_imu(const recording::Recording& recording, const Workers& workers) {
+SensorCheck inspected_sensors(const recording::Recording& recording, const Workers& workers) {
   const inspection::Inspection inspected = inspection::inspect(recording, workers);
-  ImuCheck result;
-  std::ranges::copy_if(inspected.findings, std::back_inserter(result.findings), is_of_imu);
-  if (inspected.imu && is_independent_of_truth(*inspected.imu))
+  SensorCheck result;
+  const bool with_imu = has_recorded_imu(recording);
+  std::ranges::copy_if(inspected.findings, std::back_inserter(result.findings),
+                       [&](const Finding& finding) { return is_of_sensors(finding, with_imu); });
+  if (with_imu && inspected.imu && is_independent_of_truth(*inspected.imu))
     result.gyroscope_bias_radps = inspected.imu->gyroscope_bias_radps;
   return result;
 }
 
-ImuCheck check_imu(const recording::Recording& recording, const std::filesystem::path& out,
-                   const Workers& workers) {
-  const std::filesystem::path file = preparation_file(out, recording).replace_extension(".imu.json");
+SensorCheck check_sensors(const recording::Recording& recording, const std::filesystem::path& out,
+                          const Workers& workers) {
+  const std::filesystem::path file =
+      preparation_file(out, recording)
+          .replace_extension(has_recorded_imu(recording) ? ".imu.checks.json" : ".checks.json");
   if (auto kept = kept_check(file)) return *std::move(kept);
-  ImuCheck result = inspected_imu(recording, workers);
+  SensorCheck result = inspected_sensors(recording, workers);
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
   if (!failed) std::ignore = io::write_file_atomically(file, text::json_text(json_of(result)) + "\n");
