@@ -35,7 +35,7 @@ std::string_view meaning(Verdict verdict) {
     case Verdict::open:
       break;
   }
-  return "the calibration's: the motion does not determine it";
+  return "the calibration's: the recording tells no more";
 }
 
 std::string milliseconds(double value_s, double sigma_s) {

@@ -16,7 +16,7 @@ using Normal = Eigen::Matrix<double, kAll, kAll>;
 
 constexpr int kPointsAcross = 48;
 constexpr std::size_t kFewestPoints = 200;
-constexpr int kIterations = 6;
+constexpr int kIterations = 3;
 constexpr double kHuberSigmas = 1.5;
 constexpr double kSmoothShare = 0.03;  // of the depth, between neighbours
 constexpr double kMaxPlaneDistance_m = 0.1;
@@ -81,7 +81,7 @@ class Warp {
       : twist_a_(twist_a), twist_b_(twist_b), camera_(camera), readout_s_(readout_s), delays_s_(delays_s) {}
 
   [[nodiscard]] std::optional<Warped> operator()(const Point& point, const SE3& T_b_a) const {
-    constexpr int kRowIterations = 3;
+    constexpr int kRowIterations = 2;
     const SE3 moved_a = exp_of(twist_a_, delays_s_[0] + readout_s_ * point.row);
     const Vector3d at_instant = T_b_a * (moved_a * point.in_camera);
     Warped warped;
@@ -204,6 +204,7 @@ std::optional<TimingQuadratic> timing_of_pair(const MovingFrame& a, const Moving
                                               const PinholeCamera& camera, const Vector3d& timing_s) {
   constexpr double kLeastGreySigma = 2.0;
   constexpr double kLeastDepthSigma_m = 0.001;
+  constexpr double kConvergedStep = 1e-4;  // rad, m: 0.03 px
   const std::vector<Point> points = points_of(a.frame, camera);
   const Warp color_warp(a.motion->twist, b.motion->twist, camera, timing_s[0], Vector2d::Zero());
   const Vector2d delays_s(timing_s[2] + 1e-9 * static_cast<double>(a.frame.depth_offset_ns),
@@ -211,29 +212,29 @@ std::optional<TimingQuadratic> timing_of_pair(const MovingFrame& a, const Moving
   const Warp depth_warp(a.motion->twist, b.motion->twist, camera, timing_s[1], delays_s);
   SE3 T_b_a = b.motion->T_world_camera.inverse() * a.motion->T_world_camera;
   Vector2d brightness(1, 0);
-  TimingQuadratic result;
   Normal normal;
   Row gradient;
+  bool is_last = false;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
     normal.setZero();
     gradient.setZero();
     const Residuals grey = grey_residuals(points, color_warp, T_b_a, b, camera, brightness);
     const Residuals depth = depth_residuals(points, depth_warp, T_b_a, b, camera);
-    result.grey_points = grey.values.size();
-    result.depth_points = depth.values.size();
     if (grey.values.size() < kFewestPoints || depth.values.size() < kFewestPoints) return std::nullopt;
     add_normal(grey, kLeastGreySigma, normal, gradient);
     add_normal(depth, kLeastDepthSigma_m, normal, gradient);
     normal = Normal(normal.selfadjointView<Eigen::Lower>());
-    if (iteration == kIterations) break;
+    if (is_last || iteration == kIterations) break;
     const Eigen::Matrix<double, kPair, 1> step =
         -normal.topLeftCorner<kPair, kPair>().ldlt().solve(gradient.head<kPair>());
     if (!step.allFinite()) return std::nullopt;
     T_b_a = SE3{so3_exp(step.head<3>()), step.segment<3>(3)} * T_b_a;
     brightness += step.tail<2>();
+    is_last = step.head<6>().norm() < kConvergedStep;
   }
   const Eigen::Matrix<double, kPair, 3> eliminated =
       normal.topLeftCorner<kPair, kPair>().ldlt().solve(normal.topRightCorner<kPair, 3>());
+  TimingQuadratic result;
   result.information = normal.bottomRightCorner<3, 3>() - normal.bottomLeftCorner<3, kPair>() * eliminated;
   result.gradient = gradient.tail<3>() - eliminated.transpose() * gradient.head<kPair>();
   return result;

@@ -29,8 +29,6 @@ namespace fusebench::preparation {
 struct TimingQuadratic {
   Matrix3d information = Matrix3d::Zero();
   Vector3d gradient = Vector3d::Zero();
-  std::size_t grey_points = 0;
-  std::size_t depth_points = 0;
 };
 
 /// Both frames have a motion. timing_s: colour's read-out, depth's read-out, and the delay of depth beyond
