@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kWindowFrames = 120;
 constexpr std::size_t kMostWindows = 5;
 constexpr std::size_t kFewestFrames = 30;  // fewer give too few pairs
-constexpr double kOpenShare = 0.7;    // a posterior that is wider than this share of the prior says nothing
+constexpr double kOpenShare = 0.7;    // a measurement that is wider, relative to an unknown one, says nothing
 constexpr double kContradicting = 3;  // standard deviations
 
 constexpr std::array<std::string_view, 3> kNames = {"color_readout", "depth_readout", "depth_delay"};
@@ -46,14 +46,23 @@ bool is_unknown(const TimingEstimate& prior, int i) {
   return prior.value_s[i] == unknown.value_s[i] && prior.sigma_s[i] == unknown.sigma_s[i];
 }
 
-/// What nobody has said is no prior: it is only what is used where nothing is measured.
-SensorTiming prior_of(const TimingEstimate& told) {
+/// The images alone tell what is not held; what the calibration says decides afterwards.
+SensorTiming without_prior(TimingEstimate told) {
   constexpr double kNoPrior_s = 0.1;
-  TimingEstimate prior = told;
   for (int i = 0; i < 3; ++i) {
-    if (is_unknown(told, i)) prior.sigma_s[i] = kNoPrior_s;
+    if (told.sigma_s[i] > 0) told.sigma_s[i] = kNoPrior_s;
   }
-  return sensor_timing(prior);
+  return sensor_timing(told);
+}
+
+/// Of a constant that the images tell.
+Verdict verdict_of(const PreparedConstant& constant, bool unknown) {
+  if (unknown)
+    return constant.measured_sigma_s <= kOpenShare * constant.before_sigma_s ? Verdict::measured
+                                                                             : Verdict::open;
+  const double sigma_s = std::hypot(constant.measured_sigma_s, constant.before_sigma_s);
+  const double apart_s = std::abs(constant.measured_s - constant.before_s);
+  return apart_s > kContradicting * sigma_s ? Verdict::measured : Verdict::agrees;
 }
 
 PreparedConstant constant_of(const TimingEstimate& prior, const MeasuredTiming& timing, int i) {
@@ -65,18 +74,13 @@ PreparedConstant constant_of(const TimingEstimate& prior, const MeasuredTiming& 
   if (!(prior.sigma_s[i] > 0)) return constant;
   constant.verdict = Verdict::open;
   if (timing.pairs == 0) return constant;
-  constant.measured_s = timing.measured.value_s[i];
-  constant.measured_sigma_s = timing.measured.sigma_s[i];
-  if (timing.posterior.sigma_s[i] > kOpenShare * prior.sigma_s[i]) return constant;
-  const double used_s = i < 2 ? std::max(0.0, timing.posterior.value_s[i]) : timing.posterior.value_s[i];
-  const double apart_s = std::abs(constant.measured_s - constant.before_s);
-  constant.verdict = is_unknown(prior, i) || apart_s > kContradicting * std::hypot(constant.measured_sigma_s,
-                                                                                   constant.before_sigma_s)
-                         ? Verdict::measured
-                         : Verdict::agrees;
+  constant.measured_s = timing.posterior.value_s[i];
+  constant.measured_sigma_s = timing.posterior.sigma_s[i];
+  constant.verdict = verdict_of(constant, is_unknown(prior, i));
   if (constant.verdict == Verdict::measured) {
-    constant.after_s = used_s;
-    constant.after_sigma_s = timing.posterior.sigma_s[i];
+    const bool is_readout = i < 2;
+    constant.after_s = is_readout ? std::max(0.0, constant.measured_s) : constant.measured_s;
+    constant.after_sigma_s = constant.measured_sigma_s;
   }
   return constant;
 }
@@ -125,7 +129,7 @@ Result<Preparation> prepare(const recording::Recording& recording, const Workers
       result.tracked += static_cast<std::size_t>(std::ranges::count_if(
           window.frames, [](const MovingFrame& moving) { return moving.motion.has_value(); }));
     }
-    timing = measure_timing(*windows, prior_of(prior), recording.rig.camera.fx_px, workers);
+    timing = measure_timing(*windows, without_prior(prior), recording.rig.camera.fx_px, workers);
   }
   result.pairs = timing.pairs;
   for (int i = 0; i < 3; ++i) result.constants[static_cast<std::size_t>(i)] = constant_of(prior, timing, i);

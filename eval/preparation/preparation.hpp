@@ -19,9 +19,9 @@ namespace fusebench::preparation {
 
 enum class Verdict {
   held,      ///< the calibration says it exactly
-  measured,  ///< the measurement, with the calibration's value as its prior
+  measured,  ///< the measurement
   agrees,    ///< the measurement does not contradict what somebody else has published: that is kept
-  open,      ///< the motion does not tell it: the calibration's value is kept
+  open,      ///< the recording does not tell it: the calibration's value is kept
 };
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 

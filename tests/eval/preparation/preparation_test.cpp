@@ -61,6 +61,19 @@ TEST(Preparation, ARecordingThatIsTooShortKeepsItsCalibration) {
   EXPECT_NE(to_text(*prepared, {}, recording).find("calibration"), std::string::npos);
 }
 
+TEST(Preparation, WhatIsPublishedIsKeptUnlessTheImagesContradictIt) {
+  const SensorTiming told{0, 0.022, 0.008, 0.002, 0.002, 0.002};
+  const Workers workers(2);
+  const auto prepared = prepare(recording_with(told, 40), workers, nullptr);
+  ASSERT_TRUE(prepared.has_value());
+  const auto& [color, depth, delay] = prepared->constants;
+  EXPECT_EQ(color.verdict, Verdict::measured) << "26 ms are no global shutter";
+  EXPECT_NEAR(color.after_s, kSensors.color_readout_s, 3e-3);
+  EXPECT_EQ(depth.verdict, Verdict::agrees);
+  EXPECT_EQ(depth.after_s, told.depth_readout_s);
+  EXPECT_EQ(delay.after_sigma_s, told.depth_delay_sigma_s);
+}
+
 TEST(Preparation, AFrameThatCannotBeReadIsNamed) {
   recording::Recording recording = recording_with(calibration::kUnknownTiming, 30);
   recording.load_frame = [load = recording.load_frame](std::size_t k) -> Result<RgbdFrame> {
