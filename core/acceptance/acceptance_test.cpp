@@ -6,10 +6,14 @@
 
 namespace fusebench::acceptance {
 
+namespace {
+
 bool passes(const AcceptanceTest& test) {
   if (!test.value) return true;
   return test.bound == Bound::at_least ? *test.value >= test.limit : *test.value <= test.limit;
 }
+
+}  // namespace
 
 std::string first_failure(std::span<const AcceptanceTest> tests) {
   const auto failed = std::ranges::find_if_not(tests, passes);

@@ -18,8 +18,6 @@ struct AcceptanceTest {
   std::string_view option;  ///< that sets the limit; empty: the limit is fixed
 };
 
-[[nodiscard]] bool passes(const AcceptanceTest& test);
-
 /// What the first test that fails says: quantity, value, limit and option; empty if all pass.
 [[nodiscard]] std::string first_failure(std::span<const AcceptanceTest> tests);
 

@@ -10,7 +10,7 @@
 
 namespace fusebench::acceptance {
 
-/// The tests of an update that the report describes, in the order in which they are asked.
+/// The tests of an update that the report describes, in the order in which they are evaluated.
 [[nodiscard]] std::array<AcceptanceTest, 5> update_tests(const health::FrameReport& report,
                                                          const config::TermsConfig& terms,
                                                          const config::IekfConfig& iekf,

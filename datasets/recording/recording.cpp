@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "core/io/fingerprint.hpp"
@@ -31,6 +32,19 @@ Recording named_recording(const std::filesystem::path& folder, std::string_view 
 Vector3d ground_truth_offset_m(const Recording& recording) {
   const bool of_camera = !recording.calibration || recording.simulated || !recording.truth_label.empty();
   return of_camera ? Vector3d::Zero() : recording.calibration->color.ground_truth_offset_m;
+}
+
+void set_timing(Recording& recording, const SensorTiming& timing) {
+  const double later_s = timing.depth_delay_s - recording.rig.timing.depth_delay_s;
+  const auto later_ns = static_cast<std::int64_t>(std::llround(1e9 * later_s));
+  recording.rig.timing = timing;
+  if (recording.calibration) recording.calibration->color.timing = timing;
+  for (FrameEntry& frame : recording.frames) frame.depth_capture_ns += later_ns;
+  recording.load_frame = [load = std::move(recording.load_frame), later_ns](std::size_t k) {
+    auto frame = load(k);
+    if (frame) frame->depth_offset_ns += later_ns;
+    return frame;
+  };
 }
 
 Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end) {

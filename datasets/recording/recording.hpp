@@ -77,6 +77,9 @@ struct Recording {
 /// truth and for that of simulations, which are of the camera itself, whatever camera it is read as.
 [[nodiscard]] Vector3d ground_truth_offset_m(const Recording& recording);
 
+/// Replaces the timing of the image sensors; depth images are taken that much later or earlier.
+void set_timing(Recording& recording, const SensorTiming& timing);
+
 /// Keeps frames begin to end - 1 (which become 0 to end - begin - 1); IMU and ground truth stay whole. A part
 /// of a recording gets its own fingerprint. Errors: usage (an empty range, or one that leaves the recording).
 [[nodiscard]] Result<void> select_frames(Recording& recording, std::size_t begin, std::size_t end);

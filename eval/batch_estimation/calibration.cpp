@@ -127,20 +127,13 @@ recording::Recording with_guess(const recording::Recording& original, const Gues
                                             .accelerometer_scale = guess.scales.accelerometer});
     sample.timestamp_ns -= shift_ns;
   }
-  SensorTiming& timing = recording.rig.timing;
-  const double depth_delay_before_s = timing.depth_delay_s;
+  SensorTiming timing = recording.rig.timing;
   timing.color_readout_s = guess.timing_s[0];
   timing.depth_readout_s = guess.timing_s[1];
   timing.depth_delay_s = guess.timing_s[2];
   if (hold_timing)
     timing.color_readout_sigma_s = timing.depth_readout_sigma_s = timing.depth_delay_sigma_s = 0;
-  const auto later_ns =
-      static_cast<std::int64_t>(std::llround(1e9 * (timing.depth_delay_s - depth_delay_before_s)));
-  recording.load_frame = [load = original.load_frame, later_ns](std::size_t k) {
-    auto frame = load(k);
-    if (frame) frame->depth_offset_ns += later_ns;
-    return frame;
-  };
+  recording::set_timing(recording, timing);
   return recording;
 }
 

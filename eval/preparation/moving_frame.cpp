@@ -111,6 +111,7 @@ Result<MovingFrames> moving_frames(const recording::Recording& recording, std::s
   if (!frames) return tl::unexpected(frames.error());
   const auto poses = track(*frames, rig, workers, stop);
   if (!poses) return tl::unexpected(poses.error());
+  for (MovingFrame& moving : *frames) moving.frame.color = {};
   const auto is_known = [](const std::optional<TimedPose>& pose) { return pose.has_value(); };
   for (std::size_t k = kVelocityReach; k + kVelocityReach < poses->size(); ++k) {
     const std::span<const std::optional<TimedPose>, 2 * kVelocityReach + 1> around(

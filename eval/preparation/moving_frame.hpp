@@ -19,7 +19,7 @@ struct CameraMotion {
 };
 
 struct MovingFrame {
-  RgbdFrame frame;
+  RgbdFrame frame;                     ///< without the colour image
   std::optional<CameraMotion> motion;  ///< nothing where it is not known
 };
 

@@ -119,7 +119,7 @@ bool can_be_prepared(const recording::Recording& recording) {
 Result<Preparation> prepare(const recording::Recording& recording, const Workers& workers,
                             const std::atomic<bool>* stop) {
   const TimingEstimate prior = timing_of(recording.rig.timing);
-  MeasuredTiming timing{{}, prior, 0};
+  MeasuredTiming timing{prior, 0};
   Preparation result;
   if (can_be_prepared(recording)) {
     const auto windows = load_windows(recording, workers, stop);
@@ -152,15 +152,7 @@ recording::Recording with_timing(recording::Recording recording, const SensorTim
     if (before.value_s[at] != after.value_s[at] || before.sigma_s[at] != after.sigma_s[at])
       recording.notes.push_back(change_text(i, before, after));
   }
-  const auto later_ns = static_cast<std::int64_t>(std::llround(1e9 * (after.value_s[2] - before.value_s[2])));
-  recording.rig.timing = timing;
-  if (recording.calibration) recording.calibration->color.timing = timing;
-  for (recording::FrameEntry& frame : recording.frames) frame.depth_capture_ns += later_ns;
-  recording.load_frame = [load = recording.load_frame, later_ns](std::size_t k) {
-    auto frame = load(k);
-    if (frame) frame->depth_offset_ns += later_ns;
-    return frame;
-  };
+  recording::set_timing(recording, timing);
   return recording;
 }
 

@@ -185,7 +185,7 @@ SensorTiming sensor_timing(const TimingEstimate& estimate) {
 MeasuredTiming measure_timing(std::span<const MovingFrames> windows, const SensorTiming& prior_timing,
                               double focal_length_px, const Workers& workers) {
   const TimingEstimate prior = timing_of(prior_timing);
-  const MeasuredTiming nothing{{}, prior, 0};
+  const MeasuredTiming nothing{prior, 0};
   const std::vector<FramePair> pairs = choose_pairs(windows);
   if (pairs.size() < kFewestPairs) return nothing;
   const Vector3d common_s = common_sigma_s(pairs, focal_length_px);
@@ -198,9 +198,7 @@ MeasuredTiming measure_timing(std::span<const MovingFrames> windows, const Senso
     Matrix3d covariance = round.covariance;
     covariance.diagonal() += common_s.cwiseProduct(common_s);
     const Vector3d measured_s = before_s + response.completed(before_s, round.step_s);
-    result = {{measured_s, covariance.diagonal().cwiseSqrt()},
-              combined(prior, measured_s, covariance),
-              round.pairs};
+    result = {combined(prior, measured_s, covariance), round.pairs};
     if (((result.posterior.value_s - before_s).array().abs() < kConverged_s).all()) break;
   }
   return result;

@@ -21,7 +21,6 @@ struct TimingEstimate {
 [[nodiscard]] SensorTiming sensor_timing(const TimingEstimate& estimate);
 
 struct MeasuredTiming {
-  TimingEstimate measured;   ///< by the images alone
   TimingEstimate posterior;  ///< with the prior
   std::size_t pairs = 0;     ///< of frames; 0: nothing could be measured, and the posterior is the prior
 };

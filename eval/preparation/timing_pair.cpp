@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/inspection/measures/frame_warp.hpp"
+
 namespace fusebench::preparation {
 
 namespace {
@@ -18,7 +20,6 @@ constexpr int kPointsAcross = 48;
 constexpr std::size_t kFewestPoints = 200;
 constexpr int kIterations = 3;
 constexpr double kHuberSigmas = 1.5;
-constexpr double kSmoothShare = 0.03;  // of the depth, between neighbours
 constexpr double kMaxPlaneDistance_m = 0.1;
 
 /// A point of the first frame.
@@ -30,25 +31,13 @@ struct Point {
 
 double row_share(double y_px, int height_px) { return y_px / (height_px - 1) - 0.5; }
 
-bool is_smooth(const DepthImage& depth_m, int x, int y, int reach) {
-  const float z_m = depth_m(x, y);
-  if (!(z_m > 0)) return false;
-  for (const auto& [dx, dy] :
-       {std::pair(-reach, 0), std::pair(reach, 0), std::pair(0, -reach), std::pair(0, reach)}) {
-    const float neighbour_m = depth_m(x + dx, y + dy);
-    if (!(neighbour_m > 0) || std::abs(neighbour_m - z_m) > kSmoothShare * static_cast<double>(z_m))
-      return false;
-  }
-  return true;
-}
-
 std::vector<Point> points_of(const RgbdFrame& frame, const PinholeCamera& camera) {
   constexpr int kNeighbour_px = 2;
   const int step = std::max(kNeighbour_px, camera.width_px / kPointsAcross);
   std::vector<Point> points;
   for (int y = step; y + step < camera.height_px; y += step) {
     for (int x = step; x + step < camera.width_px; x += step) {
-      if (!is_smooth(frame.depth_m, x, y, kNeighbour_px)) continue;
+      if (!inspection::measures::is_smooth(frame.depth_m, x, y)) continue;
       points.push_back({camera.back_project(x, y, static_cast<double>(frame.depth_m(x, y))),
                         row_share(y, camera.height_px), static_cast<double>(frame.grey(x, y))});
     }
@@ -145,7 +134,7 @@ Eigen::Matrix<double, 3, 6> by_pose(const Vector3d& point) {
 /// Normal of the measured surface around a pixel, towards the camera; nothing if it is not smooth.
 std::optional<Vector3d> normal_at(const DepthImage& depth_m, const PinholeCamera& camera, int x, int y) {
   constexpr int kNeighbour_px = 2;
-  if (!is_smooth(depth_m, x, y, kNeighbour_px)) return std::nullopt;
+  if (!inspection::measures::is_smooth(depth_m, x, y)) return std::nullopt;
   const auto point = [&](int u, int v) {
     return camera.back_project(u, v, static_cast<double>(depth_m(u, v)));
   };

@@ -11,7 +11,7 @@
 
 namespace fusebench::run {
 
-/// Asks the system for its revised poses; nothing if there are none, or the run did not come to its end. What
+/// The revised poses of the system; nothing if it has none, or the run did not come to its end. What
 /// goes wrong ends the run and is in the progress. Errors: run_failed (a stop).
 [[nodiscard]] Result<std::optional<Trajectory>> revised_poses(systems::System& system, RunProgress& progress,
                                                               const RunControl& control);

@@ -13,7 +13,9 @@ namespace {
 constexpr int kPointsAcross = 48;  // about 1700 points of a whole image
 constexpr double kSmooth = 0.03;
 
-bool smooth_at(const DepthImage& depth_m, int x, int y) {
+}  // namespace
+
+bool is_smooth(const DepthImage& depth_m, int x, int y) {
   const float z_m = depth_m(x, y);
   if (z_m <= 0) return false;
   for (const auto& [dx, dy] : {std::pair(-2, 0), std::pair(2, 0), std::pair(0, -2), std::pair(0, 2)}) {
@@ -22,6 +24,8 @@ bool smooth_at(const DepthImage& depth_m, int x, int y) {
   }
   return true;
 }
+
+namespace {
 
 /// A camera pose in the truth's world under a reading.
 std::optional<SE3> pose_at(const Trajectory& truth, std::int64_t time_ns, std::int64_t gap_ns,
@@ -70,7 +74,7 @@ WarpPair make_warp_pair(std::size_t from, std::size_t to, const RgbdFrame& from_
   const int step = std::max(2, depth_m.width / kPointsAcross);
   for (int y = step; y + step < depth_m.height; y += step) {
     for (int x = step; x + step < depth_m.width; x += step) {
-      if (smooth_at(depth_m, x, y))
+      if (is_smooth(depth_m, x, y))
         pair.points.push_back(
             {static_cast<double>(x), static_cast<double>(y), static_cast<double>(depth_m(x, y))});
     }

@@ -45,6 +45,10 @@ struct WarpResidual {
   double intensity_grey = 0;  ///< median |difference|, after the median difference is taken away
 };
 
+/// Whether there is a measurement, and the depths two pixels aside differ from it by at most 3 %. The pixel
+/// is two or more from the border.
+[[nodiscard]] bool is_smooth(const DepthImage& depth_m, int x, int y);
+
 /// Points on a grid, where depth differs from its neighbours' by less than 3 %.
 [[nodiscard]] WarpPair make_warp_pair(std::size_t from, std::size_t to, const RgbdFrame& from_frame,
                                       RgbdFrame&& to_frame);

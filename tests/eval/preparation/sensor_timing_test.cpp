@@ -32,7 +32,7 @@ CameraMotion motion_at(double time_s) {
   return motion;
 }
 
-/// 45 frames at 30 Hz of these sensors, with exact motions; their delay is told as told_delay_s.
+/// 45 frames at 30 Hz of these sensors, with exact motions; the recording gives their delay as told_delay_s.
 MovingFrames swing(const SensorTiming& sensors, double told_delay_s = 0) {
   MovingFrames result{testing::small_camera(), {}};
   const testing::TexturedRoom room;
