@@ -67,18 +67,21 @@ filter::IekfResult FrameUpdate::run_from(const filter::MeasuredVector& start,
 filter::IekfResult FrameUpdate::run(const filter::GaussianState& prior, const Tracking& last,
                                     const FramePreparation& frame, const Novelty& novelty, bool thorough) {
   const alignment::ReferencePoints& points = last.reference.points;
+  // Where the camera would be if it stood still; the keyframe of a relocalised frame.
+  const SE3& last_pose =
+      last.lost_frames == 0 ? last.estimate->mean.T_world_imu : prior.mean.T_world_imu_reference;
   const auto update_from = [&](const filter::MeasuredVector& start) {
     return run_from(start, prior, last, frame, novelty);
   };
   if (!novelty.color || config_.terms.photometric_weight <= 0)
     return update_from(filter::MeasuredVector::Zero());
-  const alignment::FoundStart found = search_.find(prior, points, frame.whole_pyramid(), thorough);
+  const alignment::FoundStart found = search_.find(prior, last_pose, points, frame.whole_pyramid(), thorough);
   filter::IekfResult first = update_from(found.start);
   // With a prediction that is near enough there is no other basin.
   const double first_agreement = agreement(measurement_.outcomes());
   if (thorough || found.coarsest_level < 0 || first_agreement >= config_.health.sure_correlation)
     return first;
-  const alignment::FoundStart other = search_.find(prior, points, frame.whole_pyramid(), true);
+  const alignment::FoundStart other = search_.find(prior, last_pose, points, frame.whole_pyramid(), true);
   filter::IekfResult second = update_from(other.start);
   if (agreement(measurement_.outcomes()) > first_agreement) return second;
   return update_from(first.solution);

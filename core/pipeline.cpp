@@ -292,22 +292,29 @@ Result<void> Pipeline::fuse_again(const RgbdFrame& frame, const filter::FilterSt
 
 void Pipeline::resume(const filter::GaussianState& estimate) {
   Tracking& now = *tracking_;
-  now.estimate = estimate;
-  for (patches::TrackedCentre& centre : now.survivors) centre.kept.reset();
+  now.estimate = filter::cloned_as_reference(estimate, preparation_.undone_readout(estimate.mean));
+  now.reference.timestamp_ns = now.timestamp_ns;
   cut_patches();
 }
 
 /// Sec. 2.3: surviving patches are cut again as squares, new corners join them, depth comes from the model.
+/// Until then patches stay with the frame that they were cut from.
 void Pipeline::refresh(health::StageTimes& stages) {
   const health::StageClock clock(stages, health::Stage::refresh);
   Tracking& now = *tracking_;
-  cut_patches();
-  now.reference.timestamp_ns = now.timestamp_ns;
+  const filter::UndoneReadout undone = preparation_.undone_readout(now.estimate->mean);
+  const bool anew = now.reference.patches.empty() ||
+                    acceptance::needs_new_anchor(deformed_update_.measurement().outcomes(), config_.patches);
+  if (anew) cut_patches();
   const double share =
       patches::fused_share(now.model, now.reference.patches, reference_frame(), config_.depth);
-  now.estimate = filter::cloned_after_fusion(*now.estimate, {share, config_.motion.drift_factor},
-                                             now.color_drift.noise(config_.color_drift),
-                                             preparation_.undone_readout(now.estimate->mean));
+  now.estimate = filter::fused_into_model(*now.estimate, {share, config_.motion.drift_factor}, undone);
+  if (anew) {
+    now.reference.timestamp_ns = now.timestamp_ns;
+    now.estimate = filter::cloned_as_reference(*now.estimate, undone);
+  }
+  now.estimate =
+      filter::with_reference_noise(*std::move(now.estimate), now.color_drift.noise(config_.color_drift));
   const RgbdFrame& frame = preparation_.frame();
   const double blur_px =
       preprocessing::predicted_blur_px(now.estimate->mean, rig_, config_.motion.exposure_s);

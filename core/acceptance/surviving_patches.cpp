@@ -1,8 +1,18 @@
 #include "core/acceptance/surviving_patches.hpp"
 
+#include <algorithm>
+
 #include "core/config/groups/patches_config.hpp"
 
 namespace fusebench::acceptance {
+
+namespace {
+
+bool survives(const measurement::PatchOutcome& outcome, const config::PatchConfig& config) {
+  return outcome.accepted && outcome.mean_error_grey <= config.max_mean_error;
+}
+
+}  // namespace
 
 void find_survivors(std::span<const patches::Patch> patches,
                     std::span<const measurement::PatchOutcome> outcomes, const config::PatchConfig& config,
@@ -10,11 +20,19 @@ void find_survivors(std::span<const patches::Patch> patches,
   survivors.clear();
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const measurement::PatchOutcome& outcome = outcomes[p];
-    if (!outcome.accepted || outcome.mean_error_grey > config.max_mean_error) continue;
+    if (!survives(outcome, config)) continue;
     survivors.push_back({outcome.centre_px, patches[p].age + 1});
-    const bool same_shape = !outcome.shrunk && !outcome.extended;
-    if (config.refresh == config::Refresh::keep && same_shape) survivors.back().kept = p;
   }
+}
+
+bool needs_new_anchor(std::span<const measurement::PatchOutcome> outcomes,
+                      const config::PatchConfig& config) {
+  if (config.refresh != config::Refresh::anchor || outcomes.empty()) return true;
+  double agreement = 0;
+  for (const measurement::PatchOutcome& outcome : outcomes) {
+    if (survives(outcome, config)) agreement += std::max(0.0, outcome.correlation);
+  }
+  return agreement < config.anchor_share * static_cast<double>(outcomes.size());
 }
 
 }  // namespace fusebench::acceptance

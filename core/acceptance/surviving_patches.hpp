@@ -16,4 +16,9 @@ void find_survivors(std::span<const patches::Patch> patches,
                     std::span<const measurement::PatchOutcome> outcomes, const config::PatchConfig& config,
                     std::vector<patches::TrackedCentre>& survivors);
 
+/// Whether the patches of the reference frame are to be cut anew from the current frame: in each frame, or
+/// when the image no longer agrees with them (patches.refresh). outcomes: of these patches, or none.
+[[nodiscard]] bool needs_new_anchor(std::span<const measurement::PatchOutcome> outcomes,
+                                    const config::PatchConfig& config);
+
 }  // namespace fusebench::acceptance

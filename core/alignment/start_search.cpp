@@ -59,10 +59,11 @@ int StartSearch::coarsest_level(double sigma_px, const ReferencePoints& referenc
 
 /// The camera moved on as before, or it stands still. Where the prediction allows more than the coarsest
 /// level converges from, also turned by twice that to each side.
-std::vector<filter::MeasuredVector> StartSearch::starts(const filter::GaussianState& prior, double sigma_px,
+std::vector<filter::MeasuredVector> StartSearch::starts(const filter::GaussianState& prior,
+                                                        const SE3& T_world_imu_last, double sigma_px,
                                                         const ReferencePoints& reference) const {
   std::vector<filter::MeasuredVector> starts = {filter::MeasuredVector::Zero(),
-                                                filter::start_at(prior, prior.mean.T_world_imu_reference)};
+                                                filter::start_at(prior, T_world_imu_last)};
   const double reach_px = config_.reach_px * (1 << reference.coarsest_level());
   if (config_.reach_sigmas * sigma_px <= reach_px) return starts;
   const double step_rad = 2 * reach_px / rig_.camera.fx_px;
@@ -77,8 +78,9 @@ std::vector<filter::MeasuredVector> StartSearch::starts(const filter::GaussianSt
   return starts;
 }
 
-FoundStart StartSearch::find(const filter::GaussianState& prior, const ReferencePoints& reference,
-                             std::span<const GreyImage> pyramid, bool thorough) {
+FoundStart StartSearch::find(const filter::GaussianState& prior, const SE3& T_world_imu_last,
+                             const ReferencePoints& reference, std::span<const GreyImage> pyramid,
+                             bool thorough) {
   FoundStart found;
   if (reference.empty()) return found;
   found.landing_sigma_px = landing_sigma_px(prior, reference, rig_);
@@ -89,7 +91,8 @@ FoundStart StartSearch::find(const filter::GaussianState& prior, const Reference
   iterations.max_iterations = config_.max_iterations;
   const SE3 T_world_reference = prior.mean.T_world_imu_reference * rig_.T_imu_camera;
   double least = std::numeric_limits<double>::infinity();
-  for (const filter::MeasuredVector& start : starts(prior, found.landing_sigma_px, reference)) {
+  for (const filter::MeasuredVector& start :
+       starts(prior, T_world_imu_last, found.landing_sigma_px, reference)) {
     alignment_.observe(pyramid, reference, T_world_reference, found.coarsest_level);
     const filter::IekfResult result = filter::iekf_update(prior, alignment_, iterations, start);
     // A start that sees less of the reference has fewer residuals, not a better fit.

@@ -27,14 +27,15 @@ class StartSearch {
               const config::PhotometricConfig& photometric, const config::IekfConfig& iekf,
               const SensorRig& rig);
 
-  /// prior: its reference pose is that of the frame that `reference` was taken from. pyramid: of the new
-  /// frame. `thorough`: on all levels, whatever the prior says.
-  [[nodiscard]] FoundStart find(const filter::GaussianState& prior, const ReferencePoints& reference,
-                                std::span<const GreyImage> pyramid, bool thorough);
+  /// prior: its reference pose is that of the frame that `reference` was taken from. last: pose of the frame
+  /// before. pyramid: of the new frame. `thorough`: on all levels, whatever the prior says.
+  [[nodiscard]] FoundStart find(const filter::GaussianState& prior, const SE3& T_world_imu_last,
+                                const ReferencePoints& reference, std::span<const GreyImage> pyramid,
+                                bool thorough);
 
  private:
   [[nodiscard]] std::vector<filter::MeasuredVector> starts(const filter::GaussianState& prior,
-                                                           double sigma_px,
+                                                           const SE3& T_world_imu_last, double sigma_px,
                                                            const ReferencePoints& reference) const;
   [[nodiscard]] int coarsest_level(double sigma_px, const ReferencePoints& reference) const;
 

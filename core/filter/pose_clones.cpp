@@ -16,6 +16,9 @@ Eigen::Matrix<double, kStateSize, kPoseSize> displacement(const FilterState& sta
   // A rotation error phi of the body is R phi of the world.
   moves.block<3, 3>(kVelocity, 0) = -hat(state.velocity_world_mps) * R;
   moves.block<2, 3>(kGravity, 0) = s2_basis(state.gravity_direction_world).transpose() * R;
+  moves.middleRows<kPoseSize>(kReferencePose) =
+      pose_transport(state.T_world_imu_reference, state.T_world_imu);
+  moves.block<3, 3>(kReferenceRate + 3, 0) = -hat(state.reference_rate.tail<3>()) * R;
   return moves;
 }
 
@@ -69,41 +72,58 @@ Eigen::Matrix<double, kMeasuredSize, kStateSize> measured_combinations(const Fil
   return rows;
 }
 
-GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
-                                  const ReferenceNoise& noise, const UndoneReadout& undone) {
+GaussianState fused_into_model(const GaussianState& state, const ModelDrift& drift,
+                               const UndoneReadout& undone) {
+  const Matrix6d to_reference = pose_transport(state.mean.T_world_imu_reference, state.mean.T_world_imu);
   StateMatrix to_model = StateMatrix::Identity();
   to_model.leftCols<kPoseSize>() -= drift.share * displacement(state.mean);
-  to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * Matrix6d::Identity();
-  const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
-  to_model.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
-  to_model.middleRows<kPoseSize>(kModelRate).setZero();
-  take_rate(to_model, kModelRate, drift.share);
-  to_model.block<kPoseSize, kPoseSize>(kModelRate, kModelRate) = (1 - drift.share) * carried;
+  to_model.block<kPoseSize, kPoseSize>(kModelPose, 0) = drift.share * to_reference;
+  Eigen::Matrix<double, kPoseSize, kStateSize> rate = Eigen::Matrix<double, kPoseSize, kStateSize>::Zero();
+  take_rate(rate, 0, drift.share);
+  to_model.middleRows<kPoseSize>(kModelRate) = to_reference * rate;
+  to_model.block<kPoseSize, kPoseSize>(kModelRate, kModelRate).diagonal().setConstant(1 - drift.share);
 
+  GaussianState result = transformed(state, to_model);
+  // The drift of the model beyond that of independent errors is no error of this pose.
+  const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
+  result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
+      excess * to_reference * state.covariance.topLeftCorner<kPoseSize, kPoseSize>() *
+      to_reference.transpose();
+  result.mean.model_rate_offset =
+      (1 - drift.share) * state.mean.model_rate_offset + drift.share * to_reference * undone.rate_left;
+  UndoneReadout at_reference = undone;
+  at_reference.rate = to_reference * undone.rate;
+  result.mean.model_readout = fused(state.mean.model_readout, at_reference, drift.share);
+  return result;
+}
+
+GaussianState cloned_as_reference(const GaussianState& state, const UndoneReadout& undone) {
+  const Matrix6d carried = pose_transport(state.mean.T_world_imu, state.mean.T_world_imu_reference);
   StateMatrix clone = StateMatrix::Identity();
+  clone.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) = carried;
+  clone.block<kPoseSize, kPoseSize>(kModelRate, kModelRate) = carried;
   clone.middleRows<kPoseSize>(kReferencePose).setZero();
   clone.block<kPoseSize, kPoseSize>(kReferencePose, 0).setIdentity();
   clone.middleRows<kPoseSize>(kReferenceRate).setZero();
   take_rate(clone, kReferenceRate, 1);
 
-  GaussianState result = transformed(state, clone * to_model);
-  // The drift of the model beyond that of independent errors is no error of this pose.
-  const double excess = drift.share * drift.share * std::max(0.0, drift.factor * drift.factor - 1.0);
-  result.covariance.block<kPoseSize, kPoseSize>(kModelPose, kModelPose) +=
-      excess * state.covariance.topLeftCorner<kPoseSize, kPoseSize>();
-  result.covariance.diagonal().segment<3>(kReferencePose).array() += noise.rotation_rad * noise.rotation_rad;
-  result.covariance.diagonal().segment<3>(kReferencePose + 3).array() +=
-      noise.translation_m * noise.translation_m;
+  GaussianState result = transformed(state, clone);
   result.mean.model_offset = carried * state.mean.model_offset;
-  result.mean.model_rate_offset =
-      (1 - drift.share) * carried * state.mean.model_rate_offset + drift.share * undone.rate_left;
-  result.mean.model_readout = fused(transported(carried, state.mean.model_readout), undone, drift.share);
+  result.mean.model_rate_offset = carried * state.mean.model_rate_offset;
+  result.mean.model_readout = transported(carried, state.mean.model_readout);
   result.mean.T_world_imu_reference = state.mean.T_world_imu;
   result.mean.reference_rate = pose_rate(state.mean);
   result.mean.reference_offset.setZero();
   result.mean.reference_rate_offset = undone.rate_left;
   result.mean.reference_color_readout_s = undone.timing_s[0];
   return result;
+}
+
+GaussianState with_reference_noise(GaussianState state, const ReferenceNoise& noise) {
+  auto variances = state.covariance.diagonal().segment<kPoseSize>(kReferencePose).array();
+  variances.head<3>() += noise.rotation_rad * noise.rotation_rad;
+  variances.tail<3>() += noise.translation_m * noise.translation_m;
+  return state;
 }
 
 GaussianState with_model_of(const GaussianState& state, const GaussianState& there) {

@@ -50,11 +50,16 @@ struct UndoneReadout {
   Vector3d timing_s = Vector3d::Zero();   ///< the errors of the timing that were supposed: SensorErrors
 };
 
-/// The frame was fused: the model takes over a share of its pose error, and the next patches are cut at its
-/// pose, which colour knows with an error of its own.
-[[nodiscard]] GaussianState cloned_after_fusion(const GaussianState& state, const ModelDrift& drift,
-                                                const ReferenceNoise& noise = {},
-                                                const UndoneReadout& undone = {});
+/// The frame was fused: the model takes over a share of its pose error. The reference pose, which is given in
+/// the world of the model as the pose is, moves with it.
+[[nodiscard]] GaussianState fused_into_model(const GaussianState& state, const ModelDrift& drift,
+                                             const UndoneReadout& undone = {});
+
+/// The next patches are cut from this frame: its pose becomes the reference pose.
+[[nodiscard]] GaussianState cloned_as_reference(const GaussianState& state, const UndoneReadout& undone = {});
+
+/// The error that colour adds to the reference pose in a frame (color_drift.hpp).
+[[nodiscard]] GaussianState with_reference_noise(GaussianState state, const ReferenceNoise& noise);
 
 /// The state with the errors of another model in place of those of its own: of `there`, at the reference pose
 /// of that state.

@@ -1,9 +1,11 @@
 // The brightness of a patch in a frame: a gain and an offset that are estimated along with the pose.
 #pragma once
 
+#include "core/base/image.hpp"
 #include "core/base/types.hpp"
 #include "core/config/groups/config_fwd.hpp"
 #include "core/filter/iekf.hpp"
+#include "core/patches/patch_lanes.hpp"
 
 namespace fusebench::measurement {
 
@@ -20,11 +22,13 @@ struct PatchBrightness {
   Eigen::Matrix<double, 2, filter::kPoseSize> by_pose = Eigen::Matrix<double, 2, filter::kPoseSize>::Zero();
 };
 
-/// No change of brightness is expected, up to the sigmas of the configuration; a sigma of zero fixes the
-/// value.
+/// Brightness has the gain that all patches have in common and no offset, up to the sigmas of the
+/// configuration and half of the common change; a sigma of zero fixes the value.
 class BrightnessPrior {
  public:
-  explicit BrightnessPrior(const config::PhotometricConfig& config);
+  explicit BrightnessPrior(const config::PhotometricConfig& config, double common_gain = 1);
+
+  [[nodiscard]] Vector2d mean() const { return {common_gain_, 0}; }
 
   [[nodiscard]] double cost(const Vector2d& gain_and_offset) const;
   /// Adds the prior to the normal equations of brightness and eliminates brightness from those of the pose.
@@ -32,6 +36,12 @@ class BrightnessPrior {
 
  private:
   Vector2d information_;  // of gain and offset
+  double common_gain_;
 };
+
+/// The gain of a frame against the patches: the median over the patches of the ratio of their mean grey
+/// levels there to those of the reference. 1 if fewer than five patches have visible pixels of some light.
+/// `level`: coarse, so that the means hardly depend on where exactly the patches are; already warped.
+[[nodiscard]] double common_gain(const patches::LevelLanes& level, const GreyImage& image);
 
 }  // namespace fusebench::measurement

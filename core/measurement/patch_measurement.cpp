@@ -48,6 +48,7 @@ void PatchMeasurement::observe(const ObservedFrame& frame, std::span<const patch
   scale_ = scale;
   weights_ = {frame.color_is_new ? config_.terms.photometric_weight : 0.0,
               frame.depth_is_new ? config_.terms.geometric_weight : 0.0};
+  common_gain_.reset();
   origin_world_ = origin_of(patches);
   gates_ = AssociationGates(config_.geometric, config_.depth, scale.geometric);
   states_.assign(patches.size(), {});
@@ -66,6 +67,7 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   finest_ = static_cast<std::size_t>(config_.patches.levels - 1 - stage);
   const PosedLevels posed(rig_, poses, config_.patches.levels, origin_world_);
   warp_all(posed);
+  if (!common_gain_) find_common_gain();
   workers_.for_chunks(patches_.size(), kPatchesPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       outcomes_[p] = {};
@@ -94,6 +96,18 @@ filter::MeasurementQuadratic PatchMeasurement::linearise(const filter::PoseHypot
   sum.readout_by_reference = color.by_readout(color_displacement(frame_->motion), photometric_variance_);
   sum.readout_by_model = depth.by_readout(depth_displacement(frame_->motion), geometric_variance_);
   return sum;
+}
+
+/// Where the first linearisation puts the patches. Patches of an anchor may be seconds old; those of the
+/// frame before have its exposure up to the prior's standard deviations, and Eq. 3 without brightness has no
+/// gain.
+void PatchMeasurement::find_common_gain() {
+  const bool has_gain = frame_->color_is_new && photometric_.gain_sigma > 0 &&
+                        config_.patches.refresh == config::Refresh::anchor;
+  common_gain_ =
+      has_gain ? measurement::common_gain(levels_.back().lanes, frame_->pyramid[levels_.size() - 1]) : 1;
+  brightness_prior_ = BrightnessPrior(photometric_, *common_gain_);
+  for (PatchState& state : states_) state.brightness.value = brightness_prior_.mean();
 }
 
 /// None if the patch measures nothing.
@@ -236,9 +250,9 @@ void PatchMeasurement::sum_geometric(std::size_t patch, const PosedLevels& posed
 void PatchMeasurement::judge(std::size_t patch, bool gate) {
   PatchState& state = states_[patch];
   PatchOutcome& outcome = outcomes_[patch];
-  outcome.gain = state.brightness.value.x();
+  outcome.gain = state.brightness.value.x() / *common_gain_;
   judge_visibility(levels_.front().lanes.pixels_of(patch), levels_.front().lanes.warped_of(patch),
-                   frame_->pyramid.front(), config_.patches, outcome);
+                   frame_->pyramid.front(), *common_gain_, config_.patches, outcome);
   outcome.contradicts_color = outcome.tracked && !fits_color(outcome, config_.iekf, weights_);
   outcome.accepted =
       outcome.tracked && state.counts && (!gate || is_consistent(outcome, config_.iekf, weights_));
@@ -264,7 +278,8 @@ void PatchMeasurement::move_patches_alone(const SE3& T_world_imu_predicted) {
       patches::LevelLanes& finest = levels_.front().lanes;
       const GreyImage& image = frame_->pyramid.front();
       translate(finest.warped_of(p), own_translation_px(placed), image);
-      judge_visibility(finest.pixels_of(p), finest.warped_of(p), image, config_.patches, outcomes_[p]);
+      judge_visibility(finest.pixels_of(p), finest.warped_of(p), image, *common_gain_, config_.patches,
+                       outcomes_[p]);
       outcomes_[p].accepted &= outcomes_[p].tracked;
     }
   });

@@ -92,6 +92,7 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   };
 
   void warp_all(const PosedLevels& posed);
+  void find_common_gain();
   [[nodiscard]] std::optional<PatchRows> rows_of(std::size_t patch, const patches::PosedCamera& camera) const;
   void judge(std::size_t patch, bool gate);
   void associate_planes(std::size_t patch, const PosedLevels& posed);
@@ -112,7 +113,8 @@ class PatchMeasurement final : public filter::PoseMeasurement {
   std::optional<ObservedFrame> frame_;
   std::span<const patches::Patch> patches_;
   ResidualScale scale_;
-  TermWeights weights_;  ///< in this frame
+  TermWeights weights_;                ///< in this frame
+  std::optional<double> common_gain_;  ///< of this frame, from the first linearise() on
   BrightnessPrior brightness_prior_;
   Vector3d origin_world_ = Vector3d::Zero();  ///< of the lanes' coordinates
   AssociationGates gates_;

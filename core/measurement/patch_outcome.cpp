@@ -46,7 +46,8 @@ simd::Float8 grey_at(const GreyImage& image, const patches::WarpedLanes& warped)
 
 void judge_visibility(std::span<const patches::PixelLanes> pixels,
                       std::span<const patches::WarpedLanes> warped, const GreyImage& image,
-                      const config::PatchConfig& config, PatchOutcome& outcome) {
+                      double common_gain, const config::PatchConfig& config, PatchOutcome& outcome) {
+  const auto gain = static_cast<float>(common_gain);
   const auto count = [](simd::Int8 condition) { return std::popcount(simd::lane_bits(condition)); };
   outcome.usable_pixels = 0;
   outcome.covered_pixels = 0;
@@ -63,7 +64,7 @@ void judge_visibility(std::span<const patches::PixelLanes> pixels,
     sum_x += w.visible ? w.x : simd::Float8{};
     sum_y += w.visible ? w.y : simd::Float8{};
     const simd::Float8 observed = grey_at(image, w);
-    const simd::Float8 apart = simd::abs(observed - pixels[i].intensity);
+    const simd::Float8 apart = simd::abs(observed - gain * pixels[i].intensity);
     correlation.add(observed, pixels[i].intensity, w.visible);
     difference += w.visible ? apart : simd::Float8{};
   }

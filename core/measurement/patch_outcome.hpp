@@ -26,14 +26,14 @@ struct PatchOutcome {
   double chi2_geometric = 0;
   double robust_photometric = 0;  ///< sum of min(r^2, k |r|) of the same, with Huber's k
   double robust_geometric = 0;
-  double gain = 1;  ///< brightness of the frame against the patch's reference
+  double gain = 1;  ///< brightness against the patch's reference, divided by that which all have in common
   /// Correlation of intensities with those of the reference at level 0 (ZNCC, -1 to 1): unlike the
   /// chi-squares it depends neither on the noise that is assumed or learnt nor on brightness.
   double correlation = 0;
   /// Standard deviation of the intensities there, of the frame's or the reference's, whichever is larger: the
   /// correlation of patches of little more contrast than noise says nothing.
   double contrast_grey = 0;
-  double mean_error_grey = 0;  ///< mean absolute difference at level 0, brightness correction not applied
+  double mean_error_grey = 0;             ///< mean absolute difference at level 0, after the gain in common
   Vector2d centre_px = Vector2d::Zero();  ///< where a square around the visible pixels has its centre
 };
 
@@ -44,7 +44,7 @@ struct PatchOutcome {
 /// Pixels, warped positions and image are those of level 0.
 void judge_visibility(std::span<const patches::PixelLanes> pixels,
                       std::span<const patches::WarpedLanes> warped, const GreyImage& image,
-                      const config::PatchConfig& config, PatchOutcome& outcome);
+                      double common_gain, const config::PatchConfig& config, PatchOutcome& outcome);
 
 /// Factors on the information of the two kinds of residuals in a frame; 0 switches a kind off.
 struct TermWeights {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -253,16 +252,11 @@ std::vector<TrackedCentre> select_separated(std::span<const TrackedCentre> survi
   return kept;
 }
 
-/// Those of the patches that go on as they are.
-std::vector<Patch> take_kept(std::span<const TrackedCentre> centres, std::vector<Patch>& patches) {
-  std::vector<Patch> kept;
-  for (const TrackedCentre& centre : centres) {
-    if (!centre.kept) continue;
-    check(*centre.kept < patches.size(), "a kept patch is one of those that were tracked");
-    kept.push_back(std::move(patches[*centre.kept]));
-    kept.back().age = centre.age;
-  }
-  return kept;
+/// Whether there is a depth at the pixel that a point falls on.
+bool is_measured(const ReferenceFrame& frame, const Vector3d& point_camera) {
+  const Vector2d pixel = frame.camera.project(point_camera);
+  const auto x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
+  return frame.depth_m.contains(x, y) && frame.depth_m(x, y) > 0;
 }
 
 }  // namespace
@@ -271,7 +265,6 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                      std::span<const TrackedCentre> survivors, const CutOptions& options,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches) {
   std::vector<TrackedCentre> centres = select_separated(survivors, frame, options.patches);
-  std::vector<Patch> kept = take_kept(centres, patches);
   std::vector<Eigen::Vector2i> existing;
   for (const TrackedCentre& c : centres) {
     existing.emplace_back(static_cast<int>(std::lround(c.pixel_px.x())),
@@ -281,8 +274,6 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
        select_corners(frame.pyramid[0], frame.depth_m, existing, options.patches)) {
     centres.push_back({corner.cast<double>(), 0});
   }
-  std::erase_if(centres, [](const TrackedCentre& centre) { return centre.kept.has_value(); });
-
   cut_patches(frame, model, centres, options, workers, work, patches);
   const int square = options.patches.size_px * options.patches.size_px;
   const auto too_few = [&](const Patch& patch) {
@@ -294,7 +285,6 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
     set_deformation(patch, frame.camera, frame.T_world_camera, options.deformation);
   }
   std::erase_if(patches, too_few);  // a deformation may find no plane or no centre
-  patches.insert(patches.begin(), std::move_iterator(kept.begin()), std::move_iterator(kept.end()));
 }
 
 std::vector<Patch> refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
@@ -314,12 +304,13 @@ double fused_share(const tsdf::TsdfVolume& model, std::span<const Patch> patches
   for (const Patch& patch : patches) {
     for (const PatchPixel& pixel : patch.levels.front().pixels) {
       ++count;
-      if (!(frame.depth_m.data[pixel.reference_pixel] > 0)) continue;
+      const Vector3d point_camera = T_camera_world * pixel.point_world;
+      if (!(point_camera.z() > 0) || !is_measured(frame, point_camera)) continue;
       const auto place = model.nearest_voxel(pixel.point_world);
       if (!place) continue;
       const float weight_there = model.voxel(place->slot, place->offset).weight;
       if (!(weight_there > 0)) continue;
-      const double weight = model.measurement_weight((T_camera_world * pixel.point_world).z(), depth);
+      const double weight = model.measurement_weight(point_camera.z(), depth);
       sum += std::min(1.0, weight / static_cast<double>(weight_there));
     }
   }

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,8 +64,6 @@ struct ReferenceFrame {
 struct TrackedCentre {
   Vector2d pixel_px = Vector2d::Zero();
   int age = 0;
-  /// Its number among the patches that go on as they are, without being cut again (patches.refresh = keep).
-  std::optional<std::size_t> kept = std::nullopt;
 };
 
 /// The options by which patches are cut.
@@ -88,8 +85,8 @@ struct PatchWorkspace {
 
 /// Sec. 2.3: surviving patches are cut again as squares at their new places, and FAST corners with enough
 /// depth fill the image up to max_count, spread over a grid. Intensity comes from the frame, depth and
-/// normals from the model (or from the frame: patches.reference_surface). `patches` are those that were
-/// tracked: kept survivors among them stay as they are, and the memory of all is used again.
+/// normals from the model (or from the frame: patches.reference_surface). The memory of `patches` is used
+/// again.
 void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                      std::span<const TrackedCentre> survivors, const CutOptions& options,
                      const Workers& workers, PatchWorkspace& work, std::vector<Patch>& patches);
@@ -98,7 +95,7 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                                                  std::span<const TrackedCentre> survivors,
                                                  const CutOptions& options, const Workers& workers);
 
-/// The mean share that a frame which was just fused has in the model where the patches cut from it are: near
+/// The mean share that a frame which was just fused has in the model where these patches are: near
 /// 1 where the surface is new, small where many frames made it, 0 where the frame measured no depth and
 /// without patches.
 [[nodiscard]] double fused_share(const tsdf::TsdfVolume& model, std::span<const Patch> patches,

@@ -13,10 +13,10 @@ constexpr auto option_choices(ReferenceSurface) {
                                     {"frame_ungated", ReferenceSurface::frame_ungated}});
 }
 
-/// What happens to a patch that was tracked well.
-enum class Refresh { each, keep };
+/// From which frame the patches are cut.
+enum class Refresh { each, anchor };
 constexpr auto option_choices(Refresh) {
-  return choices<Refresh>({{"each", Refresh::each}, {"keep", Refresh::keep}});
+  return choices<Refresh>({{"each", Refresh::each}, {"anchor", Refresh::anchor}});
 }
 
 /// When one of two pixels that land at one place is hidden by the other.
@@ -39,6 +39,7 @@ struct PatchConfig {
   double occlusion_distance_m = 0.1;
   ReferenceSurface reference_surface = ReferenceSurface::model;
   Refresh refresh = Refresh::each;
+  double anchor_share = 0.75;
   ShrinkTest shrink_test = ShrinkTest::depth_jump;
 
   static constexpr void visit(auto& self, auto&& v) {
@@ -67,9 +68,11 @@ struct PatchConfig {
              "depth and normals of a patch: from the model (Sec. 2.3), from the frame that it is cut from "
              "(Sec. 2.1.1), or from that frame with no gate on its depth");
     v.choice("refresh", self.refresh,
-             "a patch that was tracked well is cut again in each frame (Sec. 2.3), or is kept with the grey "
-             "levels and the surface that it had until it is bad or the SE effect changes its shape; the "
-             "error of an older frame's pose is then taken for that of the last one");
+             "all patches are cut anew from each fused frame, or they stay with the frame that they were cut "
+             "from (their anchor, whose pose is in the state) until the image no longer agrees with them");
+    v.number("anchor_share", self.anchor_share, 0.0, 1.0,
+             "with refresh = anchor: patches are cut anew when the correlations of those that survive the "
+             "update add up to less than this share of the number of patches");
     v.choice("shrink_test", self.shrink_test,
              "of two pixels that land at one place the farther one is dropped if it is clearly farther, or "
              "always (Sec. 2.1.1 to the letter)");

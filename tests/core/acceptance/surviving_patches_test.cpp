@@ -29,22 +29,31 @@ TEST(SurvivingPatches, OnlyAcceptedPatchesOfSmallErrorSurvive) {
   EXPECT_EQ(survivors[0].age, 8);
 }
 
-TEST(SurvivingPatches, OnlyPatchesThatKeepTheirShapeAreKept) {
+std::vector<PatchOutcome> outcomes_of(int count, double correlation) {
+  PatchOutcome outcome;
+  outcome.accepted = true;
+  outcome.correlation = correlation;
+  return std::vector<PatchOutcome>(static_cast<std::size_t>(count), outcome);
+}
+
+TEST(SurvivingPatches, PatchesAreCutAnewWhenTheImageNoLongerAgreesWithThem) {
   PatchConfig config;
-  const std::vector<Patch> patches(3);
-  std::vector<PatchOutcome> outcomes(3);
-  for (PatchOutcome& outcome : outcomes) outcome.accepted = true;
-  outcomes[0].shrunk = true;
-  outcomes[1].extended = true;
-  std::vector<TrackedCentre> survivors;
-  find_survivors(patches, outcomes, config, survivors);
-  for (const TrackedCentre& survivor : survivors) EXPECT_FALSE(survivor.kept.has_value());
-  config.refresh = Refresh::keep;
-  find_survivors(patches, outcomes, config, survivors);
-  ASSERT_EQ(survivors.size(), 3U);
-  EXPECT_FALSE(survivors[0].kept.has_value());
-  EXPECT_FALSE(survivors[1].kept.has_value());
-  EXPECT_EQ(survivors[2].kept, 2U);
+  config.refresh = Refresh::anchor;
+  config.anchor_share = 0.75;
+  EXPECT_FALSE(needs_new_anchor(outcomes_of(20, 0.8), config));
+  EXPECT_TRUE(needs_new_anchor(outcomes_of(20, 0.7), config));  // a blurred image
+  std::vector<PatchOutcome> leaving = outcomes_of(20, 1.0);
+  for (std::size_t i = 0; i < 5; ++i) leaving[i].accepted = false;
+  EXPECT_FALSE(needs_new_anchor(leaving, config));
+  leaving[5].mean_error_grey = config.max_mean_error + 1;
+  EXPECT_TRUE(needs_new_anchor(leaving, config));
+  EXPECT_TRUE(needs_new_anchor({}, config));
+}
+
+TEST(SurvivingPatches, WithoutAnchorsPatchesAreCutFromEachFrame) {
+  PatchConfig config;
+  config.refresh = Refresh::each;
+  EXPECT_TRUE(needs_new_anchor(outcomes_of(20, 1.0), config));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ struct Search {
   FoundStart find(const filter::GaussianState& prior, bool thorough = false) {
     const std::vector<GreyImage> pyramid = build_pyramid(frame.grey, levels());
     return StartSearch(config.alignment, config.patch_levels, config.photometric, config.iekf, rig)
-        .find(prior, reference, pyramid, thorough);
+        .find(prior, prior.mean.T_world_imu_reference, reference, pyramid, thorough);
   }
 
   /// How far the pose of a start is from the truth, in pixels at 1 m.

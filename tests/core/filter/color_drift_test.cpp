@@ -89,7 +89,8 @@ double drift_m(double excess_m, const ColorDriftConfig& config) {
         pose_plus(truth, normal_vector(random, kDepth_m)), kColor_m, kDepth_m);
     const IekfResult update = iekf_update(state, measurement, IekfConfig{});
     drift.observe(correction_in_imu(update), config);
-    state = cloned_after_fusion(update.posterior, {}, drift.noise(config));
+    state = with_reference_noise(cloned_as_reference(fused_into_model(update.posterior, {})),
+                                 drift.noise(config));
     cut_at = truth;
     if (frame > 300)
       worst_m = std::max(worst_m, (state.mean.T_world_imu.translation - truth.translation).norm());

@@ -43,10 +43,16 @@ GaussianState uncertain_at(const SE3& T, double variance) {
   return state;
 }
 
+/// A frame that is fused, and that the next patches are cut from.
+GaussianState cut_and_fused(const GaussianState& state, const ModelDrift& drift,
+                            const UndoneReadout& undone = {}) {
+  return cloned_as_reference(fused_into_model(state, drift, undone), undone);
+}
+
 TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
   for (const double share : {0.0, 0.3, 1.0}) {
-    const GaussianState after = cloned_after_fusion(before, {.share = share});
+    const GaussianState after = cut_and_fused(before, {.share = share});
     const Matrix6d against_model = after.covariance.topLeftCorner<kPoseSize, kPoseSize>();
     EXPECT_LT((against_model - (1 - share) * (1 - share) * 1e-4 * Matrix6d::Identity()).norm(), 1e-15);
     const Matrix6d in_world = in_first_camera_world(after).covariance.topLeftCorner<kPoseSize, kPoseSize>();
@@ -55,7 +61,7 @@ TEST(PoseClones, WhatTheModelTakesOverStaysAnErrorInTheWorld) {
 }
 
 TEST(PoseClones, AFrameThatWasJustAnchoredTellsNothingAgainstItself) {
-  const GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-4), {});
+  const GaussianState state = cut_and_fused(uncertain_at(kTo, 1e-4), {});
   const Eigen::MatrixXd measured = testing::carried(measured_combinations(state.mean), state.covariance);
   EXPECT_LT(measured.topLeftCorner(kPoseSize, kPoseSize).norm(), 1e-15);
   EXPECT_NEAR(measured.block(kPoseSize, kPoseSize, kPoseSize, kPoseSize).trace(), 6e-4, 1e-12);
@@ -71,7 +77,7 @@ TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal(0.0, kSigma);
     for (int run = 0; run < kRuns; ++run) {
-      GaussianState state = cloned_after_fusion(known_at(SE3{}), {});
+      GaussianState state = cut_and_fused(known_at(SE3{}), {});
       SE3 reference_truth;  // where the reference frame truly is
       for (int step = 0; step < kSteps; ++step) {
         state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += Matrix6d::Identity();  // it may have moved
@@ -81,7 +87,7 @@ TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
         const SE3 seen = pose_plus(state.mean.T_world_imu_reference * reference_truth.inverse(), noise);
         KnownMeasurement measurement(seen, pose_plus(SE3{}, noise), by_model ? 0.0 : kSigma,
                                      by_model ? kSigma : 0.0);
-        state = cloned_after_fusion(iekf_update(state, measurement, IekfConfig{}).posterior, {});
+        state = cut_and_fused(iekf_update(state, measurement, IekfConfig{}).posterior, {});
       }
       squared += state.mean.T_world_imu.translation.squaredNorm() / kRuns;
       claimed = in_first_camera_world(state).covariance.block<3, 3>(kPosition, kPosition).trace();
@@ -96,7 +102,7 @@ TEST(PoseClones, ErrorsOfRelativeMeasurementsAddUpAndTheFilterKnows) {
 TEST(PoseClones, ASecondLookFromTheSameReferenceIsNoMotion) {
   // Without an anchor in between (an occluded frame is tracked, but nothing is cut from it) the next frame is
   // compared with the same patches: what was learnt of the reference pose must not count as motion.
-  GaussianState state = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
+  GaussianState state = cut_and_fused(uncertain_at(kTo, 1e-6), {});
   state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
   Vector6d off;
   off << 2e-4, -1e-4, 3e-4, 1e-3, -2e-3, 1e-3;
@@ -108,7 +114,7 @@ TEST(PoseClones, ASecondLookFromTheSameReferenceIsNoMotion) {
   // It stands still, and the second image says exactly what the first one said.
   KnownMeasurement second(kTo, by_model, 1e-3, 1e-3);
   GaussianState again = iekf_update(state, second, IekfConfig{}).posterior;
-  GaussianState once = cloned_after_fusion(uncertain_at(kTo, 1e-6), {});
+  GaussianState once = cut_and_fused(uncertain_at(kTo, 1e-6), {});
   once.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-4 * Matrix6d::Identity();
   KnownMeasurement both(kTo, by_model, 1e-3 / std::sqrt(2.0), 1e-3 / std::sqrt(2.0));
   once = iekf_update(once, both, IekfConfig{}).posterior;
@@ -116,9 +122,27 @@ TEST(PoseClones, ASecondLookFromTheSameReferenceIsNoMotion) {
   EXPECT_LT(testing::relative_distance(again.covariance, once.covariance), 1e-3);
 }
 
+TEST(PoseClones, AReferenceThatIsKeptMovesWithTheModel) {
+  // The patches stay with the frame at kFrom while frames at kTo are fused: what colour measures is the same
+  // before and after a fusion, and the pose of the reference in the first camera's world too.
+  GaussianState state = cloned_as_reference(uncertain_at(kFrom, 1e-4));
+  state.mean.T_world_imu = kTo;
+  state.covariance.topLeftCorner<kPoseSize, kPoseSize>() += 1e-5 * Matrix6d::Identity();
+  const GaussianState after = fused_into_model(state, {.share = 0.3});
+  const auto against_reference = [](const GaussianState& at) -> Eigen::MatrixXd {
+    return testing::carried(measured_combinations(at.mean), at.covariance)
+        .topLeftCorner(kPoseSize, kPoseSize);
+  };
+  EXPECT_LT(testing::relative_distance(against_reference(after), against_reference(state)), 1e-9);
+  const auto reference_in_world = [](const GaussianState& at) -> Matrix6d {
+    return in_first_camera_world(at).covariance.block<kPoseSize, kPoseSize>(kReferencePose, kReferencePose);
+  };
+  EXPECT_LT(testing::relative_distance(reference_in_world(after), reference_in_world(state)), 1e-9);
+}
+
 TEST(PoseClones, DriftBeyondIndependentErrorsIsNoErrorOfThePose) {
   const GaussianState before = uncertain_at(kTo, 1e-4);
-  const GaussianState after = cloned_after_fusion(before, {.share = 0.1, .factor = 5});
+  const GaussianState after = cut_and_fused(before, {.share = 0.1, .factor = 5});
   EXPECT_NEAR(after.covariance(kPosition, kPosition), 0.81e-4, 1e-12);
   EXPECT_NEAR(after.covariance(kModelPose, kModelPose), 0.01e-4 * 25, 1e-12);
   EXPECT_NEAR(after.covariance(kModelPose + 3, kModelPose + 3), 0.01e-4 * 25, 1e-12);
@@ -130,14 +154,14 @@ TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
   GaussianState state = known_at(kTo);
   state.covariance.block<3, 3>(kAngularVelocity, kAngularVelocity) = 4.0 * Matrix3d::Identity();
   state.covariance.block<3, 3>(kVelocity, kVelocity) = 0.25 * Matrix3d::Identity();
-  GaussianState fused = cloned_after_fusion(state, {.share = 1});
+  GaussianState fused = cut_and_fused(state, {.share = 1});
   const auto rates = [&]() -> Eigen::VectorXd {
     return testing::carried(measured_combinations(fused.mean), fused.covariance)
         .diagonal()
         .tail(2 * kPoseSize);
   };
   EXPECT_LT(rates().norm(), 1e-12);
-  fused = cloned_after_fusion(fused, {.share = 0.25});
+  fused = cut_and_fused(fused, {.share = 0.25});
   EXPECT_LT(rates().head(kPoseSize).norm(), 1e-12);  // the reference is the last frame
 
   // The motion is another one now: the model shows a quarter of its error.
@@ -149,7 +173,7 @@ TEST(PoseClones, ImagesThatAreDistortedAlikeSayNothingOfTheMotion) {
   fused.covariance = covariance;
   fused.covariance.block<3, 3>(kAngularVelocity, kAngularVelocity) = 4.0 * Matrix3d::Identity();
   fused.mean.model_rate_offset << 0.4, 0, 0, 0, 0, 0.2;
-  const GaussianState next = cloned_after_fusion(fused, {.share = 0.25});
+  const GaussianState next = cut_and_fused(fused, {.share = 0.25});
   EXPECT_NEAR(next.covariance(kModelRate, kModelRate), 0.0625 * 4, 1e-12);
   EXPECT_NEAR(next.covariance(kModelRate, kAngularVelocity), 0.25 * 4, 1e-12);
   const Matrix6d carried = pose_transport(fused.mean.T_world_imu, fused.mean.T_world_imu_reference);
@@ -161,13 +185,13 @@ TEST(PoseClones, TheModelKeepsTheReadoutThatWasUndoneInItsFrames) {
   UndoneReadout undone;
   undone.rate << 0.4, -0.2, 0.1, 0.3, 0.5, -0.6;
   undone.timing_s = {0.021, 0.03, -0.01};
-  const GaussianState first = cloned_after_fusion(known_at(kTo), {.share = 1}, {}, undone);
+  const GaussianState first = cut_and_fused(known_at(kTo), {.share = 1}, undone);
   EXPECT_LT((first.mean.model_readout.rate - undone.rate).norm(), 1e-15);
   EXPECT_LT((first.mean.model_readout.by_readout - 0.03 * undone.rate).norm(), 1e-15);
   EXPECT_LT((first.mean.model_readout.by_delay + 0.01 * undone.rate).norm(), 1e-15);
   EXPECT_EQ(first.mean.reference_color_readout_s, 0.021);
   // A frame at rest averages half of it away.
-  const GaussianState second = cloned_after_fusion(first, {.share = 0.5}, {}, {});
+  const GaussianState second = cut_and_fused(first, {.share = 0.5});
   EXPECT_LT((second.mean.model_readout.rate - 0.5 * undone.rate).norm(), 1e-15);
   EXPECT_LT((second.mean.model_readout.by_readout - 0.015 * undone.rate).norm(), 1e-15);
   EXPECT_EQ(second.mean.reference_color_readout_s, 0.0);

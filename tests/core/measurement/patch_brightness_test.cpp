@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "core/config/groups/residuals_config.hpp"
 
@@ -56,6 +58,46 @@ TEST(PatchBrightness, EliminationKeepsTheOptimumOfPoseAndBrightness) {
     EXPECT_LT((light.trial - light.value - 0.25 * optimum.tail<2>()).norm(), 1e-9 * optimum.norm());
     EXPECT_NEAR(pose.cost, 7.0 + 0.5 * (0.3 * 0.3 * prior.x() + 0.7 * 0.7 * prior.y()), 1e-12);
   }
+}
+
+/// Eight pixels a patch, all of one grey level, at pixel (8, 8) and around.
+patches::LevelLanes patches_of(const std::vector<float>& grey) {
+  patches::LevelLanes level;
+  level.first.push_back(0);
+  for (const float intensity : grey) {
+    patches::PixelLanes pixels;
+    pixels.intensity = simd::all_lanes(intensity);
+    level.pixels.push_back(pixels);
+    patches::WarpedLanes warped;
+    warped.x = warped.y = simd::all_lanes(8.0F);
+    warped.visible = warped.x > 0.0F;
+    level.warped.push_back(warped);
+    level.first.push_back(level.pixels.size());
+  }
+  return level;
+}
+
+GreyImage image_of(std::uint8_t grey) { return GreyImage(16, 16, grey); }
+
+TEST(PatchBrightness, TheCommonGainIsTheMedianOfThePatches) {
+  // A lamp that was switched on in front of two of them does not matter.
+  EXPECT_NEAR(common_gain(patches_of({100, 100, 100, 20, 20, 100, 100}), image_of(150)), 1.5, 1e-6);
+}
+
+TEST(PatchBrightness, AFewPatchesOrDarkOnesGiveNoCommonGain) {
+  EXPECT_EQ(common_gain(patches_of({100, 100, 100, 100}), image_of(150)), 1.0);
+  EXPECT_EQ(common_gain(patches_of({100, 100, 100, 100, 100, 100}), image_of(2)), 1.0);
+}
+
+TEST(PatchBrightness, ThePriorFollowsTheCommonGainAndIsWiderThere) {
+  const config::PhotometricConfig config;
+  const BrightnessPrior same(config), brighter(config, 1.4);
+  EXPECT_EQ(brighter.cost({1.4, 0}), 0.0);
+  EXPECT_GT(same.cost({1.2, 0}), brighter.cost({1.6, 0}));
+  EXPECT_GT(same.cost({1.0, 10}), brighter.cost({1.4, 10}));
+  config::PhotometricConfig fixed;
+  fixed.gain_sigma = fixed.offset_sigma_grey = 0;
+  EXPECT_GT(BrightnessPrior(fixed, 1.4).cost({1.5, 0}), 1e12);
 }
 
 }  // namespace

@@ -78,30 +78,6 @@ TEST(Patches, PixelsAreAlignedByWhereTheySeeOneSurface) {
   EXPECT_GT(mixed, 50U) << "the furniture has edges that coarse pixels reach over";
 }
 
-TEST(Patches, KeptOnesStayAsTheyAreWithNewOnesAround) {
-  const FusedFrame scene;
-  std::vector<Patch> patches = scene.cut({});
-  ASSERT_GT(patches.size(), 20U);
-  patches[5].levels.front().pixels.front().intensity = -7;  // as no image has it
-  const std::uint32_t key = patches[5].levels.front().pixels.front().reference_pixel;
-  const Eigen::Vector2i before = patches[5].centre_px;
-  const std::vector<TrackedCentre> survivors = {{before.cast<double>() + Vector2d(3, 1), 4, 5}};
-  PatchWorkspace work;
-  refresh_patches({scene.pyramid, scene.gated_m, scene.camera, SE3{}}, scene.model, survivors,
-                  {scene.config.patches, scene.config.depth, Deformation::pixelwise}, scene.workers, work,
-                  patches);
-  ASSERT_GT(patches.size(), 10U);
-  EXPECT_EQ(patches[0].levels.front().pixels.front().intensity, -7);
-  EXPECT_EQ(patches[0].levels.front().pixels.front().reference_pixel, key);
-  EXPECT_EQ(patches[0].centre_px, before) << "its place in the frame that it was cut from";
-  EXPECT_EQ(patches[0].age, 4);
-  for (std::size_t p = 1; p < patches.size(); ++p) {
-    EXPECT_EQ(patches[p].age, 0);
-    EXPECT_GE((patches[p].centre_px - before - Eigen::Vector2i(3, 1)).norm(), 10)
-        << "new ones keep clear of where it is now";
-  }
-}
-
 TEST(Patches, TheFramesOwnSurfaceIsWhatItMeasured) {
   FusedFrame scene;
   for (float& depth_m : scene.gated_m.data) depth_m *= 1.01F;  // a scale that the model does not have
