@@ -243,6 +243,15 @@ void report_unrelated(const ComparedTurns& compared, Inspection& out) {
 
 }  // namespace
 
+std::optional<ImuAlignment> align_imu_with_images(const recording::Recording& recording,
+                                                  const Workers& workers) {
+  if (recording.imu.empty() || recording.frames.size() < 2) return std::nullopt;
+  const ComparedTurns compared(measures::turns_from_images(recording, workers, InspectOptions{}.turn_samples),
+                               measures::GyroscopeIntegral(recording.imu));
+  if (!compared.related()) return std::nullopt;
+  return measured_alignment(*compared.fit, compared.turns, recording.rig);
+}
+
 void check_imu_alignment(const recording::Recording& recording, const Workers& workers,
                          const InspectOptions& options, Inspection& out) {
   if (!out.imu || out.has("imu-out-of-order") || out.has("imu-duplicate-stamp") || !times_are_plausible(out))

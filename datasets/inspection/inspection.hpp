@@ -150,6 +150,11 @@ struct ImuAlignment {
   std::vector<TurnRate> rates;
 };
 
+/// Time offset and rotation of the IMU by the turns that the images show, whatever ground truth there is.
+/// Nothing where the turns of the images do not explain those of the gyroscope.
+[[nodiscard]] std::optional<ImuAlignment> align_imu_with_images(const recording::Recording& recording,
+                                                                const Workers& workers);
+
 /// One pair of frames, warped by ground truth.
 struct ReprojectionPair {
   std::size_t from = 0;

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string_view>
 #include <system_error>
 #include <tuple>
+#include <vector>
 
 #include "core/io/staged_file.hpp"
 #include "datasets/inspection/inspection.hpp"
@@ -31,8 +34,23 @@ constexpr std::array<std::string_view, 6> kInvalidating = {
     "gyroscope-unit",     "accelerometer-unit", "accelerometer-without-gravity",
     "accelerometer-sign", "imu-axes-swapped",   "imu-unrelated"};
 
+constexpr double kKnownOffset_s = kLeastTimeOffset_s / 3;  // standard deviation: less is told apart from none
+
 bool has_recorded_imu(const recording::Recording& recording) {
   return recording.imu_source == recording::ImuSource::recorded;
+}
+
+/// Of the file of checks: which samples there are decides what is checked.
+std::string_view extension_of(recording::ImuSource source) {
+  switch (source) {
+    case recording::ImuSource::recorded:
+      return ".imu.checks.json";
+    case recording::ImuSource::synthetic:
+      return ".synthetic-imu.checks.json";
+    case recording::ImuSource::none:
+      break;
+  }
+  return ".checks.json";
 }
 
 bool is_of_sensors(const Finding& finding, bool with_imu) {
@@ -51,6 +69,8 @@ SensorCheck sensor_check_of(const Json& json) {
   }
   if (const auto bias = json.find("gyroscope_bias_radps"); bias != json.end())
     result.gyroscope_bias_radps = Vector3d(bias->at(0), bias->at(1), bias->at(2));
+  if (const auto offset = json.find("imu_time_offset_s"); offset != json.end())
+    result.imu_time_offset_s = offset->get<double>();
   return result;
 }
 
@@ -81,6 +101,7 @@ nlohmann::ordered_json json_of(const SensorCheck& result) {
                                 {"hint", finding.hint}});
   if (const auto& bias = result.gyroscope_bias_radps)
     json["gyroscope_bias_radps"] = {bias->x(), bias->y(), bias->z()};
+  if (result.imu_time_offset_s) json["imu_time_offset_s"] = *result.imu_time_offset_s;
   return json;
 }
 
@@ -92,14 +113,16 @@ SensorCheck inspected_sensors(const recording::Recording& recording, const Worke
                        [&](const Finding& finding) { return is_of_sensors(finding, with_imu); });
   if (with_imu && inspected.imu && is_independent_of_truth(*inspected.imu))
     result.gyroscope_bias_radps = inspected.imu->gyroscope_bias_radps;
+  if (const auto alignment = inspection::align_imu_with_images(recording, workers);
+      alignment && alignment->time_offset_sigma_s < kKnownOffset_s)
+    result.imu_time_offset_s = alignment->time_offset_s;
   return result;
 }
 
 SensorCheck check_sensors(const recording::Recording& recording, const std::filesystem::path& out,
                           const Workers& workers) {
   const std::filesystem::path file =
-      preparation_file(out, recording)
-          .replace_extension(has_recorded_imu(recording) ? ".imu.checks.json" : ".checks.json");
+      preparation_file(out, recording).replace_extension(extension_of(recording.imu_source));
   if (auto kept = kept_check(file)) return *std::move(kept);
   SensorCheck result = inspected_sensors(recording, workers);
   std::error_code failed;
@@ -116,6 +139,22 @@ void take_out_bias(recording::Recording& recording, const Vector3d& bias_radps) 
       fmt::format("{}bias of the gyroscope ({:.4f}, {:.4f}, {:.4f}) rad/s, measured in the recording and "
                   "taken out of its samples",
                   kPreparedNote, bias_radps.x(), bias_radps.y(), bias_radps.z()));
+}
+
+void take_out_time_offset(recording::Recording& recording, double imu_time_offset_s) {
+  std::vector<ImuSample>& imu = recording.imu;
+  if (imu.empty() || std::abs(imu_time_offset_s) < kLeastTimeOffset_s) return;
+  const ImuSample first = imu.front(), last = imu.back();
+  const std::int64_t offset_ns = std::llround(1e9 * imu_time_offset_s);
+  for (ImuSample& sample : imu) sample.timestamp_ns -= offset_ns;
+  if (imu.front().timestamp_ns > first.timestamp_ns) imu.insert(imu.begin(), first);
+  if (imu.back().timestamp_ns < last.timestamp_ns) imu.push_back(last);
+  for (filter::StampedState& truth : recording.state_truth)
+    truth.state.imu_time_offset_s -= imu_time_offset_s;
+  recording.notes.push_back(
+      fmt::format("{}stamps of the IMU {:+.1f} ms against those of the images, measured in the recording and "
+                  "taken out of its samples",
+                  kPreparedNote, 1e3 * imu_time_offset_s));
 }
 
 bool makes_results_invalid(const Finding& finding) {

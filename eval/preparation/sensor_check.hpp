@@ -16,8 +16,11 @@ struct SensorCheck {
   /// Errors and warnings of `fusebench inspect` about the depth camera, and about recorded inertial samples.
   std::vector<inspection::Finding> findings;
   /// Of a recorded IMU: at rest, or else by the turns of the camera in the images; nothing where neither
-  /// tells it.
+  /// makes it observable.
   std::optional<Vector3d> gyroscope_bias_radps;
+  /// IMU's stamp minus camera's stamp of one instant, by the turns of the camera in the images; nothing where
+  /// these do not make it observable. A synthetic IMU has the error of the ground truth's clock.
+  std::optional<double> imu_time_offset_s;
 };
 
 [[nodiscard]] SensorCheck inspected_sensors(const recording::Recording& recording, const Workers& workers);
@@ -38,5 +41,12 @@ struct SensorCheck {
 /// find it.
 void take_out_bias(recording::Recording& recording, const Vector3d& gyroscope_bias_radps);
 inline constexpr double kLeastBias_radps = 0.015;
+
+/// Moves the stamps of the samples by -imu_time_offset_s, with a note, if the offset is larger than
+/// kLeastTimeOffset_s, which is the standard deviation that the filter expects
+/// (initialisation.imu_time_offset_sigma_s). The first and the last sample are held where frames would be
+/// left without samples.
+void take_out_time_offset(recording::Recording& recording, double imu_time_offset_s);
+inline constexpr double kLeastTimeOffset_s = 0.01;
 
 }  // namespace fusebench::preparation

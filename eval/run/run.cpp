@@ -106,7 +106,7 @@ void log_silent_failures(const record::RunRecord& record, RunProgress& progress)
 }
 
 /// Inertial samples that results would be invalid with are refused; of other contradictions there are
-/// warnings. A large bias of the gyroscope is taken out.
+/// warnings. A large bias of the gyroscope, and a large offset of the IMU's clock, are taken out.
 Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
   if (!run.spec.prepare || !preparation::is_long_enough(run.recording)) return {};
   const preparation::SensorCheck checked = preparation::check_sensors(run.recording, run.spec.out, workers);
@@ -118,6 +118,7 @@ Result<void> check_sensors(PreparedRun& run, const Workers& workers) {
     run.recording.warnings.push_back(finding.message);
   }
   if (checked.gyroscope_bias_radps) preparation::take_out_bias(run.recording, *checked.gyroscope_bias_radps);
+  if (checked.imu_time_offset_s) preparation::take_out_time_offset(run.recording, *checked.imu_time_offset_s);
   return {};
 }
 

@@ -118,24 +118,27 @@ std::vector<std::size_t> busiest_runs(const recording::Recording& recording, std
   return result;
 }
 
-/// Turns between neighbours from the first to the last frame.
+/// Turns between neighbours from the first to the last frame. An image that repeats the one before shows
+/// nothing of its own instant: it is left out.
 std::vector<CameraTurn> turns_of_run(const recording::Recording& recording, std::size_t first,
                                      std::size_t last) {
   std::vector<CameraTurn> turns;
   std::optional<RgbdFrame> before;
+  std::int64_t begin_ns = 0;
   for (std::size_t k = first; k <= last; ++k) {
     auto loaded = recording.load_frame(k);
     if (!loaded) {
       before.reset();
       continue;
     }
-    const std::int64_t begin_ns = k == first ? 0 : recording.frames[k - 1].capture_ns;
+    if (before && loaded->grey.data == before->grey.data) continue;
     const std::int64_t end_ns = recording.frames[k].capture_ns;
     if (before && end_ns - begin_ns <= kMaxTurn_ns) {
       const auto turn = turn_between(*before, *loaded, recording.rig.camera);
       if (turn) turns.push_back({begin_ns, end_ns, *turn});
     }
     before = std::move(*loaded);
+    begin_ns = end_ns;
   }
   return turns;
 }

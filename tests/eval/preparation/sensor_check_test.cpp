@@ -39,6 +39,29 @@ TEST(SensorCheck, ABiasThatTheFilterExpectsIsLeft) {
   EXPECT_TRUE(recording.notes.empty());
 }
 
+TEST(SensorCheck, ALargeTimeOffsetMovesStampsAndTruthAndLeavesNoFrameWithoutSamples) {
+  recording::Recording recording = recording_at_rest(Vector3d::Zero());
+  for (std::size_t i = 0; i < recording.imu.size(); ++i)
+    recording.imu[i] = {static_cast<std::int64_t>(i) * 100'000'000, {static_cast<double>(i), 0, 0}, {}};
+  recording.state_truth[0].state.imu_time_offset_s = 0.07;
+  take_out_time_offset(recording, 0.06);
+  ASSERT_EQ(recording.imu.size(), 4U);
+  EXPECT_EQ(recording.imu[0].timestamp_ns, -60'000'000);
+  EXPECT_EQ(recording.imu[2].timestamp_ns, 140'000'000);
+  EXPECT_EQ(recording.imu[3].timestamp_ns, 200'000'000);
+  EXPECT_EQ(recording.imu[3].angular_velocity_radps, recording.imu[2].angular_velocity_radps);
+  EXPECT_NEAR(recording.state_truth[0].state.imu_time_offset_s, 0.01, 1e-12);
+  ASSERT_EQ(recording.notes.size(), 1U);
+  EXPECT_TRUE(recording.notes[0].starts_with(kPreparedNote)) << recording.notes[0];
+}
+
+TEST(SensorCheck, ATimeOffsetThatTheFilterExpectsIsLeft) {
+  recording::Recording recording = recording_at_rest(Vector3d::Zero());
+  take_out_time_offset(recording, -0.009);
+  EXPECT_EQ(recording.imu[0].timestamp_ns, 0);
+  EXPECT_TRUE(recording.notes.empty());
+}
+
 TEST(SensorCheck, OnlyErrorsOfUnitsGravityAxesAndRecordingInvalidateResults) {
   EXPECT_TRUE(makes_results_invalid({"accelerometer-unit", Severity::error, "", ""}));
   EXPECT_TRUE(makes_results_invalid({"imu-axes-swapped", Severity::error, "", ""}));
