@@ -27,8 +27,9 @@ class StartSearch {
               const config::PhotometricConfig& photometric, const config::IekfConfig& iekf,
               const SensorRig& rig);
 
-  /// prior: its reference pose is that of the frame that `reference` was taken from. last: pose of the frame
-  /// before. pyramid: of the new frame. `thorough`: on all levels, whatever the prior says.
+  /// prior: its reference pose is that of the frame that `reference` was taken from. T_world_imu_last: where
+  /// the camera is if it stands still. pyramid: of the new frame. `thorough`: on all levels, whatever the
+  /// prior says.
   [[nodiscard]] FoundStart find(const filter::GaussianState& prior, const SE3& T_world_imu_last,
                                 const ReferencePoints& reference, std::span<const GreyImage> pyramid,
                                 bool thorough);

@@ -95,9 +95,9 @@ void refresh_patches(const ReferenceFrame& frame, const tsdf::TsdfVolume& model,
                                                  std::span<const TrackedCentre> survivors,
                                                  const CutOptions& options, const Workers& workers);
 
-/// The mean share that a frame which was just fused has in the model where these patches are: near
-/// 1 where the surface is new, small where many frames made it, 0 where the frame measured no depth and
-/// without patches.
+/// The mean share that a frame which was just fused has in the model where these patches are: near 1 where
+/// the surface is new, small where many frames made it, 0 where the frame measured no depth and without
+/// patches.
 [[nodiscard]] double fused_share(const tsdf::TsdfVolume& model, std::span<const Patch> patches,
                                  const ReferenceFrame& frame, const config::DepthConfig& depth);
 

@@ -113,8 +113,12 @@ SensorCheck inspected_sensors(const recording::Recording& recording, const Worke
                        [&](const Finding& finding) { return is_of_sensors(finding, with_imu); });
   if (with_imu && inspected.imu && is_independent_of_truth(*inspected.imu))
     result.gyroscope_bias_radps = inspected.imu->gyroscope_bias_radps;
-  if (const auto alignment = inspection::align_imu_with_images(recording, workers);
-      alignment && alignment->time_offset_sigma_s < kKnownOffset_s)
+  // Without ground truth the inspection has compared the IMU with the images already.
+  const bool compared = inspected.imu_alignment && inspected.imu_alignment->source == "images" &&
+                        !inspected.has("imu-unrelated");
+  const auto alignment =
+      compared ? inspected.imu_alignment : inspection::align_imu_with_images(recording, workers);
+  if (alignment && alignment->time_offset_sigma_s < kKnownOffset_s)
     result.imu_time_offset_s = alignment->time_offset_s;
   return result;
 }
